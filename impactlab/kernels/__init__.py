@@ -1,0 +1,7 @@
+"""The compiled core: numbers and arrays in and out, SI throughout, symbols as in the paper.
+
+This file stays free of numba, so that names can be looked up without compiling anything.
+"""
+
+RULES = ("lobatto", "legendre", "layers")
+"""Names of the integration rules over the depth; the index is the kernels' switch."""

@@ -1,0 +1,22 @@
+"""Hertz contact: F = (4/3) E* sqrt(R*) delta^1.5, elastic, the same way back.
+
+Source: Hertz 1881; Johnson, Contact Mechanics, eq. 4.23.
+
+Every law is one function of this form. In: indentation delta (m), effective modulus E (Pa),
+effective radius R (m), the softer body's yield stress S_y (Pa) and Poisson's ratio nu.
+Out: (F, K, delta_r, n), the loading force (N) at delta, and the curve on which the contact
+unloads from there, K (d - delta_r)^n.
+"""
+
+from __future__ import annotations
+
+import math
+
+from impactlab.kernels.jit import compiled
+
+
+@compiled
+def curve(delta, E, R, S_y, nu):
+    """Force and unloading curve of Hertz contact."""
+    K = 4.0 / 3.0 * E * math.sqrt(R)
+    return K * delta * math.sqrt(delta), K, 0.0, 1.5

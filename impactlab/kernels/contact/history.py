@@ -1,0 +1,94 @@
+"""The contact's memory: how far it was loaded, and the curve on which it unloads and reloads.
+
+Loading follows the law; below the largest indentation so far, delta_m, the force is
+K (delta - delta_r)^n in both directions (reloading retraces unloading, then loading goes on).
+"""
+
+from __future__ import annotations
+
+import math
+from collections import namedtuple
+
+import numpy as np
+
+from impactlab.kernels.contact.switch import curve
+from impactlab.kernels.jit import compiled
+
+Pair = namedtuple("Pair", "law E R S_y nu")
+"""Two bodies in contact: law's number, effective modulus (Pa) and radius (m), and the softer
+body's yield stress (Pa) and Poisson's ratio."""
+
+CONTACT = np.dtype(
+    (np.record, [(name, float) for name in ("delta_m", "F_m", "K", "delta_r", "n", "work", "delta_w")])
+)
+"""delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
+unloading curve from there. work (J): integral of the loading force from 0 to delta_w (m)."""
+
+# Gauss-Legendre on [0, 1], 4 points
+_GAUSS = (
+    (0.06943184420297371, 0.17392742256872693),
+    (0.33000947820757187, 0.32607257743127307),
+    (0.6699905217924281, 0.32607257743127307),
+    (0.9305681557970263, 0.17392742256872693),
+)
+
+
+@compiled
+def make_pair(case):
+    """Sphere against flat beam: 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b, R* = R_s."""
+    compliance = (1.0 - case.sphere_poissons_ratio**2) / case.sphere_youngs_modulus + (
+        1.0 - case.beam_poissons_ratio**2
+    ) / case.beam_youngs_modulus
+    E, R = 1.0 / compliance, case.sphere_radius
+    if case.beam_yield_stress <= case.sphere_yield_stress:
+        return Pair(case.contact, E, R, case.beam_yield_stress, case.beam_poissons_ratio)
+    return Pair(case.contact, E, R, case.sphere_yield_stress, case.sphere_poissons_ratio)
+
+
+@compiled
+def load(contact, pair, delta):
+    """Move the furthest point of loading on to delta."""
+    contact.delta_m = delta
+    contact.F_m, contact.K, contact.delta_r, contact.n = curve(
+        pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu
+    )
+
+
+@compiled
+def force(contact, pair, delta):
+    """Contact force (N) at indentation delta (m); loads further where delta exceeds delta_m."""
+    if delta > contact.delta_m:
+        load(contact, pair, delta)
+        return contact.F_m
+    over = delta - contact.delta_r
+    if over <= 0.0:
+        return 0.0
+    if contact.n == 1.5:
+        return contact.K * over * math.sqrt(over)
+    return contact.K * over**contact.n
+
+
+@compiled
+def loading_work(pair, start, stop):
+    """Integral of the loading force over [start, stop], J; Gauss-Legendre, 4 points."""
+    total = 0.0
+    for point, weight in _GAUSS:
+        delta = start + point * (stop - start)
+        F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+        total += weight * F
+    return total * (stop - start)
+
+
+@compiled
+def energies(contact, pair, delta):
+    """(stored, dissipated) energy of the contact at delta, J.
+
+    Dissipated is what loading took less what the unloading curve would give back; negative
+    where a law creates energy.
+    """
+    contact.work += loading_work(pair, contact.delta_w, contact.delta_m)
+    contact.delta_w = contact.delta_m
+    whole = contact.K * (contact.delta_m - contact.delta_r) ** (contact.n + 1.0) / (contact.n + 1.0)
+    over = max(delta - contact.delta_r, 0.0)
+    stored = contact.K * over ** (contact.n + 1.0) / (contact.n + 1.0)
+    return stored, contact.work - whole

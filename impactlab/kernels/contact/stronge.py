@@ -1,0 +1,40 @@
+"""Stronge's elastic-plastic contact, unloading with force continuity after Wang et al.
+
+Sources: Stronge, Impact Mechanics (2000), chapter 6; the paper, its Table 1 and Eqs. 15 to 17
+(misprints corrected: physics.md). th = 1.1; x = delta/delta_y, u = 2 x - 1:
+    x <= 1                       F = F_y x^1.5
+    elastic-plastic              F = F_y u (1 + ln(u)/(3 th))
+    fully plastic, u > U_PLASTIC F = 2.8 F_y u/th, joined where the two agree (x = 82.511)
+    unloading                    F = (4/3) E sqrt(R_e) (delta - delta_r)^1.5,
+                                 R_e = R sqrt(F_m/F_y), delta_r = delta_m - delta_y R_e/R
+The unloading curve gives back more than loading took for 1 < x < 1.894: there the law creates
+energy, and the dissipation comes out negative.
+"""
+
+from __future__ import annotations
+
+import math
+
+from impactlab.kernels.jit import compiled
+
+THETA = 1.1
+MEAN_PRESSURE = 2.8
+"""Fully plastic mean pressure over the yield stress."""
+U_PLASTIC = math.exp(3.0 * (MEAN_PRESSURE - THETA))
+
+
+@compiled
+def curve(delta, E, R, S_y, nu):
+    """Force and unloading curve of Stronge's law (see contact/hertz.py for the form)."""
+    K = 4.0 / 3.0 * E * math.sqrt(R)
+    delta_y = (0.75 * math.pi * THETA * S_y / E) ** 2 * R
+    if delta <= delta_y:
+        return K * delta * math.sqrt(delta), K, 0.0, 1.5
+    u = 2.0 * delta / delta_y - 1.0
+    if u <= U_PLASTIC:
+        ratio = u * (1.0 + math.log(u) / (3.0 * THETA))
+    else:
+        ratio = MEAN_PRESSURE * u / THETA
+    F = ratio * K * delta_y * math.sqrt(delta_y)
+    radius_ratio = math.sqrt(ratio)
+    return F, K * math.sqrt(radius_ratio), delta - delta_y * radius_ratio, 1.5

@@ -1,0 +1,56 @@
+"""The one way in which kernels are compiled: cached on disk, free of the GIL, never stale.
+
+numba's own cache notices a changed function, but not a changed callee in another file. So the
+cache lies in a folder named by a hash of every kernel source.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+import platformdirs
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def sources_hash() -> str:
+    """SHA-256 (hex) over the paths and bytes of all kernel sources, and numba's version."""
+    digest = hashlib.sha256(numba.__version__.encode())
+    root = Path(__file__).parent
+    for path in sorted(root.rglob("*.py")):
+        digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+SOURCES_HASH = sources_hash()
+"""Hash of the kernels that this process runs: the same hash, the same numbers."""
+
+
+def _cache_folder() -> Path:
+    root = os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_path("impactlab")
+    return Path(root) / f"kernels-{SOURCES_HASH[:16]}"
+
+
+def _jit(function: Function, fastmath: Any) -> Function:
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(_cache_folder())
+    try:
+        jit = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=fastmath)
+        return jit(function)  # type: ignore[no-any-return]
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def compiled(function: Function) -> Function:
+    """`function` as a compiled kernel (or as it is under NUMBA_DISABLE_JIT=1)."""
+    return _jit(function, False)
+
+
+def vectorised(function: Function) -> Function:
+    """Like `compiled`, for loops over arrays: free to reorder sums, blind to NaN."""
+    return _jit(function, True)

@@ -1,0 +1,131 @@
+"""The time loop: leapfrog (central differences), velocities at half steps.
+
+m_s w_s'' = -F + m_s g, w_s(0) = 0, w_s'(0) = v0; indentation delta = w_s - w(L/2).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from impactlab.kernels import responses, track as watch
+from impactlab.kernels.beam import (
+    Grid,
+    bend_beam,
+    kinetic_energy,
+    make_beam,
+    move_beam,
+    reach,
+    strain_energies,
+)
+from impactlab.kernels.contact import history as contact_history
+from impactlab.kernels.contact.history import CONTACT, make_pair
+from impactlab.kernels.jit import compiled
+from impactlab.kernels.section import make_section
+from impactlab.kernels.stability import critical_time_step
+from impactlab.kernels.status import DIVERGED
+from impactlab.kernels.track import TRACK
+
+_AUDITS = 500
+_LEAST_STRIDE = 8
+
+
+@compiled
+def make_grid(case, pair, section):
+    """Nodes and time steps of a case: (grid, number of steps)."""
+    dx = case.beam_span / (case.nodes - 1)
+    dt = case.courant * critical_time_step(case, pair, section.stiffness, dx)
+    steps = int(math.ceil(case.duration / dt))
+    mu = case.beam_density * case.beam_width * case.beam_depth
+    return Grid(case.nodes // 2, dx, case.duration / steps, mu), steps
+
+
+@compiled
+def _sample(out, t, dt, interval, before, here):
+    """Fill the samples of `out`, shape (4, samples), that fall into the step that ends at t."""
+    k = int(math.ceil((t - dt) / interval - 1e-9))
+    while k < out.shape[1] and k * interval <= t * (1.0 + 1e-12):
+        share = 1.0 - (t - k * interval) / dt
+        for row in range(4):
+            out[row, k] = before[row] + share * (here[row] - before[row])
+        k += 1
+
+
+@compiled
+def _imbalance(case, pair, section, grid, beam, contact, first, delta, F, w_s, v_s):
+    """Energy missing or in excess, over the initial kinetic energy."""
+    start = 0.5 * case.sphere_mass * case.velocity**2
+    v_next = v_s + grid.dt * (case.gravity - F / case.sphere_mass)
+    sphere = 0.5 * case.sphere_mass * v_s * v_next - case.sphere_mass * case.gravity * w_s
+    stored, dissipated = strain_energies(beam, section, grid, first)
+    held, lost = contact_history.energies(contact, pair, delta)
+    total = sphere + kinetic_energy(beam, grid, first, F) + stored + dissipated + held + lost
+    return abs(total - start) / start
+
+
+@compiled
+def run(case, answer, samples, deflection, plastic_strain, peeq):
+    """Solve one case.
+
+    case: a CASE record. answer: a RESPONSE record, filled. samples: shape (4, S), filled with
+    force, mid-span deflection, sphere displacement and indentation at S equal intervals from 0
+    to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq
+    (n + 1, P // 2): filled with the half beam's final state; length 0 for none.
+    """
+    pair, section = make_pair(case), make_section(case)
+    grid, steps = make_grid(case, pair, section)
+    beam, n, dt = make_beam(grid.n, section), grid.n, grid.dt
+    contact, track = np.zeros(1, CONTACT)[0], np.zeros(1, TRACK)[0]
+    contact.n = 1.5
+    watch.start(track)
+    stride = max(_LEAST_STRIDE, steps // _AUDITS)
+    interval = case.duration / max(samples.shape[1] - 1, 1)
+    w_s, v_s, first, yielded = 0.0, case.velocity, n, False
+    responses.clear(answer, 0)
+
+    for step in range(steps + 1):
+        t, w = step * dt, beam.w[n]
+        delta = w_s - w
+        if watch.passed_peak(track, delta, contact.delta_m):
+            offset, peak = watch.vertex(track.delta_before, track.delta, delta)
+            contact_history.load(contact, pair, peak)
+            track.t_peak = t + (offset - 1.0) * dt
+        F = contact_history.force(contact, pair, delta)
+        yielded = bend_beam(beam, section, grid, first, yielded)
+        watch.watch_contact(track, delta, contact.delta_r, v_s, t, dt)
+        watch.watch_deflection(track, w)
+        if samples.shape[1] > 0:
+            before = (track.F, track.w, w_s - v_s * dt, track.delta)
+            _sample(samples, t, dt, interval, before, (F, w, w_s, delta))
+        watch.shift(track, delta, w, F, dt)
+        if step > 0 and (step % stride == 0 or step == steps):
+            error = _imbalance(case, pair, section, grid, beam, contact, first, delta, F, w_s, v_s)
+            track.energy_error = max(track.energy_error, error)
+            if not error < 1.0:
+                responses.clear(answer, DIVERGED)
+                samples[:] = np.nan
+                return
+        if step == steps:
+            break
+        v_s += (0.5 if step == 0 else 1.0) * dt * (case.gravity - F / case.sphere_mass)
+        move_beam(beam, grid, first, F)
+        w_s += dt * v_s
+        first = reach(beam, first)
+
+    _, dissipated = strain_energies(beam, section, grid, first)
+    responses.read_contact(answer, case, track, contact, pair)
+    responses.read_rebound(answer, case, track, v_s, beam.u[n] / dt)
+    responses.read_beam(answer, case, track, beam, grid, dissipated)
+    answer.energy_error = track.energy_error
+    if deflection.size > 0:
+        deflection[:] = beam.w[: n + 1]
+        plastic_strain[:] = beam.plastic_strain
+        peeq[:] = beam.peeq
+
+
+@compiled
+def run_all(cases, answers, samples, deflection, plastic_strain, peeq):
+    """Solve every case; the arrays of `run` with one more dimension in front, the run."""
+    for r in range(cases.size):
+        run(cases[r], answers[r], samples[r], deflection[r], plastic_strain[r], peeq[r])

@@ -1,0 +1,132 @@
+"""The scalar answers of a run, read off what was watched and off the final state.
+
+Units and meanings: impactlab.dataset.RESPONSES, which has the same names.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from impactlab.kernels.contact.history import energies
+from impactlab.kernels.jit import compiled
+from impactlab.kernels.status import (
+    DEFLECTION_STILL_GROWING,
+    FIRST_CONTACT_UNFINISHED,
+    IN_CONTACT_AT_END,
+    INDENTATION_STILL_GROWING,
+    SPHERE_NOT_LEAVING,
+)
+
+ANSWERS = (
+    "peak_force",
+    "time_of_peak_force",
+    "contact_duration",
+    "number_of_contacts",
+    "total_contact_time",
+    "maximum_indentation",
+    "permanent_indentation",
+    "maximum_deflection",
+    "impulse",
+    "rebound_velocity",
+    "restitution",
+    "peak_plastic_strain",
+    "remote_plastic_strain",
+    "plastic_zone_length",
+    "contact_dissipation",
+    "plastic_dissipation",
+    "energy_error",
+)
+RESPONSE = np.dtype((np.record, [("status", np.int64)] + [(name, float) for name in ANSWERS]))
+"""Record type of the answers; `status` is made of the bits of status.py."""
+
+PLASTIC_ZONE_STRAIN = 1e-5
+"""PEEQ from which on a section counts as plastic."""
+
+
+@compiled
+def clear(answer, status):
+    """No answers, and the reason."""
+    answer.status = status
+    answer.peak_force = np.nan
+    answer.time_of_peak_force = np.nan
+    answer.contact_duration = np.nan
+    answer.number_of_contacts = np.nan
+    answer.total_contact_time = np.nan
+    answer.maximum_indentation = np.nan
+    answer.permanent_indentation = np.nan
+    answer.maximum_deflection = np.nan
+    answer.impulse = np.nan
+    answer.rebound_velocity = np.nan
+    answer.restitution = np.nan
+    answer.peak_plastic_strain = np.nan
+    answer.remote_plastic_strain = np.nan
+    answer.plastic_zone_length = np.nan
+    answer.contact_dissipation = np.nan
+    answer.plastic_dissipation = np.nan
+    answer.energy_error = np.nan
+
+
+@compiled
+def read_contact(answer, case, track, contact, pair):
+    """Force, indentation and contact times."""
+    if track.delta == contact.delta_m:
+        answer.status |= INDENTATION_STILL_GROWING
+    else:
+        answer.peak_force = contact.F_m
+        answer.time_of_peak_force = track.t_peak
+        answer.maximum_indentation = contact.delta_m
+    answer.number_of_contacts = track.contacts
+    answer.contact_duration = track.t_first_end
+    if np.isnan(track.t_first_end):
+        answer.status |= FIRST_CONTACT_UNFINISHED
+    if track.touching == 1.0:
+        answer.status |= IN_CONTACT_AT_END
+    else:
+        answer.total_contact_time = track.time_in_contact
+        answer.permanent_indentation = contact.delta_r
+        answer.impulse = track.impulse
+        _, answer.contact_dissipation = energies(contact, pair, track.delta)
+
+
+@compiled
+def read_rebound(answer, case, track, v_s, v_beam):
+    """Rebound, once the sphere moves upwards and away from the beam."""
+    if track.touching == 1.0 or v_s >= 0.0 or v_s >= v_beam:
+        answer.status |= SPHERE_NOT_LEAVING
+    else:
+        answer.rebound_velocity = -track.v_exit
+        answer.restitution = -track.v_exit / case.velocity
+
+
+@compiled
+def read_beam(answer, case, track, beam, grid, dissipated):
+    """Deflection and plastic strain."""
+    if track.w > track.w_max:
+        answer.status |= DEFLECTION_STILL_GROWING
+    else:
+        answer.maximum_deflection = track.w_max
+    answer.peak_plastic_strain = 0.0
+    answer.remote_plastic_strain = 0.0
+    answer.plastic_zone_length = 0.0
+    strain_before = 0.0
+    for i in range(grid.n + 1):
+        strain = np.max(beam.peeq[i])
+        answer.peak_plastic_strain = max(answer.peak_plastic_strain, strain)
+        if (grid.n - i) * grid.dx > case.beam_depth:
+            answer.remote_plastic_strain = max(answer.remote_plastic_strain, strain)
+        if i > 0:
+            share = share_above(strain_before, strain, PLASTIC_ZONE_STRAIN)
+            answer.plastic_zone_length += 2.0 * grid.dx * share
+        strain_before = strain
+    answer.plastic_dissipation = dissipated
+
+
+@compiled
+def share_above(left, right, threshold):
+    """Share of a cell in which the line from `left` to `right` lies above the threshold."""
+    high, low = max(left, right), min(left, right)
+    if low >= threshold:
+        return 1.0
+    if high <= threshold:
+        return 0.0
+    return (high - threshold) / (high - low)

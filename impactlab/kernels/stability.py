@@ -1,0 +1,52 @@
+"""The critical time step of the explicit scheme.
+
+omega^2 <= 16 (EI)_q/(rho A dx^4) + k_c (1/(rho A dx) + 1/m_s); dt_critical = 2/omega
+(physics.md, in the place of the paper's bar-wave limit).
+"""
+
+from __future__ import annotations
+
+import math
+
+from impactlab.kernels.contact.history import loading_work
+from impactlab.kernels.contact.switch import curve
+from impactlab.kernels.jit import compiled
+
+_GROWTH = 1.25
+
+
+@compiled
+def _stiffness(pair, delta):
+    """Largest tangent stiffness (N/m) of loading and of unloading at delta."""
+    F, K, delta_r, n = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+    small = 1e-4 * delta
+    F_next, _, _, _ = curve(pair.law, delta + small, pair.E, pair.R, pair.S_y, pair.nu)
+    return max((F_next - F) / small, n * K * max(delta - delta_r, 0.0) ** (n - 1.0))
+
+
+@compiled
+def stiffest_contact(case, pair):
+    """k_c in N/m, over all indentations that the sphere's energy can drive.
+
+    The indentation is raised until loading has taken all of that energy: no impact on a beam,
+    which takes a part of it, goes deeper.
+    """
+    energy = 0.5 * case.sphere_mass * case.velocity**2
+    hertz = 4.0 / 3.0 * pair.E * math.sqrt(pair.R)
+    delta = 0.1 * (2.5 * energy / hertz) ** 0.4
+    work, k_c = 0.0, 0.0
+    while work < energy + case.sphere_mass * case.gravity * delta and delta < pair.R:
+        k_c = max(k_c, _stiffness(pair, delta))
+        work += loading_work(pair, delta, _GROWTH * delta)
+        delta *= _GROWTH
+    return max(k_c, _stiffness(pair, delta))
+
+
+@compiled
+def critical_time_step(case, pair, bending_stiffness, dx):
+    """Largest stable time step (s) for node spacing dx (m) and the rule's stiffness (N m2)."""
+    mu = case.beam_density * case.beam_width * case.beam_depth
+    k_c = stiffest_contact(case, pair)
+    omega_squared = 16.0 * bending_stiffness / (mu * dx**4)
+    omega_squared += k_c * (1.0 / (mu * dx) + 1.0 / case.sphere_mass)
+    return 2.0 / math.sqrt(omega_squared)

@@ -1,0 +1,8 @@
+"""Why an answer is missing: one bit a reason (in words: impactlab.dataset.STATUS_FLAGS)."""
+
+DIVERGED = 1
+FIRST_CONTACT_UNFINISHED = 2
+IN_CONTACT_AT_END = 4
+SPHERE_NOT_LEAVING = 8
+DEFLECTION_STILL_GROWING = 16
+INDENTATION_STILL_GROWING = 32

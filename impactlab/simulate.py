@@ -1,0 +1,211 @@
+"""The one door to the kernels: one impact with its histories, or many for their responses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
+from impactlab.kernels import RULES
+from impactlab.kernels.case import CASE, REAL, WHOLE
+from impactlab.kernels.contact import LAWS
+from impactlab.kernels.leapfrog import run_all
+from impactlab.kernels.quadrature import rule_points
+from impactlab.kernels.responses import RESPONSE
+from impactlab.model.checks import integer, positive
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.model.parameters import Value, flatten, with_values
+
+_NUMBERS = {"contact": LAWS.index, "rule": RULES.index}
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What the kernels gave for R runs.
+
+    responses: record array (R,) of kernels.responses.RESPONSE. histories: name -> (R, samples).
+    profiles: name -> (R, nodes, points), or (R, nodes) for the deflection. Both may be empty.
+    """
+
+    responses: np.ndarray[Any, Any]
+    histories: dict[str, np.ndarray[Any, Any]]
+    profiles: dict[str, np.ndarray[Any, Any]]
+
+
+def simulate(
+    impact: Impact,
+    discretisation: Discretisation | None = None,
+    *,
+    duration: float,
+    samples: int = 2001,
+) -> xr.Dataset:
+    """Solve one impact.
+
+    duration: simulated time in s. samples: length of `time`, equally spaced from 0 to the
+    duration. Returns a Dataset with the histories on `time`, the strains on `x` and `z`, every
+    response of impactlab.dataset.RESPONSES as a scalar, and `status`; a response that the run
+    could not give is NaN, and `status` says why.
+
+    Raises ValueError when duration or samples is not valid.
+    """
+    grid = discretisation or Discretisation()
+    integer("simulate", "samples", samples, 2)
+    cases = case_table(impact, grid, duration=duration)
+    answers = solve(cases, samples=samples, profiles=True)
+    dataset = xr.Dataset(
+        answer_variables(answers, tuple(RESPONSES), ()),
+        coords=sample_coordinates(duration, samples) | profile_coordinates(impact, grid),
+        attrs=provenance(),
+    )
+    fixed = flatten(impact, grid) | {"sphere_mass": impact.sphere.total_mass, "duration": duration}
+    return described(dataset.squeeze(drop=True).assign_coords(fixed))
+
+
+def simulate_many(
+    impact: Impact,
+    discretisation: Discretisation | None = None,
+    *,
+    duration: float,
+    varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]],
+) -> xr.Dataset:
+    """Solve many impacts for their responses, on one thread.
+
+    varied: parameter name (see impactlab.model.parameters.PARAMETERS) -> one value a run, all of
+    the same length. Returns a Dataset of every response and `status` on `run`, the varied
+    parameters as coordinates.
+
+    Raises ValueError for an unknown parameter, unequal lengths, or a value that the model
+    refuses, naming the run.
+    """
+    grid = discretisation or Discretisation()
+    cases = case_table(impact, grid, duration=duration, varied=varied)
+    labels = {name: ("run", np.asarray(values)) for name, values in varied.items()}
+    dataset = xr.Dataset(
+        answer_variables(solve(cases), tuple(RESPONSES), ("run",)),
+        coords=labels | {"run": np.arange(cases.size), "duration": duration},
+        attrs=provenance(),
+    )
+    return described(dataset)
+
+
+def case_table(
+    impact: Impact,
+    discretisation: Discretisation,
+    *,
+    duration: float,
+    varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]] | None = None,
+) -> np.ndarray[Any, Any]:
+    """The kernels' table of cases, one record (kernels.case.CASE) a run; each run is checked.
+
+    Raises ValueError naming the run and its field when the model refuses a value.
+    """
+    positive("simulate", "duration", duration)
+    varied = varied or {}
+    lengths = {len(values) for values in varied.values()}
+    if len(lengths) > 1:
+        raise ValueError(f"varied: every parameter needs one value a run, got lengths {lengths}")
+    cases = np.zeros(lengths.pop() if lengths else 1, dtype=CASE)
+    for run in range(cases.size):
+        values = {name: _plain(column[run]) for name, column in varied.items()}
+        try:
+            cases[run] = _case(*with_values(impact, discretisation, values), duration)
+        except ValueError as error:
+            raise ValueError(f"run {run}: {error}") from None
+    return cases
+
+
+def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False) -> Answers:
+    """Run the kernels over a case table, on the calling thread and without the GIL.
+
+    samples: length of each history (0: none). profiles: keep the fields along the beam, for
+    which all cases must share nodes and points; raises ValueError where they do not.
+    """
+    shapes = {(int(case.nodes), int(case.points), int(case.rule)) for case in cases}
+    if profiles and len(shapes) > 1:
+        raise ValueError("profiles need the same nodes, points and rule in every run")
+    nodes, points, _ = next(iter(shapes)) if profiles else (-1, 0, 0)
+    half, fibres, runs = nodes // 2 + 1, points // 2, cases.size
+    responses = np.zeros(runs, dtype=RESPONSE)
+    histories = np.full((runs, 4, samples), np.nan)
+    deflection = np.full((runs, half), np.nan)
+    strains = np.full((2, runs, half, fibres), np.nan)
+    run_all(cases, responses, histories, deflection, strains[0], strains[1])
+    return Answers(
+        responses,
+        dict(zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)) if samples else {},
+        _whole_beam(deflection, strains[0], strains[1], points) if profiles else {},
+    )
+
+
+def answer_variables(
+    answers: Answers, responses: tuple[str, ...], dims: tuple[str, ...]
+) -> dict[str, tuple[tuple[str, ...], np.ndarray[Any, Any]]]:
+    """The answers as data variables on `dims` (for one run: none), the asked responses only.
+
+    `status` keeps the bits that matter to these responses.
+    """
+    lead = dims or ("run",)
+    bits = (answers.responses["status"] & status_bits(responses)).astype(np.int32)
+    scalars = {name: (lead, answers.responses[name].copy()) for name in responses}
+    fields = {
+        name: ((*lead, *(HISTORIES | PROFILES)[name].dims), values)
+        for name, values in (answers.histories | answers.profiles).items()
+    }
+    return scalars | fields | {"status": (lead, bits)}
+
+
+def sample_coordinates(duration: float, samples: int) -> dict[str, Any]:
+    """The `time` coordinate of histories with this many samples."""
+    return {"time": np.linspace(0.0, duration, samples)}
+
+
+def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[str, Any]:
+    """The `x` and `z` coordinates (m) of fields along the beam."""
+    beam = impact.beam
+    points = rule_points(discretisation.rule, discretisation.points)
+    return {
+        "x": np.linspace(0.0, beam.span, discretisation.nodes),
+        "z": 0.5 * beam.depth * points,
+    }
+
+
+def _plain(value: Any) -> Value:
+    """numpy scalars as the Python values that the model checks."""
+    return value.item() if isinstance(value, np.generic) else value  # type: ignore[no-any-return]
+
+
+def _case(impact: Impact, discretisation: Discretisation, duration: float) -> tuple[Value, ...]:
+    values = flatten(impact, discretisation)
+    values |= {"sphere_mass": impact.sphere.total_mass, "duration": duration}
+    for name, number in _NUMBERS.items():
+        values[name] = number(values[name])  # type: ignore[arg-type]
+    return tuple(values[name] for name in (*WHOLE, *REAL))
+
+
+def _whole_beam(
+    deflection: np.ndarray[Any, Any],
+    plastic_strain: np.ndarray[Any, Any],
+    peeq: np.ndarray[Any, Any],
+    points: int,
+) -> dict[str, np.ndarray[Any, Any]]:
+    """Half beams with half depths, outermost fibre first, mirrored to whole ones."""
+    return {
+        "equivalent_plastic_strain": _mirror(_depth(peeq, 1.0, points)),
+        "plastic_strain": _mirror(_depth(plastic_strain, -1.0, points)),
+        "deflection": _mirror(deflection),
+    }
+
+
+def _mirror(half: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    return np.concatenate([half, half[:, -2::-1]], axis=1)
+
+
+def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:
+    """From fibres z > 0, outermost first, to all fibres in ascending z."""
+    axis = np.zeros((*lower.shape[:2], points % 2))
+    return np.concatenate([sign * lower, axis, lower[:, :, ::-1]], axis=2)
