@@ -7,8 +7,9 @@ Sources: Stronge, Impact Mechanics (2000), chapter 6; the paper, its Table 1 and
     fully plastic, u > U_PLASTIC F = 2.8 F_y u/th, joined where the two agree (x = 82.511)
     unloading                    F = (4/3) E sqrt(R_e) (delta - delta_r)^1.5,
                                  R_e = R sqrt(F_m/F_y), delta_r = delta_m - delta_y R_e/R
-The unloading curve gives back more than loading took for 1 < x < 1.894: there the law creates
-energy, and the dissipation comes out negative.
+The law is followed as it stands, with two flaws of its own: the unloading curve gives back more
+than loading took for 1 < x < 2.673 (restitution up to 1.10; the dissipation is negative there),
+and it ends below zero indentation for 1 < x < 1.998 (delta_r < 0).
 """
 
 from __future__ import annotations

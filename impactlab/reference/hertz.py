@@ -1,0 +1,71 @@
+"""Elastic impact of a sphere on a half-space: Hertz's closed forms.
+
+Source: H. Hertz (1882); K. L. Johnson, Contact Mechanics (1985), sections 4.2 and 11.4.
+"""
+
+from __future__ import annotations
+
+import math
+
+from scipy.special import gamma
+
+from impactlab.model.checks import positive
+from impactlab.model.impact import Impact
+from impactlab.model.material import Material
+
+CONTACT_TIME_FACTOR = float(2.0 * math.sqrt(math.pi) * gamma(1.4) / gamma(0.9))
+"""t_c v/delta_m = 2 * integral of (1 - s^2.5)^(-1/2) over [0, 1] = 2.9433."""
+
+
+def effective_modulus(impact: Impact) -> float:
+    """E* in Pa, from 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b."""
+    return 1.0 / (_compliance(impact.sphere.material) + _compliance(impact.beam.material))
+
+
+def effective_radius(impact: Impact) -> float:
+    """R* in m: the sphere's radius, since the beam is flat."""
+    return impact.sphere.radius
+
+
+def stiffness(modulus: float, radius: float) -> float:
+    """Stiffness k in N m^-1.5 of F = k delta^1.5, from E* (Pa) and R* (m).
+
+    Raises ValueError when an argument is not finite and positive.
+    """
+    _check(effective_modulus=modulus, effective_radius=radius)
+    return 4.0 / 3.0 * modulus * math.sqrt(radius)
+
+
+def maximum_indentation(mass: float, velocity: float, modulus: float, radius: float) -> float:
+    """delta_m = (15 m v^2/(16 E* sqrt(R*)))^(2/5) in m; kg, m/s, Pa, m.
+
+    Raises ValueError when an argument is not finite and positive.
+    """
+    _check(mass=mass, velocity=velocity, effective_modulus=modulus, effective_radius=radius)
+    return math.pow(15.0 * mass * velocity**2 / (16.0 * modulus * math.sqrt(radius)), 0.4)
+
+
+def peak_force(mass: float, velocity: float, modulus: float, radius: float) -> float:
+    """Contact force in N at delta_m; kg, m/s, Pa, m.
+
+    Raises ValueError when an argument is not finite and positive.
+    """
+    indentation = maximum_indentation(mass, velocity, modulus, radius)
+    return stiffness(modulus, radius) * math.pow(indentation, 1.5)
+
+
+def contact_duration(mass: float, velocity: float, modulus: float, radius: float) -> float:
+    """t_c = 2.9433 delta_m/v in s, the constant exact; kg, m/s, Pa, m.
+
+    Raises ValueError when an argument is not finite and positive.
+    """
+    return CONTACT_TIME_FACTOR * maximum_indentation(mass, velocity, modulus, radius) / velocity
+
+
+def _compliance(material: Material) -> float:
+    return (1.0 - material.poissons_ratio**2) / material.youngs_modulus
+
+
+def _check(**values: float) -> None:
+    for field, value in values.items():
+        positive("hertz", field, value)

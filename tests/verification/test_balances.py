@@ -1,0 +1,62 @@
+"""Energy and momentum, for every rule, law and hardening."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab.kernels import RULES
+from impactlab.kernels.contact import LAWS
+
+
+def hardened(impact, isotropic, kinematic):
+    material = replace(
+        impact.beam.material,
+        isotropic_hardening_modulus=isotropic,
+        kinematic_hardening_modulus=kinematic,
+    )
+    return replace(impact, beam=replace(impact.beam, material=material))
+
+
+@pytest.mark.parametrize(("nodes", "bound"), [(201, 1e-3), (601, 1e-4)])
+def test_energy_error_of_the_papers_case(nodes, bound):
+    run = il.simulate(il.paper_impact(), il.Discretisation(nodes=nodes), duration=1e-3)
+    assert 0 < run.energy_error.item() < bound
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("contact", LAWS)
+@pytest.mark.parametrize(("isotropic", "kinematic"), [(0, 0), (5e9, 0), (0, 5e9), (3e9, 3e9)])
+def test_energy_balance_while_the_beam_yields(rule, contact, isotropic, kinematic):
+    impact = hardened(il.paper_impact(20.0, contact), isotropic, kinematic)
+    run = il.simulate(impact, il.Discretisation(nodes=101, points=9, rule=rule), duration=4e-3)
+    start = 0.5 * run.sphere_mass.item() * 20.0**2
+    assert run.plastic_dissipation.item() > 0.01 * start  # it does yield
+    assert run.energy_error.item() < 1e-3
+
+
+def test_energy_error_falls_with_the_time_step():
+    """An energy term left out would stay."""
+    grids = [il.Discretisation(nodes=101, courant=courant) for courant in (0.8, 0.4, 0.2)]
+    impact = hardened(il.paper_impact(20.0), 2e9, 2e9)
+    runs = [il.simulate(impact, grid, duration=2e-3) for grid in grids]
+    errors = np.array([run.energy_error.item() for run in runs])
+    assert errors[2] < errors[0] / 4
+
+
+def test_impulse_is_the_spheres_loss_of_momentum():
+    impact = replace(il.paper_impact(5.0), gravity=0.0)
+    run = il.simulate(impact, il.Discretisation(nodes=201), duration=20e-3)
+    lost = run.sphere_mass.item() * (5.0 + run.rebound_velocity.item())
+    assert run.impulse.item() == pytest.approx(lost, rel=1e-9)
+
+
+def test_force_moves_the_beam():
+    """Before the supports matter: rho A times the integral of w is the force integrated twice."""
+    impact = il.paper_impact(0.99)
+    time = 0.08e-3
+    run = il.simulate(impact, il.Discretisation(nodes=401), duration=time, samples=4001)
+    moved = impact.beam.mass_per_length * run.deflection.integrate("x").item()
+    driven = (run.contact_force * (time - run.time)).integrate("time").item()
+    assert moved == pytest.approx(driven, rel=2e-3)

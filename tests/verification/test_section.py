@@ -1,0 +1,99 @@
+"""The fibre section under imposed curvature, against closed forms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab.kernels import RULES, section
+from impactlab.kernels.case import CASE
+from impactlab.reference import bending, quadrature
+from impactlab.simulate import case_table
+
+IMPACT = il.paper_impact()
+
+
+def make_section(points, rule, isotropic=0.0, kinematic=0.0):
+    material = replace(
+        IMPACT.beam.material,
+        isotropic_hardening_modulus=isotropic,
+        kinematic_hardening_modulus=kinematic,
+    )
+    impact = replace(IMPACT, beam=replace(IMPACT.beam, material=material))
+    cases = case_table(impact, il.Discretisation(points=points, rule=rule), duration=1e-3)
+    assert cases.dtype == CASE
+    return section.make_section(cases[0]), impact.beam
+
+
+def moments(cut, curvatures):
+    """Moment (sign of physics.md) along a history of curvature."""
+    plastic_strain, peeq = np.zeros(cut.z.size), np.zeros(cut.z.size)
+    history = []
+    for kappa in curvatures:
+        M_0, low, high = section.bend(cut, kappa, plastic_strain, peeq)
+        assert low <= kappa * (1 + 1e-9) + 1e-12
+        assert kappa <= high * (1 + 1e-9) + 1e-12 or kappa < 0
+        history.append(M_0 - cut.stiffness * kappa)
+    return np.array(history), plastic_strain, peeq
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("points", [2, 3, 4, 5, 9, 21, 64])
+def test_monotone_bending_is_that_of_the_rule(rule, points):
+    cut, beam = make_section(points, rule)
+    positions, weights = quadrature.rule(rule, points)
+    curvatures = np.linspace(0.1, 20, 40) * bending.yield_curvature(beam)
+    ours, _, _ = moments(cut, curvatures)
+    expected = [bending.rule_moment(beam, kappa, positions, weights) for kappa in curvatures]
+    assert -ours == pytest.approx(np.array(expected), rel=1e-12)
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_moment_curvature_tends_to_the_exact_one(rule):
+    beam = IMPACT.beam
+    curvatures = np.linspace(0.5, 8, 16) * bending.yield_curvature(beam)
+    exact = np.array([bending.moment(beam, kappa) for kappa in curvatures])
+    errors = []
+    for points in (11, 41, 161):
+        ours, _, _ = moments(make_section(points, rule)[0], curvatures)
+        errors.append(np.abs(-ours / exact - 1).max())
+    assert errors[-1] < 2e-3
+    assert errors[-1] < errors[0] / 10
+
+
+def test_two_lobatto_points_are_three_times_too_stiff():
+    cut, beam = make_section(2, "lobatto")
+    assert cut.stiffness / beam.bending_stiffness == pytest.approx(3, rel=1e-12)
+
+
+def test_three_lobatto_points_yield_fully_at_the_yield_moment():
+    cut, beam = make_section(3, "lobatto")
+    ours, _, _ = moments(cut, np.array([50.0]) * bending.yield_curvature(beam))
+    assert -ours[-1] == pytest.approx(bending.yield_moment(beam), rel=1e-12)
+
+
+@pytest.mark.parametrize(("isotropic", "kinematic"), [(5e9, 0.0), (0.0, 5e9), (3e9, 2e9)])
+def test_reversed_loading(isotropic, kinematic):
+    """After loading to kappa_1, the elastic range is 2 (S_y + H_i p) wide for the outermost fibre."""
+    cut, beam = make_section(9, "lobatto", isotropic, kinematic)
+    E, S_y = cut.E, cut.S_y
+    kappa = 6 * cut.yield_curvature
+    plastic, peeq = np.zeros(cut.z.size), np.zeros(cut.z.size)
+    _, low, high = section.bend(cut, kappa, plastic, peeq)
+    # the outermost fibre by hand
+    strain = kappa * cut.z[0]
+    slip = (E * strain - S_y) / (E + isotropic + kinematic)
+    assert peeq[0] == pytest.approx(slip, rel=1e-12)
+    assert plastic[0] == pytest.approx(-slip, rel=1e-12)
+    assert high == pytest.approx(kappa, rel=1e-12)
+    assert high - low == pytest.approx(2 * (S_y + isotropic * slip) / (E * cut.z[0]), rel=1e-12)
+
+
+def test_unloading_is_elastic():
+    cut, _ = make_section(9, "lobatto", 1e9, 1e9)
+    kappa_y = cut.yield_curvature
+    history, _, peeq = moments(cut, np.array([3.0, 2.5, 2.0, 1.5]) * kappa_y)
+    assert np.diff(history) == pytest.approx(0.5 * kappa_y * cut.stiffness, rel=1e-9)
+    once = moments(cut, np.array([3.0]) * kappa_y)[2]
+    assert peeq == pytest.approx(once, rel=1e-15)
