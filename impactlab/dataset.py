@@ -67,7 +67,10 @@ RESPONSES: dict[str, Variable] = {
     for entry in (
         _response("peak_force", "N", "largest contact force", "indentation_still_growing"),
         _response(
-            "time_of_peak_force", "s", "time of the largest contact force", "indentation_still_growing"
+            "time_of_peak_force",
+            "s",
+            "time of the largest contact force",
+            "indentation_still_growing",
         ),
         _response(
             "contact_duration", "s", "duration of the first contact", "first_contact_unfinished"
@@ -76,12 +79,17 @@ RESPONSES: dict[str, Variable] = {
         _response("total_contact_time", "s", "time in contact, all contacts", "in_contact_at_end"),
         _response("maximum_indentation", "m", "largest indentation", "indentation_still_growing"),
         _response(
-            "permanent_indentation", "m", "indentation left after the last contact", "in_contact_at_end"
+            "permanent_indentation",
+            "m",
+            "indentation left after the last contact",
+            "in_contact_at_end",
         ),
         _response(
             "maximum_deflection", "m", "largest mid-span deflection", "deflection_still_growing"
         ),
-        _response("impulse", "N s", "impulse of the contact force, all contacts", "in_contact_at_end"),
+        _response(
+            "impulse", "N s", "impulse of the contact force, all contacts", "in_contact_at_end"
+        ),
         _response(
             "rebound_velocity",
             "m s-1",
@@ -100,14 +108,14 @@ RESPONSES: dict[str, Variable] = {
             "1",
             "largest PEEQ farther than one beam depth from the impact",
         ),
-        _response("plastic_zone_length", "m", "length of beam with a PEEQ above 1e-5 in the section"),
+        _response(
+            "plastic_zone_length", "m", "length of beam with a PEEQ above 1e-5 in the section"
+        ),
         _response(
             "contact_dissipation", "J", "energy dissipated in the contact", "in_contact_at_end"
         ),
         _response("plastic_dissipation", "J", "energy dissipated in the fibres"),
-        _response(
-            "energy_error", "1", "largest energy imbalance over the initial kinetic energy"
-        ),
+        _response("energy_error", "1", "largest energy imbalance over the initial kinetic energy"),
     )
 }
 """The scalar answers of a run, by name."""

@@ -176,14 +176,15 @@ def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[
 
 def _plain(value: Any) -> Value:
     """numpy scalars as the Python values that the model checks."""
-    return value.item() if isinstance(value, np.generic) else value  # type: ignore[no-any-return]
+    plain: Value = value.item() if isinstance(value, np.generic) else value
+    return plain
 
 
 def _case(impact: Impact, discretisation: Discretisation, duration: float) -> tuple[Value, ...]:
     values = flatten(impact, discretisation)
     values |= {"sphere_mass": impact.sphere.total_mass, "duration": duration}
     for name, number in _NUMBERS.items():
-        values[name] = number(values[name])  # type: ignore[arg-type]
+        values[name] = number(str(values[name]))
     return tuple(values[name] for name in (*WHOLE, *REAL))
 
 

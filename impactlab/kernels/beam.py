@@ -6,20 +6,48 @@ n + 1 of w mirrors node n - 1. w = M = 0 at the support. Deflection is positive 
 
 from __future__ import annotations
 
-from collections import namedtuple
+from typing import NamedTuple
 
 import numpy as np
 
 from impactlab.kernels.jit import compiled, vectorised
-from impactlab.kernels.section import bend, plastic_energies
+from impactlab.kernels.section import Section, bend, plastic_energies
+from impactlab.kernels.types import Array
 
-Beam = namedtuple("Beam", "w u M M_0 kappa_min kappa_max plastic_strain peeq")
-"""The half beam's state. w (m, n + 2), u = dt w_t at half steps (m, n + 1), M (N m, n + 1);
-each section's elastic interval M_0 (N m), kappa_min, kappa_max (1/m), n + 1 each; plastic_strain
-and peeq of its fibres, (n + 1, P // 2)."""
 
-Grid = namedtuple("Grid", "n dx dt mu")
-"""n: index of mid-span; dx (m); dt (s); mu = rho A (kg/m)."""
+class Beam(NamedTuple):
+    """The half beam's state.
+
+    w (m, n + 2), u = dt w_t at half steps (m, n + 1), M (N m, n + 1); each section's elastic
+    interval M_0 (N m), kappa_min, kappa_max (1/m), n + 1 each; plastic_strain and peeq of its
+    fibres, (n + 1, P // 2).
+    """
+
+    w: Array
+    u: Array
+    M: Array
+    M_0: Array
+    kappa_min: Array
+    kappa_max: Array
+    plastic_strain: Array
+    peeq: Array
+
+
+class Grid(NamedTuple):
+    """n: index of mid-span; dx (m); dt (s); mu = rho A (kg/m).
+
+    per_dx2 = 1/dx^2; factor = dt^2/(mu dx^2), from moments to w; push = dt^2/(mu dx), from the
+    mid-span force to w.
+    """
+
+    n: int
+    dx: float
+    dt: float
+    mu: float
+    per_dx2: float
+    factor: float
+    push: float
+
 
 _BLOCK = 64
 _NOTHING = 1e-100
@@ -27,7 +55,13 @@ _NOTHING = 1e-100
 
 
 @compiled
-def make_beam(n, section):
+def make_grid(n: int, dx: float, dt: float, mu: float) -> Grid:
+    """The grid and what follows from it."""
+    return Grid(n, dx, dt, mu, 1.0 / dx**2, dt**2 / (mu * dx**2), dt**2 / (mu * dx))
+
+
+@compiled
+def make_beam(n: int, section: Section) -> Beam:
     """A beam at rest, nowhere yielded."""
     fibres = section.z.size
     return Beam(
@@ -43,19 +77,23 @@ def make_beam(n, section):
 
 
 @compiled
-def reach(beam, first):
+def reach(w: Array, first: int) -> int:
     """First node that the wave from mid-span has reached, one step after it had reached `first`."""
-    moved = abs(beam.w[first]) > _NOTHING or abs(beam.w[first + 1]) > _NOTHING
+    moved = abs(w[first]) > _NOTHING or abs(w[first + 1]) > _NOTHING
     return max(first - 2, 1) if moved else first
 
 
-# The loops below run from 0 over slices: an index that might be negative would keep numba from
-# vectorising them.
+# What follows runs at every step, so it takes arrays: handing on a whole Beam would count eight
+# references up and down each time. The loops run from 0 over slices, because an index that might
+# be negative would keep numba from vectorising them.
 
 
 @vectorised
-def _virgin(w, M, EI, kappa_y, per_dx2):
-    """Moments M (m,) of a beam that has never yielded, from w (m + 2,); how many nodes now do."""
+def virgin_moments(
+    w: Array, M: Array, first: int, EI: float, kappa_y: float, per_dx2: float
+) -> float:
+    """Moments from node `first` on, of a beam never yielded; how many nodes now yield."""
+    w, M = w[first - 1 :], M[first:]
     outside = 0.0
     for i in range(M.size):
         kappa = (w[i] - 2.0 * w[i + 1] + w[i + 2]) * per_dx2
@@ -65,7 +103,9 @@ def _virgin(w, M, EI, kappa_y, per_dx2):
 
 
 @vectorised
-def _elastic_block(w, M, M_0, kappa_min, kappa_max, EI, per_dx2):
+def _elastic_block(
+    w: Array, M: Array, M_0: Array, kappa_min: Array, kappa_max: Array, EI: float, per_dx2: float
+) -> float:
     """Elastic moments M (m,), from w (m + 2,); how many nodes have left their interval."""
     outside = 0.0
     for i in range(M.size):
@@ -76,7 +116,7 @@ def _elastic_block(w, M, M_0, kappa_min, kappa_max, EI, per_dx2):
 
 
 @compiled
-def _plastic_block(beam, section, start, stop, per_dx2):
+def _plastic_block(beam: Beam, section: Section, start: int, stop: int, per_dx2: float) -> None:
     """Bend those of the nodes start <= i < stop that have left their elastic interval."""
     w = beam.w
     for i in range(start, stop):
@@ -89,50 +129,42 @@ def _plastic_block(beam, section, start, stop, per_dx2):
 
 
 @compiled
-def bend_beam(beam, section, grid, first, yielded):
-    """Moments at all nodes from `first` on; whether the beam has ever yielded."""
-    per_dx2 = 1.0 / grid.dx**2
-    if not yielded:
-        w, M, kappa_y = beam.w[first - 1 :], beam.M[first:], section.yield_curvature
-        if _virgin(w, M, section.stiffness, kappa_y, per_dx2) == 0.0:
-            return False
-    for start in range(first, grid.n + 1, _BLOCK):
-        stop = min(start + _BLOCK, grid.n + 1)
+def moments(beam: Beam, section: Section, first: int, per_dx2: float) -> None:
+    """Moments from node `first` on, of a beam that may have yielded and may yield now."""
+    w, M, M_0, kappa_min, kappa_max = beam.w, beam.M, beam.M_0, beam.kappa_min, beam.kappa_max
+    for start in range(first, M.size, _BLOCK):
+        stop = min(start + _BLOCK, M.size)
         outside = _elastic_block(
-            beam.w[start - 1 : stop + 1],
-            beam.M[start:stop],
-            beam.M_0[start:stop],
-            beam.kappa_min[start:stop],
-            beam.kappa_max[start:stop],
+            w[start - 1 : stop + 1],
+            M[start:stop],
+            M_0[start:stop],
+            kappa_min[start:stop],
+            kappa_max[start:stop],
             section.stiffness,
             per_dx2,
         )
         if outside > 0.0:
             _plastic_block(beam, section, start, stop, per_dx2)
-    return True
 
 
 @vectorised
-def _move(w, u, M, factor):
-    """Step w and u (m,) under the moments M (m + 2,)."""
-    for i in range(u.size):
-        u[i] += factor * (M[i] - 2.0 * M[i + 1] + M[i + 2])
-        w[i] += u[i]
+def move(w: Array, u: Array, M: Array, first: int, factor: float, push: float) -> None:
+    """One leapfrog step of w and u from node `first` on.
 
-
-@compiled
-def move_beam(beam, grid, first, F):
-    """One leapfrog step of w and u under the moments and the mid-span force F (N)."""
-    n = grid.n
-    factor = grid.dt**2 / (grid.mu * grid.dx**2)
-    _move(beam.w[first:n], beam.u[first:n], beam.M[first - 1 :], factor)
-    beam.u[n] += 2.0 * factor * (beam.M[n - 1] - beam.M[n]) + grid.dt**2 * F / (grid.mu * grid.dx)
-    beam.w[n] += beam.u[n]
-    beam.w[n + 1] = beam.w[n - 1]
+    factor: dt^2/(rho A dx^2). push: dt^2 F/(rho A dx), by the contact force at mid-span, in m.
+    """
+    n = M.size - 1
+    w_, u_, M_ = w[first:n], u[first:n], M[first - 1 :]
+    for i in range(u_.size):
+        u_[i] += factor * (M_[i] - 2.0 * M_[i + 1] + M_[i + 2])
+        w_[i] += u_[i]
+    u[n] += 2.0 * factor * (M[n - 1] - M[n]) + push
+    w[n] += u[n]
+    w[n + 1] = w[n - 1]
 
 
 @vectorised
-def _kinetic_sum(u, M, factor):
+def _kinetic_sum(u: Array, M: Array, factor: float) -> float:
     """Sum of u (m,) times its next value under the moments M (m + 2,)."""
     total = 0.0
     for i in range(u.size):
@@ -141,22 +173,21 @@ def _kinetic_sum(u, M, factor):
 
 
 @compiled
-def kinetic_energy(beam, grid, first, F):
+def kinetic_energy(beam: Beam, grid: Grid, first: int, F: float) -> float:
     """Kinetic energy (J) of the whole beam at a full step.
 
     From the product of the velocities half a step before and after, which with the elastic
     energy is what leapfrog conserves exactly in a linear beam.
     """
-    n = grid.n
-    factor = grid.dt**2 / (grid.mu * grid.dx**2)
-    kick = 2.0 * factor * (beam.M[n - 1] - beam.M[n]) + grid.dt**2 * F / (grid.mu * grid.dx)
+    n, factor, push = grid.n, grid.factor, grid.push * F
+    kick = 2.0 * factor * (beam.M[n - 1] - beam.M[n]) + push
     total = 2.0 * _kinetic_sum(beam.u[first:n], beam.M[first - 1 :], factor)
     total += beam.u[n] * (beam.u[n] + kick)
     return 0.5 * grid.mu * grid.dx / grid.dt**2 * total
 
 
 @vectorised
-def _bending_sum(M, M_0):
+def _bending_sum(M: Array, M_0: Array) -> float:
     total = 0.0
     for i in range(M.size):
         total += M[i] * M[i] - M_0[i] * M_0[i]
@@ -164,14 +195,16 @@ def _bending_sum(M, M_0):
 
 
 @compiled
-def strain_energies(beam, section, grid, first):
+def strain_energies(beam: Beam, section: Section, grid: Grid, first: int) -> tuple[float, float]:
     """(stored, dissipated) energy (J) of the whole beam.
 
     Per length, the elastic interval stores EI kappa^2/2 - M_0 kappa = (M^2 - M_0^2)/(2 EI) over
     what its plastic strains store at zero curvature.
     """
     n = grid.n
-    bending = 2.0 * _bending_sum(beam.M[first:n], beam.M_0[first:n]) + beam.M[n] ** 2 - beam.M_0[n] ** 2
+    bending = (
+        2.0 * _bending_sum(beam.M[first:n], beam.M_0[first:n]) + beam.M[n] ** 2 - beam.M_0[n] ** 2
+    )
     stored, dissipated = bending / (2.0 * section.stiffness), 0.0
     for i in range(first, n + 1):
         if beam.peeq[i, 0] > 0.0:  # the outermost fibre yields first

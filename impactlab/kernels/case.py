@@ -32,5 +32,7 @@ REAL = (
     "courant",
 )
 
-CASE = np.dtype((np.record, [(name, np.int64) for name in WHOLE] + [(name, float) for name in REAL]))
+CASE = np.dtype(
+    (np.record, [(name, np.int64) for name in WHOLE] + [(name, float) for name in REAL])
+)
 """Record type of the case table."""

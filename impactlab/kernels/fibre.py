@@ -13,7 +13,9 @@ from impactlab.kernels.jit import compiled
 
 
 @compiled
-def return_mapping(strain, plastic_strain, peeq, E, S_y, H_i, H_k):
+def return_mapping(
+    strain: float, plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
+) -> tuple[float, float]:
     """(plastic_strain, peeq) after the fibre has been taken to `strain`."""
     relative = E * (strain - plastic_strain) - H_k * plastic_strain
     excess = abs(relative) - (S_y + H_i * peeq)
@@ -25,7 +27,9 @@ def return_mapping(strain, plastic_strain, peeq, E, S_y, H_i, H_k):
 
 
 @compiled
-def elastic_range(plastic_strain, peeq, E, S_y, H_i, H_k):
+def elastic_range(
+    plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
+) -> tuple[float, float]:
     """(least, largest) strain that the fibre can take without yielding."""
     centre = plastic_strain * (1.0 + H_k / E)
     radius = (S_y + H_i * peeq) / E
@@ -33,12 +37,12 @@ def elastic_range(plastic_strain, peeq, E, S_y, H_i, H_k):
 
 
 @compiled
-def stored_energy(plastic_strain, E, H_k):
+def stored_energy(plastic_strain: float, E: float, H_k: float) -> float:
     """Energy density (J/m3) at zero total strain: residual stress and back stress."""
     return 0.5 * (E + H_k) * plastic_strain * plastic_strain
 
 
 @compiled
-def dissipated_energy(peeq, S_y, H_i):
+def dissipated_energy(peeq: float, S_y: float, H_i: float) -> float:
     """Energy density (J/m3) dissipated: the integral of S_y + H_i peeq over peeq."""
     return (S_y + 0.5 * H_i * peeq) * peeq

@@ -10,7 +10,7 @@ import hashlib
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 import platformdirs
@@ -37,13 +37,14 @@ def _cache_folder() -> Path:
 
 
 def _jit(function: Function, fastmath: Any) -> Function:
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(_cache_folder())
+    config: Any = numba.config  # numba's types do not list its settings
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(_cache_folder())
     try:
-        jit = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=fastmath)
-        return jit(function)  # type: ignore[no-any-return]
+        jit: Any = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=fastmath)
+        return cast(Function, jit(function))
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before
 
 
 def compiled(function: Function) -> Function:

@@ -9,42 +9,54 @@ import math
 
 import numpy as np
 
-from impactlab.kernels import responses, track as watch
+from impactlab.kernels import responses
+from impactlab.kernels import track as watch
 from impactlab.kernels.beam import (
+    Beam,
     Grid,
-    bend_beam,
     kinetic_energy,
     make_beam,
-    move_beam,
+    make_grid,
+    moments,
+    move,
     reach,
     strain_energies,
+    virgin_moments,
 )
 from impactlab.kernels.contact import history as contact_history
-from impactlab.kernels.contact.history import CONTACT, make_pair
+from impactlab.kernels.contact.history import CONTACT, Pair, make_pair
 from impactlab.kernels.jit import compiled
-from impactlab.kernels.section import make_section
+from impactlab.kernels.section import Section, make_section
 from impactlab.kernels.stability import critical_time_step
 from impactlab.kernels.status import DIVERGED
 from impactlab.kernels.track import TRACK
+from impactlab.kernels.types import Array, Record
 
 _AUDITS = 500
 _LEAST_STRIDE = 8
 
 
 @compiled
-def make_grid(case, pair, section):
+def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
     """Nodes and time steps of a case: (grid, number of steps)."""
     dx = case.beam_span / (case.nodes - 1)
     dt = case.courant * critical_time_step(case, pair, section.stiffness, dx)
-    steps = int(math.ceil(case.duration / dt))
+    steps = math.ceil(case.duration / dt)
     mu = case.beam_density * case.beam_width * case.beam_depth
-    return Grid(case.nodes // 2, dx, case.duration / steps, mu), steps
+    return make_grid(case.nodes // 2, dx, case.duration / steps, mu), steps
 
 
 @compiled
-def _sample(out, t, dt, interval, before, here):
+def _sample(
+    out: Array,
+    t: float,
+    dt: float,
+    interval: float,
+    before: tuple[float, float, float, float],
+    here: tuple[float, float, float, float],
+) -> None:
     """Fill the samples of `out`, shape (4, samples), that fall into the step that ends at t."""
-    k = int(math.ceil((t - dt) / interval - 1e-9))
+    k = math.ceil((t - dt) / interval - 1e-9)
     while k < out.shape[1] and k * interval <= t * (1.0 + 1e-12):
         share = 1.0 - (t - k * interval) / dt
         for row in range(4):
@@ -53,7 +65,19 @@ def _sample(out, t, dt, interval, before, here):
 
 
 @compiled
-def _imbalance(case, pair, section, grid, beam, contact, first, delta, F, w_s, v_s):
+def _imbalance(
+    case: Record,
+    pair: Pair,
+    section: Section,
+    grid: Grid,
+    beam: Beam,
+    contact: Record,
+    first: int,
+    delta: float,
+    F: float,
+    w_s: float,
+    v_s: float,
+) -> float:
     """Energy missing or in excess, over the initial kinetic energy."""
     start = 0.5 * case.sphere_mass * case.velocity**2
     v_next = v_s + grid.dt * (case.gravity - F / case.sphere_mass)
@@ -65,7 +89,14 @@ def _imbalance(case, pair, section, grid, beam, contact, first, delta, F, w_s, v
 
 
 @compiled
-def run(case, answer, samples, deflection, plastic_strain, peeq):
+def run(
+    case: Record,
+    answer: Record,
+    samples: Array,
+    deflection: Array,
+    plastic_strain: Array,
+    peeq: Array,
+) -> None:
     """Solve one case.
 
     case: a CASE record. answer: a RESPONSE record, filled. samples: shape (4, S), filled with
@@ -74,8 +105,9 @@ def run(case, answer, samples, deflection, plastic_strain, peeq):
     (n + 1, P // 2): filled with the half beam's final state; length 0 for none.
     """
     pair, section = make_pair(case), make_section(case)
-    grid, steps = make_grid(case, pair, section)
+    grid, steps = discretise(case, pair, section)
     beam, n, dt = make_beam(grid.n, section), grid.n, grid.dt
+    w, u, M, EI, kappa_y = beam.w, beam.u, beam.M, section.stiffness, section.yield_curvature
     contact, track = np.zeros(1, CONTACT)[0], np.zeros(1, TRACK)[0]
     contact.n = 1.5
     watch.start(track)
@@ -85,20 +117,22 @@ def run(case, answer, samples, deflection, plastic_strain, peeq):
     responses.clear(answer, 0)
 
     for step in range(steps + 1):
-        t, w = step * dt, beam.w[n]
-        delta = w_s - w
+        t, w_mid = step * dt, w[n]
+        delta = w_s - w_mid
         if watch.passed_peak(track, delta, contact.delta_m):
             offset, peak = watch.vertex(track.delta_before, track.delta, delta)
             contact_history.load(contact, pair, peak)
             track.t_peak = t + (offset - 1.0) * dt
         F = contact_history.force(contact, pair, delta)
-        yielded = bend_beam(beam, section, grid, first, yielded)
+        yielded = yielded or virgin_moments(w, M, first, EI, kappa_y, grid.per_dx2) > 0.0
+        if yielded:
+            moments(beam, section, first, grid.per_dx2)
         watch.watch_contact(track, delta, contact.delta_r, v_s, t, dt)
-        watch.watch_deflection(track, w)
+        watch.watch_deflection(track, w_mid)
         if samples.shape[1] > 0:
             before = (track.F, track.w, w_s - v_s * dt, track.delta)
-            _sample(samples, t, dt, interval, before, (F, w, w_s, delta))
-        watch.shift(track, delta, w, F, dt)
+            _sample(samples, t, dt, interval, before, (F, w_mid, w_s, delta))
+        watch.shift(track, delta, w_mid, F, dt)
         if step > 0 and (step % stride == 0 or step == steps):
             error = _imbalance(case, pair, section, grid, beam, contact, first, delta, F, w_s, v_s)
             track.energy_error = max(track.energy_error, error)
@@ -109,23 +143,30 @@ def run(case, answer, samples, deflection, plastic_strain, peeq):
         if step == steps:
             break
         v_s += (0.5 if step == 0 else 1.0) * dt * (case.gravity - F / case.sphere_mass)
-        move_beam(beam, grid, first, F)
+        move(w, u, M, first, grid.factor, grid.push * F)
         w_s += dt * v_s
-        first = reach(beam, first)
+        first = reach(w, first)
 
     _, dissipated = strain_energies(beam, section, grid, first)
     responses.read_contact(answer, case, track, contact, pair)
-    responses.read_rebound(answer, case, track, v_s, beam.u[n] / dt)
+    responses.read_rebound(answer, case, track, v_s, u[n] / dt)
     responses.read_beam(answer, case, track, beam, grid, dissipated)
     answer.energy_error = track.energy_error
     if deflection.size > 0:
-        deflection[:] = beam.w[: n + 1]
+        deflection[:] = w[: n + 1]
         plastic_strain[:] = beam.plastic_strain
         peeq[:] = beam.peeq
 
 
 @compiled
-def run_all(cases, answers, samples, deflection, plastic_strain, peeq):
+def run_all(
+    cases: Array,
+    answers: Array,
+    samples: Array,
+    deflection: Array,
+    plastic_strain: Array,
+    peeq: Array,
+) -> None:
     """Solve every case; the arrays of `run` with one more dimension in front, the run."""
     for r in range(cases.size):
         run(cases[r], answers[r], samples[r], deflection[r], plastic_strain[r], peeq[r])

@@ -11,6 +11,7 @@ import numpy as np
 
 from impactlab.kernels import RULES
 from impactlab.kernels.jit import compiled
+from impactlab.kernels.types import Array
 
 LOBATTO = RULES.index("lobatto")
 LEGENDRE = RULES.index("legendre")
@@ -18,7 +19,7 @@ _NEWTON_STEPS = 100
 
 
 @compiled
-def legendre_pair(degree, x):
+def legendre_pair(degree: int, x: float) -> tuple[float, float]:
     """(P_n(x), P_{n-1}(x)), n = degree >= 1, by the three-term recurrence."""
     previous, current = 1.0, x
     for k in range(2, degree + 1):
@@ -27,7 +28,7 @@ def legendre_pair(degree, x):
 
 
 @compiled
-def _legendre_point(x, points):
+def _legendre_point(x: float, points: int) -> tuple[float, float]:
     """A root of P_n near x, n = points, and its weight 2 (1 - x^2)/(n P_{n-1})^2."""
     for _ in range(_NEWTON_STEPS):
         value, lower = legendre_pair(points, x)
@@ -40,7 +41,7 @@ def _legendre_point(x, points):
 
 
 @compiled
-def _lobatto_point(x, points):
+def _lobatto_point(x: float, points: int) -> tuple[float, float]:
     """A root of (1 - x^2) P'_n near x, n = points - 1, and its weight 2/(n (n + 1) P_n^2)."""
     n = points - 1
     for _ in range(_NEWTON_STEPS):
@@ -54,9 +55,8 @@ def _lobatto_point(x, points):
 
 
 @compiled
-def upper_half(rule, points, positions, weights):
-    """Fill `positions`, `weights` (shape (points // 2,)) with the rule's points in (0, 1],
-    the outermost first.
+def upper_half(rule: int, points: int, positions: Array, weights: Array) -> None:
+    """Fill `positions`, `weights`, shape (points // 2,), with the points above 0, outermost first.
 
     The rest of the rule is their mirror image, and for odd P the point 0, which bends nothing.
     """

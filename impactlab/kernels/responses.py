@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from impactlab.kernels.contact.history import energies
+from impactlab.kernels.beam import Beam, Grid
+from impactlab.kernels.contact.history import Pair, energies
 from impactlab.kernels.jit import compiled
 from impactlab.kernels.status import (
     DEFLECTION_STILL_GROWING,
@@ -16,6 +17,7 @@ from impactlab.kernels.status import (
     INDENTATION_STILL_GROWING,
     SPHERE_NOT_LEAVING,
 )
+from impactlab.kernels.types import Record
 
 ANSWERS = (
     "peak_force",
@@ -44,7 +46,7 @@ PLASTIC_ZONE_STRAIN = 1e-5
 
 
 @compiled
-def clear(answer, status):
+def clear(answer: Record, status: int) -> None:
     """No answers, and the reason."""
     answer.status = status
     answer.peak_force = np.nan
@@ -67,7 +69,7 @@ def clear(answer, status):
 
 
 @compiled
-def read_contact(answer, case, track, contact, pair):
+def read_contact(answer: Record, case: Record, track: Record, contact: Record, pair: Pair) -> None:
     """Force, indentation and contact times."""
     if track.delta == contact.delta_m:
         answer.status |= INDENTATION_STILL_GROWING
@@ -89,7 +91,7 @@ def read_contact(answer, case, track, contact, pair):
 
 
 @compiled
-def read_rebound(answer, case, track, v_s, v_beam):
+def read_rebound(answer: Record, case: Record, track: Record, v_s: float, v_beam: float) -> None:
     """Rebound, once the sphere moves upwards and away from the beam."""
     if track.touching == 1.0 or v_s >= 0.0 or v_s >= v_beam:
         answer.status |= SPHERE_NOT_LEAVING
@@ -99,7 +101,9 @@ def read_rebound(answer, case, track, v_s, v_beam):
 
 
 @compiled
-def read_beam(answer, case, track, beam, grid, dissipated):
+def read_beam(
+    answer: Record, case: Record, track: Record, beam: Beam, grid: Grid, dissipated: float
+) -> None:
     """Deflection and plastic strain."""
     if track.w > track.w_max:
         answer.status |= DEFLECTION_STILL_GROWING
@@ -122,7 +126,7 @@ def read_beam(answer, case, track, beam, grid, dissipated):
 
 
 @compiled
-def share_above(left, right, threshold):
+def share_above(left: float, right: float, threshold: float) -> float:
     """Share of a cell in which the line from `left` to `right` lies above the threshold."""
     high, low = max(left, right), min(left, right)
     if low >= threshold:

@@ -9,25 +9,36 @@ over the fibres.
 
 from __future__ import annotations
 
-from collections import namedtuple
+from typing import NamedTuple
 
 import numpy as np
 
 from impactlab.kernels import fibre
 from impactlab.kernels.jit import compiled
 from impactlab.kernels.quadrature import upper_half
+from impactlab.kernels.types import Array, Record
 
-Section = namedtuple("Section", "z area stiffness yield_curvature E S_y H_i H_k")
-"""The rule's fibres and their material, for one run.
 
-z: distance from the axis, m, shape (P // 2,), outermost first. area: twice B times the rule's
-weight, m2, shape (P // 2,). stiffness: (EI)_q = sum(E area z^2), N m2, the rule's own.
-yield_curvature: where the outermost fibre first yields, 1/m. E, S_y, H_i, H_k: Pa.
-"""
+class Section(NamedTuple):
+    """The rule's fibres and their material, for one run.
+
+    z: distance from the axis, m, shape (P // 2,), outermost first. area: twice B times the
+    rule's weight, m2, shape (P // 2,). stiffness: (EI)_q = sum(E area z^2), N m2, the rule's own.
+    yield_curvature: where the outermost fibre first yields, 1/m. E, S_y, H_i, H_k: Pa.
+    """
+
+    z: Array
+    area: Array
+    stiffness: float
+    yield_curvature: float
+    E: float
+    S_y: float
+    H_i: float
+    H_k: float
 
 
 @compiled
-def make_section(case):
+def make_section(case: Record) -> Section:
     """The section of a case."""
     half = case.points // 2
     z, area = np.empty(half), np.empty(half)
@@ -50,7 +61,9 @@ def make_section(case):
 
 
 @compiled
-def bend(section, kappa, plastic_strain, peeq):
+def bend(
+    section: Section, kappa: float, plastic_strain: Array, peeq: Array
+) -> tuple[float, float, float]:
     """Take the fibres to curvature kappa, updating plastic_strain and peeq, shape (P // 2,).
 
     Returns (M_0, kappa_min, kappa_max) of the section's new elastic interval.
@@ -70,7 +83,7 @@ def bend(section, kappa, plastic_strain, peeq):
 
 
 @compiled
-def plastic_energies(section, plastic_strain, peeq):
+def plastic_energies(section: Section, plastic_strain: Array, peeq: Array) -> tuple[float, float]:
     """(stored at zero curvature, dissipated) energy per length of beam, J/m."""
     stored, dissipated = 0.0, 0.0
     for j in range(section.z.size):

@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import math
 
-from impactlab.kernels.contact.history import loading_work
+from impactlab.kernels.contact.history import Pair, loading_work
 from impactlab.kernels.contact.switch import curve
 from impactlab.kernels.jit import compiled
+from impactlab.kernels.types import Record
 
 _GROWTH = 1.25
 
 
 @compiled
-def _stiffness(pair, delta):
+def _stiffness(pair: Pair, delta: float) -> float:
     """Largest tangent stiffness (N/m) of loading and of unloading at delta."""
     F, K, delta_r, n = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
     small = 1e-4 * delta
@@ -25,7 +26,7 @@ def _stiffness(pair, delta):
 
 
 @compiled
-def stiffest_contact(case, pair):
+def stiffest_contact(case: Record, pair: Pair) -> float:
     """k_c in N/m, over all indentations that the sphere's energy can drive.
 
     The indentation is raised until loading has taken all of that energy: no impact on a beam,
@@ -43,7 +44,7 @@ def stiffest_contact(case, pair):
 
 
 @compiled
-def critical_time_step(case, pair, bending_stiffness, dx):
+def critical_time_step(case: Record, pair: Pair, bending_stiffness: float, dx: float) -> float:
     """Largest stable time step (s) for node spacing dx (m) and the rule's stiffness (N m2)."""
     mu = case.beam_density * case.beam_width * case.beam_depth
     k_c = stiffest_contact(case, pair)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from impactlab.kernels.jit import compiled
+from impactlab.kernels.types import Record
 
 TRACK = np.dtype(
     (
@@ -39,7 +40,7 @@ contact ended. impulse (N s). energy_error: largest imbalance over the initial e
 
 
 @compiled
-def start(track):
+def start(track: Record) -> None:
     """First touch: the sphere rests on the beam at t = 0."""
     track.contacts = 1.0
     track.touching = 1.0
@@ -49,7 +50,7 @@ def start(track):
 
 
 @compiled
-def vertex(before, here, after):
+def vertex(before: float, here: float, after: float) -> tuple[float, float]:
     """(offset in steps from `here`, value) of the extremum of the parabola through three points."""
     bend = before - 2.0 * here + after
     if bend == 0.0:
@@ -59,13 +60,15 @@ def vertex(before, here, after):
 
 
 @compiled
-def passed_peak(track, delta, delta_m):
+def passed_peak(track: Record, delta: float, delta_m: float) -> bool:
     """Whether the largest indentation so far lies between the last two steps and this one."""
     return track.delta == delta_m and delta < track.delta and track.delta >= track.delta_before
 
 
 @compiled
-def watch_contact(track, delta, delta_r, v_s, t, dt):
+def watch_contact(
+    track: Record, delta: float, delta_r: float, v_s: float, t: float, dt: float
+) -> None:
     """Note where, in the step that ends at t, a contact ended or a new one began."""
     gap_before, gap = delta_r - track.delta, delta_r - delta
     if track.touching == 1.0 and gap >= 0.0 and t > 0.0:
@@ -82,7 +85,7 @@ def watch_contact(track, delta, delta_r, v_s, t, dt):
 
 
 @compiled
-def watch_deflection(track, w):
+def watch_deflection(track: Record, w: float) -> None:
     """Note a largest mid-span deflection that lies between the last two steps and this one."""
     if track.w > track.w_before and w <= track.w:
         _, value = vertex(track.w_before, track.w, w)
@@ -90,7 +93,7 @@ def watch_deflection(track, w):
 
 
 @compiled
-def shift(track, delta, w, F, dt):
+def shift(track: Record, delta: float, w: float, F: float, dt: float) -> None:
     """This step becomes the last one."""
     track.impulse += 0.5 * dt * (track.F + F)
     track.delta_before, track.delta = track.delta, delta

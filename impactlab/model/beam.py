@@ -25,7 +25,9 @@ class Beam:
         for field in ("span", "width", "depth"):
             positive("Beam", field, getattr(self, field))
         if self.depth >= self.span:
-            raise ValueError(f"Beam.depth = {self.depth!r}: must be below the span ({self.span!r} m)")
+            raise ValueError(
+                f"Beam.depth = {self.depth!r}: must be below the span ({self.span!r} m)"
+            )
 
     @property
     def mass_per_length(self) -> float:

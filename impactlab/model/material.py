@@ -33,7 +33,7 @@ class Material:
             not_negative("Material", field, getattr(self, field))
         if not 0 <= number("Material", "poissons_ratio", self.poissons_ratio) < 0.5:
             raise ValueError(
-                f"Material.poissons_ratio = {self.poissons_ratio!r}: must be at least 0 and below 0.5"
+                f"Material.poissons_ratio = {self.poissons_ratio!r}: must be from 0 to below 0.5"
             )
         if self.yield_stress >= self.youngs_modulus:
             raise ValueError(

@@ -16,7 +16,9 @@ from impactlab.kernels.jit import compiled
 
 
 @compiled
-def curve(delta, E, R, S_y, nu):
+def curve(
+    delta: float, E: float, R: float, S_y: float, nu: float
+) -> tuple[float, float, float, float]:
     """Force and unloading curve of Hertz contact."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     return K * delta * math.sqrt(delta), K, 0.0, 1.5

@@ -7,19 +7,34 @@ K (delta - delta_r)^n in both directions (reloading retraces unloading, then loa
 from __future__ import annotations
 
 import math
-from collections import namedtuple
+from typing import NamedTuple
 
 import numpy as np
 
 from impactlab.kernels.contact.switch import curve
 from impactlab.kernels.jit import compiled
+from impactlab.kernels.types import Record
 
-Pair = namedtuple("Pair", "law E R S_y nu")
-"""Two bodies in contact: law's number, effective modulus (Pa) and radius (m), and the softer
-body's yield stress (Pa) and Poisson's ratio."""
+
+class Pair(NamedTuple):
+    """Two bodies in contact.
+
+    law: its number; E, R: effective modulus (Pa) and radius (m); S_y, nu: the softer body's yield
+    stress (Pa) and Poisson's ratio.
+    """
+
+    law: int
+    E: float
+    R: float
+    S_y: float
+    nu: float
+
 
 CONTACT = np.dtype(
-    (np.record, [(name, float) for name in ("delta_m", "F_m", "K", "delta_r", "n", "work", "delta_w")])
+    (
+        np.record,
+        [(name, float) for name in ("delta_m", "F_m", "K", "delta_r", "n", "work", "delta_w")],
+    )
 )
 """delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
 unloading curve from there. work (J): integral of the loading force from 0 to delta_w (m)."""
@@ -34,7 +49,7 @@ _GAUSS = (
 
 
 @compiled
-def make_pair(case):
+def make_pair(case: Record) -> Pair:
     """Sphere against flat beam: 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b, R* = R_s."""
     compliance = (1.0 - case.sphere_poissons_ratio**2) / case.sphere_youngs_modulus + (
         1.0 - case.beam_poissons_ratio**2
@@ -46,7 +61,7 @@ def make_pair(case):
 
 
 @compiled
-def load(contact, pair, delta):
+def load(contact: Record, pair: Pair, delta: float) -> None:
     """Move the furthest point of loading on to delta."""
     contact.delta_m = delta
     contact.F_m, contact.K, contact.delta_r, contact.n = curve(
@@ -55,7 +70,7 @@ def load(contact, pair, delta):
 
 
 @compiled
-def force(contact, pair, delta):
+def force(contact: Record, pair: Pair, delta: float) -> float:
     """Contact force (N) at indentation delta (m); loads further where delta exceeds delta_m."""
     if delta > contact.delta_m:
         load(contact, pair, delta)
@@ -69,7 +84,7 @@ def force(contact, pair, delta):
 
 
 @compiled
-def loading_work(pair, start, stop):
+def loading_work(pair: Pair, start: float, stop: float) -> float:
     """Integral of the loading force over [start, stop], J; Gauss-Legendre, 4 points."""
     total = 0.0
     for point, weight in _GAUSS:
@@ -80,7 +95,7 @@ def loading_work(pair, start, stop):
 
 
 @compiled
-def energies(contact, pair, delta):
+def energies(contact: Record, pair: Pair, delta: float) -> tuple[float, float]:
     """(stored, dissipated) energy of the contact at delta, J.
 
     Dissipated is what loading took less what the unloading curve would give back; negative

@@ -25,17 +25,16 @@ U_PLASTIC = math.exp(3.0 * (MEAN_PRESSURE - THETA))
 
 
 @compiled
-def curve(delta, E, R, S_y, nu):
+def curve(
+    delta: float, E: float, R: float, S_y: float, nu: float
+) -> tuple[float, float, float, float]:
     """Force and unloading curve of Stronge's law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_y = (0.75 * math.pi * THETA * S_y / E) ** 2 * R
     if delta <= delta_y:
         return K * delta * math.sqrt(delta), K, 0.0, 1.5
     u = 2.0 * delta / delta_y - 1.0
-    if u <= U_PLASTIC:
-        ratio = u * (1.0 + math.log(u) / (3.0 * THETA))
-    else:
-        ratio = MEAN_PRESSURE * u / THETA
+    ratio = u * (1.0 + math.log(u) / (3.0 * THETA)) if u <= U_PLASTIC else MEAN_PRESSURE * u / THETA
     F = ratio * K * delta_y * math.sqrt(delta_y)
     radius_ratio = math.sqrt(ratio)
     return F, K * math.sqrt(radius_ratio), delta - delta_y * radius_ratio, 1.5

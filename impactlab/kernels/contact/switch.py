@@ -12,16 +12,21 @@ import numpy as np
 
 from impactlab.kernels.contact import LAWS
 from impactlab.kernels.jit import compiled
+from impactlab.kernels.types import Curve
 
 
 @compiled
-def _unknown(law, delta, E, R, S_y, nu):
+def _unknown(
+    law: int, delta: float, E: float, R: float, S_y: float, nu: float
+) -> tuple[float, float, float, float]:
     return np.nan, np.nan, np.nan, 1.5
 
 
-def _link(number, chosen, others):
+def _link(number: int, chosen: Curve, others: Curve) -> Curve:
     @compiled
-    def curve(law, delta, E, R, S_y, nu):
+    def curve(
+        law: int, delta: float, E: float, R: float, S_y: float, nu: float
+    ) -> tuple[float, float, float, float]:
         if law == number:
             return chosen(delta, E, R, S_y, nu)
         return others(law, delta, E, R, S_y, nu)
@@ -29,7 +34,7 @@ def _link(number, chosen, others):
     return curve
 
 
-def _chain():
+def _chain() -> Curve:
     curve = _unknown
     for number, name in enumerate(LAWS):
         curve = _link(number, import_module(f"impactlab.kernels.contact.{name}").curve, curve)

@@ -1,0 +1,209 @@
+"""The command line: parses, calls, prints. Heavy imports wait until a command needs them."""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    name="impactlab",
+    help="A sphere strikes an elastic-plastic beam: from a study file to a report.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+
+StudyFile = Annotated[
+    Path, typer.Argument(metavar="STUDY", help="A study file, studies/NAME.yaml.")
+]
+RunsFile = Annotated[
+    Path, typer.Argument(metavar="RUNS", help="Solved runs, results/NAME/runs.nc.")
+]
+AnalysisFile = Annotated[
+    Path, typer.Argument(metavar="ANALYSIS", help="Their analysis, results/NAME/analysis.nc.")
+]
+RESULTS = Path("results")
+
+
+def main() -> None:
+    """Run the command line; a user's mistake ends in one message and exit code 1."""
+    try:
+        app()
+    except KeyboardInterrupt:
+        print("impactlab: interrupted", file=sys.stderr)
+        sys.exit(130)
+    except (ValueError, OSError) as error:
+        logging.getLogger(__name__).debug("the error came from here", exc_info=True)
+        print(f"impactlab: {error}", file=sys.stderr)
+        sys.exit(1)
+
+
+@app.callback()
+def configure(
+    log: Annotated[Path | None, typer.Option(help="Write messages to this file as well.")] = None,
+    debug: Annotated[
+        bool, typer.Option(help="Log details, the place of an error included.")
+    ] = False,
+) -> None:
+    """Set up logging for every command."""
+    handlers: list[logging.Handler] = [logging.StreamHandler()]
+    if log:
+        log.parent.mkdir(parents=True, exist_ok=True)
+        handlers.append(logging.FileHandler(log, mode="w"))
+    level = logging.DEBUG if debug else logging.INFO
+    logging.basicConfig(
+        level=logging.WARNING, handlers=handlers, format="%(levelname)s %(message)s"
+    )
+    logging.getLogger("impactlab").setLevel(level)
+
+
+@app.command()
+def simulate(
+    velocity: Annotated[
+        str, typer.Option(help="Impact velocity, such as 0.99 or '99 cm/s'.")
+    ] = "0.99",
+    contact: Annotated[str, typer.Option(help="Contact law.")] = "stronge",
+    nodes: Annotated[int, typer.Option(help="Nodes along the span, odd.")] = 601,
+    points: Annotated[int, typer.Option(help="Integration points over the depth.")] = 9,
+    rule: Annotated[str, typer.Option(help="lobatto, legendre or layers.")] = "lobatto",
+    duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "1 ms",
+    output: Annotated[
+        Path | None, typer.Option(help="Keep histories and fields as netCDF.")
+    ] = None,
+) -> None:
+    """Solve one impact of the paper's sphere on the paper's beam and print its responses."""
+    from impactlab.model.discretisation import Discretisation
+    from impactlab.model.paper import paper_impact
+    from impactlab.report.console import print_responses
+    from impactlab.simulate import simulate as solve_one
+    from impactlab.study.quantities import si
+    from impactlab.study.storage import write_netcdf
+
+    impact = paper_impact(si(velocity, "m s-1"), contact)
+    grid = Discretisation(nodes=nodes, points=points, rule=rule)
+    dataset = solve_one(impact, grid, duration=si(duration, "s"))
+    print_responses(dataset)
+    if output:
+        write_netcdf(dataset, output)
+
+
+@app.command()
+def studies(
+    folder: Annotated[Path, typer.Argument(help="Where the study files lie.")] = Path("studies"),
+) -> None:
+    """List the studies of a folder with their titles and number of runs."""
+    from impactlab.report.console import print_studies
+    from impactlab.study.declaration import read_study
+
+    files = sorted(folder.glob("*.yaml"))
+    if not files:
+        raise FileNotFoundError(f"{folder}: no study files (*.yaml) there")
+    print_studies([read_study(path) for path in files])
+
+
+@app.command()
+def design(
+    study: StudyFile,
+    output: Annotated[Path | None, typer.Option(help="Default: results/NAME/design.nc.")] = None,
+) -> None:
+    """Sample a study into its runs."""
+    from impactlab.study.declaration import read_study
+    from impactlab.study.sampling import design as sampled
+    from impactlab.study.storage import write_netcdf
+
+    write_netcdf(sampled(read_study(study)), output or RESULTS / study.stem / "design.nc")
+
+
+@app.command()
+def run(
+    design_file: Annotated[
+        Path, typer.Argument(metavar="STUDY", help="A study file, or its design.nc.")
+    ],
+    output: Annotated[Path | None, typer.Option(help="Default: results/NAME/runs.nc.")] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Threads or processes.")] = os.cpu_count()
+    or 1,
+    processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
+    scheduler: Annotated[str, typer.Option(help="Address of a running dask scheduler.")] = "",
+) -> None:
+    """Solve the runs of a study that have not been solved yet.
+
+    Finished batches are kept in results/NAME/shards: an interrupted study goes on from there.
+    """
+    from impactlab.study.declaration import read_study
+    from impactlab.study.execution import Engine, execute
+    from impactlab.study.sampling import design as sampled
+    from impactlab.study.storage import read_netcdf, write_netcdf
+
+    if design_file.suffix == ".nc":
+        samples = read_netcdf(design_file)
+    else:
+        samples = sampled(read_study(design_file))
+    path = output or RESULTS / samples.attrs["study"] / "runs.nc"
+    engine = Engine("processes" if processes else "threads", workers, scheduler)
+    try:
+        write_netcdf(execute(samples, path.parent / "shards", engine), path)
+    except KeyboardInterrupt:
+        print("impactlab: interrupted; the same command goes on from here", file=sys.stderr)
+        sys.exit(130)
+
+
+@app.command()
+def analyse(
+    runs: RunsFile,
+    output: Annotated[Path | None, typer.Option(help="Default: beside the runs.")] = None,
+) -> None:
+    """Convergence and sensitivity from solved runs."""
+    from impactlab.analysis.analyse import analyse as analysed
+    from impactlab.study.storage import read_netcdf, write_netcdf
+
+    write_netcdf(analysed(read_netcdf(runs)), output or runs.with_name("analysis.nc"))
+
+
+@app.command()
+def figures(
+    runs: RunsFile,
+    analysis: AnalysisFile,
+    output: Annotated[Path | None, typer.Option(help="Default: figures/ beside the runs.")] = None,
+) -> None:
+    """Draw every figure that a study's runs and analysis allow."""
+    from impactlab.figures.draw import draw_all
+    from impactlab.study.storage import read_netcdf
+
+    draw_all(read_netcdf(runs), read_netcdf(analysis), output or runs.with_name("figures"))
+
+
+@app.command()
+def report(
+    runs: RunsFile,
+    analysis: AnalysisFile,
+    figures: Annotated[Path | None, typer.Option(help="Default: figures/ beside the runs.")] = None,
+    output: Annotated[
+        Path | None, typer.Option(help="Default: report.html beside the runs.")
+    ] = None,
+) -> None:
+    """Write a study's report."""
+    from impactlab.report.report import write_report
+    from impactlab.study.storage import read_netcdf
+
+    write_report(
+        read_netcdf(runs),
+        read_netcdf(analysis),
+        figures or runs.with_name("figures"),
+        output or runs.with_name("report.html"),
+    )
+
+
+@app.command()
+def index(
+    results: Annotated[Path, typer.Argument(help="Folder of results.")] = RESULTS,
+    output: Annotated[Path | None, typer.Option(help="Default: index.html in it.")] = None,
+) -> None:
+    """Write the index over all reports."""
+    from impactlab.report.index import write_index
+
+    write_index(results, output or results / "index.html")

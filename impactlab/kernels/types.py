@@ -1,0 +1,15 @@
+"""Types in the signatures of kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+Array = np.ndarray[Any, Any]
+"""An array; the docstring gives shape and unit."""
+Record = Any
+"""One record of a structured array, its fields read and set by name."""
+Curve = Callable[..., tuple[float, float, float, float]]
+"""A contact law: see contact/hertz.py."""

@@ -1,0 +1,50 @@
+"""What the command line prints: tables for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import xarray as xr
+from rich.console import Console
+from rich.table import Table
+
+from impactlab.dataset import RESPONSES, reasons
+
+
+class Listed(Protocol):
+    """What is shown of a study."""
+
+    @property
+    def name(self) -> str:
+        """The file's stem."""
+
+    @property
+    def title(self) -> str:
+        """For the report."""
+
+    @property
+    def runs(self) -> int:
+        """How many runs it asks for."""
+
+
+def print_responses(dataset: xr.Dataset) -> None:
+    """The scalar responses of one run, each with its unit; a missing one as such, and why."""
+    table = Table("response", "value", "unit", "meaning")
+    for name, entry in RESPONSES.items():
+        value = dataset[name].item()
+        table.add_row(
+            name, "missing" if value != value else f"{value:.6g}", entry.units, entry.long_name
+        )
+    console = Console()
+    console.print(table)
+    for reason in reasons(dataset["status"].item()):
+        console.print(f"missing because {reason}; a longer duration may help", markup=False)
+
+
+def print_studies(studies: Sequence[Listed]) -> None:
+    """One line a study: name, runs, title."""
+    table = Table("study", "runs", "title")
+    for study in studies:
+        table.add_row(study.name, f"{study.runs:,}", study.title)
+    Console().print(table)

@@ -1,0 +1,139 @@
+"""Finished batches on disk: checked, atomically renamed netCDF shards, found again by content.
+
+A run's key is a hash of its case and of the kernels that solved it, so a shard is never taken
+for another run's answer, and a changed study finds what still fits.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import numpy as np
+import xarray as xr
+
+from impactlab.dataset import HISTORIES, PROFILES
+from impactlab.kernels.case import CASE
+from impactlab.kernels.jit import SOURCES_HASH
+from impactlab.kernels.responses import RESPONSE
+from impactlab.simulate import Answers
+
+log = logging.getLogger(__name__)
+Array = np.ndarray[Any, Any]
+_KEY_BYTES = 16
+
+
+@dataclass(frozen=True)
+class Form:
+    """What is kept of each run: samples a history (0: none), and whether profiles."""
+
+    samples: int
+    profiles: bool
+
+
+def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
+    """Write under a temporary name, then rename: readers see all of a file or none of it.
+
+    Raises OSError when the disk does not take it; an older file then stays as it was.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_name(f".{path.name}.{uuid4().hex}")
+    large = {
+        str(name): {"zlib": True, "complevel": 1}
+        for name, values in dataset.data_vars.items()
+        if values.dtype.kind == "f" and values.size > 10_000
+    }
+    try:
+        dataset.to_netcdf(unfinished, engine="netcdf4", encoding=large)
+        with unfinished.open("rb") as handle:
+            os.fsync(handle.fileno())
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def read_netcdf(path: Path) -> xr.Dataset:
+    """A dataset in memory, its file closed. Raises OSError when the file cannot be read."""
+    with xr.open_dataset(path, engine="netcdf4") as dataset:
+        return dataset.load()
+
+
+def run_keys(cases: Array, form: Form) -> list[bytes]:
+    """One key a case, 16 bytes: equal keys, equal answers."""
+    prefix = hashlib.sha256(f"{SOURCES_HASH} {form} {CASE.descr}".encode())
+    keys = []
+    for case in cases:
+        digest = prefix.copy()
+        digest.update(case.tobytes())
+        keys.append(digest.digest()[:_KEY_BYTES])
+    return keys
+
+
+class Shards:
+    """The shards of one study in one form, in one folder."""
+
+    def __init__(self, folder: Path, form: Form) -> None:
+        """Look in `folder`/<hash of kernels and form>, made when first written to."""
+        name = hashlib.sha256(f"{SOURCES_HASH} {form}".encode()).hexdigest()[:16]
+        self.folder = folder / name
+        self.form = form
+
+    def read(self) -> Iterator[tuple[list[bytes], Answers]]:
+        """Keys and answers of every sound shard; a damaged one is named in the log."""
+        for path in sorted(self.folder.glob("*.nc")):
+            try:
+                yield _unpack(read_netcdf(path))
+            except (OSError, ValueError, KeyError, RuntimeError) as error:
+                log.warning("%s is damaged and will be solved again (%s)", path, error)
+
+    def write(self, keys: list[bytes], answers: Answers) -> Path:
+        """Keep a batch; returns its file, named for its keys. Raises OSError (a full disk, say)."""
+        path = self.folder / f"{hashlib.sha256(b''.join(keys)).hexdigest()[:32]}.nc"
+        write_netcdf(_pack(keys, answers), path)
+        return path
+
+    def replace_all(self, keys: list[bytes], answers: Answers) -> None:
+        """One shard in the place of all: thousands of small files are slow to open."""
+        others = set(self.folder.glob("*.nc"))
+        kept = self.write(keys, answers)
+        for path in others - {kept}:
+            path.unlink(missing_ok=True)
+
+
+def _pack(keys: list[bytes], answers: Answers) -> xr.Dataset:
+    table = np.frombuffer(b"".join(keys), dtype=np.uint8).reshape(-1, _KEY_BYTES)
+    variables: dict[str, Any] = {"key": (("run", "byte"), table)}
+    for name in RESPONSE.names or ():
+        variables[name] = (("run",), np.ascontiguousarray(answers.responses[name]))
+    for name, values in (answers.histories | answers.profiles).items():
+        variables[name] = (("run", *(HISTORIES | PROFILES)[name].dims), values)
+    dataset = xr.Dataset(variables)
+    return dataset.assign_attrs(checksum=_checksum(dataset))
+
+
+def _unpack(shard: xr.Dataset) -> tuple[list[bytes], Answers]:
+    """Keys and answers of a shard. Raises ValueError when its checksum does not hold."""
+    if _checksum(shard) != shard.attrs["checksum"]:
+        raise ValueError("its checksum does not hold")
+    responses = np.zeros(shard.sizes["run"], dtype=RESPONSE)
+    for name in RESPONSE.names or ():
+        responses[name] = shard[name].values
+    keys = [row.tobytes() for row in shard["key"].values]
+    histories = {name: shard[name].values for name in HISTORIES if name in shard}
+    profiles = {name: shard[name].values for name in PROFILES if name in shard}
+    return keys, Answers(responses, histories, profiles)
+
+
+def _checksum(dataset: xr.Dataset) -> str:
+    digest = hashlib.sha256()
+    for name in sorted(map(str, dataset.data_vars)):
+        values = dataset[name].values
+        digest.update(f"{name} {dataset[name].dims} {values.shape} {values.dtype}".encode())
+        digest.update(np.ascontiguousarray(values).tobytes())
+    return digest.hexdigest()
