@@ -38,8 +38,9 @@ def main() -> None:
         print("impactlab: interrupted", file=sys.stderr)
         sys.exit(130)
     except (ValueError, OSError) as error:
-        logging.getLogger(__name__).debug("the error came from here", exc_info=True)
-        print(f"impactlab: {error}", file=sys.stderr)
+        logger = logging.getLogger("impactlab")
+        logger.error("%s", error)
+        logger.debug("it came from here", exc_info=True)
         sys.exit(1)
 
 
@@ -51,15 +52,15 @@ def configure(
     ] = False,
 ) -> None:
     """Set up logging for every command."""
+    logger = logging.getLogger("impactlab")
+    logger.setLevel(logging.DEBUG if debug else logging.INFO)
     handlers: list[logging.Handler] = [logging.StreamHandler()]
     if log:
         log.parent.mkdir(parents=True, exist_ok=True)
         handlers.append(logging.FileHandler(log, mode="w"))
-    level = logging.DEBUG if debug else logging.INFO
-    logging.basicConfig(
-        level=logging.WARNING, handlers=handlers, format="%(levelname)s %(message)s"
-    )
-    logging.getLogger("impactlab").setLevel(level)
+    for handler in handlers:
+        handler.setFormatter(logging.Formatter("%(levelname)s: %(message)s"))
+        logger.addHandler(handler)
 
 
 @app.command()
@@ -103,7 +104,8 @@ def studies(
     files = sorted(folder.glob("*.yaml"))
     if not files:
         raise FileNotFoundError(f"{folder}: no study files (*.yaml) there")
-    print_studies([read_study(path) for path in files])
+    read = [read_study(path) for path in files]
+    print_studies((study.name, study.sampling.runs, study.title) for study in read)
 
 
 @app.command()

@@ -40,6 +40,10 @@ STATUS_FLAGS: dict[str, tuple[int, str]] = {
         status.INDENTATION_STILL_GROWING,
         "the largest indentation falls on the end of the duration",
     ),
+    "energy_out_of_balance": (
+        status.ENERGY_OUT_OF_BALANCE,
+        "energy is out of balance by more than 5 %: take more nodes or a smaller courant number",
+    ),
 }
 """Reasons for a missing response, by name: (bit in `status`, in words)."""
 
@@ -48,7 +52,7 @@ STATUS_FLAGS: dict[str, tuple[int, str]] = {
 class Variable:
     """One dataset variable: where it lives, its unit (UDUNITS) and its meaning.
 
-    missing: the status flag that explains why a response is NaN (besides "diverged").
+    missing: the status flag that explains why a response is NaN (besides those of the whole run).
     """
 
     name: str
@@ -157,7 +161,7 @@ def attributes(name: str) -> dict[str, Any]:
     entry = VARIABLES[name] if name in VARIABLES else PARAMETERS[name]
     attrs: dict[str, Any] = {"units": entry.units, "long_name": entry.long_name}
     if isinstance(entry, Variable) and entry.missing:
-        attrs["missing_because"] = f"diverged {entry.missing}"
+        attrs["missing_because"] = f"diverged energy_out_of_balance {entry.missing}"
     return attrs
 
 
@@ -171,8 +175,8 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def status_bits(responses: Iterable[str]) -> int:
-    """The status bits that matter to these responses: diverged, and each one's own reason."""
-    bits = status.DIVERGED
+    """The status bits that matter to these responses: those for the whole run, and each one's own."""
+    bits = status.DIVERGED | status.ENERGY_OUT_OF_BALANCE
     for name in responses:
         if reason := RESPONSES[name].missing:
             bits |= STATUS_FLAGS[reason][0]

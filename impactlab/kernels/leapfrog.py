@@ -28,12 +28,15 @@ from impactlab.kernels.contact.history import CONTACT, Pair, make_pair
 from impactlab.kernels.jit import compiled
 from impactlab.kernels.section import Section, make_section
 from impactlab.kernels.stability import critical_time_step
-from impactlab.kernels.status import DIVERGED
+from impactlab.kernels.status import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.kernels.track import TRACK
 from impactlab.kernels.types import Array, Record
 
 _AUDITS = 500
 _LEAST_STRIDE = 8
+
+WORST_ENERGY_ERROR = 0.05
+"""Imbalance over the initial kinetic energy beyond which a run gives no other answer."""
 
 
 @compiled
@@ -151,6 +154,8 @@ def run(
     responses.read_contact(answer, case, track, contact, pair)
     responses.read_rebound(answer, case, track, v_s, u[n] / dt)
     responses.read_beam(answer, case, track, beam, grid, dissipated)
+    if track.energy_error > WORST_ENERGY_ERROR:
+        responses.clear(answer, ENERGY_OUT_OF_BALANCE)
     answer.energy_error = track.energy_error
     if deflection.size > 0:
         deflection[:] = w[: n + 1]

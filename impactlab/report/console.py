@@ -2,30 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Iterable
 
 import xarray as xr
 from rich.console import Console
 from rich.table import Table
 
 from impactlab.dataset import RESPONSES, reasons
-
-
-class Listed(Protocol):
-    """What is shown of a study."""
-
-    @property
-    def name(self) -> str:
-        """The file's stem."""
-
-    @property
-    def title(self) -> str:
-        """For the report."""
-
-    @property
-    def runs(self) -> int:
-        """How many runs it asks for."""
 
 
 def print_responses(dataset: xr.Dataset) -> None:
@@ -42,9 +25,9 @@ def print_responses(dataset: xr.Dataset) -> None:
         console.print(f"missing because {reason}; a longer duration may help", markup=False)
 
 
-def print_studies(studies: Sequence[Listed]) -> None:
-    """One line a study: name, runs, title."""
+def print_studies(rows: Iterable[tuple[str, int, str]]) -> None:
+    """One line a study: name, number of runs, title."""
     table = Table("study", "runs", "title")
-    for study in studies:
-        table.add_row(study.name, f"{study.runs:,}", study.title)
+    for name, runs, title in rows:
+        table.add_row(name, f"{runs:,}", title)
     Console().print(table)

@@ -75,8 +75,8 @@ def test_three_lobatto_points_yield_fully_at_the_yield_moment():
 
 @pytest.mark.parametrize(("isotropic", "kinematic"), [(5e9, 0.0), (0.0, 5e9), (3e9, 2e9)])
 def test_reversed_loading(isotropic, kinematic):
-    """After loading to kappa_1, the elastic range is 2 (S_y + H_i p) wide for the outermost fibre."""
-    cut, beam = make_section(9, "lobatto", isotropic, kinematic)
+    """After loading, the elastic range of the outermost fibre is 2 (S_y + H_i p) wide."""
+    cut, _ = make_section(9, "lobatto", isotropic, kinematic)
     E, S_y = cut.E, cut.S_y
     kappa = 6 * cut.yield_curvature
     plastic, peeq = np.zeros(cut.z.size), np.zeros(cut.z.size)

@@ -1,0 +1,74 @@
+# make study   from the study files to results/index.html
+# make test    the checks and the tests
+# make lint | coverage | constraints | clean
+# Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
+PYTHON ?= python3
+CORES ?= all
+STUDIES ?=
+PYTEST_ARGS ?=
+UV ?= uv
+VENV ?= .venv
+
+BIN := $(VENV)/bin
+# Named for this folder and this Python: a copied checkout would otherwise run the other's code.
+KEY := $(shell { pwd -P; $(PYTHON) -c 'import sys; print(sys.version_info[:2])'; } 2>&1 | cksum | cut -d ' ' -f 1)
+MADE := $(VENV)/made-$(KEY)
+IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
+
+.PHONY: study test lint pytest coverage constraints unlock clean
+.DEFAULT_GOAL := study
+
+study: $(MADE)-workflow
+	@$(SNAKEMAKE) --quiet host reason rules $(if $(STUDIES),--config studies='$(STUDIES)') || { \
+	  echo; echo 'Not finished: see the messages above and the logs in results/*/logs.'; \
+	  echo 'What is done is kept: `make study` goes on from there ("make unlock" first, if it says locked).'; \
+	  exit 1; }
+	@echo; echo 'Done. Open results/index.html'
+
+test: lint pytest
+
+lint: $(MADE)-dev
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(IN_VENV) snakemake --lint
+
+pytest: $(MADE)-dev
+	$(IN_VENV) python -m pytest $(PYTEST_ARGS)
+
+# Compiled kernels hide from coverage: here they run as plain Python, on the small cases only.
+coverage: $(MADE)-dev
+	$(IN_VENV) NUMBA_DISABLE_JIT=1 python -m pytest tests/unit -m 'not slow' \
+	  --cov --cov-report=term-missing:skip-covered $(PYTEST_ARGS)
+
+# Newest versions for every Python and platform; needs uv (https://docs.astral.sh/uv).
+constraints:
+	$(UV) pip compile pyproject.toml --all-extras --universal --python-version 3.11 \
+	  --fork-strategy fewest --upgrade --no-emit-index-url --no-emit-find-links \
+	  --no-header --no-annotate --quiet --output-file constraints.txt
+
+unlock: $(MADE)-workflow
+	$(SNAKEMAKE) --unlock
+
+# Keeps results.
+clean:
+	rm -rf $(VENV) build dist .coverage htmlcov .hypothesis .import_linter_cache \
+	  .mypy_cache .pytest_cache .ruff_cache
+
+$(MADE):
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null || { \
+	  echo 'impactlab needs Python 3.11, 3.12 or 3.13; $(PYTHON) is:' `$(PYTHON) -V 2>&1 | head -n 1`; \
+	  echo 'Name another one: make $(MAKECMDGOALS) PYTHON=python3.12'; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
+	  echo '$(PYTHON) cannot make environments: its parts venv and ensurepip are missing.'; \
+	  echo 'Debian and Ubuntu: sudo apt install python3-venv'; exit 1; }
+	$(PYTHON) -m venv --clear $(VENV)
+	@touch $@
+
+$(MADE)-%: $(MADE) pyproject.toml constraints.txt
+	@echo 'Installing into $(VENV) (a few minutes the first time) ...'
+	$(PIP) install --quiet --editable '.[$*]' --constraint constraints.txt
+	@touch $@

@@ -1,0 +1,5 @@
+"""`python -m impactlab` is the command `impactlab`."""
+
+from impactlab.cli import main
+
+main()

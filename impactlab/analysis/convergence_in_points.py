@@ -1,0 +1,102 @@
+"""Convergence with the integration points over the depth: error against the most points.
+
+The error of a rule need not follow a power of the points once fibres yield, so that no order is
+fitted.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.responses import usable
+from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict, verdict_variables
+
+_COMMENT = "The most points are the reference: their own error is not known."
+_ATTRS = {
+    "points_error": {
+        "long_name": "relative difference to the most integration points",
+        "units": "1",
+        "comment": _COMMENT,
+    },
+    "points_needed": {
+        "long_name": "fewest integration points from which on the error stays in tolerance",
+        "units": "1",
+        "tolerance": TOLERANCE,
+        "comment": _COMMENT,
+    },
+}
+
+
+class PointsVerdict(Verdict):
+    """What more integration points change in one response at one point of the grid."""
+
+    AT_ROUND_OFF = 0, True, "no number of points changes the value by more than 1e-9"
+    CONVERGED = 1, True, "the most points and the next fewer agree within 1 %"
+    UNDETERMINED = 2, False, "a run with the most points or the next fewer is missing"
+    NOT_CONVERGED = 3, False, "the most points and the next fewer differ by more than 1 %"
+
+
+def applies(runs: xr.Dataset) -> bool:
+    """Whether the runs are a grid with two or more values of `points`."""
+    return runs.sizes.get("points", 0) >= 2
+
+
+def analysis(runs: xr.Dataset) -> xr.Dataset:
+    """Points convergence of every response at every point of the rest of the grid.
+
+    Returns points_error on (response, *grid dims): |value - reference|/|reference|, NaN where
+    either is missing, infinite where only the reference is zero. On (response, *other dims):
+    points_needed, the fewest points from which on the error stays within 1 % (NaN where none
+    below the most do), and points_verdict; beside them points_summary (response) and
+    points_tally (response, points_outcome).
+    """
+    values = usable(runs).sortby("points")
+    error = relative_error(values)
+    verdicts = verdict_variables(
+        _verdict(error), PointsVerdict, "points", "convergence with the integration points"
+    )
+    found = {
+        "points_error": error.sel(points=runs["points"]).transpose(
+            "response", *runs["status"].dims
+        ),
+        "points_needed": points_needed(error),
+    }
+    dataset = xr.Dataset({key: found[key].assign_attrs(_ATTRS[key]) for key in found} | verdicts)
+    for name in ("points_verdict", "points_summary"):
+        dataset[name].attrs |= {"tolerance": TOLERANCE, "comment": _COMMENT}
+    return dataset
+
+
+def relative_error(values: xr.DataArray) -> xr.DataArray:
+    """|value - reference|/|reference| along `points`, rising; the reference is the last."""
+    reference = values.isel(points=-1, drop=True)
+    difference = abs(values - reference)
+    relative = difference / abs(reference).where(reference != 0)
+    against_zero = difference.where(difference.isnull() | (difference == 0), np.inf)
+    return relative.where(reference != 0, against_zero)
+
+
+def points_needed(error: xr.DataArray) -> xr.DataArray:
+    """Fewest points from which on the error stays within 1 %, NaN where none below the most do.
+
+    error: on `points`, rising. A missing run ends the stretch: it is not within anything.
+    """
+    fewer = error.isel(points=slice(None, -1))
+    within = (fewer <= TOLERANCE).astype(int)
+    stays = (
+        within.isel(points=slice(None, None, -1))
+        .cumprod("points")
+        .isel(points=slice(None, None, -1))
+    )
+    return error["points"].where(stays == 1).min("points")
+
+
+def _verdict(error: xr.DataArray) -> xr.DataArray:
+    """PointsVerdict on every point of the rest of the grid; error: on `points`, rising."""
+    fewer = error.isel(points=slice(None, -1))
+    nearest = fewer.isel(points=-1, drop=True)
+    codes = xr.full_like(nearest, PointsVerdict.NOT_CONVERGED, np.int8)
+    codes = codes.where(nearest > TOLERANCE, PointsVerdict.CONVERGED)
+    codes = codes.where(~(fewer <= ROUND_OFF).all("points"), PointsVerdict.AT_ROUND_OFF)
+    return codes.where(nearest.notnull(), PointsVerdict.UNDETERMINED)

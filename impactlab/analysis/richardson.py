@@ -1,0 +1,185 @@
+"""Richardson extrapolation and the grid convergence index (GCI) on three grids.
+
+Sources: Celik et al. (2008), J. Fluids Eng. 130, 078001 (order on unequal ratios, GCI);
+Stern et al. (2001), J. Fluids Eng. 123, 793 (classes of behaviour); Oberkampf and Roy (2010),
+Verification and Validation in Scientific Computing, ch. 8 (factor 3 without a credible order);
+Eca and Hoekstra (2014), J. Comput. Phys. 262, 104 (bounds of a credible order).
+
+Symbols: h1 < h2 < h3 grid spacings, f1, f2, f3 the values there, r21 = h2/h1, r32 = h3/h2,
+e21 = f2 - f1, e32 = f3 - f2, p the observed order, s = sign(e32/e21).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum, auto
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq
+
+from impactlab.analysis.verdicts import ROUND_OFF
+
+FORMAL_ORDER = 2.0
+"""Order in dx of the central differences."""
+ASYMPTOTIC_BAND = 0.5
+"""How far an observed order may lie from the formal one in the asymptotic range."""
+CREDIBLE_ORDERS = (0.5, 3.0)
+"""Orders to build an error estimate on: below, the limit is out of reach; above, p is chance."""
+SAFETY_CREDIBLE, SAFETY_DOUBTFUL = 1.25, 3.0
+
+
+class Behaviour(Enum):
+    """How three values change as the grid is refined."""
+
+    MONOTONE = auto()
+    """e21, e32 of one sign, p > 0."""
+    OSCILLATORY = auto()
+    """e21, e32 of opposite sign, p > 0."""
+    MONOTONE_DIVERGENT = auto()
+    """One sign, p <= 0 (no order where the coarser difference alone is at round-off)."""
+    OSCILLATORY_DIVERGENT = auto()
+    """Opposite sign, p <= 0."""
+    CONSTANT = auto()
+    """Both differences at round-off."""
+    STALLED = auto()
+    """The finer difference alone at round-off: three grids do not show an order."""
+    UNDETERMINED = auto()
+    """A value is missing."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What three grids show; in the unit of the values. NaN where it is not defined.
+
+    order: p, negative when divergent. extrapolated: Richardson's value at h = 0, monotone
+    convergence only: the limit of an alternating sequence lies elsewhere. fine, coarse: f1, f2;
+    ratio: r21.
+    """
+
+    behaviour: Behaviour
+    fine: float
+    coarse: float
+    ratio: float
+    order: float = math.nan
+    extrapolated: float = math.nan
+
+    @property
+    def credible(self) -> bool:
+        """Whether convergence is monotone, with an order to build an error estimate on."""
+        least, most = CREDIBLE_ORDERS
+        return self.behaviour is Behaviour.MONOTONE and least <= self.order <= most
+
+    @property
+    def asymptotic(self) -> bool:
+        """Whether the credible order is that of the scheme, give or take ASYMPTOTIC_BAND."""
+        return self.credible and abs(self.order - FORMAL_ORDER) <= ASYMPTOTIC_BAND
+
+    def uncertainty(self, safety: float) -> float:
+        """GCI of the finest grid times |f1|; NaN unless the sequence converges.
+
+        An order above the formal one does not narrow it.
+        """
+        if self.behaviour not in (Behaviour.MONOTONE, Behaviour.OSCILLATORY):
+            return math.nan
+        order = min(self.order, FORMAL_ORDER)
+        return safety * _error(self.fine, self.coarse, self.ratio, order)
+
+    def gci(self, safety: float) -> float:
+        """Relative GCI of the finest grid; infinite where the finest value is zero."""
+        return _relative(self.uncertainty(safety), self.fine)
+
+
+def grid_convergence_index(
+    fine: float, coarse: float, ratio: float, order: float, safety: float = SAFETY_CREDIBLE
+) -> float:
+    """GCI = safety |fine - coarse|/(|fine| (ratio^order - 1)), no unit (Celik et al., step 5)."""
+    return _relative(safety * _error(fine, coarse, ratio, order), fine)
+
+
+def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
+    """Behaviour, order and Richardson value of three grids, finest first.
+
+    values: f1, f2, f3 in any unit; spacings: h1 < h2 < h3 in any unit, for only ratios count.
+    Raises ValueError unless there are three of each and the spacings rise.
+    """
+    (f1, f2, f3), (r21, r32) = _three(values), _ratios(spacings)
+    e21, e32 = f2 - f1, f3 - f2
+    if behaviour := _without_order(f1, f2, f3):
+        return Estimate(behaviour, f1, f2, r21)
+    order = observed_order(e32 / e21, r21, r32)
+    behaviour = _with_order(e32 / e21, order)
+    if behaviour is not Behaviour.MONOTONE:
+        return Estimate(behaviour, f1, f2, r21, order)
+    limit = f1 - e21 / math.expm1(order * math.log(r21))
+    return Estimate(behaviour, f1, f2, r21, order, limit)
+
+
+def observed_order(change: float, r21: float, r32: float) -> float:
+    """The fixed point p of Celik et al., step 3: p ln r21 = ln|e32/e21| + q(p).
+
+    change: e32/e21, not zero; r21, r32 > 1. q(p) = ln((r21^p - s)/(r32^p - s)).
+    Two departures: Celik's absolute value is left out, since it gives a divergent sequence the
+    positive order of a convergent one; and the root is bracketed, since the iteration runs away
+    where r32 > r21^2. The equation is strictly monotone in p, so that there is one root.
+    """
+    sign = math.copysign(1.0, change)
+    target, a, b = math.log(abs(change)), math.log(r21), math.log(r32)
+
+    def residual(p: float) -> float:
+        return math.log(_size_of_change(p, a, b, sign)) - target
+
+    lowest = -math.log1p(2.0 / abs(change)) / a
+    highest = math.log1p(2.0 * abs(change)) / b
+    return float(brentq(residual, lowest, highest, xtol=1e-14, rtol=1e-14))
+
+
+def _size_of_change(p: float, a: float, b: float, sign: float) -> float:
+    """|e32/e21| at order p: (r32^p - s)/(1 - s r21^-p), which tends to b/a at p = 0, s = 1.
+
+    a = ln r21, b = ln r32. Celik's equation in a form that does not overflow.
+    """
+    if sign < 0:
+        return (1.0 + math.exp(b * p)) / (1.0 + math.exp(-a * p))
+    return -math.expm1(b * p) / math.expm1(-a * p) if p else b / a
+
+
+def _without_order(f1: float, f2: float, f3: float) -> Behaviour | None:
+    """The behaviour of values that define no order, None for all others."""
+    if not all(math.isfinite(value) for value in (f1, f2, f3)):
+        return Behaviour.UNDETERMINED
+    smallest = ROUND_OFF * max(abs(f1), abs(f2), abs(f3))
+    fine_still, coarse_still = abs(f2 - f1) <= smallest, abs(f3 - f2) <= smallest
+    if fine_still:
+        return Behaviour.CONSTANT if coarse_still else Behaviour.STALLED
+    return Behaviour.MONOTONE_DIVERGENT if coarse_still else None
+
+
+def _with_order(change: float, order: float) -> Behaviour:
+    if change > 0:
+        return Behaviour.MONOTONE if order > ROUND_OFF else Behaviour.MONOTONE_DIVERGENT
+    return Behaviour.OSCILLATORY if order > ROUND_OFF else Behaviour.OSCILLATORY_DIVERGENT
+
+
+def _three(values: npt.ArrayLike) -> tuple[float, float, float]:
+    numbers = np.asarray(values, float)
+    if numbers.shape != (3,):
+        raise ValueError(f"an observed order needs three grids, not {numbers.size}")
+    return float(numbers[0]), float(numbers[1]), float(numbers[2])
+
+
+def _ratios(spacings: npt.ArrayLike) -> tuple[float, float]:
+    h1, h2, h3 = _three(spacings)
+    if not 0 < h1 < h2 < h3 < math.inf:
+        raise ValueError(f"grid spacings must rise from the finest on: {h1}, {h2}, {h3}")
+    return h2 / h1, h3 / h2
+
+
+def _error(fine: float, coarse: float, ratio: float, order: float) -> float:
+    """Richardson's estimate of the error of the fine value, in its unit."""
+    return abs(fine - coarse) / math.expm1(order * math.log(ratio))
+
+
+def _relative(amount: float, value: float) -> float:
+    return amount / abs(value) if value else math.inf * amount

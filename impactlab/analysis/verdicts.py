@@ -1,0 +1,76 @@
+"""Verdicts as CF flags: what an analysis concludes, in one word a number."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, Self
+
+import numpy as np
+import xarray as xr
+
+TOLERANCE = 0.01
+"""Relative numerical error up to which a response counts as converged."""
+ROUND_OFF = 1e-9
+"""Relative difference below which values count as equal: round-off adds up over the time steps."""
+
+
+class Verdict(IntEnum):
+    """A flag with its meaning; values rise from best to worst, so that the worst is the maximum.
+
+    sound: whether numbers under this verdict need no warning beside them.
+    """
+
+    sound: bool
+    meaning: str
+
+    def __new__(cls, value: int, sound: bool, meaning: str) -> Self:
+        """A member from its flag value, soundness and meaning."""
+        member = int.__new__(cls, value)
+        member._value_ = value
+        member.sound = sound
+        member.meaning = meaning
+        return member
+
+
+def names(kind: type[Verdict]) -> list[str]:
+    """The flags' names as datasets spell them."""
+    return [member.name.lower() for member in kind]
+
+
+def flagged(codes: xr.DataArray, kind: type[Verdict], long_name: str) -> xr.DataArray:
+    """Codes as an int8 variable with CF flag attributes.
+
+    Beside flag_values and flag_meanings: sound_flags (names that need no warning) and
+    flag_descriptions (a line a flag, in words).
+    """
+    result = codes.astype(np.int8)
+    result.attrs = {
+        "long_name": long_name,
+        "flag_values": np.array([member.value for member in kind], np.int8),
+        "flag_meanings": " ".join(names(kind)),
+        "sound_flags": " ".join(member.name.lower() for member in kind if member.sound),
+        "flag_descriptions": "\n".join(f"{m.name.lower()}: {m.meaning}" for m in kind),
+    }
+    return result
+
+
+def verdict_variables(
+    codes: xr.DataArray, kind: type[Verdict], axis: str, words: str
+) -> dict[str, xr.DataArray]:
+    """The variables that hold a verdict on (response, *dims): each, the worst, and how many.
+
+    Returns <axis>_verdict, <axis>_summary on (response) and <axis>_tally on
+    (response, <axis>_outcome): at how many points of the rest of the grid each verdict holds.
+    """
+    rest = [dim for dim in codes.dims if dim != "response"]
+    tally = xr.concat([(codes == member).sum(rest) for member in kind], f"{axis}_outcome")
+    attrs: dict[str, Any] = {"long_name": f"grid points with each verdict on {words}", "units": "1"}
+    return {
+        f"{axis}_verdict": flagged(codes, kind, f"verdict on {words}"),
+        f"{axis}_summary": flagged(
+            codes.max(rest), kind, f"worst verdict on {words} over the rest of the grid"
+        ),
+        f"{axis}_tally": tally.assign_coords({f"{axis}_outcome": names(kind)})
+        .transpose("response", f"{axis}_outcome")
+        .assign_attrs(attrs),
+    }

@@ -1,0 +1,46 @@
+"""Which runs are missing from an answer, and why: a gap is always counted and explained."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from impactlab.dataset import reasons
+from impactlab.figures.reading import words
+from impactlab.figures.reading.contents import SAMPLED, count, usable
+
+UNEXPLAINED = "no reason is recorded"
+
+
+def absent(array: xr.DataArray) -> xr.DataArray:
+    """True for each run (design dimensions) in which the variable has no finite value."""
+    within = [dim for dim in array.dims if dim in SAMPLED]
+    present = xr.apply_ufunc(np.isfinite, array)
+    return xr.DataArray(~present.any(within))
+
+
+def causes(runs: xr.Dataset, mask: xr.DataArray) -> Counter[str]:
+    """How many of the marked runs there are, by reason; mask: bool on the design dimensions."""
+    if "status" not in runs:
+        return Counter({UNEXPLAINED: int(mask.sum())}) if bool(mask.any()) else Counter()
+    status, chosen = xr.broadcast(runs["status"], mask)
+    bits, counts = np.unique(status.values[chosen.values], return_counts=True)
+    found: Counter[str] = Counter()
+    for bit, number in zip(bits.tolist(), counts.tolist(), strict=True):
+        found["; ".join(reasons(int(bit))) or UNEXPLAINED] += number
+    return found
+
+
+def note(runs: xr.Dataset, variables: Sequence[str]) -> str:
+    """A caption's sentence on the runs that lack one of the variables; "" when none does."""
+    held = [absent(usable(runs, name)) for name in variables if name in runs]
+    mask = xr.concat(held, "variable").any("variable") if held else xr.DataArray(False)
+    if not bool(mask.any()):
+        return ""
+    found = [f"{number} × “{why}”" for why, number in causes(runs, mask).items()]
+    total = int(mask.sum())
+    verb = "is" if total == 1 else "are"
+    return f"{total} of {count(runs)} runs {verb} missing here: {words.listing(found)}."

@@ -1,0 +1,48 @@
+"""Verdicts of the analysis, from their CF flags."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from impactlab.figures.reading.contents import known
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One flag. words: its name in words; sound: it needs no warning; meaning: a sentence or ""."""
+
+    flag: str
+    sound: bool
+    meaning: str = ""
+
+    @property
+    def words(self) -> str:
+        """The flag's name as text."""
+        return self.flag.replace("_", " ")
+
+
+def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | None:
+    """A response's verdict; None where the analysis gives none.
+
+    variable: one on `response` alone, with CF flag_values and flag_meanings, and with
+    sound_flags and flag_descriptions ("flag: sentence", a line each).
+    """
+    if variable not in analysis or not known(analysis, response):
+        return None
+    array = analysis[variable]
+    names = dict(zip(_integers(array), str(array.attrs["flag_meanings"]).split(), strict=True))
+    flag = names.get(int(array.sel(response=response)), "unknown")
+    sound = str(array.attrs.get("sound_flags", "converged usable")).split()
+    return Verdict(flag, flag in sound, _descriptions(array).get(flag, ""))
+
+
+def _integers(array: xr.DataArray) -> list[int]:
+    return [int(flag) for flag in np.atleast_1d(array.attrs["flag_values"])]
+
+
+def _descriptions(array: xr.DataArray) -> dict[str, str]:
+    lines = str(array.attrs.get("flag_descriptions", "")).splitlines()
+    return {line.partition(": ")[0]: line.partition(": ")[2] for line in lines}

@@ -1,0 +1,96 @@
+"""Names, values and lists of a dataset in plain words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import xarray as xr
+
+from impactlab.figures.reading.units import display
+from impactlab.model.parameters import PARAMETERS
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_RULES = {
+    "lobatto": "Gauss-Lobatto",
+    "legendre": "Gauss-Legendre",
+    "layers": "uniform layers",
+}
+
+
+def response(name: str) -> str:
+    """A response's name in words: "peak force"."""
+    return name.replace("_", " ")
+
+
+def parameter(name: str) -> str:
+    """A parameter's meaning: "yield stress of the beam"."""
+    return PARAMETERS[name].long_name if name in PARAMETERS else name.replace("_", " ")
+
+
+def sentence(text: str) -> str:
+    """The text with its first letter raised."""
+    return text[:1].upper() + text[1:]
+
+
+def axis(text: str, symbol: str) -> str:
+    """An axis label with its unit: "Peak force (kN)"; a pure number has the unit "–"."""
+    return f"{sentence(text)} ({symbol or '–'})"
+
+
+def number(value: float, digits: int = 4, plain: tuple[float, float] = (1e-4, 1e5)) -> str:
+    """A number to `digits` significant digits, typeset: "−0.0125", "3.1×10⁻⁶"; NaN: "missing".
+
+    plain: from and below which magnitude it is written without a power of ten.
+    """
+    if math.isnan(value):
+        return "missing"
+    rounded = float(f"{value:.{digits}g}")
+    if rounded == 0 or plain[0] <= abs(rounded) < plain[1] or math.isinf(rounded):
+        text = np.format_float_positional(rounded, trim="-")
+    else:
+        text = np.format_float_scientific(rounded, trim="-")
+    mantissa, _, exponent = text.partition("e")
+    text = mantissa.replace("-", "−").replace("inf", "∞")
+    if not exponent:
+        return text
+    power = f"10{str(int(exponent)).translate(_RAISED)}"
+    return power if text == "1" else f"{text}×{power}"
+
+
+def listing(items: Sequence[str]) -> str:
+    """The items in a row: "a, b and c"."""
+    return " and ".join(filter(None, (", ".join(items[:-1]), *items[-1:])))
+
+
+def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
+    """The values at these positions as text, in the coordinate's display unit, without it."""
+    if coordinate.dtype.kind not in "if":
+        return [_name(str(coordinate.name), str(coordinate.values[at])) for at in where]
+    shown = display(coordinate)(coordinate.values)
+    return [number(float(shown[at])) for at in where]
+
+
+def _name(parameter: str, value: str) -> str:
+    """A word of a study file as papers spell it; contact laws are named for people."""
+    if parameter == "contact":
+        return "-".join(part.capitalize() for part in value.split("_"))
+    return _RULES.get(value, value.replace("_", " "))
+
+
+def unit(coordinate: xr.DataArray) -> str:
+    """A space and the display unit, or nothing for pure numbers and words."""
+    symbol = display(coordinate).symbol
+    return f" {symbol}" if symbol else ""
+
+
+def value(coordinate: xr.DataArray, at: int) -> str:
+    """One value with its unit: "5 m/s"."""
+    return values(coordinate, [at])[0] + unit(coordinate)
+
+
+def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:
+    """A parameter with one or several of its values: "impact velocity = 1, 5 and 20 m/s"."""
+    listed = listing(values(coordinate, where))
+    return f"{parameter(str(coordinate.name))} = {listed}{unit(coordinate)}"

@@ -1,0 +1,63 @@
+"""Small multiples: a panel a response."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from impactlab.figures import style
+from impactlab.figures.reading import verdicts, words
+from impactlab.figures.reading.contents import usable
+from impactlab.figures.reading.units import display
+
+COLUMNS = 3
+
+
+ROUND_OFF = 1e-9
+"""Relative differences up to this are none: round-off adds up over the time steps."""
+
+
+def panels(names: Sequence[str], height: float) -> tuple[Figure, dict[str, Axes]]:
+    """As tall as it takes (a row is `height` mm); each panel under its response's name."""
+    figure, axes = style.panels(len(names), columns=COLUMNS, height=height)
+    found = dict(zip(names, axes, strict=True))
+    for name, ax in found.items():
+        ax.set_title(words.sentence(words.response(name)), loc="left")
+    return figure, found
+
+
+def shown(runs: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
+    """A response's usable values in display units, with its name and unit for a label."""
+    values = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
+    unit = display(values)
+    return values * unit.scale, words.axis(words.response(name), unit.symbol)
+
+
+def write_verdict(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> None:
+    """The response's verdict under the panel's title, bold where it is a warning."""
+    found = verdicts.verdict(analysis, variable, name)
+    if found is None:
+        return
+    title = words.sentence(words.response(name))
+    ax.set_title(title, loc="left", pad=12)
+    weight = "normal" if found.sound else "bold"
+    colour = style.MUTED if found.sound else style.COLOURS[1]
+    ax.annotate(
+        found.words,
+        (0.0, 1.0),
+        (0, 3),
+        xycoords="axes fraction",
+        textcoords="offset points",
+        fontsize=7,
+        fontweight=weight,
+        color=colour,
+    )
+
+
+def empty(ax: Axes, text: str) -> None:
+    """Words in the place of curves, without ticks that would mean nothing."""
+    style.remark(ax, text)
+    ax.set(xticks=[], yticks=[])

@@ -1,0 +1,76 @@
+"""Axes that stay readable at paper width: linear or logarithmic, few ticks, plain numbers."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from numpy.typing import ArrayLike, NDArray
+
+from impactlab.figures.reading import words
+
+Which = Literal["x", "y"]
+WIDE = 30.0
+"""Ratio of the largest to the smallest value from which on an axis is logarithmic."""
+_PLAIN = FuncFormatter(lambda value, _: words.number(value))
+_POWERS = FuncFormatter(lambda value, _: words.number(value, plain=(1e-3, 1e5)))
+
+
+def fit(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
+    """A logarithmic axis for positive values over more than a factor WIDE, else a linear one."""
+    finite = _finite(values)
+    if finite.size and finite.min() > 0 and finite.max() / finite.min() > WIDE:
+        logarithmic(axes, which, finite, ticks)
+    else:
+        linear(axes, which, ticks)
+
+
+def linear(axes: Axes, which: Which, ticks: int = 5) -> None:
+    """At most `ticks` intervals, numbers without an offset."""
+    axis = _axis(axes, which)
+    axis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 2.5, 5, 10]))
+    axis.set_major_formatter(_PLAIN)
+
+
+def logarithmic(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
+    """A logarithmic axis with plain numbers, at powers of ten or, over short ranges, between."""
+    shown = _finite(positive(values))
+    ratio = float(shown.max() / shown.min()) if shown.size else 10.0
+    axes.set(**{f"{which}scale": "log"})
+    axis = _axis(axes, which)
+    axis.set_major_locator(LogLocator(subs=_digits(ratio), numticks=ticks + 1))
+    axis.set_major_formatter(_POWERS)
+    axis.set_minor_formatter(NullFormatter())
+
+
+def positive(values: ArrayLike, above: float = 0.0) -> NDArray[np.float64]:
+    """What a logarithmic axis can show; NaN, a gap, for the rest and up to `above`."""
+    array = np.asarray(values, dtype=float)
+    return np.where(np.isfinite(array) & (array > above), array, np.nan)
+
+
+def at(axes: Axes, which: Which, values: ArrayLike) -> None:
+    """Ticks at just these values."""
+    axis = _axis(axes, which)
+    axis.set_major_locator(FixedLocator([float(value) for value in np.ravel(values)]))
+    axis.set_minor_locator(FixedLocator([]))
+    axis.set_major_formatter(_PLAIN)
+
+
+def _axis(axes: Axes, which: Which) -> Axis:
+    return axes.xaxis if which == "x" else axes.yaxis
+
+
+def _digits(ratio: float) -> tuple[float, ...]:
+    """Where in a decade to put ticks, so that there are neither too few nor too many."""
+    if ratio < 3:
+        return tuple(float(digit) for digit in range(1, 10))
+    return (1.0, 2.0, 5.0) if ratio < 120 else (1.0,)
+
+
+def _finite(values: ArrayLike) -> NDArray[np.float64]:
+    flat: NDArray[np.float64] = np.ravel(np.asarray(values, dtype=float))
+    return np.compress(np.isfinite(flat), flat)

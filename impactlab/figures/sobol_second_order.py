@@ -1,0 +1,110 @@
+"""Sobol indices of second order, as a map of pairs."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from numpy.typing import NDArray
+
+from impactlab.figures import responses_grid, sobol_indices, style
+from impactlab.figures.reading import missing, words
+
+TITLE = "Sobol indices of second order"
+_INDEX = "second_order"
+_FEWEST = 2
+
+
+def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Whether the analysis has second-order indices of at least two parameters."""
+    return (
+        _INDEX in analysis
+        and analysis.sizes["parameter"] >= _FEWEST
+        and sobol_indices.applies(runs, analysis)
+    )
+
+
+def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    """What is shown and what is missing."""
+    return (
+        "Share of the variance that comes from the interaction of two parameters; columns are "
+        "numbered as the rows. Grey: zero lies within the 95 % interval. "
+        f"{missing.note(runs, sobol_indices.names(runs, analysis))}".strip()
+    )
+
+
+@style.paper
+def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """A panel a response, a cell a pair, all in one scale of colours."""
+    shown = sobol_indices.names(runs, analysis)
+    parameters = [str(name) for name in analysis["parameter"].values]
+    figure, axes = responses_grid.panels(shown, height=12 + 4.6 * len(parameters))
+    values = {name: pairs(analysis[_INDEX].sel(response=name)) for name in shown}
+    margin = {name: _margins(analysis, name) for name in shown}
+    colours = Normalize(0.0, max([_top(values[n], margin[n]) for n in shown], default=0.1))
+    for at, (name, ax) in enumerate(axes.items()):
+        image = _map(ax, values[name], np.abs(values[name]) > margin[name], colours)
+        sobol_indices.undefined(ax, analysis, name)
+        _label(ax, parameters, named=at % responses_grid.COLUMNS == 0)
+    bar = figure.colorbar(
+        image, ax=list(axes.values()), location="bottom", fraction=0.02, aspect=40, shrink=0.6
+    )
+    bar.set_label("Share of the variance (–)")
+    return figure
+
+
+def pairs(index: xr.DataArray) -> NDArray[np.float64]:
+    """Each pair once, above the diagonal; NaN elsewhere. index: on (parameter, other_parameter)."""
+    square = index.transpose("parameter", "other_parameter").values
+    both = np.where(np.isfinite(square), square, square.T)
+    return np.where(np.triu(np.ones_like(both, dtype=bool), 1), both, np.nan)
+
+
+def _margins(analysis: xr.Dataset, name: str) -> NDArray[np.float64]:
+    """Half-widths of the 95 % intervals; infinite where not given, for then nothing is known."""
+    interval = analysis.get(f"{_INDEX}_interval")
+    if interval is None:
+        return np.full((analysis.sizes["parameter"],) * 2, np.inf)
+    found = pairs(interval.sel(response=name))
+    return np.where(np.isfinite(found), found, np.inf)
+
+
+def _top(values: NDArray[np.float64], margin: NDArray[np.float64]) -> float:
+    """The largest significant index, at least 0.1, so that noise does not get strong colours."""
+    return float(np.max(values, initial=0.1, where=np.abs(values) > margin))
+
+
+def _map(
+    ax: Axes, values: NDArray[np.float64], significant: NDArray[np.bool_], colours: Normalize
+) -> AxesImage:
+    shown = np.where(significant, values, np.nan)
+    ax.imshow(np.where(np.isfinite(values), 0.93, np.nan), cmap="gray", vmin=0, vmax=1)
+    image = ax.imshow(shown, cmap="Blues", norm=colours, interpolation="nearest")
+    for row, column in np.argwhere(np.isfinite(values)):
+        value = values[row, column]
+        dark = bool(significant[row, column]) and colours(value) > 0.55
+        colour = "white" if dark else "black" if significant[row, column] else "0.5"
+        ax.text(column, row, _short(value), ha="center", va="center", fontsize=6, color=colour)
+    return image
+
+
+def _short(value: float) -> str:
+    """Two decimals without the zero before the point: ".07", "−.01"."""
+    text = f"{value:.2f}".replace("-", "−").replace("0.", ".")
+    return ".00" if text == "−.00" else text
+
+
+def _label(ax: Axes, parameters: list[str], *, named: bool) -> None:
+    count = len(parameters)
+    numbers = [str(at) for at in range(1, count + 1)]
+    rows = [f"{words.parameter(name)} {at}" for name, at in zip(parameters, numbers, strict=True)]
+    ax.set_yticks(range(count), rows if named else numbers)
+    ax.set_xticks(range(count), numbers)
+    ax.set(xlim=(-0.5, count - 0.5), ylim=(count - 0.5, -0.5), aspect="auto")
+    ax.tick_params(length=0)
+    ax.grid(visible=False)
+    for spine in ax.spines.values():
+        spine.set_visible(False)

@@ -1,0 +1,130 @@
+"""The look of every figure: paper widths, 8 pt sans serif, colours for the colour-blind too.
+
+Colours: Okabe and Ito (2008), "Color Universal Design".
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
+
+import matplotlib.style
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+SINGLE, DOUBLE = 89.0, 183.0
+"""Widths of one and of two columns of a paper, mm."""
+MILLIMETRE = 1.0 / 25.4
+"""In inches, matplotlib's unit of length."""
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+MARKERS = ("o", "s", "^", "D", "v", "P")
+LINES = ("-", (0, (5, 1.5)), (0, (1.5, 1.2)), (0, (5, 1.5, 1, 1.5)), (0, (7, 3)), (0, (3, 1, 1, 1)))
+GUIDE: dict[str, Any] = {"color": "0.45", "linewidth": 0.8, "zorder": 1}
+"""Lines that are no data."""
+MUTED = "0.4"
+
+_SETTINGS: dict[str, Any] = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib, so that files are the same everywhere
+    "font.size": 8,
+    "figure.labelsize": 8,
+    "axes.titlesize": 8,
+    "axes.labelsize": 8,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "legend.fontsize": 7,
+    "legend.title_fontsize": 7,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.6,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "axes.grid": True,
+    "grid.color": "0.9",
+    "grid.linewidth": 0.5,
+    "axes.axisbelow": True,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 3.5,
+    "figure.constrained_layout.h_pad": 0.05,
+    "figure.constrained_layout.w_pad": 0.05,
+    "svg.fonttype": "path",  # text in the reader's fonts would shift and overlap
+    "svg.hashsalt": "impactlab",
+    "savefig.dpi": 300,
+}
+_LOCK = threading.RLock()
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+
+@contextmanager
+def applied() -> Iterator[None]:
+    """The style, for one thread at a time: matplotlib's settings are global."""
+    with _LOCK, matplotlib.style.context(["default", _SETTINGS]):
+        yield
+
+
+def paper(plot: Callable[_P, _R]) -> Callable[_P, _R]:
+    """Draw under the style."""
+
+    @wraps(plot)
+    def styled(*args: _P.args, **kwargs: _P.kwargs) -> _R:
+        with applied():
+            return plot(*args, **kwargs)
+
+    return styled
+
+
+def panels(
+    count: int, *, columns: int, height: float, sharex: bool = False, sharey: bool = False
+) -> tuple[Figure, list[Axes]]:
+    """A figure of `count` panels, one column of a paper wide if one fits in a row, else two.
+
+    height: of a row of panels, mm.
+    """
+    columns = min(columns, count)
+    rows = math.ceil(count / columns)
+    size = ((SINGLE if columns == 1 else DOUBLE) * MILLIMETRE, rows * height * MILLIMETRE)
+    figure = Figure(figsize=size, layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=sharex, sharey=sharey, squeeze=False).ravel()
+    for spare in grid[count:]:
+        spare.remove()
+    if sharex:  # the panels above the spare ones end their column
+        for axes in grid[max(count - columns, 0) : count]:
+            axes.tick_params(labelbottom=True)
+    return figure, list(grid[:count])
+
+
+def legend(figure: Figure, title: str = "", columns: int | None = None) -> None:
+    """One legend above the panels, of all labelled artists; the figure grows to hold it."""
+    found: dict[str, Any] = {}
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            found.setdefault(label, handle)
+    if len(found) < 2 and not title:
+        return
+    columns = columns or _columns(figure, list(found))
+    rows = math.ceil(len(found) / columns) + bool(title)
+    figure.set_figheight(figure.get_figheight() + (rows * 4.2 + 1.0) * MILLIMETRE)
+    figure.legend(
+        found.values(), found.keys(), loc="outside upper center", ncols=columns, title=title or None
+    )
+
+
+def _columns(figure: Figure, labels: list[str]) -> int:
+    """As many columns as fit: a letter is about 1.6 mm wide at 7 pt, a handle 10 mm."""
+    longest = max((len(label) for label in labels), default=1)
+    fit = int(figure.get_figwidth() / MILLIMETRE / (1.6 * longest + 10.0))
+    return max(1, min(fit, len(labels)))
+
+
+def remark(axes: Axes, text: str) -> None:
+    """Words in the place of data, in the middle of empty axes."""
+    axes.grid(visible=False)
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=MUTED)

@@ -1,0 +1,86 @@
+"""What to know before using the numbers: failures, unsound verdicts, suspicious values."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from impactlab.figures.reading import verdicts, words
+from impactlab.figures.reading.contents import count, responses, usable
+from impactlab.report.outcome import failed_runs
+
+_JUDGED = {
+    "nodes_summary": "Not converged in nodes somewhere in the grid",
+    "points_summary": "Not converged in integration points somewhere in the grid",
+    "sensitivity_verdict": "Sobol indices not usable as they stand",
+}
+ENERGY_LIMIT = 1e-3
+"""Energy imbalance, relative to the initial kinetic energy, from which on a run is suspicious."""
+
+
+def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    """Sentences, the gravest first; none when there is nothing to warn of."""
+    found = (_failures(runs), _verdicts(runs, analysis), _strain(runs, analysis), _values(runs))
+    return [sentence for sentences in found for sentence in sentences]
+
+
+def perfectly_plastic(runs: xr.Dataset) -> bool:
+    """Whether the beam has no hardening in some run."""
+    moduli = ("beam_isotropic_hardening_modulus", "beam_kinematic_hardening_modulus")
+    if any(name not in runs.coords for name in moduli):
+        return False
+    total = runs[moduli[0]] + runs[moduli[1]]
+    return bool((total == 0).any())
+
+
+def _failures(runs: xr.Dataset) -> Iterator[str]:
+    if failed := int(failed_runs(runs).sum()):
+        yield (
+            f"{failed} of {count(runs)} runs failed: they miss at least one response. They are "
+            "left out of figures and tables, and listed below with the reason."
+        )
+
+
+def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+    """One sentence for each kind of verdict and flag, with the responses that it is about."""
+    for variable, text in _JUDGED.items():
+        flags: dict[str, list[str]] = defaultdict(list)
+        for name in responses(runs):
+            verdict = verdicts.verdict(analysis, variable, name)
+            if verdict and not verdict.sound:
+                meaning = f": {verdict.meaning}" if verdict.meaning else ""
+                flags[f"{verdict.words}{meaning}"].append(words.response(name))
+        for flag, names in flags.items():
+            yield f"{text} — {words.listing(names)} ({flag})."
+
+
+def _strain(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+    """PEEQ without a verdict of its own."""
+    name = "peak_plastic_strain"
+    if name not in runs or verdicts.verdict(analysis, "nodes_summary", name):
+        return
+    if bool((usable(runs, name) > 0).any()) and perfectly_plastic(runs):
+        yield (
+            "The peak plastic strain depends on the number of nodes, and this study does not vary "
+            "them: compare it between runs, but do not take it for a converged value."
+        )
+
+
+def _values(runs: xr.Dataset) -> Iterator[str]:
+    """Numbers that physics or numerics should not give."""
+    if "energy_error" in runs:
+        error = usable(runs, "energy_error")
+        if number := int((error > ENERGY_LIMIT).sum()):
+            worst = words.number(float(np.nanmax(error.values)), digits=2)
+            yield (
+                f"The energy balance is off by more than {words.number(ENERGY_LIMIT)} of the "
+                f"initial kinetic energy in {number} of {count(runs)} runs (largest: {worst})."
+            )
+    if "restitution" in runs and (number := int((usable(runs, "restitution") > 1).sum())):
+        yield (
+            f"The coefficient of restitution is above 1 in {number} of {count(runs)} runs: the "
+            "contact law creates energy there."
+        )

@@ -1,0 +1,87 @@
+"""The values that a grid study gives one parameter: a list, or a range."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Annotated, Any, Generic, TypeVar
+
+import numpy as np
+from pydantic import Field, TypeAdapter, ValidationInfo, field_validator
+
+from impactlab.model.parameters import Parameter, Value
+from impactlab.study.declaration.form import Form, Reader, Whole, between, one_of
+from impactlab.study.possible import check_alone
+
+Q = TypeVar("Q", bound=float)
+MOST_VALUES = 10_000
+_LIST = "a list such as [1, 2, 3]"
+_RANGE = "a range such as {start: 1, stop: 3, number: 5}"
+
+
+class Range(Form, Generic[Q]):
+    """`number` values from start to stop, both included, evenly spaced, or their logarithms so.
+
+    Raises ValueError unless start < stop, and 0 < start where spacing is "log".
+    """
+
+    spacing: Annotated[str, one_of("spacing", ("linear", "log"))] = "linear"
+    start: Q
+    stop: Q
+    number: Annotated[Whole, between(2, MOST_VALUES)]
+
+    @field_validator("start")
+    @classmethod
+    def _has_logarithm(cls, value: float, info: ValidationInfo) -> float:
+        if value <= 0 and info.data.get("spacing") == "log":
+            raise ValueError("must be above zero for spacing: log")
+        return value
+
+    @field_validator("stop")
+    @classmethod
+    def _above_start(cls, value: float, info: ValidationInfo) -> float:
+        if "start" in info.data and value <= info.data["start"]:
+            raise ValueError(f"must be above start ({info.data['start']!r})")
+        return value
+
+    def values(self) -> list[float]:
+        """The values to 12 significant digits: a step of 0.1 gives 0.3, to be selected as such."""
+        space = np.geomspace if self.spacing == "log" else np.linspace
+        return [float(f"{value:.12g}") for value in space(self.start, self.stop, self.number)]
+
+
+def axis(parameter: Parameter, value_type: Any) -> Reader:
+    """Reads a parameter's entry in a grid, a list or a range, as a tuple of distinct values.
+
+    value_type: the type of one value. Words have no ranges.
+    """
+    listed: TypeAdapter[list[Value]] = TypeAdapter(
+        Annotated[list[value_type], Field(min_length=1, max_length=MOST_VALUES)]
+    )
+    ranged = None if parameter.choices else Range[value_type]
+
+    def read(data: Any, info: ValidationInfo) -> tuple[Value, ...]:
+        if isinstance(data, list):
+            return _distinct(listed.validate_python(data))
+        if ranged is None or not isinstance(data, dict):
+            raise ValueError(f"expected {_LIST}" + (f" or {_RANGE}" if ranged else ""))
+        return _distinct(_expanded(parameter, ranged.model_validate(data, context=info.context)))
+
+    return read
+
+
+def _expanded(parameter: Parameter, given: Range[Any]) -> list[Value]:
+    values: list[Value] = list(given.values())
+    if not parameter.whole:
+        return values
+    for value in values:
+        try:
+            check_alone(parameter.name, value)
+        except ValueError as error:
+            raise ValueError(f"the range gives {value:g}: {error}; list the values") from None
+    return [int(value) for value in values]
+
+
+def _distinct(values: list[Value]) -> tuple[Value, ...]:
+    if twice := [value for value, count in Counter(values).items() if count > 1]:
+        raise ValueError(f"holds {twice[0]!r} (in SI units) more than once: list each value once")
+    return tuple(values)

@@ -1,0 +1,76 @@
+"""What must hold between the sections of a study file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from impactlab.study.declaration.methods import Sobol
+from impactlab.study.declaration.schema import StudyForm
+from impactlab.study.errors import Problem
+from impactlab.study.possible import refused_corner
+
+_MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
+"""Parameters that move the places at which profiles are given."""
+
+
+def problems(form: StudyForm, file: str, sound: set[str]) -> list[Problem]:
+    """What contradicts what; a check is left out where a section that it reads is not sound."""
+    return [
+        Problem(file, key, reason)
+        for check, sections in _CHECKS
+        if sections <= sound
+        for key, reason in check(form)
+    ]
+
+
+Findings = Iterator[tuple[str, str]]
+"""Dotted keys, and what is wrong there."""
+
+
+def _mass_and_density(form: StudyForm) -> Findings:
+    """A stated mass leaves no part to what it would follow from."""
+    varied = form.sampling.parameters
+    for name in ("sphere_radius", "sphere_density"):
+        if name in varied and form.impact.sphere.mass is not None and "sphere_mass" not in varied:
+            yield (
+                f"sampling.parameters.{name}",
+                f"the stated mass of the sphere ({form.impact.sphere.mass!r} kg) would stay as it "
+                "is: set impact.sphere.mass: null to let it follow from density and radius",
+            )
+    if {"sphere_mass", "sphere_density"} <= varied.keys():
+        reason = "has no effect where sphere_mass is varied too: take out one of the two"
+        yield "sampling.parameters.sphere_density", reason
+
+
+def _one_mesh_for_profiles(form: StudyForm) -> Findings:
+    """Profiles of all runs share their x and z."""
+    for name in _MESH:
+        if form.store.profiles and name in form.sampling.parameters:
+            yield (
+                f"sampling.parameters.{name}",
+                "cannot be varied with store.profiles: true, because the places x and z of the "
+                "profiles would differ between runs: set profiles: false, or fix it",
+            )
+
+
+def _analysis_of_a_sample(form: StudyForm) -> Findings:
+    """Nothing stated goes without effect."""
+    if form.analysis is not None and not isinstance(form.sampling, Sobol):
+        yield "analysis", "has no effect but with method: sobol: take it out"
+
+
+def _corners(form: StudyForm) -> Findings:
+    """The model accepts all combinations of what is varied."""
+    varied = form.sampling.bounds()
+    if found := refused_corner((form.impact, form.discretisation), varied):
+        name = found.name if found.name in varied else next(iter(found.values))
+        values = ", ".join(f"{key} = {value!r}" for key, value in found.values.items())
+        yield f"sampling.parameters.{name}", f"{values}: {found.name} {found.reason}"
+
+
+_CHECKS: tuple[tuple[Callable[[StudyForm], Findings], set[str]], ...] = (
+    (_mass_and_density, {"impact", "sampling"}),
+    (_one_mesh_for_profiles, {"store", "sampling"}),
+    (_analysis_of_a_sample, {"analysis", "sampling"}),
+    (_corners, {"impact", "discretisation", "sampling"}),
+)

@@ -1,0 +1,88 @@
+"""From a file to plain Python data, of bounded size."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError
+
+from impactlab.study.errors import Problem, StudyError, dotted
+
+LARGEST = 256 * 1024
+"""Bytes in a study file, and values in it once its aliases are followed."""
+_DEEPEST = 20
+_NAME = re.compile(r"[A-Za-z0-9_-]{1,100}")
+
+
+def read_name(path: Path) -> str:
+    """The name of the study: that of its file, without the ending.
+
+    Raises StudyError unless it is a plain word, because it names folders.
+    """
+    if path.suffix != ".yaml":
+        raise StudyError(Problem(str(path), "", "a study file's name ends in .yaml"))
+    if not _NAME.fullmatch(path.stem):
+        reason = "its name becomes that of a folder: letters, digits, _ and - only, at most 100"
+        raise StudyError(Problem(str(path), "", reason))
+    return path.stem
+
+
+def read_text(path: Path) -> str:
+    """The file's text. Raises StudyError when there is none, or it is no text, or too much."""
+    try:
+        if not path.is_file():
+            reason = "is not a file" if path.exists() else "there is no such file"
+            raise StudyError(Problem(str(path), "", reason))
+        with path.open("rb") as file:
+            raw = file.read(LARGEST + 1)
+        if len(raw) > LARGEST:
+            raise StudyError(Problem(str(path), "", f"is larger than {LARGEST // 1024} KiB"))
+        return raw.decode("utf-8-sig")
+    except OSError as error:
+        raise StudyError(Problem(str(path), "", f"cannot be read: {error.strerror}")) from None
+    except UnicodeDecodeError:
+        raise StudyError(Problem(str(path), "", "is not text in UTF-8")) from None
+
+
+def read_mapping(text: str, file: str) -> dict[str, Any]:
+    """The mapping that the YAML text holds; a key that comes twice is refused.
+
+    file: named in errors. Raises StudyError when it is no such thing.
+    """
+    data = _parsed(text, file)
+    if not isinstance(data, dict):
+        raise StudyError(Problem(file, "", "holds no keys such as `title: ...`"))
+    _check_size(data, file)
+    return data
+
+
+def _parsed(text: str, file: str) -> Any:
+    try:
+        return YAML(typ="safe", pure=True).load(text)
+    except MarkedYAMLError as error:
+        mark = error.problem_mark
+        where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
+        raise StudyError(Problem(file, "", f"is not YAML: {where}{error.problem}")) from None
+    except RecursionError:
+        raise StudyError(Problem(file, "", "is not YAML: nests too deeply")) from None
+    except Exception as error:  # a hostile text can end the parser in any way
+        words = (str(error).splitlines() or [""])[0] or type(error).__name__
+        raise StudyError(Problem(file, "", f"is not YAML: {words}")) from None
+
+
+def _check_size(data: Any, file: str) -> None:
+    """Counts what stands behind aliases each time: they let a short text grow without end."""
+    visited = 0
+    waiting: list[tuple[tuple[object, ...], Any]] = [((), data)]
+    while waiting:
+        path, node = waiting.pop()
+        visited += 1
+        if visited + len(waiting) > LARGEST or len(path) > _DEEPEST:
+            raise StudyError(Problem(file, dotted(path[:3]), "holds too much, or nests too deeply"))
+        if isinstance(node, dict):
+            waiting += [((*path, key), child) for key, child in node.items()]
+        elif isinstance(node, list):
+            waiting += [((*path, at), child) for at, child in enumerate(node)]

@@ -1,0 +1,102 @@
+"""A study as its file declares it."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.study.declaration import checks, messages
+from impactlab.study.declaration.methods import Grid, Sobol
+from impactlab.study.declaration.reading import read_mapping, read_name, read_text
+from impactlab.study.declaration.schema import Analysis, Store, StudyForm
+from impactlab.study.errors import Problem, StudyError
+
+
+@dataclass(frozen=True)
+class Study:
+    """What to run and why: everything that a study file says, in SI units.
+
+    name: the file's, without the ending; path: as it was given. impact and discretisation: the
+    base of all runs. duration: simulated time in s. sampling: Grid or Sobol. responses: names out
+    of dataset.RESPONSES. store: what else is kept of each run. analysis: how intervals of
+    sensitivity indices are made. text: the file as it was read.
+    """
+
+    name: str
+    path: Path
+    title: str
+    description: str
+    impact: Impact
+    discretisation: Discretisation
+    duration: float
+    sampling: Grid | Sobol
+    responses: tuple[str, ...]
+    store: Store
+    analysis: Analysis
+    text: str
+
+    @property
+    def runs(self) -> int:
+        """How many runs the study has."""
+        return self.sampling.runs
+
+    @property
+    def sha256(self) -> str:
+        """The SHA-256 of the text, in hexadecimal digits."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+
+def read_study(path: str | Path) -> Study:
+    """The study that a YAML file declares (docs/studies.md describes the form).
+
+    Raises StudyError that holds everything wrong with the file, a line each with file, key and
+    value; just the first where there is no file, no YAML, or no mapping in it.
+    """
+    path = Path(path)
+    name, text = read_name(path), read_text(path)
+    data = read_mapping(text, str(path))
+    form, problems = _validated(data, str(path))
+    sound = set(StudyForm.model_fields) - {problem.key.split(".")[0] for problem in problems}
+    problems += checks.problems(form, str(path), sound)
+    if problems:
+        raise StudyError(*problems)
+    return Study(
+        name=name,
+        path=path,
+        title=form.title,
+        description=form.description,
+        impact=form.impact,
+        discretisation=form.discretisation,
+        duration=form.duration,
+        sampling=form.sampling,
+        responses=form.responses,
+        store=form.store,
+        analysis=form.analysis or Analysis(),
+        text=text,
+    )
+
+
+_STAND_INS: dict[str, Any] = {
+    "title": "-",
+    "impact": {"base": "paper"},
+    "duration": 1.0,
+    "sampling": {"method": "grid", "parameters": {"velocity": [1.0]}},
+}
+"""For required sections that are wrong, so that the others can be checked all the same."""
+
+
+def _validated(data: dict[str, Any], file: str) -> tuple[StudyForm, list[Problem]]:
+    keys: dict[int, tuple[str, ...]] = {}
+    try:
+        return StudyForm.model_validate(data, context=keys), []
+    except ValidationError as error:
+        wrong = {line["loc"][0] for line in error.errors(include_url=False)}
+        rest = {key: value for key, value in data.items() if key not in wrong}
+        form = StudyForm.model_validate(_STAND_INS | rest)
+        return form, messages.problems(error, data, file, keys)

@@ -1,0 +1,62 @@
+"""What is wrong with a study, in words for the person who wrote it."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any
+
+_NOTHING = object()
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
+
+
+class StudyError(ValueError):
+    """Everything that is wrong with a study, one argument a problem, one line a problem."""
+
+    def __str__(self) -> str:
+        """One line a problem: file, key, value, what is wrong and what to do."""
+        return "\n".join(str(problem) for problem in self.args)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong: in which file, at which dotted key, with which value, and why."""
+
+    file: str
+    key: str
+    reason: str
+    value: Any = _NOTHING
+
+    def __str__(self) -> str:
+        """`file: key = value: reason`, without the parts that do not apply."""
+        if not self.key:
+            return f"{self.file}: {self.reason}"
+        if self.value is _NOTHING:
+            return f"{self.file}: {self.key}: {self.reason}"
+        return f"{self.file}: {self.key} = {_shown(self.value)}: {self.reason}"
+
+
+def _shown(value: object) -> str:
+    """A value as it stands in YAML, cut short."""
+    if value is None or isinstance(value, bool):
+        return "null" if value is None else str(value).lower()
+    return _SHORT.repr(value)
+
+
+def dotted(path: Iterable[object]) -> str:
+    """Keys and positions as one path; what does not print as it is comes as its repr."""
+    return ".".join(
+        str(step) if str(step).isprintable() and len(str(step)) <= 60 else _SHORT.repr(step)
+        for step in path
+    )
+
+
+def unknown(kind: str, word: object, choices: Iterable[str]) -> str:
+    """That `word` is no such kind of thing, the nearest that is, and all that are."""
+    names = list(choices)
+    near = get_close_matches(word[:60], names, n=1) if isinstance(word, str) else []
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    return f"unknown {kind}; {hint}choose from {', '.join(names)}"

@@ -1,0 +1,99 @@
+"""What the model refuses, told in the names of parameters."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby, product
+from typing import Any
+
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.model.paper import paper_impact
+from impactlab.model.parameters import PARAMETERS, Value, with_values
+
+Base = tuple[Impact, Discretisation]
+
+_FIELD_REFUSED = re.compile(r"\w+\.(\w+) = .*?: (.*)", re.DOTALL)
+"""How the model's classes word it."""
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A parameter that the model refuses, the reason, and the values it was refused with."""
+
+    name: str
+    reason: str
+    values: Mapping[str, Any]
+
+
+def refusal(base: Base, values: Mapping[str, Value | None]) -> Refusal | None:
+    """The first parameter that the model refuses when `values` replace those of the base."""
+    by_owner = sorted(values, key=lambda name: PARAMETERS[name].path[:-1])
+    for owner, names in groupby(by_owner, key=lambda name: PARAMETERS[name].path[:-1]):
+        group: dict[str, Any] = {name: values[name] for name in names}
+        try:
+            with_values(*base, group)
+        except ValueError as error:
+            return _told(owner, group, str(error))
+    return None
+
+
+def refused_corner(base: Base, extremes: Mapping[str, Iterable[Value]]) -> Refusal | None:
+    """The first combination of extreme values that the model refuses.
+
+    The model's limits on numbers are orderings (0 < E, yield stress < E, depth < span), so that
+    what holds at all corners of a box holds inside. Parameters of different bodies are not
+    combined, because the model does not compare them.
+    """
+    by_owner = sorted(extremes, key=lambda name: PARAMETERS[name].path[:-1])
+    for _, names in groupby(by_owner, key=lambda name: PARAMETERS[name].path[:-1]):
+        box = {name: extremes[name] for name in names}
+        for corner in product(*box.values()):
+            if found := refusal(base, dict(zip(box, corner, strict=True))):
+                return found
+    return None
+
+
+def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal | None:
+    """The first run that the model refuses, of columns that hold one value a run each.
+
+    Looks at single runs only when a corner of the box around them is refused.
+    """
+    box = {name: sorted({min(values), max(values)}) for name, values in columns.items()}
+    if refused_corner(base, box) is None:
+        return None
+    runs = zip(*columns.values(), strict=True)
+    found = (refusal(base, dict(zip(columns, run, strict=True))) for run in runs)
+    return next((each for each in found if each), None)
+
+
+def check_alone(name: str, value: Value) -> None:
+    """Raises ValueError with the model's reason when no impact at all can have this value."""
+    if found := refusal(_ROOMY, {name: value}):
+        raise ValueError(found.reason)
+
+
+_ROOMY: Base = with_values(
+    paper_impact(),
+    Discretisation(),
+    {
+        "sphere_youngs_modulus": 1e300,
+        "sphere_yield_stress": 1e-300,
+        "beam_youngs_modulus": 1e300,
+        "beam_yield_stress": 1e-300,
+        "beam_span": 1e300,
+        "beam_depth": 1e-300,
+    },
+)
+"""An impact beside which only the limits of a parameter itself count."""
+
+
+def _told(owner: tuple[str, ...], group: dict[str, Any], message: str) -> Refusal:
+    match = _FIELD_REFUSED.fullmatch(message)
+    if match is None:
+        return Refusal(next(iter(group)), message, group)
+    path = (*owner, match[1])
+    names = [name for name, entry in PARAMETERS.items() if entry.path == path]
+    return Refusal(names[0] if names else next(iter(group)), match[2], group)

@@ -1,0 +1,125 @@
+"""Numbers with units: what a person writes, as a plain SI number."""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+from functools import cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pint import Unit, UnitRegistry
+
+KINDS: dict[str, tuple[str, str]] = {
+    "m": ("a length", "27.8 mm"),
+    "m s-1": ("a velocity", "0.99 m/s"),
+    "m s-2": ("an acceleration", "9.81 m/s2"),
+    "kg": ("a mass", "1.4 kg"),
+    "kg m-3": ("a density", "7.8 g/cm3"),
+    "Pa": ("a stress", "345 MPa"),
+    "s": ("a time", "12 ms"),
+    "1": ("a pure number", "0.3"),
+}
+"""SI units (UDUNITS spelling): what is measured in them, and how one may be written."""
+
+_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
+_FACTOR = r"([^\W\d]+|°C|°F)(?:\*\*|\^)?(-?[1-9])?"
+_TIMES = r"(?:\s*[*·]\s*(?!\*)|\s+)"
+_PRODUCT = rf"{_FACTOR}(?:{_TIMES}{_FACTOR})*"
+_QUANTITY = re.compile(rf"({_NUMBER})\s*(%|{_PRODUCT}(?:\s*/\s*{_FACTOR})*)?")
+_LONGEST = 80
+_SUPERSCRIPTS = str.maketrans("⁻¹²³", "-123")
+
+
+def si(value: object, units: str) -> float:
+    """A number or a string such as "27.8 mm" as a finite float in `units`.
+
+    units: SI, in UDUNITS spelling ("kg m-3"), as in the tables of parameters and variables.
+    Plain numbers are taken as SI. Strings are converted in decimal arithmetic, so that
+    "27.8 mm" is 0.0278 to the last digit. One number and one unit are read, never an
+    expression; of the unit, each name alone is looked up by pint.
+
+    Raises ValueError when the value is no number, not finite, or of another dimension.
+    """
+    if isinstance(value, str):
+        result = _parsed(value.strip(), units)
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        result = _float(value)
+    else:
+        raise ValueError(expected(units))
+    if not math.isfinite(result):
+        raise ValueError(f"must be finite; {expected(units)}")
+    return result
+
+
+def whole(value: object) -> int:
+    """A whole number, written as such or as a string. Raises ValueError otherwise."""
+    try:
+        result = si(value, "1")
+    except ValueError:
+        raise ValueError("expected a whole number such as 201") from None
+    if not result.is_integer() or abs(result) > 2**53:
+        raise ValueError("expected a whole number such as 201")
+    return int(result)
+
+
+def expected(units: str) -> str:
+    """What may stand where a quantity in these units is asked for."""
+    kind, example = KINDS.get(units, (f"a quantity in {units}", f"1 {units}"))
+    if units == "1":
+        return f"expected {kind} such as {example}"
+    return f"expected {kind} such as {example!r}, or a number in {units}"
+
+
+def _float(value: int | float) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
+def _parsed(text: str, units: str) -> float:
+    match = _QUANTITY.fullmatch(text.translate(_SUPERSCRIPTS)) if len(text) <= _LONGEST else None
+    if match is None:
+        raise ValueError(f"cannot be read as one number and one unit; {expected(units)}")
+    number, written = Decimal(match[1]), match[2]
+    if written is None:
+        return float(number)
+    if written == "%" or units == "1":
+        return _percentage(number, written, units)
+    unit, target = _unit(written, units), _unit(units, units)
+    if unit.dimensionality != target.dimensionality:
+        raise ValueError(f"{written!r} has the wrong dimension; {expected(units)}")
+    return float(_registry().Quantity(number, unit).m_as(target))
+
+
+def _percentage(number: Decimal, written: str, units: str) -> float:
+    if written != "%" or units != "1":
+        raise ValueError(f"{written!r} has the wrong dimension; {expected(units)}")
+    return float(number / 100)
+
+
+def _unit(written: str, units: str) -> Unit:
+    """The product of the factors before the first "/", over each one behind a "/"."""
+    above, *below = written.split("/")
+    result = _registry().Unit("")
+    for sign, part in [(1, above), *((-1, part) for part in below)]:
+        for name, power in re.findall(_FACTOR, part):
+            result *= _named(name, units) ** (sign * int(power or 1))
+    return result
+
+
+def _named(name: str, units: str) -> Unit:
+    try:
+        return _registry().parse_units(name)
+    except Exception:  # pint raises whatever its parser meets: all of it means one thing here
+        raise ValueError(f"unknown unit {name!r}; {expected(units)}") from None
+
+
+@cache
+def _registry() -> UnitRegistry[Decimal]:
+    """Pint's units, in decimal arithmetic; loaded late, because that takes a second."""
+    from pint import UnitRegistry
+
+    return UnitRegistry(non_int_type=Decimal)

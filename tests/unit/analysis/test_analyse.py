@@ -1,0 +1,147 @@
+"""Which analyses apply, counts of failures, and the way through netCDF."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from impactlab.analysis.analyse import analyse
+
+Build = Callable[..., xr.Dataset]
+AXES = {"rule": ["lobatto", "layers"], "nodes": [101, 51, 201], "points": [9, 3]}
+
+
+@pytest.fixture
+def discretisation(grid_runs: Build) -> xr.Dataset:
+    return grid_runs(
+        AXES,
+        peak_force=lambda rule, nodes, points: 1e4 * (1 + nodes**-2.0) * (1 + points**-4.0),
+        peak_plastic_strain=lambda rule, nodes, points: 1e-6 * nodes * (rule == "lobatto"),
+    )
+
+
+@pytest.fixture
+def sample(sample_runs: Build) -> xr.Dataset:
+    values = np.random.default_rng(3).normal(size=(2, 32 * 6))
+    outputs = dict(zip(("peak_force", "impulse"), values, strict=True))
+    return sample_runs(["velocity", "beam_depth"], 32, **outputs)
+
+
+def test_a_grid_study_gets_both_axes(discretisation: xr.Dataset) -> None:
+    found = analyse(discretisation)
+    assert found["nodes_verdict"].dims == ("response", "rule", "points")
+    assert found["points_verdict"].dims == ("response", "rule", "nodes")
+    assert found["points_error"].dims == ("response", "rule", "nodes", "points")
+    assert "first_order" not in found
+    assert found.attrs == discretisation.attrs
+
+
+def test_a_sample_study_gets_indices(sample: xr.Dataset) -> None:
+    found = analyse(sample)
+    assert found["first_order"].dims == ("response", "parameter")
+    assert not [name for name in found if str(name).startswith(("nodes", "points"))]
+    assert "run" not in found.dims
+
+
+def test_a_study_without_either_gets_counts_alone(grid_runs: Build) -> None:
+    runs = grid_runs({"velocity": [1.0, 2.0]}, peak_force=lambda velocity: velocity)
+    found = analyse(runs)
+    assert found["response"].values.tolist() == ["peak_force"]
+    counts = {"number_of_runs", "number_of_failed_runs", "failed_runs", "missing_runs"}
+    assert set(found.data_vars) == counts
+    assert found["number_of_runs"] == 2
+    assert found["number_of_failed_runs"] == 0
+
+
+def test_failures_are_counted_by_reason_and_by_response(grid_runs: Build) -> None:
+    runs = grid_runs(
+        {"velocity": [1.0, 2.0, 3.0, 4.0, 5.0]},
+        contact_duration=lambda velocity: velocity,
+        number_of_contacts=lambda velocity: velocity,
+        plastic_dissipation=lambda velocity: velocity,
+    )
+    runs["status"][:] = [0, 1, 2, 3, 0]
+    for name in runs.data_vars:
+        if name != "status":
+            runs[name][[1, 3]] = np.nan
+    runs["contact_duration"][2] = np.nan
+    runs["plastic_dissipation"][4] = np.nan  # with no reason given
+    found = analyse(runs)
+    by_reason = dict(
+        zip(found["reason"].values.tolist(), found["failed_runs"].values.tolist(), strict=True)
+    )
+    assert {key: count for key, count in by_reason.items() if count} == {
+        "diverged": 2,
+        "first_contact_unfinished": 2,
+        "unexplained": 1,
+    }
+    assert found["missing_runs"].values.tolist() == [3, 2, 3]
+    assert found["number_of_failed_runs"] == 4
+    words = found["reason_long_name"].sel(reason="first_contact_unfinished").item()
+    assert "duration ends before the first contact" in words
+
+
+@pytest.mark.parametrize("study", ["discretisation", "sample"])
+def test_through_netcdf(
+    study: str, request: pytest.FixtureRequest, stored: Callable[..., xr.Dataset]
+) -> None:
+    runs = request.getfixturevalue(study)
+    found = analyse(runs)
+    again = stored(found)
+    xr.testing.assert_equal(again, found)
+    for name in found.variables:
+        assert again[name].attrs.keys() == found[name].attrs.keys()
+        for key, value in found[name].attrs.items():
+            np.testing.assert_array_equal(again[name].attrs[key], value)
+    for name in found.data_vars:
+        assert again[name].dtype == found[name].dtype
+    # and the same from stored runs, whose attributes netCDF has changed in type
+    xr.testing.assert_identical(stored(analyse(stored(runs))).drop_attrs(), again.drop_attrs())
+
+
+def test_one_response_and_one_parameter_survive_netcdf(
+    sample_runs: Build, stored: Callable[..., xr.Dataset]
+) -> None:
+    outputs = np.random.default_rng(5).normal(size=32 * 3)
+    runs = sample_runs(["velocity"], 32, second_order=False, peak_force=outputs)
+    found = analyse(stored(runs))
+    assert found["response"].values.tolist() == ["peak_force"]
+    assert found["parameter"].values.tolist() == ["velocity"]
+
+
+def test_every_variable_is_described(discretisation: xr.Dataset, sample: xr.Dataset) -> None:
+    for runs in (discretisation, sample):
+        for name, variable in analyse(runs).data_vars.items():
+            assert variable.attrs["long_name"]
+            if "flag_values" in variable.attrs:
+                flags = variable.attrs["flag_meanings"].split()
+                described = variable.attrs["flag_descriptions"].splitlines()
+                assert variable.dtype == variable.attrs["flag_values"].dtype == np.int8
+                assert [line.partition(": ")[0] for line in described] == flags
+            elif name != "nodes_extrapolated":  # in the unit of each response
+                assert variable.attrs["units"] == "1"
+
+
+def test_coordinates_keep_their_attributes(discretisation: xr.Dataset) -> None:
+    found = analyse(discretisation)
+    for name in ("nodes", "points", "rule", "beam_span"):
+        assert found[name].attrs == discretisation[name].attrs != {}
+    assert found["response"].attrs["long_name"]
+
+
+def test_names_a_response_that_the_runs_do_not_hold(grid_runs: Build) -> None:
+    runs = grid_runs({"velocity": [1.0, 2.0]}, peak_force=lambda velocity: velocity)
+    runs.attrs["responses"] = ["peak_force", "impulse"]
+    with pytest.raises(ValueError, match="hold no impulse"):
+        analyse(runs)
+
+
+def test_histories_are_left_alone(grid_runs: Build) -> None:
+    runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: nodes**-2.0)
+    runs["contact_force"] = (("nodes", "time"), np.ones((3, 4)))
+    found: Any = analyse(runs)
+    assert "time" not in found.dims

@@ -1,0 +1,171 @@
+"""Verdicts on manufactured sequences of each class, and what must never pass unnoticed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from impactlab.analysis import convergence_in_nodes
+from impactlab.analysis.convergence_in_nodes import NodesVerdict, judge
+
+NODES = [51, 101, 201, 401, 801]
+SPACINGS = 1.0 / (np.array(NODES[::-1]) - 1.0)
+Build = Callable[..., xr.Dataset]
+
+
+def _h(nodes: Any) -> Any:
+    return 1.0 / (nodes - 1.0)
+
+
+@pytest.mark.parametrize(
+    ("finest_first", "verdict", "safety"),
+    [
+        (5 + 40 * SPACINGS**2, NodesVerdict.CONVERGED_SECOND_ORDER, 1.25),
+        (5 + 4 * SPACINGS, NodesVerdict.CONVERGED, 1.25),
+        (5 + 1e5 * SPACINGS**2, NodesVerdict.NOT_YET_CONVERGED, 1.25),
+        (5 + 4 * SPACINGS**0.3, NodesVerdict.NOT_YET_CONVERGED, 3.0),
+        # a scatter of 1e-4, no trend
+        (5 + 5e-4 * np.array([0.0, 0.2, -0.8, 0.5, 0.0]), NodesVerdict.SETTLED, 3.0),
+        (5 + 5e-4 * np.array([1.0, 0.0, 0.2, 1.0, 0.0]), NodesVerdict.SETTLED, np.nan),
+        # an order of 5 is chance: judged by the range of the values
+        (5 + 40 * SPACINGS**5, NodesVerdict.AT_ROUND_OFF, np.nan),
+        (5 + 1e6 * SPACINGS**5, NodesVerdict.SETTLED, 3.0),
+        (5 + 1e11 * SPACINGS**5, NodesVerdict.NOT_YET_CONVERGED, 3.0),
+        (40 * SPACINGS**2, NodesVerdict.TENDS_TO_ZERO, 1.25),
+        (1e-4 + 40 * SPACINGS**2, NodesVerdict.NOT_YET_CONVERGED, 1.25),
+        (np.array([5, 6, 4, 8, 0.0]), NodesVerdict.OSCILLATORY, 3.0),
+        (np.array([5, 1, 2, 1.5, 1.7]), NodesVerdict.DIVERGENT, np.nan),
+        (np.full(5, 3.0), NodesVerdict.AT_ROUND_OFF, np.nan),
+        (np.zeros(5), NodesVerdict.AT_ROUND_OFF, np.nan),
+        # counts
+        (np.array([4, 4, 4, 3, 3.0]), NodesVerdict.AT_ROUND_OFF, np.nan),
+        (np.array([4, 4, 3, 3, 3.0]), NodesVerdict.NOT_YET_CONVERGED, np.nan),
+        (np.array([4, 3, 3, 3, 3.0]), NodesVerdict.DIVERGENT, np.nan),
+        (np.array([5, np.nan, 5.2, 5.3, 5.4]), NodesVerdict.UNDETERMINED, np.nan),
+    ],
+)
+def test_every_verdict(finest_first: Any, verdict: NodesVerdict, safety: float) -> None:
+    found = judge(finest_first, SPACINGS)
+    assert found.verdict is verdict
+    assert found.safety_factor == pytest.approx(safety, nan_ok=True)
+    assert np.isnan(found.gci) == np.isnan(safety)
+
+
+@pytest.mark.parametrize(
+    "finest_first",
+    [
+        # peak PEEQ of three Lobatto points: doubles with each halving of the spacing
+        1e-3 * 2.0 ** np.arange(4, -1, -1),
+        # growth by one step a halving, without limit
+        1e-3 * np.arange(5, 0, -1.0),
+        # so slow that neighbours agree within 1 %
+        1.0 + 1e-3 * np.arange(5, 0, -1.0),
+    ],
+)
+def test_strain_that_grows_without_limit_is_divergent(finest_first: Any) -> None:
+    found = judge(finest_first, SPACINGS)
+    assert found.verdict is NodesVerdict.DIVERGENT
+    assert np.isnan([found.extrapolated, found.gci]).all()
+
+
+def test_slow_growth_is_never_called_converged() -> None:
+    # order 0.2: the limit is 14 % off although the last step is 2 %; ten times smaller as well
+    for size in (1.0, 0.1, 0.01):
+        found = judge(1.0 - size * SPACINGS**0.2, SPACINGS)
+        assert found.verdict is NodesVerdict.NOT_YET_CONVERGED
+        assert np.isnan(found.extrapolated)
+
+
+def test_a_coarse_grid_out_of_line_costs_the_safety_factor() -> None:
+    smooth = 5 + 40 * SPACINGS**2
+    for coarsest in (4.9, np.nan):
+        bent = np.array([*smooth[:4], coarsest])
+        found = judge(bent, SPACINGS)
+        assert found.verdict is NodesVerdict.CONVERGED
+        assert found.gci == pytest.approx(3.0 / 1.25 * judge(smooth, SPACINGS).gci)
+        assert found.extrapolated == pytest.approx(5.0)
+
+
+def test_a_value_of_zero_on_the_finest_grid() -> None:
+    found = judge(np.array([0.0, 1e-5, 3e-5, 7e-5, 15e-5]), SPACINGS)
+    assert found.verdict is NodesVerdict.NOT_YET_CONVERGED
+    assert found.gci == np.inf
+
+
+def test_analysis_of_a_grid(grid_runs: Build, verdicts_of: Callable[..., Any]) -> None:
+    runs = grid_runs(
+        {"nodes": [201, 51, 401, 101], "velocity": [1.0, 15.0]},
+        peak_force=lambda nodes, velocity: 1e4 * velocity * (1 + 8 * _h(nodes) ** 2),
+        peak_plastic_strain=lambda nodes, velocity: 1e-5 * (velocity > 10) / _h(nodes),
+    )
+    found = convergence_in_nodes.analysis(runs)
+    assert found["nodes_gci"].dims == ("response", "velocity")
+    force = found.sel(response="peak_force")
+    np.testing.assert_allclose(force["nodes_observed_order"], 2.0, rtol=1e-6)
+    np.testing.assert_allclose(force["nodes_extrapolated"], [1e4, 15e4], rtol=1e-9)
+    # 1.25 x the error of the finest grid
+    np.testing.assert_allclose(force["nodes_gci"], 1.25 * 8 / 400**2, rtol=1e-3)
+    assert verdicts_of(found["nodes_verdict"]) == [
+        ["converged_second_order", "converged_second_order"],
+        ["at_round_off", "divergent"],
+    ]
+    assert verdicts_of(found["nodes_summary"]) == ["converged_second_order", "divergent"]
+    tally = found["nodes_tally"].sel(response="peak_plastic_strain")
+    assert tally.sel(nodes_outcome="at_round_off") == 1
+    assert tally.sel(nodes_outcome="divergent") == 1
+    assert tally.sum() == 2
+    assert found["response_units"].values.tolist() == ["N", "1"]
+
+
+def test_ratio_comes_from_the_intervals(grid_runs: Build) -> None:
+    """With N for N - 1 the order of these few nodes would be off by a tenth."""
+    runs = grid_runs({"nodes": [5, 9, 21]}, peak_force=lambda nodes: 7 + _h(nodes) ** 2)
+    found = convergence_in_nodes.analysis(runs)
+    assert found["nodes_observed_order"].item() == pytest.approx(2.0, abs=1e-9)
+
+
+def test_a_failed_run_gives_no_number(grid_runs: Build, verdicts_of: Callable[..., Any]) -> None:
+    runs = grid_runs(
+        {"velocity": [1.0, 5.0], "nodes": [51, 101, 201]},
+        peak_force=lambda velocity, nodes: velocity + 0.1 * _h(nodes) ** 2,
+        impulse=lambda velocity, nodes: velocity + 0.1 * _h(nodes) ** 2,
+    )
+    runs["peak_force"][1, 2] = np.nan
+    runs["status"][1, 2] = 32
+    found = convergence_in_nodes.analysis(runs)
+    assert verdicts_of(found["nodes_summary"]) == ["undetermined", "converged_second_order"]
+    gone = found.sel(response="peak_force", velocity=5.0)
+    for name in ("nodes_observed_order", "nodes_extrapolated", "nodes_gci"):
+        assert np.isnan(gone[name])
+
+
+def test_a_number_from_a_diverged_run_is_not_used(
+    grid_runs: Build, verdicts_of: Callable[..., Any]
+) -> None:
+    runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: 5 + _h(nodes) ** 2)
+    runs["status"][0] = 1
+    found = convergence_in_nodes.analysis(runs)
+    assert verdicts_of(found["nodes_verdict"]) == ["undetermined"]
+
+
+def test_says_that_time_step_and_spacing_go_together(grid_runs: Build) -> None:
+    runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: 5 + _h(nodes) ** 2)
+    found = convergence_in_nodes.analysis(runs)
+    for name in ("nodes_observed_order", "nodes_gci", "nodes_verdict", "nodes_summary"):
+        assert "space and time together" in found[name].attrs["comment"]
+
+
+@pytest.mark.parametrize(("nodes", "applies"), [([51, 101], False), ([51, 101, 201], True)])
+def test_needs_three_grids(grid_runs: Build, nodes: list[int], applies: bool) -> None:
+    runs = grid_runs({"nodes": nodes}, peak_force=lambda nodes: nodes)
+    assert convergence_in_nodes.applies(runs) is applies
+
+
+def test_refuses_repeated_nodes(grid_runs: Build) -> None:
+    runs = grid_runs({"nodes": [51, 101, 101]}, peak_force=lambda nodes: nodes)
+    with pytest.raises(ValueError, match="must rise"):
+        convergence_in_nodes.analysis(runs)

@@ -1,0 +1,84 @@
+"""Errors against the most points, the points needed, and the verdicts on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from impactlab.analysis import convergence_in_points
+
+POINTS = [2, 3, 5, 9, 17]
+Build = Callable[..., xr.Dataset]
+CASES = [
+    # value at each number of points, points needed, verdict
+    ([3.0, 1.5, 1.05, 1.005, 1.0], 9, "converged"),
+    ([3.0, 1.005, 1.05, 1.005, 1.0], 9, "converged"),
+    ([1.0, 1.0, 1.0, 1.005, 1.0], 2, "converged"),
+    ([3.0, 1.5, 1.3, 1.2, 1.0], np.nan, "not_converged"),
+    ([3.0, 1.0, 1.0, 1.2, 1.0], np.nan, "not_converged"),
+    ([0.0, 0.0, 0.0, 0.0, 0.0], 2, "at_round_off"),
+    ([-4.0, -4.0, -4.0, -4.0, -4.0 - 1e-9], 2, "at_round_off"),
+    ([1e-3, 1e-4, 0.0, 0.0, 0.0], 5, "converged"),
+    ([np.nan, 0.0, 0.0, 0.0, 0.0], 3, "converged"),
+    ([1e-3, 1e-4, 0.0, 1e-5, 0.0], np.nan, "not_converged"),
+    ([np.nan, 1.5, 1.0, 1.0, 1.0], 5, "converged"),
+    ([3.0, np.nan, 1.0, 1.0, 1.0], 5, "converged"),
+    ([3.0, 1.5, 1.0, np.nan, 1.0], np.nan, "undetermined"),
+    ([3.0, 1.5, 1.0, 1.0, np.nan], np.nan, "undetermined"),
+]
+
+
+@pytest.mark.parametrize(("values", "needed", "verdict"), CASES)
+def test_every_verdict(
+    grid_runs: Build, verdicts_of: Callable[..., Any], values: Any, needed: float, verdict: str
+) -> None:
+    lookup = dict(zip(POINTS, values, strict=True))
+    runs = grid_runs(
+        {"points": POINTS}, peak_force=lambda points: [lookup[p] for p in points.values]
+    )
+    found = convergence_in_points.analysis(runs)
+    assert found["points_needed"].item() == pytest.approx(needed, nan_ok=True)
+    assert verdicts_of(found["points_verdict"]) == [verdict]
+    assert np.isfinite(values[-1]) == bool((found["points_error"][0, -1] == 0).item())
+
+
+def test_errors_are_relative_to_the_most_points(
+    grid_runs: Build, verdicts_of: Callable[..., Any]
+) -> None:
+    runs = grid_runs(
+        {"rule": ["lobatto", "layers"], "points": [9, 3, 33, 5], "velocity": [1.0, 2.0]},
+        maximum_deflection=lambda rule, points, velocity: (
+            -velocity * (1 + (rule == "layers") * points**-3.0)
+        ),
+    )
+    found = convergence_in_points.analysis(runs)
+    error = found["points_error"]
+    assert error.dims == ("response", "rule", "points", "velocity")
+    assert error["points"].values.tolist() == [9, 3, 33, 5]
+    expected = (1 / 27 - 33**-3.0) / (1 + 33**-3.0)
+    layers = error.sel(response="maximum_deflection", rule="layers")
+    np.testing.assert_allclose(layers.sel(points=3), expected)
+    assert (layers.sel(points=33) == 0).all()
+    needed = found["points_needed"].sel(response="maximum_deflection")
+    assert needed.dims == ("rule", "velocity")
+    assert needed.values.tolist() == [[3, 3], [5, 5]]
+    assert verdicts_of(found["points_summary"]) == ["converged"]
+    tally = found["points_tally"].sel(response="maximum_deflection")
+    assert tally.sel(points_outcome="at_round_off") == 2
+    assert tally.sel(points_outcome="converged") == 2
+
+
+def test_a_reference_of_zero_makes_other_values_infinitely_wrong(grid_runs: Build) -> None:
+    runs = grid_runs({"points": [2, 3]}, peak_plastic_strain=lambda points: 1e-3 * (points < 3))
+    found = convergence_in_points.analysis(runs)
+    assert found["points_error"].values.tolist() == [[np.inf, 0.0]]
+
+
+@pytest.mark.parametrize(("points", "applies"), [([3], False), ([3, 5], True)])
+def test_needs_two_values(grid_runs: Build, points: list[int], applies: bool) -> None:
+    runs = grid_runs({"points": points}, peak_force=lambda points: points)
+    assert convergence_in_points.applies(runs) is applies

@@ -1,0 +1,137 @@
+"""Fan-out: the same bits however the runs are spread, and none solved twice."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import impactlab as il
+from impactlab.dataset import RESPONSES
+from impactlab.model.parameters import flatten
+from impactlab.study import execution
+from impactlab.study.execution import Engine, batches, design_cases, execute
+from impactlab.study.storage import Form
+
+RESPONSES_ASKED = ["peak_force", "contact_duration", "restitution"]
+
+
+def design(velocities=(0.5, 1.0, 5.0), nodes=(11, 21), **attrs):
+    fixed = flatten(il.paper_impact(), il.Discretisation(points=3))
+    del fixed["velocity"], fixed["nodes"]
+    return xr.Dataset(
+        coords={"velocity": list(velocities), "nodes": list(nodes), "duration": 4e-4} | fixed,
+        attrs={
+            "study": "made_up",
+            "varied": ["velocity", "nodes"],
+            "responses": RESPONSES_ASKED,
+            "histories": 1,
+            "profiles": 0,
+            "samples": 21,
+        }
+        | attrs,
+    )
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """How many runs were sent out, a study each."""
+    counts = []
+    original = execution._solved
+
+    def counted(cases, runs, *args):
+        counts.append(len(runs))
+        return original(cases, runs, *args)
+
+    monkeypatch.setattr(execution, "_solved", counted)
+    return counts
+
+
+def test_runs_carry_the_labels_of_the_design(tmp_path):
+    runs = execute(design(), tmp_path, Engine(workers=2))
+    assert set(RESPONSES_ASKED) | {"status", "contact_force"} <= set(runs.data_vars)
+    assert not set(RESPONSES) - set(RESPONSES_ASKED) & set(runs.data_vars)
+    for velocity, nodes in ((0.5, 21), (5.0, 11)):
+        grid = il.Discretisation(nodes=nodes, points=3)
+        alone = il.simulate(il.paper_impact(velocity), grid, duration=4e-4, samples=21)
+        here = runs.sel(velocity=velocity, nodes=nodes)
+        for name in (*RESPONSES_ASKED, "contact_force", "time"):
+            np.testing.assert_array_equal(here[name].values, alone[name].values, err_msg=name)
+
+
+@pytest.mark.parametrize("engine", [Engine("threads", 3), Engine("processes", 2)])
+def test_same_bits_for_any_engine_and_batch_size(tmp_path, engine, monkeypatch):
+    whole = execute(design(), tmp_path / "one", Engine("threads", 1))
+    monkeypatch.setattr(execution, "_BATCH_COST", 1.0)  # a run a task
+    split = execute(design(), tmp_path / "two", engine)
+    for name in whole.data_vars:
+        assert whole[name].values.tobytes() == split[name].values.tobytes(), name
+
+
+def test_nothing_is_solved_twice(tmp_path, solved):
+    first = execute(design(), tmp_path, Engine())
+    assert sum(solved) == 6
+    again = execute(design(), tmp_path, Engine())
+    assert sum(solved) == 6
+    assert again.drop_attrs().identical(first.drop_attrs())
+
+
+def test_a_change_solves_just_what_it_touches(tmp_path, solved):
+    execute(design(), tmp_path, Engine())
+    solved.clear()
+    execute(design(velocities=(0.5, 1.0, 7.0)), tmp_path, Engine())
+    assert sum(solved) == 2  # the new velocity at two node counts
+    solved.clear()
+    execute(design(responses=["impulse"]), tmp_path, Engine())
+    assert sum(solved) == 0  # other responses of the same runs
+
+
+def test_interrupted_studies_go_on(tmp_path, solved, monkeypatch):
+    monkeypatch.setattr(execution, "_BATCH_COST", 1.0)
+    write = execution.Shards.write
+    kept = []
+
+    def failing(self, keys, answers):
+        if len(kept) == 3:
+            raise KeyboardInterrupt
+        kept.append(keys)
+        return write(self, keys, answers)
+
+    with monkeypatch.context() as interrupted:
+        interrupted.setattr(execution.Shards, "write", failing)
+        with pytest.raises(KeyboardInterrupt):
+            execute(design(), tmp_path, Engine())
+    solved.clear()
+    resumed = execute(design(), tmp_path, Engine())
+    assert sum(solved) == 3
+    fresh = execute(design(), tmp_path / "fresh", Engine())
+    assert resumed.drop_attrs().identical(fresh.drop_attrs())
+
+
+def test_equal_runs_are_solved_once(tmp_path, solved):
+    runs = execute(design(velocities=(1.0, 1.0)), tmp_path, Engine())
+    assert sum(solved) == 2
+    np.testing.assert_array_equal(runs["peak_force"][0], runs["peak_force"][1])
+
+
+def test_failures_are_data(tmp_path):
+    runs = execute(design().assign_coords(duration=1e-4), tmp_path, Engine())
+    assert np.isnan(runs["contact_duration"]).all()
+    assert (runs["status"] != 0).all()
+
+
+def test_status_keeps_only_the_reasons_of_the_asked_responses(tmp_path):
+    short = design(responses=["energy_error"]).assign_coords(duration=1e-4)
+    assert (execute(short, tmp_path, Engine())["status"] == 0).all()
+
+
+def test_batches_hold_every_run_once_and_split_by_cost():
+    cases = design_cases(design(velocities=np.linspace(1, 2, 50), nodes=(11, 201)))
+    parts = list(batches(cases, list(range(100)), Form(0, False), workers=2))
+    assert sorted(run for part in parts for run in part) == list(range(100))
+    cost = [sum(execution.node_steps(cases[run]) for run in part) for part in parts]
+    assert len(parts) >= 4
+    assert max(cost) <= sum(cost) / 8 + max(execution.node_steps(case) for case in cases)
+
+
+def test_workers_with_other_kernels_are_refused():
+    with pytest.raises(RuntimeError, match="another version"):
+        execution.solve_batch(design_cases(design()), Form(0, False), "other")

@@ -1,0 +1,108 @@
+from __future__ import annotations
+
+import math
+import time
+
+import pytest
+
+from impactlab.dataset import VARIABLES
+from impactlab.model.parameters import PARAMETERS
+from impactlab.study.quantities import KINDS, si, whole
+
+
+@pytest.mark.parametrize(
+    ("written", "units", "number"),
+    [
+        ("27.8 mm", "m", 0.0278),
+        ("27.8mm", "m", 0.0278),
+        ("1 inch", "m", 0.0254),
+        ("5 µm", "m", 5e-6),
+        ("345 MPa", "Pa", 345e6),
+        ("345 N/mm2", "Pa", 345e6),
+        ("3.6 km/h", "m s-1", 1.0),
+        ("9.81 m/s/s", "m s-2", 9.81),
+        ("9.81 m s^-2", "m s-2", 9.81),
+        ("9.81 m·s⁻²", "m s-2", 9.81),
+        ("7.8 g/cm3", "kg m-3", 7800.0),
+        ("7.8 g / cm**3", "kg m-3", 7800.0),
+        ("12 ms", "s", 0.012),
+        ("30 %", "1", 0.3),
+        ("0.99", "m s-1", 0.99),
+        ("1e-3", "s", 1e-3),
+        ("-.5e1 m", "m", -5.0),
+        (" 2 m ", "m", 2.0),
+        (0.0278, "m", 0.0278),
+        (1, "m", 1.0),
+    ],
+)
+def test_what_is_written_becomes_exactly_this_si_number(written, units, number):
+    assert si(written, units) == number
+
+
+@pytest.mark.parametrize("tenths", range(1, 1000, 7))
+def test_units_leave_no_trace_of_binary_rounding(tenths):
+    assert si(f"{tenths / 10} mm", "m") == float(f"{tenths}e-4")
+
+
+@pytest.mark.parametrize(
+    ("written", "units", "words"),
+    [
+        ("5 kg", "m", "'kg' has the wrong dimension; expected a length such as '27.8 mm'"),
+        ("5 mm", "Pa", "expected a stress such as '345 MPa', or a number in Pa"),
+        ("20 degC", "m", "wrong dimension"),
+        ("20 °C", "1", "wrong dimension"),
+        ("3 rad", "1", "wrong dimension"),
+        ("3 %", "m", "wrong dimension"),
+        ("5 Mpa", "Pa", "unknown unit 'Mpa'"),
+        ("5 nan", "m", "unknown unit 'nan'"),
+        ("fast", "m s-1", "cannot be read as one number and one unit"),
+        ("", "m", "cannot be read"),
+        ("nan", "m", "cannot be read"),
+        ("inf m", "m", "cannot be read"),
+        ("3,5 mm", "m", "cannot be read"),
+        ("1 m + 1 m", "m", "cannot be read"),
+        ("2 * 3 m", "m", "cannot be read"),
+        ("3 m/s s", "m s-1", "cannot be read"),
+        ("1" * 200, "m", "cannot be read"),
+        ("1e999 m", "m", "must be finite"),
+        (math.nan, "m", "must be finite"),
+        (-math.inf, "m", "must be finite"),
+        (10**400, "m", "must be finite"),
+        (True, "m", "expected a length"),
+        (None, "m", "expected a length"),
+        ([1.0], "m", "expected a length"),
+    ],
+)
+def test_anything_else_is_refused_with_what_was_expected(written, units, words):
+    with pytest.raises(ValueError) as caught:
+        si(written, units)
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["1e9**1e9 m", "9**9**9**9 m", "1 m" + "**9" * 20, "1 " + "m*" * 35])
+def test_expressions_are_refused_without_being_computed(text):
+    si("1 m", "m")  # units are loaded
+    start = time.perf_counter()
+    with pytest.raises(ValueError, match="cannot be read"):
+        si(text, "m")
+    assert time.perf_counter() - start < 0.5
+
+
+@pytest.mark.parametrize(("written", "number"), [(201, 201), (201.0, 201), ("201", 201), ("2e2", 200)])
+def test_whole_numbers(written, number):
+    result = whole(written)
+    assert result == number
+    assert isinstance(result, int)
+
+
+@pytest.mark.parametrize("written", [2.5, "2.5", True, None, "x", "3 m", 1e300, math.nan])
+def test_what_does_not_count_is_refused(written):
+    with pytest.raises(ValueError, match="expected a whole number such as 201"):
+        whole(written)
+
+
+def test_every_unit_that_a_study_can_need_has_words_and_a_true_example():
+    needed = {entry.units for entry in PARAMETERS.values()} | {VARIABLES["duration"].units}
+    assert needed <= KINDS.keys()
+    for units, (_, example) in KINDS.items():
+        assert si(example, units) > 0

@@ -1,0 +1,187 @@
+"""The kernels against the plain solver: same histories, strains and responses, case by case.
+
+They differ in everything that makes the kernels fast (half the beam, half the fibres, elastic
+intervals, wave front, blocks), so beyond rounding they may not differ in their answers.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+import impactlab as il
+from impactlab.dataset import HISTORIES, STATUS_FLAGS
+from impactlab.kernels import RULES
+from impactlab.kernels.contact import LAWS
+from impactlab.kernels.contact.history import make_pair
+from impactlab.kernels.leapfrog import discretise
+from impactlab.kernels.section import make_section
+from impactlab.model.parameters import with_values
+from impactlab.simulate import case_table
+
+from .. import plain_beam
+
+pytestmark = pytest.mark.skipif(
+    bool(numba.config.DISABLE_JIT), reason="takes hours as plain Python"
+)
+
+TOLERANCE = 1e-9
+SHAKE, MOST_GROWTH = 1e-12, 1e3
+NO_ANSWERS = STATUS_FLAGS["diverged"][0] | STATUS_FLAGS["energy_out_of_balance"][0]
+
+HARDENING = st.just(0.0) | st.floats(0.0, 50e9)
+VALUES = st.fixed_dictionaries(
+    {
+        "velocity": st.floats(0.1, 40.0),
+        "gravity": st.sampled_from([0.0, 9.81]) | st.floats(0.0, 50.0),
+        "contact": st.sampled_from(LAWS),
+        "sphere_radius": st.floats(0.005, 0.05),
+        "sphere_yield_stress": st.floats(200e6, 3e9),
+        "beam_span": st.floats(0.2, 1.0),
+        "beam_width": st.floats(0.01, 0.1),
+        "beam_depth": st.floats(0.005, 0.05),
+        "beam_yield_stress": st.floats(100e6, 1e9),
+        "beam_isotropic_hardening_modulus": HARDENING,
+        "beam_kinematic_hardening_modulus": HARDENING,
+        "nodes": st.integers(2, 30).map(lambda half: 2 * half + 1),
+        "points": st.integers(2, 21),
+        "rule": st.sampled_from(RULES),
+        "courant": st.floats(0.2, 1.0),
+    },
+    optional={"sphere_mass": st.floats(0.05, 5.0)},
+)
+FIXED = settings(
+    max_examples=300,
+    derandomize=True,
+    database=None,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+)
+
+
+class Case(NamedTuple):
+    """An impact and its discretisation; duration and dt in s."""
+
+    impact: il.Impact
+    grid: il.Discretisation
+    duration: float
+    dt: float
+    steps: int
+
+    def plain(self, shake: float = 0.0) -> plain_beam.Run:
+        """The plain solver's run, the velocity shaken by a share of itself."""
+        impact = replace(self.impact, velocity=self.impact.velocity * (1.0 + shake))
+        return plain_beam.solve(impact, self.grid, self.dt, self.steps)
+
+    def kernels(self) -> xr.Dataset:
+        """The kernels' run, a sample a step."""
+        return il.simulate(self.impact, self.grid, duration=self.duration, samples=self.steps + 1)
+
+
+def make_case(values: dict[str, Any], steps: int) -> Case:
+    """The paper's case with these values, over about so many of the kernels' time steps."""
+    impact, grid = with_values(il.paper_impact(), il.Discretisation(), values)
+    case = case_table(impact, grid, duration=1.0)[0]
+    pair, section = make_pair(case), make_section(case)
+    case.duration = steps * discretise(case, pair, section)[0].dt
+    cut, steps = discretise(case, pair, section)
+    return Case(impact, grid, float(case.duration), cut.dt, steps)
+
+
+def difference(one: np.ndarray, other: np.ndarray, least: float = 0.0) -> float:
+    """Largest difference over the largest value of `other` (at least `least`)."""
+    return float(np.abs(one - other).max() / max(np.abs(other).max(), least))
+
+
+def growth(case: Case, run: plain_beam.Run) -> float:
+    """How much the plain solver's histories magnify a change of velocity."""
+    shaken = case.plain(SHAKE)
+    changes = (difference(getattr(shaken, name), getattr(run, name)) for name in HISTORIES)
+    return max(changes) / SHAKE
+
+
+def assert_same(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> None:
+    for name in (*HISTORIES, "deflection"):
+        assert difference(dataset[name].values, getattr(run, name)) < TOLERANCE, name
+    material = case.impact.beam.material
+    least = material.yield_stress / material.youngs_modulus
+    peeq = dataset.equivalent_plastic_strain.values
+    assert difference(peeq, run.peeq, least) < TOLERANCE
+    assert difference(dataset.plastic_strain.values, run.plastic_strain, least) < TOLERANCE
+    if not dataset.status.item() & NO_ANSWERS:
+        for name, expected in plain_beam.responses(case.impact, case.grid, run).items():
+            approx = pytest.approx(expected, rel=TOLERANCE, abs=1e-15, nan_ok=True)
+            assert dataset[name].item() == approx, name
+
+
+def features(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> list[str]:
+    """What happened in a run."""
+    material, deeper = case.impact.beam.material, np.diff(run.deepest) > 0
+    found = {
+        "yields": run.peeq.max() > 0,
+        "yields in reverse": bool((run.peeq > np.abs(run.plastic_strain) * (1 + 1e-6)).any()),
+        "hardens": run.peeq.max() > 0 and material.isotropic_hardening_modulus > 0,
+        "touches again": dataset.number_of_contacts.item() > 1,
+        "loads further later": bool((deeper[1:] & ~deeper[:-1]).any()),
+        "gives every answer": dataset.status.item() == 0,
+        case.impact.contact: True,
+        case.grid.rule: True,
+    }
+    return [name for name, is_so in found.items() if is_so]
+
+
+def test_same_answers_as_the_plain_solver():
+    """Runs that bounce into chaos are left out: there no two codes agree, whoever is right."""
+    seen: Counter[str] = Counter()
+
+    @FIXED
+    @given(VALUES, st.integers(10, 6000))
+    def check(values: dict[str, Any], steps: int) -> None:
+        case = make_case(values, steps)
+        run = case.plain()
+        assume(growth(case, run) < MOST_GROWTH)
+        dataset = case.kernels()
+        seen.update(["cases", *features(case, run, dataset)])
+        assert_same(case, run, dataset)
+
+    check()
+    assert seen["cases"] >= 300
+    assert min(seen.values()) >= 30, seen
+    print(seen)
+
+
+@pytest.mark.parametrize(
+    ("values", "happens"),
+    [
+        ({"velocity": 0.99, "nodes": 101}, {"touches again"}),
+        ({"velocity": 15.0, "nodes": 61, "points": 5}, {"yields", "loads further later"}),
+        (
+            {
+                "velocity": 40.0,
+                "nodes": 141,  # more than two of the kernels' blocks
+                "contact": "hertz",
+                "beam_isotropic_hardening_modulus": 2e9,
+                "beam_kinematic_hardening_modulus": 2e9,
+            },
+            {"yields", "yields in reverse", "hardens"},
+        ),
+    ],
+    ids=["sub-impacts", "plastic", "hardening"],
+)
+def test_larger_cases(values, happens):
+    case = make_case(values, 8000)
+    run, dataset = case.plain(), case.kernels()
+    assert happens <= set(features(case, run, dataset))
+    assert_same(case, run, dataset)
+
+
+def test_the_plain_solver_knows_every_law():
+    assert set(plain_beam.LAWS) == set(LAWS)

@@ -1,0 +1,120 @@
+"""The command line as a person uses it: errors speak, nothing is lost."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+STUDY = """
+title: Small
+description: For a test.
+impact: {base: paper}
+discretisation: {nodes: 21, points: 3}
+duration: 1 ms
+sampling:
+  method: grid
+  parameters:
+    velocity: [0.5, 1.0, 2.0]
+    nodes: [11, 21, 41]
+responses: [peak_force, contact_duration]
+"""
+
+
+def impactlab(*args, cwd, check=True):
+    command = [sys.executable, "-m", "impactlab", *map(str, args)]
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300)
+    if check:
+        assert done.returncode == 0, done.stderr
+    return done
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies" / "small.yaml").write_text(STUDY)
+    return tmp_path
+
+
+def test_every_step_without_snakemake(folder):
+    impactlab("run", "studies/small.yaml", cwd=folder)
+    results = folder / "results" / "small"
+    impactlab("analyse", results / "runs.nc", cwd=folder)
+    impactlab("figures", results / "runs.nc", results / "analysis.nc", cwd=folder)
+    impactlab("report", results / "runs.nc", results / "analysis.nc", cwd=folder)
+    impactlab("index", cwd=folder)
+    assert "small/report.html" in (folder / "results" / "index.html").read_text()
+    assert xr.load_dataset(results / "runs.nc")["peak_force"].sel(velocity=2, nodes=41) > 1e4
+
+
+def test_studies_are_listed(folder):
+    listed = impactlab("studies", cwd=folder).stdout
+    assert "small" in listed
+    assert "9" in listed
+    assert "Small" in listed
+
+
+def test_simulate_prints_and_keeps(tmp_path):
+    done = impactlab(
+        "simulate", "--nodes", 101, "--duration", "0.5 ms", "--output", "one.nc", cwd=tmp_path
+    )
+    assert "peak_force" in done.stdout
+    assert "11748" in done.stdout
+    one = xr.load_dataset(tmp_path / "one.nc")
+    assert one["peak_force"].attrs["units"] == "N"
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (["simulate", "--nodes", "600"], ["nodes", "600", "odd"]),
+        (["simulate", "--contact", "glue"], ["contact", "glue", "hertz", "stronge"]),
+        (["simulate", "--velocity", "3 kg"], ["velocity", "3 kg", "m/s"]),
+        (["simulate", "--duration", "-1 ms"], ["duration", "-0.001"]),
+        (["run", "studies/none.yaml"], ["studies/none.yaml"]),
+        (["run", "studies/broken.yaml"], ["broken.yaml", "velocty", "velocity"]),
+        (["analyse", "studies/small.yaml"], ["studies/small.yaml", "netCDF"]),
+        (["report", "none.nc", "none.nc"], ["none.nc"]),
+        (["run", "studies/small.yaml", "--scheduler", "tcp://127.0.0.1:9"], ["127.0.0.1:9"]),
+    ],
+)
+def test_mistakes_end_in_one_message_and_no_traceback(folder, args, words):
+    (folder / "studies" / "broken.yaml").write_text(STUDY.replace("velocity", "velocty"))
+    done = impactlab(*args, cwd=folder, check=False)
+    assert done.returncode != 0
+    assert "Traceback" not in done.stderr
+    for word in words:
+        assert word in done.stderr, done.stderr
+
+
+SLOW = STUDY.replace("[11, 21, 41]", "[201, 203, 205, 207, 209, 211]").replace("1 ms", "20 ms")
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_an_interrupted_study_goes_on(folder, how):
+    (folder / "studies" / "slow.yaml").write_text(SLOW)
+    command = [sys.executable, "-m", "impactlab", "run", "studies/slow.yaml", "--workers", "1"]
+    started = subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True)
+    shards = folder / "results" / "slow" / "shards"
+    deadline = time.monotonic() + 120
+    while not list(shards.glob("*/*.nc")) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    os.kill(started.pid, how)
+    _, said = started.communicate(timeout=60)
+    if how == signal.SIGINT:
+        assert started.returncode == 130, said
+        assert "the same command goes on" in said
+        assert "Traceback" not in said
+    assert not (folder / "results" / "slow" / "runs.nc").exists()
+    again = impactlab("run", "studies/slow.yaml", cwd=folder).stderr
+    before = int(again.split(" of them solved before")[0].split()[-1])
+    assert 0 < before < 18
+    first = xr.load_dataset(folder / "results" / "slow" / "runs.nc")
+    (folder / "results").rename(folder / "elsewhere")
+    impactlab("run", "studies/slow.yaml", cwd=folder)
+    fresh = xr.load_dataset(Path(folder) / "results" / "slow" / "runs.nc")
+    assert fresh.drop_attrs().identical(first.drop_attrs())
