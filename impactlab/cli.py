@@ -137,7 +137,8 @@ def run(
     Finished batches are kept in results/NAME/shards: an interrupted study goes on from there.
     """
     from impactlab.study.declaration import read_study
-    from impactlab.study.execution import Engine, execute
+    from impactlab.study.engine import Engine
+    from impactlab.study.execution import execute
     from impactlab.study.sampling import design as sampled
     from impactlab.study.storage import read_netcdf, write_netcdf
 

@@ -4,21 +4,27 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 from impactlab.figures.draw import CAPTIONS
 
 
+_SCREEN = 1.3
+"""Figures are 8 pt at the width of a paper; on a screen that is small."""
+
+
 @dataclass(frozen=True)
 class Picture:
-    """A numbered figure; uri: the whole SVG as a data URI."""
+    """A numbered figure; uri: the whole SVG as a data URI; width: on a screen, in CSS pixels."""
 
     number: int
     name: str
     title: str
     caption: str
     uri: str
+    width: int
 
 
 def pictures(folder: Path) -> list[Picture]:
@@ -28,14 +34,23 @@ def pictures(folder: Path) -> list[Picture]:
     """
     captions = json.loads(_read(folder / CAPTIONS))
     return [
-        Picture(number, name, entry["title"], entry["caption"], _uri(folder / f"{name}.svg"))
+        _picture(number, folder / f"{name}.svg", entry)
         for number, (name, entry) in enumerate(captions.items(), 1)
     ]
 
 
-def _uri(path: Path) -> str:
+def _picture(number: int, path: Path, entry: dict[str, str]) -> Picture:
     """An image of its own keeps the names inside one SVG from meeting those of another."""
-    return f"data:image/svg+xml;base64,{base64.b64encode(_read(path)).decode('ascii')}"
+    svg = _read(path)
+    uri = f"data:image/svg+xml;base64,{base64.b64encode(svg).decode('ascii')}"
+    return Picture(number, path.stem, entry["title"], entry["caption"], uri, _width(svg))
+
+
+def _width(svg: bytes) -> int:
+    """From the width in points that matplotlib writes into the root element."""
+    found = re.search(rb'<svg [^>]*?\bwidth="([\d.]+)pt"', svg)
+    points = float(found.group(1)) if found else 0.0
+    return round(points * 96 / 72 * _SCREEN)
 
 
 def _read(path: Path) -> bytes:

@@ -14,7 +14,7 @@ import numba
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 import impactlab as il
@@ -35,7 +35,6 @@ pytestmark = pytest.mark.skipif(
 
 TOLERANCE = 1e-9
 SHAKE, MOST_GROWTH = 1e-12, 1e3
-NO_ANSWERS = STATUS_FLAGS["diverged"][0] | STATUS_FLAGS["energy_out_of_balance"][0]
 
 HARDENING = st.just(0.0) | st.floats(0.0, 50e9)
 VALUES = st.fixed_dictionaries(
@@ -59,11 +58,12 @@ VALUES = st.fixed_dictionaries(
     optional={"sphere_mass": st.floats(0.05, 5.0)},
 )
 FIXED = settings(
-    max_examples=300,
+    max_examples=500,
     derandomize=True,
     database=None,
     deadline=None,
     suppress_health_check=list(HealthCheck),
+    phases=(Phase.generate, Phase.shrink),
 )
 
 
@@ -109,6 +109,9 @@ def growth(case: Case, run: plain_beam.Run) -> float:
 
 
 def assert_same(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> None:
+    if dataset.status.item() & STATUS_FLAGS["diverged"][0]:
+        assert dataset.drop_vars("status").isnull().all().to_array().all()
+        return
     for name in (*HISTORIES, "deflection"):
         assert difference(dataset[name].values, getattr(run, name)) < TOLERANCE, name
     material = case.impact.beam.material
@@ -116,26 +119,23 @@ def assert_same(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> None:
     peeq = dataset.equivalent_plastic_strain.values
     assert difference(peeq, run.peeq, least) < TOLERANCE
     assert difference(dataset.plastic_strain.values, run.plastic_strain, least) < TOLERANCE
-    if not dataset.status.item() & NO_ANSWERS:
+    if not dataset.status.item() & STATUS_FLAGS["energy_out_of_balance"][0]:
         for name, expected in plain_beam.responses(case.impact, case.grid, run).items():
             approx = pytest.approx(expected, rel=TOLERANCE, abs=1e-15, nan_ok=True)
             assert dataset[name].item() == approx, name
 
 
-def features(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> list[str]:
-    """What happened in a run."""
+def features(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> dict[str, bool]:
+    """What happened in a run, and what did not."""
     material, deeper = case.impact.beam.material, np.diff(run.deepest) > 0
-    found = {
-        "yields": run.peeq.max() > 0,
+    return {
+        "yields": bool(run.peeq.max() > 0),
         "yields in reverse": bool((run.peeq > np.abs(run.plastic_strain) * (1 + 1e-6)).any()),
-        "hardens": run.peeq.max() > 0 and material.isotropic_hardening_modulus > 0,
+        "hardens": bool(run.peeq.max() > 0 and material.isotropic_hardening_modulus > 0),
         "touches again": dataset.number_of_contacts.item() > 1,
         "loads further later": bool((deeper[1:] & ~deeper[:-1]).any()),
         "gives every answer": dataset.status.item() == 0,
-        case.impact.contact: True,
-        case.grid.rule: True,
-    }
-    return [name for name, is_so in found.items() if is_so]
+    } | {name: name in (case.impact.contact, case.grid.rule) for name in (*LAWS, *RULES)}
 
 
 def test_same_answers_as_the_plain_solver():
@@ -143,30 +143,30 @@ def test_same_answers_as_the_plain_solver():
     seen: Counter[str] = Counter()
 
     @FIXED
-    @given(VALUES, st.integers(10, 6000))
+    @given(VALUES, st.integers(500, 8000) | st.integers(10, 60))
     def check(values: dict[str, Any], steps: int) -> None:
         case = make_case(values, steps)
         run = case.plain()
         assume(growth(case, run) < MOST_GROWTH)
         dataset = case.kernels()
-        seen.update(["cases", *features(case, run, dataset)])
+        seen.update(features(case, run, dataset))
         assert_same(case, run, dataset)
 
     check()
-    assert seen["cases"] >= 300
-    assert min(seen.values()) >= 30, seen
-    print(seen)
+    assert min(seen.values()) >= 15, seen
 
 
 @pytest.mark.parametrize(
     ("values", "happens"),
     [
-        ({"velocity": 0.99, "nodes": 101}, {"touches again"}),
-        ({"velocity": 15.0, "nodes": 61, "points": 5}, {"yields", "loads further later"}),
+        (
+            {"velocity": 5.0, "sphere_mass": 5.0, "nodes": 101, "points": 5},
+            {"touches again", "loads further later", "yields"},
+        ),
         (
             {
                 "velocity": 40.0,
-                "nodes": 141,  # more than two of the kernels' blocks
+                "nodes": 281,  # more than two of the kernels' blocks in half a beam
                 "contact": "hertz",
                 "beam_isotropic_hardening_modulus": 2e9,
                 "beam_kinematic_hardening_modulus": 2e9,
@@ -174,12 +174,12 @@ def test_same_answers_as_the_plain_solver():
             {"yields", "yields in reverse", "hardens"},
         ),
     ],
-    ids=["sub-impacts", "plastic", "hardening"],
+    ids=["sub-impacts", "hardening"],
 )
-def test_larger_cases(values, happens):
+def test_larger_beams(values, happens):
     case = make_case(values, 8000)
     run, dataset = case.plain(), case.kernels()
-    assert happens <= set(features(case, run, dataset))
+    assert happens <= {name for name, is_so in features(case, run, dataset).items() if is_so}
     assert_same(case, run, dataset)
 
 

@@ -97,6 +97,6 @@ def _validated(data: dict[str, Any], file: str) -> tuple[StudyForm, list[Problem
         return StudyForm.model_validate(data, context=keys), []
     except ValidationError as error:
         wrong = {line["loc"][0] for line in error.errors(include_url=False)}
-        rest = {key: value for key, value in data.items() if key not in wrong}
-        form = StudyForm.model_validate(_STAND_INS | rest)
+        sound = {key: data[key] for key in StudyForm.model_fields if key in data.keys() - wrong}
+        form = StudyForm.model_validate(_STAND_INS | sound)
         return form, messages.problems(error, data, file, keys)

@@ -7,8 +7,12 @@ import xarray as xr
 import impactlab as il
 from impactlab.dataset import RESPONSES
 from impactlab.model.parameters import flatten
+from impactlab.study import batches as batching
 from impactlab.study import execution
-from impactlab.study.execution import Engine, batches, design_cases, execute
+from impactlab.study.batches import batches, node_steps
+from impactlab.study.engine import Engine
+from impactlab.study.execution import execute
+from impactlab.study.labels import design_cases
 from impactlab.study.storage import Form
 
 RESPONSES_ASKED = ["peak_force", "contact_duration", "restitution"]
@@ -18,7 +22,8 @@ def design(velocities=(0.5, 1.0, 5.0), nodes=(11, 21), **attrs):
     fixed = flatten(il.paper_impact(), il.Discretisation(points=3))
     del fixed["velocity"], fixed["nodes"]
     return xr.Dataset(
-        coords={"velocity": list(velocities), "nodes": list(nodes), "duration": 4e-4} | fixed,
+        # netCDF may hand the dimensions back in any order: not that of `varied`
+        coords={"nodes": list(nodes), "velocity": list(velocities), "duration": 4e-4} | fixed,
         attrs={
             "study": "made_up",
             "varied": ["velocity", "nodes"],
@@ -49,7 +54,8 @@ def test_runs_carry_the_labels_of_the_design(tmp_path):
     runs = execute(design(), tmp_path, Engine(workers=2))
     assert set(RESPONSES_ASKED) | {"status", "contact_force"} <= set(runs.data_vars)
     assert not set(RESPONSES) - set(RESPONSES_ASKED) & set(runs.data_vars)
-    for velocity, nodes in ((0.5, 21), (5.0, 11)):
+    assert runs["peak_force"].dims == ("velocity", "nodes")
+    for velocity, nodes in ((0.5, 11), (0.5, 21), (5.0, 11), (5.0, 21)):
         grid = il.Discretisation(nodes=nodes, points=3)
         alone = il.simulate(il.paper_impact(velocity), grid, duration=4e-4, samples=21)
         here = runs.sel(velocity=velocity, nodes=nodes)
@@ -60,7 +66,7 @@ def test_runs_carry_the_labels_of_the_design(tmp_path):
 @pytest.mark.parametrize("engine", [Engine("threads", 3), Engine("processes", 2)])
 def test_same_bits_for_any_engine_and_batch_size(tmp_path, engine, monkeypatch):
     whole = execute(design(), tmp_path / "one", Engine("threads", 1))
-    monkeypatch.setattr(execution, "_BATCH_COST", 1.0)  # a run a task
+    monkeypatch.setattr(batching, "_COST", 1.0)  # a run a task
     split = execute(design(), tmp_path / "two", engine)
     for name in whole.data_vars:
         assert whole[name].values.tobytes() == split[name].values.tobytes(), name
@@ -85,7 +91,7 @@ def test_a_change_solves_just_what_it_touches(tmp_path, solved):
 
 
 def test_interrupted_studies_go_on(tmp_path, solved, monkeypatch):
-    monkeypatch.setattr(execution, "_BATCH_COST", 1.0)
+    monkeypatch.setattr(batching, "_COST", 1.0)
     write = execution.Shards.write
     kept = []
 
@@ -127,9 +133,9 @@ def test_batches_hold_every_run_once_and_split_by_cost():
     cases = design_cases(design(velocities=np.linspace(1, 2, 50), nodes=(11, 201)))
     parts = list(batches(cases, list(range(100)), Form(0, False), workers=2))
     assert sorted(run for part in parts for run in part) == list(range(100))
-    cost = [sum(execution.node_steps(cases[run]) for run in part) for part in parts]
+    cost = [sum(node_steps(cases[run]) for run in part) for part in parts]
     assert len(parts) >= 4
-    assert max(cost) <= sum(cost) / 8 + max(execution.node_steps(case) for case in cases)
+    assert max(cost) <= sum(cost) / 8 + max(node_steps(case) for case in cases)
 
 
 def test_workers_with_other_kernels_are_refused():

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 
 import pytest
@@ -74,12 +75,13 @@ def test_units_leave_no_trace_of_binary_rounding(tenths):
     ],
 )
 def test_anything_else_is_refused_with_what_was_expected(written, units, words):
-    with pytest.raises(ValueError) as caught:
+    with pytest.raises(ValueError, match=re.escape(words)):
         si(written, units)
-    assert words in str(caught.value)
 
 
-@pytest.mark.parametrize("text", ["1e9**1e9 m", "9**9**9**9 m", "1 m" + "**9" * 20, "1 " + "m*" * 35])
+@pytest.mark.parametrize(
+    "text", ["1e9**1e9 m", "9**9**9**9 m", "1 m" + "**9" * 20, "1 " + "m*" * 35]
+)
 def test_expressions_are_refused_without_being_computed(text):
     si("1 m", "m")  # units are loaded
     start = time.perf_counter()
@@ -88,7 +90,9 @@ def test_expressions_are_refused_without_being_computed(text):
     assert time.perf_counter() - start < 0.5
 
 
-@pytest.mark.parametrize(("written", "number"), [(201, 201), (201.0, 201), ("201", 201), ("2e2", 200)])
+@pytest.mark.parametrize(
+    ("written", "number"), [(201, 201), (201.0, 201), ("201", 201), ("2e2", 200)]
+)
 def test_whole_numbers(written, number):
     result = whole(written)
     assert result == number

@@ -1,0 +1,42 @@
+"""Where batches are solved: dask, on this machine or on a cluster."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Literal
+
+from distributed import Client
+
+_LOOPBACK = "127.0.0.1:0"
+
+
+@dataclass(frozen=True)
+class Engine:
+    """On a running dask scheduler where an address is given, else in threads or processes here."""
+
+    kind: Literal["threads", "processes"] = "threads"
+    workers: int = 1
+    address: str = ""
+
+    @contextmanager
+    def client(self) -> Iterator[Client]:
+        """A dask client for the time of a study. Raises OSError when no scheduler answers."""
+        logging.getLogger("distributed").setLevel(logging.ERROR)
+        if self.address:
+            client = Client(self.address, timeout=10)
+        else:
+            apart = self.kind == "processes"
+            client = Client(
+                processes=apart,
+                n_workers=self.workers if apart else 1,
+                threads_per_worker=1 if apart else self.workers,
+                dashboard_address=_LOOPBACK,
+                worker_dashboard_address=_LOOPBACK,
+                memory_limit=0,
+                silence_logs=logging.ERROR,
+            )
+        with client:
+            yield client

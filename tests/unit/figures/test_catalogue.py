@@ -1,0 +1,162 @@
+"""What holds for every figure of the catalogue, on every kind of study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from impactlab.dataset import RESPONSES
+from impactlab.figures import style
+from impactlab.figures.catalogue import CATALOGUE
+
+EXPECTED = {
+    "velocity_study": {
+        "force_history",
+        "force_indentation",
+        "contact_duration",
+        "plastic_strain",
+        "plastic_strain_depth",
+        "parameter_effects",
+    },
+    "material_study": {"parameter_effects"},
+    "discretisation_study": {"nodes_convergence", "points_convergence"},
+    "sobol_study": {"response_distributions", "sobol_indices", "sobol_second_order"},
+}
+CASES = [(study, name) for study, names in EXPECTED.items() for name in sorted(names)]
+
+
+FEW = ["peak_force", "contact_duration", "peak_plastic_strain", "number_of_contacts"]
+"""Enough responses for what is not about layout: 17 panels take seconds to lay out."""
+
+
+@pytest.fixture(scope="module")
+def laid_out() -> dict[Any, Figure]:
+    """Figures by case: each is drawn once for all tests that look at it."""
+    return {}
+
+
+@pytest.fixture
+def drawn(request: pytest.FixtureRequest, laid_out: dict[Any, Figure]) -> Figure:
+    """The figure of a case, laid out."""
+    study, name = case = request.param
+    if case not in laid_out:
+        laid_out[case] = _laid_out(CATALOGUE[name].plot(*request.getfixturevalue(study)))
+    return laid_out[case]
+
+
+def _laid_out(figure: Figure) -> Figure:
+    with style.applied():
+        FigureCanvasAgg(figure).draw()
+    return figure
+
+
+every_figure = pytest.mark.parametrize("drawn", CASES, indirect=True, ids=lambda case: case[1])
+
+
+@pytest.mark.parametrize("study", EXPECTED)
+def test_figures_apply_to_the_studies_they_are_for(
+    study: str, request: pytest.FixtureRequest
+) -> None:
+    datasets = request.getfixturevalue(study)
+    found = {name for name, file in CATALOGUE.items() if file.applies(*datasets)}
+    assert found == EXPECTED[study]
+
+
+def test_no_figure_is_left_without_a_case() -> None:
+    assert set().union(*EXPECTED.values()) == set(CATALOGUE)
+
+
+def test_nothing_applies_to_empty_datasets() -> None:
+    empty = xr.Dataset()
+    assert [name for name, file in CATALOGUE.items() if file.applies(empty, empty)] == []
+
+
+@every_figure
+def test_paper_width(drawn: Figure) -> None:
+    width = drawn.get_figwidth() / style.MILLIMETRE
+    assert min(abs(width - style.SINGLE), abs(width - style.DOUBLE)) < 1e-6
+
+
+@every_figure
+def test_labels_carry_units(drawn: Figure) -> None:
+    """An axis with ticks has its unit in its label, its title, or a label for all panels."""
+    bars = [axes.get_xlabel() for axes in drawn.axes if hasattr(axes, "_colorbar")]
+    shared = [drawn.get_supxlabel(), drawn.get_supylabel(), *bars]
+    for axes in drawn.axes:
+        labels = [axes.get_xlabel(), axes.get_ylabel(), axes.get_title(loc="left"), *shared]
+        assert any(label.endswith(")") and "(" in label for label in labels), labels
+        for label in labels:
+            assert not label or label[0].isupper()
+
+
+@every_figure
+def test_text_is_legible_and_does_not_overlap(drawn: Figure) -> None:
+    for axes in drawn.axes:
+        for ticks in (axes.get_xticklabels(), axes.get_yticklabels()):
+            shown = [label for label in ticks if label.get_text() and _inside(axes, label)]
+            boxes = sorted((label.get_window_extent() for label in shown), key=lambda b: (b.x0, b.y0))
+            assert all(not left.overlaps(right) for left, right in pairwise(boxes))
+        assert all(text.get_fontsize() >= 6 for text in _texts(axes))
+
+
+@every_figure
+def test_all_is_inside_the_page_and_the_legend_clear_of_the_data(drawn: Figure) -> None:
+    page = drawn.bbox
+    for axes in drawn.axes:
+        box = axes.get_tightbbox()
+        assert box is not None
+        assert box.x0 >= page.x0 - 1
+        assert box.x1 <= page.x1 + 1
+        for legend in drawn.legends:
+            assert not legend.get_window_extent().overlaps(box)
+
+
+@every_figure
+def test_panels_do_not_overlap(drawn: Figure) -> None:
+    boxes = [axes.get_tightbbox().padded(-1) for axes in drawn.axes]  # type: ignore[union-attr]
+    for at, box in enumerate(boxes):
+        assert not any(box.overlaps(other) for other in boxes[at + 1 :])
+
+
+@pytest.mark.parametrize(("study", "name"), CASES, ids=lambda case: str(case))
+def test_all_runs_failed_leaves_no_data_and_says_so(
+    study: str, name: str, request: pytest.FixtureRequest, failing: Any
+) -> None:
+    runs, analysis = request.getfixturevalue(study)
+    everything = {dim: slice(None) for dim in runs["status"].dims}
+    runs = failing(runs.drop_vars(set(RESPONSES) - set(FEW)), everything)
+    analysis = _undefined(analysis)
+    figure = _laid_out(CATALOGUE[name].plot(runs, analysis))
+    lines = [line for axes in figure.axes for line in axes.lines if not _guide(line.get_label())]
+    assert [line for line in lines if len(line.get_xdata()) > 2] == []  # type: ignore[arg-type]
+    total = runs["status"].size
+    assert f"{total} of {total} runs are missing" in CATALOGUE[name].caption(runs, analysis)
+
+
+def _undefined(analysis: xr.Dataset) -> xr.Dataset:
+    return analysis.map(lambda array: array * np.nan if array.dtype.kind == "f" else array)
+
+
+def _guide(label: object) -> bool:
+    return str(label).startswith("_guide")
+
+
+def _inside(axes: Axes, label: Text) -> bool:
+    box = axes.get_window_extent().padded(1)
+    x, y = label.get_window_extent().get_points().mean(axis=0)
+    return bool(box.x0 <= x <= box.x1 or box.y0 <= y <= box.y1) and label.get_visible()
+
+
+def _texts(axes: Axes) -> Iterator[Text]:
+    yield from axes.texts
+    yield from (axes.xaxis.label, axes.yaxis.label)
+    yield from (*axes.get_xticklabels(), *axes.get_yticklabels())

@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.dataset import STATUS_FLAGS
+from impactlab.figures.reading import missing
+from impactlab.figures.reading.contents import usable
+
+Study = Any
+
+
+def test_nothing_is_said_when_nothing_is_missing(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    assert missing.note(runs, ["peak_force", "contact_force"]) == ""
+
+
+def test_missing_runs_are_counted_with_their_reasons(velocity_study: Study, failing: Any) -> None:
+    runs, _ = velocity_study
+    broken = failing(failing(runs, {"velocity": 5, "contact": 1}), {"velocity": 6, "contact": 0})
+    bit, words = STATUS_FLAGS["first_contact_unfinished"]
+    broken["status"][{"velocity": 6, "contact": 0}] = bit
+    note = missing.note(broken, ["contact_duration"])
+    assert note.startswith("2 of 16 runs are missing here: ")
+    assert f"1 × “{words}”" in note
+    assert f"1 × “{STATUS_FLAGS['diverged'][1]}”" in note
+
+
+def test_a_gap_without_a_status_is_not_silent(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    runs["peak_force"][0, 0] = np.nan
+    assert missing.UNEXPLAINED in missing.note(runs, ["peak_force"])
+    assert missing.UNEXPLAINED in missing.note(runs.drop_vars("status"), ["peak_force"])
+
+
+def test_status_overrules_a_number(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    runs["status"][0, 0] = STATUS_FLAGS["first_contact_unfinished"][0]
+    assert np.isnan(usable(runs, "contact_duration")[0, 0])
+    assert np.isfinite(usable(runs, "number_of_contacts")[0, 0])
+    runs["status"][0, 0] = STATUS_FLAGS["diverged"][0]
+    assert np.isnan(usable(runs, "contact_force")[0, 0]).all()
+
+
+def test_a_history_is_missing_only_when_all_of_it_is() -> None:
+    history = xr.DataArray([[np.nan, 1.0], [np.nan, np.nan]], dims=("velocity", "time"))
+    assert missing.absent(history).values.tolist() == [False, True]

@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+import pytest
+import xarray as xr
+
+from impactlab.figures.reading import words
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (-0.0125, "−0.0125"),
+        (123456.0, "1.235×10⁵"),
+        (1e-6, "10⁻⁶"),
+        (3.14159e-6, "3.142×10⁻⁶"),
+        (0.99996, "1"),
+        (99999.9, "10⁵"),
+        (20.0, "20"),
+        (float("inf"), "∞"),
+        (float("nan"), "missing"),
+    ],
+)
+def test_numbers_are_typeset_to_four_digits(value: float, text: str) -> None:
+    assert words.number(value) == text
+
+
+def test_listing() -> None:
+    assert [words.listing(list(items)) for items in ("", "a", "ab", "abc")] == [
+        "",
+        "a",
+        "a and b",
+        "a, b and c",
+    ]
+
+
+def test_setting_shows_values_in_one_unit() -> None:
+    stress = xr.DataArray([250e6, 345e6], dims="s", attrs={"units": "Pa"}, name="beam_yield_stress")
+    assert words.setting(stress, [0, 1]) == "yield stress of the beam = 250 and 345 MPa"
+
+
+def test_laws_and_rules_are_named_as_in_papers() -> None:
+    laws = xr.DataArray(["jackson_green"], dims="contact", name="contact")
+    rules = xr.DataArray(["lobatto"], dims="rule", name="rule")
+    assert words.values(laws, [0]) == ["Jackson-Green"]
+    assert words.values(rules, [0]) == ["Gauss-Lobatto"]
+
+
+def test_axis_of_a_pure_number_says_so() -> None:
+    assert words.axis("restitution", "") == "Restitution (–)"
