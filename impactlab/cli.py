@@ -58,9 +58,9 @@ def configure(
     if log:
         log.parent.mkdir(parents=True, exist_ok=True)
         handlers.append(logging.FileHandler(log, mode="w"))
+    logger.handlers[:] = handlers
     for handler in handlers:
         handler.setFormatter(logging.Formatter("%(levelname)s: %(message)s"))
-        logger.addHandler(handler)
 
 
 @app.command()
@@ -82,12 +82,11 @@ def simulate(
     from impactlab.model.paper import paper_impact
     from impactlab.report.console import print_responses
     from impactlab.simulate import simulate as solve_one
-    from impactlab.study.quantities import si
     from impactlab.study.storage import write_netcdf
 
-    impact = paper_impact(si(velocity, "m s-1"), contact)
+    impact = paper_impact(given("--velocity", velocity, "m s-1"), contact)
     grid = Discretisation(nodes=nodes, points=points, rule=rule)
-    dataset = solve_one(impact, grid, duration=si(duration, "s"))
+    dataset = solve_one(impact, grid, duration=given("--duration", duration, "s"))
     print_responses(dataset)
     if output:
         write_netcdf(dataset, output)
@@ -210,3 +209,13 @@ def index(
     from impactlab.report.index import write_index
 
     write_index(results, output or results / "index.html")
+
+
+def given(option: str, text: str, units: str) -> float:
+    """An option's quantity in SI; raises ValueError naming the option."""
+    from impactlab.study.quantities import si
+
+    try:
+        return si(text, units)
+    except ValueError as error:
+        raise ValueError(f"{option} = {text!r}: {error}") from None

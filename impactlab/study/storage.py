@@ -59,9 +59,12 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
 
 
 def read_netcdf(path: Path) -> xr.Dataset:
-    """A dataset in memory, its file closed. Raises OSError when the file cannot be read."""
-    with xr.open_dataset(path, engine="netcdf4") as dataset:
-        return dataset.load()
+    """A dataset in memory, its file closed. Raises OSError, naming a file that cannot be read."""
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            return dataset.load()
+    except (OSError, ValueError, RuntimeError) as error:
+        raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
 
 
 def run_keys(cases: Array, form: Form) -> list[bytes]:

@@ -156,29 +156,23 @@ def discretisation_study() -> Study:
     }
     design = _design(varied, study="discretisation", method="grid", histories=0, profiles=0)
     runs = _with_answers(design)
-    stacked = runs[list(RESPONSES)].to_array("response").drop_vars("nodes")
+    stacked = runs[list(RESPONSES)].to_array("response")
     strains = stacked["response"] == "peak_plastic_strain"
     endless = _answers(design.assign_coords(nodes=1e9 + 0.0 * design["nodes"]))
-    extrapolated = xr.Dataset(endless).to_array("response").isel(nodes=-1, drop=True)
-    nodes_dims = stacked.isel(nodes=-1, drop=True)
-    error = abs(stacked / stacked.isel(points=-1, drop=True) - 1.0).assign_coords(
-        nodes=runs["nodes"]
-    )
-    worst = strains.astype(int)
-    verdicts = ("converged", "not_yet_converged", "divergent")
+    limit = xr.Dataset(endless).to_array("response").isel(nodes=-1, drop=True)
+    finest, most = (0.0 * stacked.isel({dim: -1}, drop=True) for dim in ("nodes", "points"))
+    names = ("converged", "not_yet_converged", "divergent")
     analysis = xr.Dataset(
         {
-            "nodes_observed_order": 0.0 * nodes_dims + 2.0,
-            "nodes_extrapolated": extrapolated.where(~strains),
-            "nodes_gci": 0.0 * nodes_dims + 1e-3,
-            "nodes_verdict": _flags(2 * worst * (nodes_dims == nodes_dims), *verdicts),
-            "nodes_summary": _flags(2 * worst, *verdicts),
-            "points_error": error,
-            "points_verdict": _flags(
-                worst * (nodes_dims.isel(points=-1, drop=True) > -1), *verdicts
-            ),
-            "points_needed": 0.0 * nodes_dims.isel(points=-1, drop=True) + 5.0,
-            "points_summary": _flags(worst, *verdicts),
+            "nodes_observed_order": finest + 2.0,
+            "nodes_extrapolated": limit.where(~strains),
+            "nodes_gci": finest + 1e-3,
+            "nodes_verdict": _flags(finest + 2 * strains, *names),
+            "nodes_summary": _flags(2 * strains, *names),
+            "points_error": abs(stacked / stacked.isel(points=-1, drop=True) - 1.0),
+            "points_verdict": _flags(most + strains, *names),
+            "points_needed": most + 5.0,
+            "points_summary": _flags(strains, *names),
         },
         attrs=runs.attrs,
     )

@@ -103,7 +103,9 @@ def test_text_is_legible_and_does_not_overlap(drawn: Figure) -> None:
     for axes in drawn.axes:
         for ticks in (axes.get_xticklabels(), axes.get_yticklabels()):
             shown = [label for label in ticks if label.get_text() and _inside(axes, label)]
-            boxes = sorted((label.get_window_extent() for label in shown), key=lambda b: (b.x0, b.y0))
+            boxes = sorted(
+                (label.get_window_extent() for label in shown), key=lambda b: (b.x0, b.y0)
+            )
             assert all(not left.overlaps(right) for left, right in pairwise(boxes))
         assert all(text.get_fontsize() >= 6 for text in _texts(axes))
 
@@ -118,6 +120,9 @@ def test_all_is_inside_the_page_and_the_legend_clear_of_the_data(drawn: Figure) 
         assert box.x1 <= page.x1 + 1
         for legend in drawn.legends:
             assert not legend.get_window_extent().overlaps(box)
+    for legend in drawn.legends:
+        for label in drawn.texts:  # the labels that all panels share
+            assert not legend.get_window_extent().overlaps(label.get_window_extent())
 
 
 @every_figure

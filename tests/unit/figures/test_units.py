@@ -23,9 +23,7 @@ from impactlab.figures.reading.units import display
         ("furlong", [3.0], 3.0, "furlong"),
     ],
 )
-def test_value_and_symbol_agree(
-    units: str, values: list[float], shown: float, symbol: str
-) -> None:
+def test_value_and_symbol_agree(units: str, values: list[float], shown: float, symbol: str) -> None:
     found = display(xr.DataArray(values, attrs={"units": units}, name="quantity"))
     assert found.symbol == symbol
     assert found(values)[-1] == pytest.approx(shown)

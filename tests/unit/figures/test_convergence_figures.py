@@ -1,0 +1,120 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from impactlab.figures.catalogue import CATALOGUE
+
+Study = Any
+NODES, POINTS = CATALOGUE["nodes_convergence"], CATALOGUE["points_convergence"]
+
+
+@pytest.fixture
+def study(discretisation_study: Study) -> Study:
+    runs, analysis = discretisation_study
+    kept = ["peak_force", "peak_plastic_strain", "number_of_contacts", "status"]
+    return runs[kept], analysis
+
+
+def _panel(figure: Figure, title: str) -> Axes:
+    return next(axes for axes in figure.axes if axes.get_title(loc="left") == title)
+
+
+def _curve(axes: Axes, label: str) -> tuple[np.ndarray, np.ndarray]:
+    line = next(line for line in axes.lines if line.get_label() == label)
+    return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
+
+
+def _words(axes: Axes) -> list[str]:
+    return [text.get_text() for text in axes.texts]
+
+
+def test_differences_are_to_the_extrapolated_value(study: Study) -> None:
+    runs, analysis = study
+    spacing, difference = _curve(_panel(NODES.plot(*study), "Peak force"), "15 m/s, 9")
+    where = {"velocity": 15.0, "points": 9, "rule": "lobatto"}
+    limit = float(analysis["nodes_extrapolated"].sel(response="peak_force", **where))
+    values = runs["peak_force"].sel(where)
+    np.testing.assert_allclose(spacing, 780.0 / (runs["nodes"] - 1))
+    np.testing.assert_allclose(difference, abs(values - limit) / limit)
+    order = np.polyfit(np.log(spacing), np.log(difference), 1)[0]
+    assert order == pytest.approx(2.0, abs=0.1)
+
+
+def test_without_an_extrapolated_value_the_finest_is_the_reference(study: Study) -> None:
+    runs, _ = study
+    _, difference = _curve(_panel(NODES.plot(*study), "Peak plastic strain"), "15 m/s, 9")
+    values = runs["peak_plastic_strain"].sel(velocity=15.0, points=9, rule="lobatto").values
+    np.testing.assert_allclose(difference[:2], abs(values[:2] - values[2]) / values[2])
+    assert np.isnan(difference[2])
+
+
+def test_elastic_runs_have_no_curve_of_plastic_strain(study: Study) -> None:
+    axes = _panel(NODES.plot(*study), "Peak plastic strain")
+    labels = {str(line.get_label()) for line in axes.lines} - {"_guide"}
+    assert labels == {"15 m/s, 3", "15 m/s, 9", "15 m/s, 17"}
+
+
+def test_verdicts_are_written_and_warnings_stand_out(study: Study) -> None:
+    figure = NODES.plot(*study)
+    good, bad = (
+        _panel(figure, "Peak force").texts[0],
+        _panel(figure, "Peak plastic strain").texts[0],
+    )
+    assert (good.get_text(), good.get_fontweight()) == ("converged", "normal")
+    assert (bad.get_text(), bad.get_fontweight()) == ("divergent", "bold")
+    strain = _panel(POINTS.plot(*study), "Peak plastic strain")
+    assert _words(strain) == ["not yet converged"]
+
+
+def test_the_guide_has_second_order(study: Study) -> None:
+    x, y = _curve(_panel(NODES.plot(*study), "Peak force"), "_guide")
+    assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(2.0)
+
+
+def test_what_does_not_change_says_so(study: Study) -> None:
+    contacts = "Number of contacts"
+    assert "same at every spacing" in _words(_panel(NODES.plot(*study), contacts))
+    assert "same for every number" in _words(_panel(POINTS.plot(*study), contacts))
+
+
+def test_round_off_is_no_difference(study: Study) -> None:
+    runs, analysis = study
+    analysis["points_error"].loc[{"response": "number_of_contacts", "points": 3}] = 1e-12
+    axes = _panel(POINTS.plot(runs, analysis), "Number of contacts")
+    assert "same for every number" in _words(axes)
+
+
+def test_failed_runs_leave_gaps_in_both(study: Study, failing: Any) -> None:
+    runs, analysis = study
+    broken = failing(runs, {"nodes": 1, "points": 2, "rule": 0, "velocity": 1})
+    _, difference = _curve(_panel(NODES.plot(broken, analysis), "Peak force"), "15 m/s, 9")
+    assert np.isnan(difference).tolist() == [False, True, False]
+    analysis["points_error"].loc[{"response": "peak_force", "points": 5}] = np.nan
+    _, error = _curve(_panel(POINTS.plot(runs, analysis), "Peak force"), "Gauss-Legendre, 15 m/s")
+    assert np.isnan(error).tolist() == [False, True, False, True]
+    assert "1 of 72 runs is missing" in NODES.caption(broken, analysis)
+
+
+def test_points_errors_are_percent_and_an_infinite_one_is_left_out(study: Study) -> None:
+    runs, analysis = study
+    analysis["points_error"].loc[{"response": "peak_force", "points": 3}] = np.inf
+    points, error = _curve(
+        _panel(POINTS.plot(runs, analysis), "Peak force"), "uniform layers, 0.99 m/s"
+    )
+    stored = analysis["points_error"].sel(
+        response="peak_force", rule="layers", velocity=0.99, nodes=401, points=5
+    )
+    assert points.tolist() == [3, 5, 9, 17]
+    assert np.isnan(error[0])
+    assert error[1] == pytest.approx(100 * float(stored))
+
+
+def test_a_varied_span_makes_the_spacing_relative(study: Study) -> None:
+    runs, analysis = study
+    figure = NODES.plot(runs.assign_coords(beam_span=("velocity", [0.5, 0.78])), analysis)
+    assert figure.get_supxlabel() == "Spacing of the nodes over the span (–)"

@@ -1,0 +1,153 @@
+"""Figures of histories, profiles and grids: what is drawn is what is stored."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from impactlab.figures.catalogue import CATALOGUE
+
+Study = Any
+NONE = xr.Dataset()
+
+
+def _curves(figure: Figure, title: str = "") -> dict[str, Line2D]:
+    """Curves of the panel whose title starts so, by label; guides are none."""
+    axes = _panel(figure, title)
+    return {str(line.get_label()): line for line in axes.lines if line.get_label() != "_guide"}
+
+
+def _panel(figure: Figure, title: str) -> Axes:
+    return next(axes for axes in figure.axes if axes.get_title(loc="left").startswith(title))
+
+
+def _xy(line: Line2D) -> tuple[np.ndarray, np.ndarray]:
+    return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
+
+
+def test_force_history_shows_the_stored_numbers(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    curves = _curves(CATALOGUE["force_history"].plot(runs, NONE), "Stronge")
+    time, force = _xy(curves["20 m/s"])
+    stored = runs["contact_force"].sel(velocity=20.0, contact="stronge")
+    np.testing.assert_allclose(time, 1e3 * runs["time"])
+    np.testing.assert_allclose(force, 1e-3 * stored)
+
+
+def test_one_curve_for_each_finite_run(velocity_study: Study, failing: Any) -> None:
+    runs, _ = velocity_study
+    broken = failing(runs, {"velocity": -1, "contact": 1})
+    for name in ("force_history", "force_indentation", "plastic_strain", "plastic_strain_depth"):
+        figure = CATALOGUE[name].plot(broken, NONE)
+        whole, gap = (_curves(figure, title) for title in ("Hertz", "Stronge"))
+        assert set(whole) - set(gap) == {"20 m/s"}
+        assert "No curve for 20 m/s, Stronge." in CATALOGUE[name].caption(broken, NONE)
+
+
+def test_force_history_ends_with_the_last_contact(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    axes = CATALOGUE["force_history"].plot(runs, NONE).axes[0]
+    longest = 3e3 * float(runs["contact_duration"].max())
+    assert axes.get_xlim()[1] == pytest.approx(1.05 * longest, rel=0.02)
+
+
+def test_force_indentation_breaks_between_contacts(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    curve = _curves(CATALOGUE["force_indentation"].plot(runs, NONE), "Hertz")["20 m/s"]
+    depth, force = _xy(curve)
+    loops = np.diff(np.isfinite(force).astype(int), prepend=0, append=0)
+    assert (loops == 1).sum() == 2
+    np.testing.assert_array_equal(np.isnan(depth), np.isnan(force))
+    assert force[np.isfinite(force)][0] == 0.0
+
+
+def test_contact_duration_leaves_a_gap(velocity_study: Study, failing: Any) -> None:
+    runs, _ = velocity_study
+    broken = failing(runs, {"velocity": 3, "contact": 0})
+    curves = _curves(CATALOGUE["contact_duration"].plot(broken, NONE))
+    assert set(curves) == {"Hertz", "Stronge"}
+    speed, duration = _xy(curves["Hertz"])
+    np.testing.assert_array_equal(speed, runs["velocity"])
+    assert np.flatnonzero(np.isnan(duration)).tolist() == [3]
+    assert duration[0] == pytest.approx(1e3 * float(runs["contact_duration"][0, 0]))
+
+
+def test_plastic_strain_is_the_largest_over_the_depth_in_percent(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    figure = CATALOGUE["plastic_strain"].plot(runs, NONE)
+    x, strain = _xy(_curves(figure, "Hertz")["15 m/s"])
+    stored = runs["equivalent_plastic_strain"].sel(velocity=15.0, contact="hertz").max("z")
+    np.testing.assert_allclose(x, 1e3 * runs["x"])
+    np.testing.assert_allclose(np.nan_to_num(strain), 100 * stored)
+
+
+def test_plastic_strain_marks_one_depth_and_the_papers_limit(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    axes = CATALOGUE["plastic_strain"].plot(runs, NONE).axes[0]
+    guides = [_xy(line) for line in axes.lines if line.get_label() == "_guide"]
+    marks = sorted(float(x[0]) for x, y in guides if x[0] == x[1])
+    assert marks == pytest.approx([390.0 - 27.8, 390.0 + 27.8])
+    assert [float(y[0]) for x, y in guides if y[0] == y[1]] == [0.2]
+
+
+def test_elastic_velocities_are_named_not_drawn(velocity_study: Study, failing: Any) -> None:
+    runs, _ = velocity_study
+    broken = failing(runs, {"velocity": 0, "contact": 0})
+    figure = CATALOGUE["plastic_strain"].plot(broken, NONE)
+    assert set(_curves(figure, "Hertz")) == {f"{v} m/s" for v in ("5", "7.5", "10", "15", "20")}
+    caption = CATALOGUE["plastic_strain"].caption(broken, NONE)
+    assert "No fibre yields at impact velocity = 0.25, 0.99 and 2 m/s." in caption
+    assert "1 of 16 runs is missing" in caption
+
+
+def test_an_elastic_study_says_so(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    runs["equivalent_plastic_strain"] *= 0.0
+    for name in ("plastic_strain", "plastic_strain_depth"):
+        figure = CATALOGUE[name].plot(runs, NONE)
+        assert figure.axes[0].texts[0].get_text() == "no plastic strain"
+
+
+def test_plastic_strain_over_the_depth_is_in_the_worst_section(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    figure = CATALOGUE["plastic_strain_depth"].plot(runs, NONE)
+    strain, depth = _xy(_curves(figure, "Hertz")["20 m/s"])
+    stored = runs["equivalent_plastic_strain"].sel(velocity=20.0, contact="hertz")
+    assert strain.max() == pytest.approx(100 * float(stored.max()))
+    np.testing.assert_allclose(depth, 1e3 * runs["z"])
+    low, high = figure.axes[0].get_ylim()
+    assert low > high  # downwards
+
+
+def test_histories_without_a_velocity_dimension(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    one = runs.isel(velocity=-1, contact=0)
+    for name in ("force_history", "force_indentation", "plastic_strain", "plastic_strain_depth"):
+        figure = CATALOGUE[name].plot(one, NONE)
+        assert list(_curves(figure)) == ["_only"]
+        assert figure.legends == []
+
+
+def test_parameter_effects_draws_every_response(material_study: Study) -> None:
+    runs, _ = material_study
+    figure = CATALOGUE["parameter_effects"].plot(runs, NONE)
+    stress, force = _xy(_curves(figure, "Peak force (kN)")["1000 MPa, 210 GPa"])
+    stored = runs["peak_force"].sel(beam_isotropic_hardening_modulus=1e9, beam_youngs_modulus=210e9)
+    np.testing.assert_allclose(stress, 1e-6 * runs["beam_yield_stress"])
+    np.testing.assert_allclose(force, 1e-3 * stored)
+    assert len(_curves(figure, "Restitution")) == 6
+
+
+def test_parameter_effects_leaves_gaps(material_study: Study, failing: Any) -> None:
+    runs, _ = material_study
+    broken = failing(runs, {"beam_youngs_modulus": 0, "beam_yield_stress": 2})
+    figure = CATALOGUE["parameter_effects"].plot(broken, NONE)
+    _, force = _xy(_curves(figure, "Peak force")["0 MPa, 200 GPa"])
+    assert np.flatnonzero(np.isnan(force)).tolist() == [2]
+    assert "3 of 24 runs are missing" in CATALOGUE["parameter_effects"].caption(broken, NONE)

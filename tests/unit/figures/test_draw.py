@@ -1,0 +1,121 @@
+from __future__ import annotations
+
+import json
+import threading
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+
+from impactlab.figures import contact_duration, style
+from impactlab.figures.catalogue import CATALOGUE
+from impactlab.figures.draw import draw_all, save
+from impactlab.figures.files import replaced
+
+Study = Any
+
+
+@pytest.fixture
+def study(velocity_study: Study) -> Study:
+    runs, analysis = velocity_study
+    kept = ["contact_duration", "contact_force", "status"]
+    return runs[kept].isel(velocity=[0, 3, 7], time=slice(None, None, 8)), analysis
+
+
+def test_writes_what_applies_with_captions(study: Study, tmp_path: Path) -> None:
+    names = ["force_history", "contact_duration", "parameter_effects"]
+    written = draw_all(*study, tmp_path / "new" / "figures")
+    expected = [f"{name}.{kind}" for name in names for kind in ("svg", "png")]
+    assert [path.name for path in written] == [*expected, "captions.json"]
+    assert sorted(path.name for path in written[0].parent.iterdir()) == sorted(
+        [*expected, "captions.json"]
+    )
+    captions = json.loads(written[-1].read_text("utf-8"))
+    assert list(captions) == names
+    assert captions["force_history"]["title"] == CATALOGUE["force_history"].TITLE
+    assert "0.25" in captions["force_history"]["caption"]
+
+
+def test_the_same_data_give_the_same_bytes(study: Study, tmp_path: Path) -> None:
+    first, second = draw_all(*study, tmp_path / "a"), draw_all(*study, tmp_path / "b")
+    assert [p.read_bytes() for p in first] == [p.read_bytes() for p in second]
+
+
+def test_figures_that_no_longer_apply_are_removed(study: Study, tmp_path: Path) -> None:
+    runs, analysis = study
+    draw_all(runs, analysis, tmp_path)
+    other = tmp_path / "mine.png"
+    other.touch()
+    draw_all(runs.drop_vars("contact_force"), analysis, tmp_path)
+    assert not list(tmp_path.glob("force_history.*"))
+    assert (tmp_path / "contact_duration.svg").exists()
+    assert other.exists()
+
+
+def test_a_figure_that_fails_is_named_and_leaves_the_old_files(
+    study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    draw_all(*study, tmp_path)
+    before = (tmp_path / "contact_duration.svg").read_bytes()
+
+    def broken(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+        raise RuntimeError("no ink")
+
+    monkeypatch.setattr(contact_duration, "plot", broken)
+    with pytest.raises(RuntimeError, match="no ink") as caught:
+        draw_all(*study, tmp_path)
+    assert any("contact_duration of study velocity" in note for note in caught.value.__notes__)
+    assert (tmp_path / "contact_duration.svg").read_bytes() == before
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_files_are_whole_or_as_they_were(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_text("old")
+
+    def half() -> None:
+        with replaced(path) as temporary:
+            temporary.write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        half()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_png_has_300_dots_an_inch_and_svg_no_date(study: Study, tmp_path: Path) -> None:
+    svg, png = save(CATALOGUE["contact_duration"].plot(*study), tmp_path, "figure")
+    width = int.from_bytes(png.read_bytes()[16:20], "big")
+    assert width == pytest.approx(style.SINGLE / 25.4 * 300, abs=1)
+    text = svg.read_text("utf-8")
+    assert "<dc:date>" not in text
+    assert "<text" not in text  # paths: the same look with any fonts
+
+
+def test_the_style_does_not_leak(study: Study, tmp_path: Path) -> None:
+    before = dict(matplotlib.rcParams)
+    CATALOGUE["contact_duration"].plot(*study)
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_the_users_own_style_does_not_get_in(study: Study, tmp_path: Path) -> None:
+    plain = save(CATALOGUE["contact_duration"].plot(*study), tmp_path, "a")[0].read_bytes()
+    with matplotlib.rc_context({"font.size": 30, "axes.facecolor": "pink", "text.color": "red"}):
+        other = save(CATALOGUE["contact_duration"].plot(*study), tmp_path, "b")[0].read_bytes()
+    assert other == plain
+
+
+def test_threads_draw_the_same_figures(study: Study, tmp_path: Path) -> None:
+    folders = [tmp_path / str(i) for i in range(2)]
+    threads = [threading.Thread(target=draw_all, args=(*study, folder)) for folder in folders]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    one, two = (sorted(folder.iterdir()) for folder in folders)
+    assert len(one) == 7
+    assert [path.read_bytes() for path in one] == [path.read_bytes() for path in two]

@@ -1,0 +1,105 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.container import BarContainer
+from matplotlib.figure import Figure
+
+from impactlab.figures.catalogue import CATALOGUE
+from impactlab.figures.sobol_second_order import pairs
+
+Study = Any
+
+
+@pytest.fixture
+def study(sobol_study: Study) -> Study:
+    runs, analysis = sobol_study
+    return runs[["peak_force", "number_of_contacts", "restitution", "status"]], analysis
+
+
+def _panel(figure: Figure, title: str) -> Axes:
+    return next(ax for ax in figure.axes if ax.get_title(loc="left").startswith(title))
+
+
+def _words(axes: Axes) -> list[str]:
+    return [text.get_text() for text in axes.texts]
+
+
+def test_bars_and_intervals_are_the_stored_ones(study: Study) -> None:
+    _, analysis = study
+    axes = _panel(CATALOGUE["sobol_indices"].plot(*study), "Peak force")
+    bars = [entry for entry in axes.containers if isinstance(entry, BarContainer)]
+    for order, container in zip(("first_order", "total_order"), bars, strict=True):
+        stored = analysis.sel(response="peak_force")
+        widths = [bar.get_width() for bar in container.patches]
+        np.testing.assert_allclose(widths, stored[order])
+        assert container.errorbar is not None
+        segments = container.errorbar.lines[2][0].get_segments()
+        halves = [(segment[1][0] - segment[0][0]) / 2 for segment in segments]
+        np.testing.assert_allclose(halves, stored[f"{order}_interval"])
+
+
+def test_parameters_are_in_plain_words(study: Study) -> None:
+    axes = CATALOGUE["sobol_indices"].plot(*study).axes[0]
+    labels = [label.get_text() for label in axes.get_yticklabels()]
+    assert labels[:2] == ["impact velocity", "yield stress of the beam"]
+
+
+@pytest.mark.parametrize("name", ["sobol_indices", "sobol_second_order"])
+def test_undefined_indices_say_why_and_draw_nothing(study: Study, name: str) -> None:
+    axes = _panel(CATALOGUE[name].plot(*study), "Number of contacts")
+    assert _words(axes) == ["undefined:\nconstant"]
+
+
+def test_an_unsound_verdict_is_written_beside_numbers(study: Study) -> None:
+    runs, analysis = study
+    analysis["sensitivity_verdict"].loc[{"response": "restitution"}] = 2
+    figure = CATALOGUE["sobol_indices"].plot(runs, analysis)
+    assert "failed runs" in _words(_panel(figure, "Restitution"))
+    assert _words(_panel(figure, "Peak force")) == []
+
+
+def test_pairs_are_shown_once_and_insignificant_ones_grey(study: Study) -> None:
+    axes = _panel(CATALOGUE["sobol_second_order"].plot(*study), "Peak force")
+    colours = {text.get_text(): text.get_color() for text in axes.texts}
+    assert len(axes.texts) == 6
+    assert colours[".07"] in ("black", "white")
+    assert colours["−.01"] == "0.5"
+
+
+def test_pairs_of_a_symmetric_matrix_and_of_its_upper_half_are_the_same(study: Study) -> None:
+    _, analysis = study
+    upper = analysis["second_order"].sel(response="peak_force")
+    lower = upper.copy(data=upper.values.T)
+    symmetric = upper.fillna(0.0) + lower.fillna(0.0).values
+    np.testing.assert_array_equal(pairs(upper), pairs(lower))
+    np.testing.assert_array_equal(pairs(upper), pairs(symmetric))
+    assert np.isfinite(pairs(symmetric)).sum() == 6
+
+
+def test_without_intervals_no_pair_is_significant(study: Study) -> None:
+    runs, analysis = study
+    figure = CATALOGUE["sobol_second_order"].plot(runs, analysis.drop_vars("second_order_interval"))
+    assert {text.get_color() for text in _panel(figure, "Peak force").texts} == {"0.5"}
+
+
+def test_histograms_count_every_finite_run(study: Study, failing: Any) -> None:
+    runs, analysis = study
+    broken = failing(runs, {"run": slice(0, 56)})
+    figure = CATALOGUE["response_distributions"].plot(broken, analysis)
+    axes = _panel(figure, "Peak force")
+    assert sum(patch.get_height() for patch in axes.containers[0].patches) == 200
+    assert _words(_panel(figure, "Number of contacts")) == ["constant: 2"]
+    caption = CATALOGUE["response_distributions"].caption(broken, analysis)
+    assert "56 of 256 runs are missing" in caption
+
+
+def test_counts_get_a_bin_each(study: Study) -> None:
+    runs, analysis = study
+    runs["number_of_contacts"][:100] = 3.0
+    runs["number_of_contacts"][100:110] = 5.0
+    axes = _panel(CATALOGUE["response_distributions"].plot(runs, analysis), "Number of contacts")
+    assert [bar.get_height() for bar in axes.containers[0].patches] == [146, 100, 0, 10]

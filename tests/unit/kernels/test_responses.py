@@ -1,0 +1,170 @@
+"""The answers of a run, read off states made by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from impactlab.dataset import RESPONSES
+from impactlab.kernels import status
+from impactlab.kernels.beam import make_beam, make_grid
+from impactlab.kernels.contact.history import CONTACT, load, make_pair
+from impactlab.kernels.responses import (
+    ANSWERS,
+    PLASTIC_ZONE_STRAIN,
+    RESPONSE,
+    clear,
+    read_beam,
+    read_contact,
+    read_rebound,
+    share_above,
+)
+from impactlab.kernels.section import make_section
+from impactlab.kernels.track import TRACK
+
+N, DX = 20, 0.01
+
+
+@pytest.fixture
+def case(make_case):
+    return make_case(beam_depth=0.0278)
+
+
+@pytest.fixture
+def answer():
+    record = np.zeros(1, RESPONSE)[0]
+    clear(record, 0)
+    return record
+
+
+@pytest.fixture
+def track():
+    """Of a run that ended well: one contact, over, and the beam on its way back."""
+    record = np.zeros(1, TRACK)[0]
+    record.contacts, record.touching = 1, 0
+    record.t_first_end, record.time_in_contact, record.t_peak = 3e-4, 3e-4, 1e-4
+    record.delta, record.w, record.w_max = -1e-4, 1e-4, 2e-4
+    record.v_exit, record.impulse = -0.4, 2.0
+    return record
+
+
+@pytest.fixture
+def contact(case):
+    record = np.zeros(1, CONTACT)[0]
+    load(record, make_pair(case), 1e-4)
+    return record
+
+
+def read_everything(answer, case, track, contact, beam):
+    read_contact(answer, case, track, contact, make_pair(case))
+    read_rebound(answer, case, track, -0.4, -0.1)
+    read_beam(answer, case, track, beam, make_grid(N, DX, 1e-6, 13.0), 0.7)
+
+
+@pytest.fixture
+def beam(case):
+    return make_beam(N, make_section(case))
+
+
+def test_answers_are_the_responses_of_the_dataset():
+    assert list(RESPONSES) == list(ANSWERS)
+    assert RESPONSE.names == ("status", *ANSWERS)
+
+
+def test_clear_leaves_no_number_but_the_reason(answer):
+    for name in ANSWERS:
+        answer[name] = 1.0
+    clear(answer, status.DIVERGED)
+    assert answer.status == status.DIVERGED
+    assert np.isnan([answer[name] for name in ANSWERS]).all()
+
+
+def test_a_run_that_ended_well_gives_every_answer(answer, case, track, contact, beam):
+    read_everything(answer, case, track, contact, beam)
+    assert answer.status == 0
+    assert answer.peak_force == contact.F_m
+    assert answer.time_of_peak_force == 1e-4
+    assert answer.maximum_indentation == 1e-4
+    assert answer.permanent_indentation == contact.delta_r > 0
+    assert answer.contact_duration == answer.total_contact_time == 3e-4
+    assert answer.number_of_contacts == 1
+    assert answer.impulse == 2.0
+    assert answer.contact_dissipation > 0
+    assert answer.rebound_velocity == 0.4
+    assert answer.restitution == pytest.approx(0.4 / 0.99)
+    assert answer.maximum_deflection == 2e-4
+    assert answer.plastic_dissipation == 0.7
+    # the last one, energy_error, is the time loop's own
+    assert [name for name in ANSWERS if np.isnan(answer[name])] == ["energy_error"]
+
+
+UNFINISHED = {
+    "in contact": ({"touching": 1}, status.IN_CONTACT_AT_END | status.SPHERE_NOT_LEAVING),
+    "first contact": ({"t_first_end": np.nan}, status.FIRST_CONTACT_UNFINISHED),
+    "loading": ({"delta": 1e-4}, status.INDENTATION_STILL_GROWING),
+    "bending": ({"w": 3e-4}, status.DEFLECTION_STILL_GROWING),
+}
+
+
+@pytest.mark.parametrize(("changes", "bits"), UNFINISHED.values(), ids=UNFINISHED)
+def test_what_is_missing_is_what_the_status_explains(
+    answer, case, track, contact, beam, changes, bits
+):
+    for name, value in changes.items():
+        track[name] = value
+    read_everything(answer, case, track, contact, beam)
+    assert answer.status == bits
+    flags = {bit: name.lower() for name, bit in vars(status).items() if name.isupper()}
+    expected = {
+        name
+        for name, entry in RESPONSES.items()
+        if any(entry.missing == flags[b] for b in split(bits))
+    }
+    missing = {name for name in ANSWERS if np.isnan(answer[name])} - {"energy_error"}
+    assert missing == expected
+
+
+def split(bits):
+    return [1 << power for power in range(32) if bits >> power & 1]
+
+
+@pytest.mark.parametrize(
+    ("v_s", "v_beam", "leaves"),
+    [(-0.4, -0.1, True), (0.1, 0.2, False), (-0.1, -0.4, False), (0.0, 0.5, False)],
+    ids=["up and away", "down", "up, the beam faster", "at rest"],
+)
+def test_the_rebound_is_over_once_the_sphere_moves_up_and_away(
+    answer, case, track, v_s, v_beam, leaves
+):
+    read_rebound(answer, case, track, v_s, v_beam)
+    assert np.isfinite(answer.rebound_velocity) == leaves
+    assert answer.status == (0 if leaves else status.SPHERE_NOT_LEAVING)
+
+
+def test_strains_of_the_beam(answer, case, track, beam):
+    """The peak at mid-span; the remote one farther than a depth (2.78 DX) from there."""
+    beam.peeq[N - 3, 0] = 3e-3
+    beam.peeq[N - 2, 1] = 5e-3  # not the outermost fibre, and within a depth
+    beam.peeq[N, 0] = 7e-3
+    read_beam(answer, case, track, beam, make_grid(N, DX, 1e-6, 13.0), 0.0)
+    assert answer.peak_plastic_strain == 7e-3
+    assert answer.remote_plastic_strain == 3e-3
+
+
+def test_plastic_zone_is_measured_between_the_nodes(answer, case, track, beam):
+    """PEEQ linear in x around mid-span, zero from 6 DX on either side."""
+    slope = 4e-5
+    beam.peeq[:, 0] = slope * np.maximum(6.0 - np.arange(N, -1, -1), 0)
+    grid = make_grid(N, DX, 1e-6, 13.0)
+    read_beam(answer, case, track, beam, grid, 0.0)
+    reaches = 6.0 - PLASTIC_ZONE_STRAIN / slope
+    assert answer.plastic_zone_length == pytest.approx(2 * reaches * DX, rel=1e-12)
+    assert PLASTIC_ZONE_STRAIN == 1e-5  # as dataset.py tells the reader
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "share"),
+    [(2, 3, 1), (0, 0.5, 0), (0, 4, 0.75), (4, 0, 0.75), (1, 1, 1), (0, 1, 0), (1, 2, 1)],
+)
+def test_share_of_a_cell_above_the_threshold(left, right, share):
+    assert share_above(float(left), float(right), 1.0) == share

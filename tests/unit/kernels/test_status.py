@@ -1,0 +1,12 @@
+"""The status bits and their names."""
+
+from __future__ import annotations
+
+from impactlab.dataset import STATUS_FLAGS
+from impactlab.kernels import status
+
+
+def test_every_bit_has_one_name_and_no_two_share_a_bit():
+    bits = {name: bit for name, bit in vars(status).items() if name.isupper()}
+    assert {name.upper(): bit for name, (bit, _) in STATUS_FLAGS.items()} == bits
+    assert sorted(bits.values()) == [2**power for power in range(len(bits))]

@@ -1,0 +1,114 @@
+"""The flat table of parameters leads to every field and back."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+
+import pytest
+
+import impactlab as il
+from impactlab.model.parameters import PARAMETERS, flatten, with_values
+
+BASE = (il.paper_impact(), il.Discretisation())
+OTHER_NAMES = {"contact": "hertz", "rule": "layers"}
+OTHER_COUNTS = {"nodes": 55, "points": 6}
+HARDENING = {"beam_isotropic_hardening_modulus": 2e9, "beam_kinematic_hardening_modulus": 3e9}
+
+
+def another(name):
+    """A value that the base does not have."""
+    given = OTHER_NAMES | OTHER_COUNTS | HARDENING | {"sphere_mass": 2.5}
+    return given[name] if name in given else 0.9 * flatten(*BASE)[name]
+
+
+OTHERS = {name: another(name) for name in PARAMETERS}
+
+
+def follow(impact, discretisation, path):
+    """The field at the end of a path, by attribute."""
+    node = {"impact": impact, "discretisation": discretisation}[path[0]]
+    for part in path[1:]:
+        node = getattr(node, part)
+    return node
+
+
+def leaves(node, path):
+    """Paths of all fields that are not dataclasses themselves."""
+    for field in fields(node):
+        value = getattr(node, field.name)
+        if is_dataclass(value):
+            yield from leaves(value, (*path, field.name))
+        else:
+            yield (*path, field.name)
+
+
+def test_the_table_has_every_field_once():
+    impact, discretisation = BASE
+    every = [*leaves(impact, ("impact",)), *leaves(discretisation, ("discretisation",))]
+    # the sphere does not yield by hardening: contact knows the initial yield stress alone
+    unused = {("impact", "sphere", "material", name.removeprefix("beam_")) for name in HARDENING}
+    assert sorted(entry.path for entry in PARAMETERS.values()) == sorted(set(every) - unused)
+
+
+def test_flatten_gives_the_papers_values():
+    values = flatten(*BASE)
+    assert values["velocity"] == 0.99
+    assert values["beam_depth"] == 0.0278
+    assert values["sphere_youngs_modulus"] == 208e9
+    assert values["beam_youngs_modulus"] == 210e9
+    assert values["rule"] == "lobatto"
+    assert set(PARAMETERS) - set(values) == {"sphere_mass"}
+
+
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_one_value_changes_its_own_field_alone(name):
+    impact, discretisation = with_values(*BASE, {name: OTHERS[name]})
+    assert follow(impact, discretisation, PARAMETERS[name].path) == OTHERS[name]
+    assert flatten(impact, discretisation) == flatten(*BASE) | {name: OTHERS[name]}
+    assert flatten(*BASE).get(name) != OTHERS[name]
+
+
+def test_all_values_at_once_come_back():
+    changed = with_values(*BASE, OTHERS)
+    assert flatten(*changed) == OTHERS
+    back = flatten(*with_values(*changed, flatten(*BASE)))
+    assert back == flatten(*BASE) | {"sphere_mass": 2.5}  # what was stated stays stated
+
+
+def test_nothing_changes_nothing():
+    assert with_values(*BASE, {}) == BASE
+
+
+def test_values_are_checked_together():
+    """Neither alone would pass: the depth above the old span, the yield stress above the old E."""
+    impact, _ = with_values(*BASE, {"beam_depth": 1.0, "beam_span": 5.0})
+    assert (impact.beam.depth, impact.beam.span) == (1.0, 5.0)
+    impact, _ = with_values(*BASE, {"beam_yield_stress": 3e11, "beam_youngs_modulus": 4e11})
+    assert impact.beam.material.yield_stress == 3e11
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"velocty": 1.0}, r"unknown parameter 'velocty': choose from velocity, .*courant"),
+        ({"velocity": -1.0}, r"Impact\.velocity = -1\.0"),
+        ({"beam_density": 0.0}, r"Material\.density = 0\.0"),
+        ({"nodes": 100}, r"Discretisation\.nodes = 100"),
+        ({"rule": "simpson"}, r"Discretisation\.rule = 'simpson'"),
+        ({"sphere_mass": 0.0}, r"Sphere\.mass = 0\.0"),
+    ],
+)
+def test_a_wrong_value_is_named(values, message):
+    with pytest.raises(ValueError, match=message):
+        with_values(*BASE, values)
+
+
+@pytest.mark.parametrize("entry", PARAMETERS.values(), ids=PARAMETERS)
+def test_entries_describe_themselves(entry):
+    assert PARAMETERS[entry.name] is entry
+    assert entry.units
+    assert entry.long_name
+    value = OTHERS[entry.name]
+    assert bool(entry.choices) == isinstance(value, str)
+    assert not entry.choices or value in entry.choices
+    assert entry.whole == isinstance(value, int)

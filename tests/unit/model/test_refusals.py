@@ -1,0 +1,91 @@
+"""Every field of the model is checked when made, and the message names it."""
+
+from __future__ import annotations
+
+from dataclasses import FrozenInstanceError, fields, replace
+
+import pytest
+
+import impactlab as il
+
+IMPACT = il.paper_impact()
+PARTS = {
+    "Material": IMPACT.beam.material,
+    "Sphere": IMPACT.sphere,
+    "Beam": IMPACT.beam,
+    "Impact": IMPACT,
+    "Discretisation": il.Discretisation(),
+}
+NAN, INFINITE = float("nan"), float("inf")
+UNREAL = [0, -1.0, NAN, INFINITE, "1", None, True]
+NEGATIVE = [-1e-9, NAN, INFINITE, "1", None, True]
+
+REFUSED = {
+    ("Material", "density"): UNREAL,
+    ("Material", "youngs_modulus"): UNREAL,
+    ("Material", "yield_stress"): [*UNREAL, 210e9, 1e12],
+    ("Material", "poissons_ratio"): [-0.1, 0.5, 1.0, NAN, "0.3", None],
+    ("Material", "isotropic_hardening_modulus"): NEGATIVE,
+    ("Material", "kinematic_hardening_modulus"): NEGATIVE,
+    ("Sphere", "radius"): UNREAL,
+    ("Sphere", "mass"): [0, -1.0, NAN, INFINITE, "1", True],
+    ("Beam", "span"): UNREAL,
+    ("Beam", "width"): UNREAL,
+    ("Beam", "depth"): [*UNREAL, 0.78, 1.0],
+    ("Impact", "velocity"): UNREAL,
+    ("Impact", "gravity"): NEGATIVE,
+    ("Impact", "contact"): ["hooke", "Hertz", "", None, 0],
+    ("Discretisation", "nodes"): [0, 3, 4, 200, 201.5, -201, NAN, INFINITE, "201", None, True],
+    ("Discretisation", "points"): [1, 0, -9, 2.5, NAN, "9", None],
+    ("Discretisation", "rule"): ["simpson", "Lobatto", None, 0],
+    ("Discretisation", "courant"): [0, -0.5, 1.0001, 2, NAN, INFINITE, "0.9", None],
+}
+ALLOWED = {
+    ("Material", "poissons_ratio"): [0, 0.0, 0.4999],
+    ("Material", "isotropic_hardening_modulus"): [0, 1e12],
+    ("Material", "kinematic_hardening_modulus"): [0, 1e12],
+    ("Sphere", "mass"): [None, 1, 1e-9],
+    ("Beam", "depth"): [0.7799],
+    ("Impact", "gravity"): [0, 9.81],
+    ("Discretisation", "nodes"): [5, 7, 1201],
+    ("Discretisation", "points"): [2, 3, 64],
+    ("Discretisation", "courant"): [1, 1.0, 1e-6],
+}
+
+
+def pairs(table):
+    return [(*place, value) for place, values in table.items() for value in values]
+
+
+@pytest.mark.parametrize(("part", "field", "value"), pairs(REFUSED))
+def test_the_message_names_class_field_and_value(part, field, value):
+    with pytest.raises(ValueError, match=rf"^{part}\.{field} = ") as caught:
+        replace(PARTS[part], **{field: value})
+    assert f"= {value!r}: must" in str(caught.value)
+
+
+@pytest.mark.parametrize(("part", "field", "value"), pairs(ALLOWED))
+def test_the_edges_of_what_is_allowed(part, field, value):
+    assert getattr(replace(PARTS[part], **{field: value}), field) == value
+
+
+def test_every_field_is_covered():
+    parts = {"material", "sphere", "beam"}
+    every = {
+        (name, field.name)
+        for name, part in PARTS.items()
+        for field in fields(part)
+        if field.name not in parts
+    }
+    assert every == set(REFUSED)
+
+
+@pytest.mark.parametrize(("part", "field"), REFUSED)
+def test_what_is_made_stays_as_it_is(part, field):
+    with pytest.raises(FrozenInstanceError):
+        setattr(PARTS[part], field, getattr(PARTS[part], field))
+
+
+def test_fields_go_by_name():
+    with pytest.raises(TypeError):
+        il.Sphere(0.035, IMPACT.sphere.material)

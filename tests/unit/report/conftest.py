@@ -1,0 +1,108 @@
+"""Pages read back as a browser does."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+from impactlab.figures.draw import draw_all
+from impactlab.report.report import write_report
+
+VOID = {"meta", "img", "br", "link", "input", "hr"}
+
+
+class Page(HTMLParser):
+    """Elements with their attributes, the text, and whether tags are closed in order."""
+
+    def __init__(self, source: str) -> None:
+        super().__init__()
+        self.source = source
+        self.elements: list[tuple[str, dict[str, str]]] = []
+        self.text = ""
+        self.open: list[str] = []
+        self.tables: dict[str, list[list[str]]] = {}
+        self._rows: list[list[str]] = []
+        self.feed(source)
+        self.close()
+        self.text = " ".join(self.text.split())
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, {key: value or "" for key, value in attrs}))
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "caption":
+            self._rows = []
+            self._caption = ""
+        if tag == "tr":
+            self._rows.append([])
+        if tag in ("td", "th"):
+            self._rows[-1].append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open, f"</{tag}> closes nothing"
+        assert self.open.pop() == tag
+        if tag == "caption":
+            self.tables[self._caption] = self._rows
+
+    def handle_data(self, data: str) -> None:
+        if "style" in self.open:
+            return
+        self.text += f" {data}"
+        if "caption" in self.open:
+            self._caption += data
+        elif any(tag in self.open for tag in ("td", "th")):
+            self._rows[-1][-1] += data
+
+    def named(self, tag: str) -> list[dict[str, str]]:
+        """Attributes of every element of a kind."""
+        return [attrs for name, attrs in self.elements if name == tag]
+
+
+Report = Callable[[xr.Dataset, xr.Dataset], Page]
+
+
+@pytest.fixture
+def report(tmp_path: Path) -> Report:
+    """A function that writes a study's report, without figures, and reads it back."""
+
+    def write(runs: xr.Dataset, analysis: xr.Dataset) -> Page:
+        figures = tmp_path / "figures"
+        figures.mkdir(exist_ok=True)
+        (figures / "captions.json").write_text("{}")
+        write_report(runs, analysis, figures, tmp_path / "report.html")
+        return Page((tmp_path / "report.html").read_text("utf-8"))
+
+    return write
+
+
+@pytest.fixture
+def page() -> type[Page]:
+    """The class that reads a page."""
+    return Page
+
+
+@pytest.fixture(scope="session")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder for what `results` copies: figures take a second to draw."""
+    return tmp_path_factory.mktemp("drawn")
+
+
+@pytest.fixture
+def results(velocity_study: Any, drawn: Path, tmp_path: Path) -> Path:
+    """A results folder with one study, figures and all."""
+    folder = drawn / "velocity"
+    if not folder.exists():
+        runs, analysis = velocity_study
+        kept = ["contact_duration", "contact_force", "status"]
+        runs = runs[kept].isel(velocity=[0, 3, 7], time=slice(None, None, 8))
+        draw_all(runs, analysis, folder / "figures")
+        write_report(runs, analysis, folder / "figures", folder / "report.html")
+        runs.to_netcdf(folder / "runs.nc")
+    shutil.copytree(drawn, tmp_path / "results")
+    return tmp_path / "results"

@@ -1,0 +1,109 @@
+"""Convergence and sensitivity in the report."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+Study = Any
+NODES = "Convergence in nodes along the span"
+POINTS = "Convergence in integration points over the depth"
+
+
+def _row(page: Any, table: str, head: str) -> list[str]:
+    return next(row for row in page.tables[table] if row[0].startswith(head))
+
+
+def _list(page: Any, start: str) -> str:
+    """The list item that starts so."""
+    at = page.text.index(start)
+    return str(page.text[at : at + 400])
+
+
+def test_verdicts_a_row_a_response(report: Any, discretisation_study: Study) -> None:
+    runs, analysis = discretisation_study
+    tally = xr.DataArray(np.full((17, 2), 3), dims=("response", "nodes_outcome"))
+    page = report(
+        runs,
+        analysis.assign(nodes_tally=tally).assign_coords(nodes_outcome=["converged", "divergent"]),
+    )
+    assert _row(page, NODES, "Peak force")[1:] == [
+        "converged",
+        "converged 3, divergent 3",
+        "2",
+        "0.1 %",
+    ]
+    assert _row(page, NODES, "Peak plastic strain")[1] == "divergent"
+    assert _row(page, POINTS, "Peak plastic strain")[1] == "not yet converged"
+    assert "meaning of divergent" in page.text
+    assert len(page.tables[NODES]) == len(page.tables[POINTS]) == 18
+
+
+def test_what_is_not_converged_is_a_caution(report: Any, discretisation_study: Study) -> None:
+    page = report(*discretisation_study)
+    caution = _list(page, "Not converged in nodes")
+    assert "peak plastic strain (divergent: meaning of divergent)" in caution
+    assert "peak force" not in caution.split(").")[0]
+
+
+def test_numbers_that_are_not_defined_are_dashes(report: Any, discretisation_study: Study) -> None:
+    runs, analysis = discretisation_study
+    strain = {"response": "peak_plastic_strain"}
+    analysis["nodes_observed_order"].loc[strain] = np.nan
+    analysis["nodes_gci"].loc[strain] = np.inf
+    analysis["points_needed"].loc[strain] = np.nan
+    analysis["points_needed"].loc[{"response": "impulse", "velocity": 15.0}] = np.nan
+    page = report(runs, analysis)
+    assert _row(page, NODES, "Peak plastic strain")[3:] == ["–", "∞ %"]
+    assert _row(page, POINTS, "Peak plastic strain")[3] == "none below the most"
+    assert _row(page, POINTS, "Impulse")[3] == "5none below the most at 9 of 18 points"
+
+
+def test_sentences_name_significant_shares_alone(report: Any, sobol_study: Study) -> None:
+    page = report(*sobol_study)
+    sentence = _list(page, "At these ranges 71 % (± 3) of the variance of the peak force comes")
+    assert sentence.startswith(
+        "At these ranges 71 % (± 3) of the variance of the peak force comes from the impact "
+        "velocity alone and 12 % (± 3) from the yield stress of the beam. With all its "
+        "interactions the impact velocity takes part in 80 % (± 4)."
+    )
+    assert "radius of the sphere" not in page.text.split("First-order Sobol indices")[0].split(
+        "Sensitivity"
+    )[-1].replace("Radius", "")
+
+
+def test_undefined_indices_are_not_zero(report: Any, sobol_study: Study) -> None:
+    page = report(*sobol_study)
+    assert "The indices of the number of contacts are undefined: meaning of constant." in page.text
+    table = "First-order Sobol indices, with half-widths of the 95 % intervals"
+    assert _row(page, table, "Number of contacts")[1:] == 4 * ["undefined"]
+    assert _row(page, table, "Peak force")[1:4] == ["0.71 ± 0.03", "0.12 ± 0.03", "−0.01 ± 0.03"]
+
+
+def test_no_significant_share_is_said(report: Any, sobol_study: Study) -> None:
+    runs, analysis = sobol_study
+    analysis["first_order_interval"][:] = 2.0
+    page = report(runs, analysis)
+    assert "No parameter alone has a significant share in the variance of the peak force." in (
+        page.text
+    )
+    assert "At these ranges" not in page.text
+
+
+def test_unsound_indices_carry_a_warning(report: Any, sobol_study: Study) -> None:
+    runs, analysis = sobol_study
+    analysis["sensitivity_verdict"].loc[{"response": "impulse"}] = 2
+    page = report(runs, analysis)
+    assert "To be taken with care: meaning of failed_runs." in page.text
+    caution = _list(page, "Sobol indices not usable")
+    assert "number of contacts (constant" in caution
+    assert "impulse (failed runs" in page.text
+
+
+def test_sections_without_an_analysis_are_left_out(report: Any, velocity_study: Study) -> None:
+    page = report(*velocity_study)
+    ids = [attrs.get("id") for attrs in page.named("section")]
+    assert "convergence" not in ids
+    assert "sensitivity" not in ids

@@ -1,0 +1,74 @@
+"""Cautions and notes: each where it matters, and only there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import xarray as xr
+
+from impactlab.report.cautions import cautions
+from impactlab.report.notes import NOTES, notes
+
+Study = Any
+
+
+def _said(texts: list[str], words: str) -> bool:
+    return any(words in text for text in texts)
+
+
+def test_plastic_strain_without_a_convergence_study(material_study: Study) -> None:
+    runs, analysis = material_study
+    words = "depends on the number of nodes"
+    assert _said(cautions(runs, analysis), words)
+    hardening = runs.isel(beam_isotropic_hardening_modulus=slice(1, None))
+    assert not _said(cautions(hardening, analysis), words)
+    elastic = runs.assign(peak_plastic_strain=0.0 * runs["peak_plastic_strain"])
+    assert not _said(cautions(elastic, analysis), words)
+
+
+def test_a_verdict_of_its_own_takes_the_place(discretisation_study: Study) -> None:
+    assert not _said(cautions(*discretisation_study), "this study does not vary them")
+
+
+def test_energy_imbalance_and_restitution_above_one(material_study: Study) -> None:
+    runs, analysis = material_study
+    assert not _said(cautions(runs, analysis), "energy balance")
+    runs["energy_error"][0, 0, :] = 0.02
+    runs["restitution"][1, 0, 0] = 1.05
+    found = cautions(runs, analysis)
+    assert _said(found, "kinetic energy in 2 of 24 runs (largest: 0.02)")
+    assert _said(found, "restitution is above 1 in 1 of 24 runs")
+
+
+def test_a_study_without_trouble_has_no_caution(material_study: Study) -> None:
+    runs, analysis = material_study
+    assert cautions(runs.drop_vars("peak_plastic_strain"), analysis) == []
+
+
+def test_notes_on_the_contact_law(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    words = "creates energy"
+    assert _said(notes(runs), words)
+    assert not _said(notes(runs.sel(contact=["hertz"])), words)
+    assert _said(notes(runs.sel(contact="stronge")), words)
+
+
+def test_notes_on_responses(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    kept = runs.sel(contact=["hertz"])
+    assert _said(notes(kept[["contact_duration"]]), "that of the first contact")
+    assert _said(notes(kept[["restitution"]]), "last contact within the simulated time")
+    assert _said(notes(kept[["peak_plastic_strain"]]), "does not converge")
+    assert notes(kept[["peak_force"]]) == []
+
+
+def test_notes_on_few_lobatto_points(discretisation_study: Study) -> None:
+    runs, _ = discretisation_study
+    words = "Few Lobatto points"
+    assert _said(notes(runs), words)
+    assert not _said(notes(runs.sel(points=[5, 9])), words)
+    assert not _said(notes(runs.sel(rule=["layers"])), words)
+
+
+def test_no_note_applies_to_nothing() -> None:
+    assert [note.text for note in NOTES if note.applies(xr.Dataset())] == []

@@ -1,0 +1,99 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from impactlab.dataset import RESPONSES, STATUS_FLAGS
+
+Study = Any
+
+
+def _row(page: Any, table: str, head: str) -> list[str]:
+    return next(row for row in page.tables[table] if row[0].startswith(head))
+
+
+def test_failed_runs_are_counted_named_and_explained(
+    report: Any, velocity_study: Study, failing: Any
+) -> None:
+    runs, analysis = velocity_study
+    broken = failing(runs, {"velocity": 5, "contact": 1})
+    bit, words = STATUS_FLAGS["sphere_not_leaving"]
+    broken["status"][0, 0] = bit
+    broken["restitution"][0, 0] = np.nan
+    page = report(broken, analysis)
+    assert "2 of 16 runs failed" in page.text
+    assert page.tables["Why"][1:] == [
+        ["The run diverged; every response is missing", "1"],
+        [words[0].upper() + words[1:], "1"],
+    ]
+    first, second = page.tables["Failed runs"][1:]
+    assert first[0] == "impact velocity = 0.25 m/s, contact law = Hertz"
+    assert first[1] == words
+    assert "restitution" in first[2]
+    assert second[0] == "impact velocity = 10 m/s, contact law = Stronge"
+    assert second[2] == "all"
+    assert "cautions" in [attrs.get("id") for attrs in page.named("section")]
+
+
+def test_no_failure_is_said_plainly(report: Any, velocity_study: Study) -> None:
+    page = report(*velocity_study)
+    assert "All 16 runs gave every response." in page.text
+    assert "Why" not in page.tables
+
+
+def test_failed_runs_of_a_sample_are_named_by_number(
+    report: Any, sobol_study: Study, failing: Any
+) -> None:
+    runs, analysis = sobol_study
+    page = report(failing(runs, {"run": slice(10, 40)}), analysis)
+    table = page.tables["Failed runs (the first 20 of 30)"]
+    assert len(table) == 21
+    assert table[1][0].startswith("run 10, impact velocity = ")
+
+
+def test_ranges_of_a_grid_say_where(report: Any, velocity_study: Study, failing: Any) -> None:
+    runs, analysis = velocity_study
+    page = report(failing(runs, {"velocity": -1, "contact": 0}), analysis)
+    row = _row(page, "Range of each response", "Peak force")
+    assert row[0] == "Peak force" + RESPONSES["peak_force"].long_name
+    largest = 1e-3 * float(runs["peak_force"].sel(velocity=20.0, contact="stronge"))
+    assert row[1] == "kN"
+    assert row[3] == f"{largest:.4g}impact velocity = 20 m/s, contact law = Stronge"
+    assert row[4] == "1"
+    assert _row(page, "Range of each response", "Number of contacts")[2] == "2in every run"
+
+
+def test_ranges_of_a_sample_have_percentiles(report: Any, sobol_study: Study) -> None:
+    runs, analysis = sobol_study
+    row = _row(report(runs, analysis), "Range of each response", "Peak force")
+    expected = np.quantile(runs["peak_force"] / 1e3, [0, 0.05, 0.5, 0.95, 1])
+    assert row[2:7] == [f"{value:.4g}" for value in expected]
+
+
+def test_a_response_without_any_value_is_missing_not_zero(
+    report: Any, velocity_study: Study
+) -> None:
+    runs, analysis = velocity_study
+    runs["impulse"] *= np.nan
+    row = _row(report(runs, analysis), "Range of each response", "Impulse")
+    assert row[2:] == ["missing", "missing", "16"]
+
+
+def test_small_grids_are_printed_run_by_run(
+    report: Any, velocity_study: Study, failing: Any
+) -> None:
+    runs, analysis = velocity_study
+    page = report(failing(runs, {"velocity": 1, "contact": 0}), analysis)
+    tables = [rows for name, rows in page.tables.items() if name.startswith("Every run")]
+    assert [len(rows) for rows in tables] == [17, 17, 17]
+    head, *rows = tables[0]
+    assert head[:3] == ["Impact velocity (m/s)", "Contact law", "Peak force (kN)"]
+    assert rows[2][:3] == ["0.99", "Hertz", "missing"]
+    stored = 1e-3 * float(runs["peak_force"].sel(velocity=0.99, contact="stronge"))
+    assert rows[3][:3] == ["0.99", "Stronge", f"{stored:.4g}"]
+
+
+def test_large_grids_are_not(report: Any, discretisation_study: Study) -> None:
+    page = report(*discretisation_study)
+    assert not [name for name in page.tables if name.startswith("Every run")]
