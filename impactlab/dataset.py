@@ -175,7 +175,7 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def status_bits(responses: Iterable[str]) -> int:
-    """The status bits that matter to these responses: those for the whole run, and each one's own."""
+    """The status bits that matter to these responses: the whole run's, and each one's own."""
     bits = status.DIVERGED | status.ENERGY_OUT_OF_BALANCE
     for name in responses:
         if reason := RESPONSES[name].missing:

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import (
     contact_duration,
+    first_contact,
     force_history,
     force_indentation,
     nodes_convergence,
@@ -41,6 +42,7 @@ class FigureFile(Protocol):
 
 
 _FILES: tuple[FigureFile, ...] = (
+    first_contact,
     force_history,
     force_indentation,
     contact_duration,

@@ -45,7 +45,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     ax.set_xlabel(words.axis(words.parameter("velocity"), "m/s"))
     ax.set_ylabel(words.axis("duration of the first contact", unit.symbol))
     _scale(ax, speed)
-    style.legend(figure, selected.title())
+    style.legend(figure, selected.title(), selected.labels())
     return figure
 
 

@@ -27,11 +27,15 @@ def chosen(runs: xr.Dataset, variable: str) -> Plan:
 
 
 def look(curve: Choice) -> dict[str, Any]:
-    """Colour by the first shown dimension, line style by the second (or else the first)."""
+    """Colour by the first shown dimension, line style by the second (or else the first).
+
+    Later curves lie below, for they are the larger ones where the values rise.
+    """
     colour, line = curve.place
     return {
         "color": style.COLOURS[colour % len(style.COLOURS)],
         "linestyle": style.LINES[line % len(style.LINES)],
+        "zorder": 3.0 - 0.01 * colour - 0.001 * line,
     }
 
 
@@ -76,7 +80,8 @@ def label(axes: Sequence[Axes], x: str, y: str) -> None:
 
 def finish(figure: Figure, runs: xr.Dataset, variable: str) -> Figure:
     """Add the legend of the curves."""
-    style.legend(figure, chosen(runs, variable).title())
+    selected = chosen(runs, variable)
+    style.legend(figure, selected.title(), selected.labels())
     return figure
 
 

@@ -1,13 +1,16 @@
-"""Contact force against time."""
+"""Contact force against time, all sub-impacts."""
 
 from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from impactlab.figures import curves, scales, style
 from impactlab.figures.reading import missing, words
+from impactlab.figures.reading.contents import usable
+from impactlab.figures.reading.plan import Choice
 from impactlab.figures.reading.units import display
 
 TITLE = "Contact force against time"
@@ -21,35 +24,47 @@ def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, held and missing."""
-    choice = f"{curves.note(runs, _FORCE)} {missing.note(runs, [_FORCE])}"
-    return f"Contact force from first touch on. {choice}".strip()
+    return (
+        "Contact force from first touch to the end of the last contact; each panel has a scale of "
+        "force of its own, and a peak after a gap is a sub-impact. "
+        f"{curves.note(runs, _FORCE)} {missing.note(runs, [_FORCE])}".strip()
+    )
 
 
 @style.paper
 def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
-    """A curve a run, up to the end of the last contact."""
-    force, time = display(runs[_FORCE]), display(runs["time"])
-
-    def line(run: xr.Dataset) -> curves.Points:
-        return time(run["time"]), force(run[_FORCE])
-
-    figure, axes = curves.draw(runs, _FORCE, line)
-    curves.label(
-        axes,
-        words.axis("time since first touch", time.symbol),
-        words.axis("contact force", force.symbol),
-    )
-    ends = [
-        _end(np.asarray(c.get_xdata()), np.asarray(c.get_ydata())) for a in axes for c in a.lines
-    ]
-    for ax in axes:
-        scales.linear(ax, "x")
-        scales.linear(ax, "y")
-        ax.set(xlim=(0.0, 1.05 * max(ends, default=0.0) or None), ylim=(0.0, None))
-    return curves.finish(figure, runs, _FORCE)
+    """A panel a run, for sub-impacts of many runs would hide each other: a column a contact law."""
+    selected, force = curves.chosen(runs, _FORCE), usable(runs, _FORCE)
+    shown = [(panel, curve) for curve in selected.curves for panel in selected.panels]
+    figure, axes = style.panels(len(shown), columns=len(selected.panels), height=21, sharex=True)
+    for ax, (panel, curve) in zip(axes, shown, strict=True):
+        labels = (words.sentence(panel.label), curve.label)
+        ax.set_title(", ".join(filter(None, labels)), loc="left")
+        _draw(ax, force.isel(selected.runs(panel, curve)), runs, curve)
+    units = display(runs[_FORCE]).symbol, display(runs["time"]).symbol
+    figure.supylabel(words.axis("contact force", units[0]))
+    figure.supxlabel(words.axis("time since first touch", units[1]))
+    axes[0].set_xlim(0.0, 1.02 * _end(axes) or None)
+    return figure
 
 
-def _end(time: np.ndarray, force: np.ndarray) -> float:
-    """The last time in contact, or of the history if there is no contact."""
-    inside = np.flatnonzero(force > 0)
-    return float(time[inside[-1] if inside.size else -1])
+def _draw(ax: Axes, force: xr.DataArray, runs: xr.Dataset, curve: Choice) -> None:
+    scales.linear(ax, "x")
+    scales.linear(ax, "y", ticks=3)
+    if np.isfinite(force).any():
+        time, unit = display(runs["time"]), display(runs[_FORCE])
+        look = curves.look(curve) | {"linestyle": "-", "linewidth": 0.9}
+        ax.plot(time(runs["time"]), unit(force), label=curve.label or "_only", **look)
+        ax.set_ylim(0.0, None)
+    else:
+        style.remark(ax, "no finite values")
+
+
+def _end(axes: list[Axes]) -> float:
+    """The last time in contact over all panels."""
+    last = 0.0
+    for line in (line for ax in axes for line in ax.lines):
+        inside = np.flatnonzero(np.asarray(line.get_ydata()) > 0)
+        if inside.size:
+            last = max(last, float(np.asarray(line.get_xdata())[inside[-1]]))
+    return last

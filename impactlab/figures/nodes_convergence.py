@@ -50,7 +50,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         _finish(ax, spacing, difference)
     figure.supxlabel(label)
     figure.supylabel("Relative difference (–)")
-    style.legend(figure, selected.title())
+    style.legend(figure, selected.title(), selected.labels())
     return figure
 
 

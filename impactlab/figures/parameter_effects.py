@@ -49,7 +49,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         if not ax.lines:
             responses_grid.empty(ax, "no finite values")
     figure.supxlabel(words.axis(words.parameter(str(along.name)), unit.symbol))
-    style.legend(figure, selected.title())
+    style.legend(figure, selected.title(), selected.labels())
     return figure
 
 

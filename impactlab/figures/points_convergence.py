@@ -51,7 +51,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         _finish(ax, points, error)
     figure.supxlabel(words.axis(words.parameter("points"), ""))
     figure.supylabel("Error (%)")
-    style.legend(figure, selected.title())
+    style.legend(figure, selected.title(), selected.labels())
     return figure
 
 

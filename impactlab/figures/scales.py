@@ -67,7 +67,7 @@ def _axis(axes: Axes, which: Which) -> Axis:
 def _digits(ratio: float) -> tuple[float, ...]:
     """Where in a decade to put ticks, so that there are neither too few nor too many."""
     if ratio < 3:
-        return tuple(float(digit) for digit in range(1, 10))
+        return (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
     return (1.0, 2.0, 5.0) if ratio < 120 else (1.0,)
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
@@ -101,15 +101,19 @@ def panels(
     return figure, list(grid[:count])
 
 
-def legend(figure: Figure, title: str = "", columns: int | None = None) -> None:
-    """One legend above the panels, of all labelled artists; the figure grows to hold it."""
+def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
+    """One legend above the panels, of all labelled artists; the figure grows to hold it.
+
+    order: labels in the order wanted; without it, that in which they are drawn.
+    """
     found: dict[str, Any] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             found.setdefault(label, handle)
     if len(found) < 2 and not title:
         return
-    columns = columns or _columns(figure, list(found))
+    found = {label: found[label] for label in order if label in found} or found
+    columns = _columns(figure, list(found))
     rows = math.ceil(len(found) / columns) + bool(title)
     figure.set_figheight(figure.get_figheight() + (rows * 4.2 + 1.0) * MILLIMETRE)
     figure.legend(

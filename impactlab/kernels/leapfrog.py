@@ -59,6 +59,8 @@ def _sample(
     here: tuple[float, float, float, float],
 ) -> None:
     """Fill the samples of `out`, shape (4, samples), that fall into the step that ends at t."""
+    if out.shape[1] == 0:
+        return
     k = math.ceil((t - dt) / interval - 1e-9)
     while k < out.shape[1] and k * interval <= t * (1.0 + 1e-12):
         share = 1.0 - (t - k * interval) / dt
@@ -92,6 +94,42 @@ def _imbalance(
 
 
 @compiled
+def _contact_force(
+    contact: Record, track: Record, pair: Pair, delta: float, t: float, dt: float
+) -> float:
+    """Contact force (N) at the step of time t; a peak just passed is taken between the steps."""
+    if watch.passed_peak(track, delta, contact.delta_m):
+        offset, peak = watch.vertex(track.delta_before, track.delta, delta)
+        contact_history.load(contact, pair, peak)
+        track.t_peak = t + (offset - 1.0) * dt
+    return contact_history.force(contact, pair, delta)
+
+
+@compiled
+def _answer(
+    answer: Record,
+    case: Record,
+    pair: Pair,
+    section: Section,
+    grid: Grid,
+    beam: Beam,
+    contact: Record,
+    track: Record,
+    first: int,
+    v_s: float,
+) -> None:
+    """All responses, or none and why, at the end of a run that has not diverged."""
+    _, dissipated = strain_energies(beam, section, grid, first)
+    responses.clear(answer, 0)
+    responses.read_contact(answer, track, contact, pair)
+    responses.read_rebound(answer, case, track, v_s, beam.u[grid.n] / grid.dt)
+    responses.read_beam(answer, case, track, beam, grid, dissipated)
+    if track.energy_error > WORST_ENERGY_ERROR:
+        responses.clear(answer, ENERGY_OUT_OF_BALANCE)
+    answer.energy_error = track.energy_error
+
+
+@compiled
 def run(
     case: Record,
     answer: Record,
@@ -105,7 +143,8 @@ def run(
     case: a CASE record. answer: a RESPONSE record, filled. samples: shape (4, S), filled with
     force, mid-span deflection, sphere displacement and indentation at S equal intervals from 0
     to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq
-    (n + 1, P // 2): filled with the half beam's final state; length 0 for none.
+    (n + 1, P // 2): filled with the half beam's final state; length 0 for none. A run that
+    diverges leaves NaN and its status.
     """
     pair, section = make_pair(case), make_section(case)
     grid, steps = discretise(case, pair, section)
@@ -117,46 +156,33 @@ def run(
     stride = max(_LEAST_STRIDE, steps // _AUDITS)
     interval = case.duration / max(samples.shape[1] - 1, 1)
     w_s, v_s, first, yielded = 0.0, case.velocity, n, False
-    responses.clear(answer, 0)
 
     for step in range(steps + 1):
         t, w_mid = step * dt, w[n]
         delta = w_s - w_mid
-        if watch.passed_peak(track, delta, contact.delta_m):
-            offset, peak = watch.vertex(track.delta_before, track.delta, delta)
-            contact_history.load(contact, pair, peak)
-            track.t_peak = t + (offset - 1.0) * dt
-        F = contact_history.force(contact, pair, delta)
+        F = _contact_force(contact, track, pair, delta, t, dt)
         yielded = yielded or virgin_moments(w, M, first, EI, kappa_y, grid.per_dx2) > 0.0
         if yielded:
             moments(beam, section, first, grid.per_dx2)
         watch.watch_contact(track, delta, contact.delta_r, v_s, t, dt)
         watch.watch_deflection(track, w_mid)
-        if samples.shape[1] > 0:
-            before = (track.F, track.w, w_s - v_s * dt, track.delta)
-            _sample(samples, t, dt, interval, before, (F, w_mid, w_s, delta))
+        before = (track.F, track.w, w_s - v_s * dt, track.delta)
+        _sample(samples, t, dt, interval, before, (F, w_mid, w_s, delta))
         watch.shift(track, delta, w_mid, F, dt)
-        if step > 0 and (step % stride == 0 or step == steps):
+        if (step + 1) % stride == 0 or step == steps:
             error = _imbalance(case, pair, section, grid, beam, contact, first, delta, F, w_s, v_s)
             track.energy_error = max(track.energy_error, error)
             if not error < 1.0:
                 responses.clear(answer, DIVERGED)
                 samples[:] = np.nan
                 return
-        if step == steps:
-            break
-        v_s += (0.5 if step == 0 else 1.0) * dt * (case.gravity - F / case.sphere_mass)
-        move(w, u, M, first, grid.factor, grid.push * F)
-        w_s += dt * v_s
-        first = reach(w, first)
+        if step < steps:
+            v_s += (0.5 if step == 0 else 1.0) * dt * (case.gravity - F / case.sphere_mass)
+            move(w, u, M, first, grid.factor, grid.push * F)
+            w_s += dt * v_s
+            first = reach(w, first)
 
-    _, dissipated = strain_energies(beam, section, grid, first)
-    responses.read_contact(answer, case, track, contact, pair)
-    responses.read_rebound(answer, case, track, v_s, u[n] / dt)
-    responses.read_beam(answer, case, track, beam, grid, dissipated)
-    if track.energy_error > WORST_ENERGY_ERROR:
-        responses.clear(answer, ENERGY_OUT_OF_BALANCE)
-    answer.energy_error = track.energy_error
+    _answer(answer, case, pair, section, grid, beam, contact, track, first, v_s)
     if deflection.size > 0:
         deflection[:] = w[: n + 1]
         plastic_strain[:] = beam.plastic_strain

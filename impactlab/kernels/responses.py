@@ -69,7 +69,7 @@ def clear(answer: Record, status: int) -> None:
 
 
 @compiled
-def read_contact(answer: Record, case: Record, track: Record, contact: Record, pair: Pair) -> None:
+def read_contact(answer: Record, track: Record, contact: Record, pair: Pair) -> None:
     """Force, indentation and contact times."""
     if track.delta == contact.delta_m:
         answer.status |= INDENTATION_STILL_GROWING

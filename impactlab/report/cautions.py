@@ -23,8 +23,23 @@ ENERGY_LIMIT = 1e-3
 
 def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """Sentences, the gravest first; none when there is nothing to warn of."""
-    found = (_failures(runs), _verdicts(runs, analysis), _strain(runs, analysis), _values(runs))
+    found = (
+        _stale(runs, analysis),
+        _failures(runs),
+        _verdicts(runs, analysis),
+        _strain(runs, analysis),
+        _values(runs),
+    )
     return [sentence for sentences in found for sentence in sentences]
+
+
+def _stale(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+    """An analysis carries the attributes of its runs, the time of solving among them."""
+    if analysis.attrs.get("created", runs.attrs.get("created")) != runs.attrs.get("created"):
+        yield (
+            "The analysis is not of these runs: it was made from runs solved at another time. "
+            "Verdicts and indices here may be wrong; make the analysis again (impactlab analyse)."
+        )
 
 
 def perfectly_plastic(runs: xr.Dataset) -> bool:

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from impactlab.figures.draw import CAPTIONS
 
-
 _SCREEN = 1.3
 """Figures are 8 pt at the width of a paper; on a screen that is small."""
 

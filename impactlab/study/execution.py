@@ -63,8 +63,8 @@ def gather(parts: list[Answers], places: list[tuple[int, int]]) -> Answers:
     rows = np.array([offsets[part] + row for part, row in places])
 
     def picked(arrays: list[Array]) -> Array:
-        whole: Array = np.concatenate(arrays)
-        return whole[rows]
+        rows_of_all: Array = np.concatenate(arrays)[rows]
+        return rows_of_all
 
     return Answers(
         picked([part.responses for part in parts]),

@@ -43,6 +43,10 @@ class Plan:
         """A legend's title: what tells the curves apart."""
         return words.sentence(", ".join(words.parameter(dim) for dim in self.shown))
 
+    def labels(self) -> list[str]:
+        """The curves' labels, in order."""
+        return [curve.label for curve in self.curves]
+
     def note(self, runs: xr.Dataset) -> str:
         """A caption's sentences: which values are shown and which are held."""
         shown = [words.setting(runs[dim], where) for dim, where in self.shown.items()]
@@ -68,14 +72,21 @@ def plan(
     dims = [dim for dim in design_dims(runs, runs[variable].dims) if dim not in along]
     panels = _panels(runs, panel) if panel in dims else [Choice({}, "")]
     left = sorted((dim for dim in dims if dim != panel), key=lambda dim: _rank(dim, prefer))
-    shown: dict[str, list[int]] = {}
-    for dim in left:
-        if (room := min(runs.sizes[dim], most)) > 1:
-            shown[dim] = spread(runs.sizes[dim], room)
-            most //= len(shown[dim])
+    shown = _shown({dim: runs.sizes[dim] for dim in left if runs.sizes[dim] > 1}, most)
     held = {d: _held(runs[d]) for d in left if d not in shown and runs.sizes[d] > 1}
     single = {dim: 0 for dim in left if runs.sizes[dim] == 1}
     return Plan(panels, _curves(runs, shown, single), shown, held)
+
+
+def _shown(sizes: dict[str, int], most: int) -> dict[str, list[int]]:
+    """Positions on at most two dimensions; the first leaves room for two of the second."""
+    shown: dict[str, list[int]] = {}
+    room = max(most // 2, 1) if len(sizes) > 1 else most
+    for dim, size in list(sizes.items())[:2]:
+        if min(size, room) > 1:
+            shown[dim] = spread(size, min(size, room))
+        room = most // len(shown.get(dim, [0]))
+    return shown
 
 
 def spread(size: int, count: int) -> list[int]:

@@ -20,6 +20,7 @@ from impactlab.figures.catalogue import CATALOGUE
 
 EXPECTED = {
     "velocity_study": {
+        "first_contact",
         "force_history",
         "force_indentation",
         "contact_duration",

@@ -151,3 +151,12 @@ def test_parameter_effects_leaves_gaps(material_study: Study, failing: Any) -> N
     _, force = _xy(_curves(figure, "Peak force")["0 MPa, 200 GPa"])
     assert np.flatnonzero(np.isnan(force)).tolist() == [2]
     assert "3 of 24 runs are missing" in CATALOGUE["parameter_effects"].caption(broken, NONE)
+
+
+def test_first_contact_ends_with_the_longest_first_one(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    first = CATALOGUE["first_contact"].plot(runs, NONE).axes[0].get_xlim()[1]
+    whole = CATALOGUE["force_history"].plot(runs, NONE).axes[0].get_xlim()[1]
+    longest = 1e3 * float(runs["contact_duration"].max())
+    assert first == pytest.approx(1.05 * longest, rel=0.03)
+    assert first < whole

@@ -56,7 +56,7 @@ def contact(case):
 
 
 def read_everything(answer, case, track, contact, beam):
-    read_contact(answer, case, track, contact, make_pair(case))
+    read_contact(answer, track, contact, make_pair(case))
     read_rebound(answer, case, track, -0.4, -0.1)
     read_beam(answer, case, track, beam, make_grid(N, DX, 1e-6, 13.0), 0.7)
 

@@ -9,17 +9,8 @@ import pytest
 
 from impactlab.model.checks import integer, not_negative, number, one_of, positive
 
-NOT_NUMBERS = [
-    None,
-    "1",
-    True,
-    float("nan"),
-    float("inf"),
-    -float("inf"),
-    [1.0],
-    1j,
-    np.array([1.0]),
-]
+NAN, INFINITE = float("nan"), float("inf")
+NOT_NUMBERS = [None, "1", True, NAN, INFINITE, -INFINITE, [1.0], 1j, np.array([1.0])]
 
 
 @pytest.mark.parametrize("value", NOT_NUMBERS, ids=repr)
@@ -52,11 +43,10 @@ def test_whole_numbers_become_ints(value):
     assert type(result) is int
 
 
-@pytest.mark.parametrize("value", [4, 5.5, True, "5", None, float("inf"), float("nan")], ids=repr)
+@pytest.mark.parametrize("value", [4, 5.5, True, "5", None, INFINITE, NAN], ids=repr)
 def test_other_numbers_are_refused(value):
-    with pytest.raises(
-        ValueError, match=r"^Owner\.field = .*: must be a whole number of at least 5$"
-    ):
+    message = r"^Owner\.field = .*: must be a whole number of at least 5$"
+    with pytest.raises(ValueError, match=message):
         integer("Owner", "field", value, 5)
 
 
