@@ -45,6 +45,15 @@ def test_energy_error_falls_with_the_time_step():
     assert errors[2] < errors[0] / 4
 
 
+@pytest.mark.parametrize("velocity", [0.25, 20.0])
+def test_hertz_contact_dissipates_nothing(velocity):
+    run = il.simulate(
+        il.paper_impact(velocity, "hertz"), il.Discretisation(nodes=101), duration=25e-3
+    )
+    start = 0.5 * run.sphere_mass.item() * velocity**2
+    assert abs(run.contact_dissipation.item()) < 1e-9 * start
+
+
 def test_impulse_is_the_spheres_loss_of_momentum():
     impact = replace(il.paper_impact(5.0), gravity=0.0)
     run = il.simulate(impact, il.Discretisation(nodes=201), duration=20e-3)

@@ -81,7 +81,7 @@ def plan(
 def _shown(sizes: dict[str, int], most: int) -> dict[str, list[int]]:
     """Positions on at most two dimensions; the first leaves room for two of the second."""
     shown: dict[str, list[int]] = {}
-    room = max(most // 2, 1) if len(sizes) > 1 else most
+    room = min(most, max(most // 2, 2)) if len(sizes) > 1 else most
     for dim, size in list(sizes.items())[:2]:
         if min(size, room) > 1:
             shown[dim] = spread(size, min(size, room))

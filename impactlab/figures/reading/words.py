@@ -86,8 +86,12 @@ def unit(coordinate: xr.DataArray) -> str:
 
 
 def value(coordinate: xr.DataArray, at: int) -> str:
-    """One value with its unit: "5 m/s"."""
-    return values(coordinate, [at])[0] + unit(coordinate)
+    """One value with its unit, or with the name of what is counted: "5 m/s", "601 nodes"."""
+    name, text = str(coordinate.name), values(coordinate, [at])[0]
+    if name == "run":
+        return f"run {text}"
+    counted = name in PARAMETERS and PARAMETERS[name].whole
+    return f"{text} {name}" if counted else text + unit(coordinate)
 
 
 def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:

@@ -40,7 +40,7 @@ def read_text(path: Path) -> str:
             raw = file.read(LARGEST + 1)
         if len(raw) > LARGEST:
             raise StudyError(Problem(str(path), "", f"is larger than {LARGEST // 1024} KiB"))
-        return raw.decode("utf-8-sig")
+        return raw.decode("utf-8")
     except OSError as error:
         raise StudyError(Problem(str(path), "", f"cannot be read: {error.strerror}")) from None
     except UnicodeDecodeError:

@@ -35,7 +35,7 @@ def _words(axes: Axes) -> list[str]:
 
 def test_differences_are_to_the_extrapolated_value(study: Study) -> None:
     runs, analysis = study
-    spacing, difference = _curve(_panel(NODES.plot(*study), "Peak force"), "15 m/s, 9")
+    spacing, difference = _curve(_panel(NODES.plot(*study), "Peak force"), "15 m/s, 9 points")
     where = {"velocity": 15.0, "points": 9, "rule": "lobatto"}
     limit = float(analysis["nodes_extrapolated"].sel(response="peak_force", **where))
     values = runs["peak_force"].sel(where)
@@ -47,16 +47,26 @@ def test_differences_are_to_the_extrapolated_value(study: Study) -> None:
 
 def test_without_an_extrapolated_value_the_finest_is_the_reference(study: Study) -> None:
     runs, _ = study
-    _, difference = _curve(_panel(NODES.plot(*study), "Peak plastic strain"), "15 m/s, 9")
+    _, difference = _curve(_panel(NODES.plot(*study), "Peak plastic strain"), "15 m/s, 9 points")
     values = runs["peak_plastic_strain"].sel(velocity=15.0, points=9, rule="lobatto").values
     np.testing.assert_allclose(difference[:2], abs(values[:2] - values[2]) / values[2])
     assert np.isnan(difference[2])
 
 
+def test_the_legend_keeps_the_order_of_the_curves(study: Study) -> None:
+    runs, analysis = study
+    first = {"response": "peak_force", "rule": "lobatto", "velocity": 0.99}
+    analysis["points_error"].loc[first] = np.nan
+    analysis["points_error"].loc[{"response": "peak_plastic_strain", "velocity": 0.99}] = 0.1
+    legend = POINTS.plot(runs, analysis).legends[0]
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert labels[:2] == ["Gauss-Lobatto, 0.99 m/s", "Gauss-Lobatto, 15 m/s"]
+
+
 def test_elastic_runs_have_no_curve_of_plastic_strain(study: Study) -> None:
     axes = _panel(NODES.plot(*study), "Peak plastic strain")
     labels = {str(line.get_label()) for line in axes.lines} - {"_guide"}
-    assert labels == {"15 m/s, 3", "15 m/s, 9", "15 m/s, 17"}
+    assert labels == {"15 m/s, 3 points", "15 m/s, 9 points", "15 m/s, 17 points"}
 
 
 def test_verdicts_are_written_and_warnings_stand_out(study: Study) -> None:
@@ -82,6 +92,14 @@ def test_what_does_not_change_says_so(study: Study) -> None:
     assert "same for every number" in _words(_panel(POINTS.plot(*study), contacts))
 
 
+def test_one_value_is_not_the_same_everywhere(study: Study, failing: Any) -> None:
+    runs, analysis = study
+    broken = failing(runs, {"nodes": slice(1, None)})
+    assert "too few values" in _words(_panel(NODES.plot(broken, analysis), "Number of contacts"))
+    analysis["points_error"].loc[{"points": [3, 5, 9]}] = np.nan
+    assert "too few values" in _words(_panel(POINTS.plot(runs, analysis), "Number of contacts"))
+
+
 def test_round_off_is_no_difference(study: Study) -> None:
     runs, analysis = study
     analysis["points_error"].loc[{"response": "number_of_contacts", "points": 3}] = 1e-12
@@ -92,7 +110,7 @@ def test_round_off_is_no_difference(study: Study) -> None:
 def test_failed_runs_leave_gaps_in_both(study: Study, failing: Any) -> None:
     runs, analysis = study
     broken = failing(runs, {"nodes": 1, "points": 2, "rule": 0, "velocity": 1})
-    _, difference = _curve(_panel(NODES.plot(broken, analysis), "Peak force"), "15 m/s, 9")
+    _, difference = _curve(_panel(NODES.plot(broken, analysis), "Peak force"), "15 m/s, 9 points")
     assert np.isnan(difference).tolist() == [False, True, False]
     analysis["points_error"].loc[{"response": "peak_force", "points": 5}] = np.nan
     _, error = _curve(_panel(POINTS.plot(runs, analysis), "Peak force"), "Gauss-Legendre, 15 m/s")

@@ -33,28 +33,42 @@ def _xy(line: Line2D) -> tuple[np.ndarray, np.ndarray]:
 
 def test_force_history_shows_the_stored_numbers(velocity_study: Study) -> None:
     runs, _ = velocity_study
-    curves = _curves(CATALOGUE["force_history"].plot(runs, NONE), "Stronge")
-    time, force = _xy(curves["20 m/s"])
     stored = runs["contact_force"].sel(velocity=20.0, contact="stronge")
-    np.testing.assert_allclose(time, 1e3 * runs["time"])
-    np.testing.assert_allclose(force, 1e-3 * stored)
+    for name, panel in {"force_history": "Stronge, 20 m/s", "first_contact": "Stronge"}.items():
+        curves = _curves(CATALOGUE[name].plot(runs, NONE), panel)
+        time, force = _xy(curves["20 m/s"])
+        np.testing.assert_allclose(time, 1e3 * runs["time"])
+        np.testing.assert_allclose(force, 1e-3 * stored)
 
 
 def test_one_curve_for_each_finite_run(velocity_study: Study, failing: Any) -> None:
     runs, _ = velocity_study
     broken = failing(runs, {"velocity": -1, "contact": 1})
-    for name in ("force_history", "force_indentation", "plastic_strain", "plastic_strain_depth"):
+    for name in ("first_contact", "force_indentation", "plastic_strain", "plastic_strain_depth"):
         figure = CATALOGUE[name].plot(broken, NONE)
         whole, gap = (_curves(figure, title) for title in ("Hertz", "Stronge"))
         assert set(whole) - set(gap) == {"20 m/s"}
         assert "No curve for 20 m/s, Stronge." in CATALOGUE[name].caption(broken, NONE)
 
 
+def test_force_history_has_a_panel_a_run_and_leaves_failed_ones_empty(
+    velocity_study: Study, failing: Any
+) -> None:
+    runs, _ = velocity_study
+    broken = failing(runs, {"velocity": -1, "contact": 1})
+    figure = CATALOGUE["force_history"].plot(broken, NONE)
+    assert len(figure.axes) == 12
+    assert [len(axes.lines) for axes in figure.axes] == 11 * [1] + [0]
+    failed = _panel(figure, "Stronge, 20 m/s")
+    assert [text.get_text() for text in failed.texts] == ["no finite values"]
+    assert "No curve for 20 m/s, Stronge." in CATALOGUE["force_history"].caption(broken, NONE)
+
+
 def test_force_history_ends_with_the_last_contact(velocity_study: Study) -> None:
     runs, _ = velocity_study
     axes = CATALOGUE["force_history"].plot(runs, NONE).axes[0]
     longest = 3e3 * float(runs["contact_duration"].max())
-    assert axes.get_xlim()[1] == pytest.approx(1.05 * longest, rel=0.02)
+    assert axes.get_xlim()[1] == pytest.approx(1.02 * longest, rel=0.02)
 
 
 def test_force_indentation_breaks_between_contacts(velocity_study: Study) -> None:
@@ -128,7 +142,13 @@ def test_plastic_strain_over_the_depth_is_in_the_worst_section(velocity_study: S
 def test_histories_without_a_velocity_dimension(velocity_study: Study) -> None:
     runs, _ = velocity_study
     one = runs.isel(velocity=-1, contact=0)
-    for name in ("force_history", "force_indentation", "plastic_strain", "plastic_strain_depth"):
+    for name in (
+        "first_contact",
+        "force_history",
+        "force_indentation",
+        "plastic_strain",
+        "plastic_strain_depth",
+    ):
         figure = CATALOGUE[name].plot(one, NONE)
         assert list(_curves(figure)) == ["_only"]
         assert figure.legends == []

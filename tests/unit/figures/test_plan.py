@@ -22,6 +22,14 @@ def test_curves_never_exceed_the_limit(discretisation_study: Study) -> None:
         assert 1 <= len(plan(runs, "peak_force", most=most).curves) <= most
 
 
+def test_two_dimensions_share_the_curves(material_study: Study) -> None:
+    runs, _ = material_study
+    shown = plan(runs, "peak_force", prefer=["beam_yield_stress"]).shown
+    assert shown == {"beam_yield_stress": [0, 2, 3], "beam_isotropic_hardening_modulus": [0, 2]}
+    alone = plan(runs, "peak_force", along=list(runs.sizes)[1:]).shown
+    assert alone == {"beam_yield_stress": [0, 1, 2, 3]}
+
+
 def test_every_dimension_gets_a_position(discretisation_study: Study) -> None:
     runs, _ = discretisation_study
     chosen = plan(runs, "peak_force", along=["nodes"], prefer=["velocity", "points"])

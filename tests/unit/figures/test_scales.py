@@ -36,7 +36,7 @@ def test_short_logarithmic_axes_still_have_labels() -> None:
         for label, at in zip(axes.get_yticklabels(), axes.get_yticks(), strict=True)
         if low <= at <= high
     ]
-    assert shown == ["0.3", "0.4", "0.5"]
+    assert shown == ["0.25", "0.3", "0.4", "0.5"]
 
 
 def test_positive_leaves_gaps() -> None:

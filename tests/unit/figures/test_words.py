@@ -46,5 +46,11 @@ def test_laws_and_rules_are_named_as_in_papers() -> None:
     assert words.values(rules, [0]) == ["Gauss-Lobatto"]
 
 
+def test_one_value_says_what_it_counts() -> None:
+    assert words.value(xr.DataArray([201], dims="nodes", name="nodes"), 0) == "201 nodes"
+    assert words.value(xr.DataArray([7], dims="run", name="run"), 0) == "run 7"
+    assert words.value(xr.DataArray([0.9], dims="courant", name="courant"), 0) == "0.9"
+
+
 def test_axis_of_a_pure_number_says_so() -> None:
     assert words.axis("restitution", "") == "Restitution (–)"

@@ -31,7 +31,7 @@ def test_addresses_are_relative_and_exist(results: Path, page: Any) -> None:
     addresses += [a["href"] for a in found.named("a") if not a["href"].startswith("#")]
     assert len(addresses) == 2
     assert all((home.parent / unquote(address)).is_file() for address in addresses)
-    assert found.named("img")[0]["alt"] == "Contact force against time"
+    assert found.named("img")[0]["alt"] == "Contact force during the first contact"
 
 
 def test_failures_are_told(results: Path, page: Any, failing: Any) -> None:

@@ -40,6 +40,15 @@ def test_energy_imbalance_and_restitution_above_one(material_study: Study) -> No
     assert _said(found, "restitution is above 1 in 1 of 24 runs")
 
 
+def test_an_analysis_of_other_runs_is_told(material_study: Study) -> None:
+    runs, analysis = material_study
+    words = "The analysis is not of these runs"
+    assert not _said(cautions(runs, analysis), words)
+    assert not _said(cautions(runs, xr.Dataset()), words)
+    stale = analysis.assign_attrs(created="1999-12-31T23:59:59+00:00")
+    assert _said(cautions(runs, stale), words)
+
+
 def test_a_study_without_trouble_has_no_caution(material_study: Study) -> None:
     runs, analysis = material_study
     assert cautions(runs.drop_vars("peak_plastic_strain"), analysis) == []

@@ -45,13 +45,13 @@ def test_links_lead_somewhere_and_headings_step_by_one(
 def test_figures_are_inside_numbered_and_described(results: Path, page: Any) -> None:
     found = page((results / "velocity" / "report.html").read_text("utf-8"))
     images = found.named("img")
-    assert len(images) == 3
-    assert images[0]["alt"] == "Contact force against time"
+    assert len(images) == 4
+    assert images[0]["alt"] == "Contact force during the first contact"
     svg = base64.b64decode(images[0]["src"].removeprefix("data:image/svg+xml;base64,"))
-    assert svg == (results / "velocity" / "figures" / "force_history.svg").read_bytes()
+    assert svg == (results / "velocity" / "figures" / "first_contact.svg").read_bytes()
     assert int(images[0]["width"]) == pytest.approx(1.3 * 183 / 25.4 * 96, abs=1)
-    assert "Figure 1. Contact force against time." in found.text
-    assert "Figure 3. Effect of the varied parameters." in found.text
+    assert "Figure 2. Contact force against time." in found.text
+    assert "Figure 4. Effect of the varied parameters." in found.text
     assert "Duration of the first contact (a later sub-impact does not count)" in found.text
 
 

@@ -50,7 +50,9 @@ def test_a_varied_mass_leaves_no_say_to_the_density(problems, read, grid):
     )
     assert key == "sampling.parameters.sphere_density"
     assert "has no effect" in said
-    read(grid({"sampling.parameters": {"sphere_mass": [1], "sphere_radius": [0.02]}}))
+    both = {"sampling.parameters": {"sphere_mass": [1], "sphere_radius": [0.02]}}
+    read(grid(both))
+    read(grid(both | {"impact.sphere.mass": "1.4 kg"}))
 
 
 def test_combinations_in_a_grid_are_checked_and_only_they_count(problems, read, grid):
