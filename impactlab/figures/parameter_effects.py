@@ -24,7 +24,8 @@ def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, held and missing."""
     return (
-        f"Responses against the {words.parameter(str(_along(runs)))}. {_plan(runs).note(runs)} "
+        f"Responses against the {words.parameter(str(_along(runs)))}; where curves coincide, the "
+        f"first in the legend lies on top. {_plan(runs).note(runs)} "
         f"{missing.note(runs, responses(runs))}".strip()
     )
 

@@ -49,7 +49,6 @@ class Grid(NamedTuple):
     push: float
 
 
-_BLOCK = 64
 _NOTHING = 1e-100
 """A deflection (m) ahead of the wave that counts as none: keeps denormal numbers out."""
 
@@ -103,48 +102,59 @@ def virgin_moments(
 
 
 @vectorised
-def _elastic_block(
-    w: Array, M: Array, M_0: Array, kappa_min: Array, kappa_max: Array, EI: float, per_dx2: float
+def elastic_moments(
+    w: Array,
+    M: Array,
+    M_0: Array,
+    kappa_min: Array,
+    kappa_max: Array,
+    first: int,
+    EI: float,
+    per_dx2: float,
 ) -> float:
-    """Elastic moments M (m,), from w (m + 2,); how many nodes have left their interval."""
+    """Moments from node `first` on, as if none yields now; how many nodes left their interval."""
+    w, M, M_0 = w[first - 1 :], M[first:], M_0[first:]
+    kappa_min, kappa_max = kappa_min[first:], kappa_max[first:]
     outside = 0.0
     for i in range(M.size):
         kappa = (w[i] - 2.0 * w[i + 1] + w[i + 2]) * per_dx2
         M[i] = M_0[i] - EI * kappa
-        outside += 1.0 if kappa > kappa_max[i] or kappa < kappa_min[i] else 0.0
+        outside += 1.0 if kappa > kappa_max[i] else 0.0
+        outside += 1.0 if kappa < kappa_min[i] else 0.0
     return outside
 
 
 @compiled
-def _plastic_block(beam: Beam, section: Section, start: int, stop: int, per_dx2: float) -> None:
-    """Bend those of the nodes start <= i < stop that have left their elastic interval."""
-    w = beam.w
-    for i in range(start, stop):
+def bend_yielding(
+    w: Array,
+    M: Array,
+    M_0: Array,
+    kappa_min: Array,
+    kappa_max: Array,
+    plastic_strain: Array,
+    peeq: Array,
+    z: Array,
+    lever: Array,
+    constants: tuple[float, float, float, float, float],
+    outside: float,
+    per_dx2: float,
+) -> None:
+    """Bend the sections that have left their elastic interval, `outside` in number.
+
+    From mid-span outwards, where they most often are, until all are found. constants: E, S_y, H_i,
+    H_k (Pa) and the stiffness (N m2) of the section.
+    """
+    E, S_y, H_i, H_k, EI = constants
+    i = M.size
+    while outside > 0.0 and i > 1:
+        i -= 1
         kappa = (w[i - 1] - 2.0 * w[i] + w[i + 1]) * per_dx2
-        if kappa > beam.kappa_max[i] or kappa < beam.kappa_min[i]:
-            beam.M_0[i], beam.kappa_min[i], beam.kappa_max[i] = bend(
-                section, kappa, beam.plastic_strain[i], beam.peeq[i]
+        if kappa > kappa_max[i] or kappa < kappa_min[i]:
+            M_0[i], kappa_min[i], kappa_max[i] = bend(
+                z, lever, E, S_y, H_i, H_k, kappa, plastic_strain, peeq, i
             )
-            beam.M[i] = beam.M_0[i] - section.stiffness * kappa
-
-
-@compiled
-def moments(beam: Beam, section: Section, first: int, per_dx2: float) -> None:
-    """Moments from node `first` on, of a beam that may have yielded and may yield now."""
-    w, M, M_0, kappa_min, kappa_max = beam.w, beam.M, beam.M_0, beam.kappa_min, beam.kappa_max
-    for start in range(first, M.size, _BLOCK):
-        stop = min(start + _BLOCK, M.size)
-        outside = _elastic_block(
-            w[start - 1 : stop + 1],
-            M[start:stop],
-            M_0[start:stop],
-            kappa_min[start:stop],
-            kappa_max[start:stop],
-            section.stiffness,
-            per_dx2,
-        )
-        if outside > 0.0:
-            _plastic_block(beam, section, start, stop, per_dx2)
+            M[i] = M_0[i] - EI * kappa
+            outside -= 1.0
 
 
 @vectorised

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 
-from impactlab.kernels.jit import compiled
+from impactlab.kernels.jit import compiled, vectorised
 
 
-@compiled
+@vectorised
 def return_mapping(
     strain: float, plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
 ) -> tuple[float, float]:
@@ -26,7 +26,7 @@ def return_mapping(
     return plastic_strain, peeq
 
 
-@compiled
+@vectorised
 def elastic_range(
     plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
 ) -> tuple[float, float]:

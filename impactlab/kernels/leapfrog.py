@@ -14,10 +14,11 @@ from impactlab.kernels import track as watch
 from impactlab.kernels.beam import (
     Beam,
     Grid,
+    bend_yielding,
+    elastic_moments,
     kinetic_energy,
     make_beam,
     make_grid,
-    moments,
     move,
     reach,
     strain_energies,
@@ -149,8 +150,11 @@ def run(
     """
     pair, section = make_pair(case), make_section(case)
     grid, steps = discretise(case, pair, section)
-    beam, n, dt = make_beam(grid.n, section), grid.n, grid.dt
+    beam, n, dt, per_dx2 = make_beam(grid.n, section), grid.n, grid.dt, grid.per_dx2
     w, u, M, EI, kappa_y = beam.w, beam.u, beam.M, section.stiffness, section.yield_curvature
+    M_0, kappa_min, kappa_max = beam.M_0, beam.kappa_min, beam.kappa_max
+    strain, peeq_, z, lever = beam.plastic_strain, beam.peeq, section.z, section.lever
+    constants = (section.E, section.S_y, section.H_i, section.H_k, EI)
     contact, track = np.zeros(1, CONTACT)[0], np.zeros(1, TRACK)[0]
     contact.n = 1.5
     watch.start(track)
@@ -162,9 +166,26 @@ def run(
         t, w_mid = step * dt, w[n]
         delta = w_s - w_mid
         F = _contact_force(contact, track, pair, delta, t, dt)
-        yielded = yielded or virgin_moments(w, M, first, EI, kappa_y, grid.per_dx2) > 0.0
         if yielded:
-            moments(beam, section, first, grid.per_dx2)
+            outside = elastic_moments(w, M, M_0, kappa_min, kappa_max, first, EI, per_dx2)
+        else:
+            outside = virgin_moments(w, M, first, EI, kappa_y, per_dx2)
+        if outside > 0.0:
+            yielded = True
+            bend_yielding(
+                w,
+                M,
+                M_0,
+                kappa_min,
+                kappa_max,
+                strain,
+                peeq_,
+                z,
+                lever,
+                constants,
+                outside,
+                per_dx2,
+            )
         watch.watch_contact(track, delta, contact.delta_r, v_s, t, dt)
         watch.watch_deflection(track, w_mid)
         before = (track.F, track.w, w_s - v_s * dt, track.delta)

@@ -14,21 +14,25 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.kernels import fibre
-from impactlab.kernels.jit import compiled
+from impactlab.kernels.jit import compiled, vectorised
 from impactlab.kernels.quadrature import upper_half
 from impactlab.kernels.types import Array, Record
+
+FAR = 1e300
+"""A curvature that no section reaches (1/m)."""
 
 
 class Section(NamedTuple):
     """The rule's fibres and their material, for one run.
 
-    z: distance from the axis, m, shape (P // 2,), outermost first. area: twice B times the
-    rule's weight, m2, shape (P // 2,). stiffness: (EI)_q = sum(E area z^2), N m2, the rule's own.
-    yield_curvature: where the outermost fibre first yields, 1/m. E, S_y, H_i, H_k: Pa.
+    z: distance from the axis, m, outermost first; area: twice B times the rule's weight, m2;
+    lever: E area z, N m; each of shape (P // 2,). stiffness: (EI)_q = sum(E area z^2), N m2, the
+    rule's own. yield_curvature: where the outermost fibre first yields, 1/m. E, S_y, H_i, H_k: Pa.
     """
 
     z: Array
     area: Array
+    lever: Array
     stiffness: float
     yield_curvature: float
     E: float
@@ -51,6 +55,7 @@ def make_section(case: Record) -> Section:
     return Section(
         z,
         area,
+        E * area * z,
         stiffness,
         case.beam_yield_stress / (E * z[0]),
         E,
@@ -60,25 +65,35 @@ def make_section(case: Record) -> Section:
     )
 
 
-@compiled
+@vectorised
 def bend(
-    section: Section, kappa: float, plastic_strain: Array, peeq: Array
+    z: Array,
+    lever: Array,
+    E: float,
+    S_y: float,
+    H_i: float,
+    H_k: float,
+    kappa: float,
+    plastic_strain: Array,
+    peeq: Array,
+    i: int,
 ) -> tuple[float, float, float]:
-    """Take the fibres to curvature kappa, updating plastic_strain and peeq, shape (P // 2,).
+    """Take the fibres of section i to curvature kappa.
 
-    Returns (M_0, kappa_min, kappa_max) of the section's new elastic interval.
+    Updates row i of plastic_strain and peeq, shape (sections, P // 2). The first six arguments are
+    the section's. Returns (M_0, kappa_min, kappa_max) of its new
+    elastic interval. Runs at every yielding section and step, so it takes arrays, not a Section:
+    handing that on would count references up and down.
     """
-    E, S_y, H_i, H_k = section.E, section.S_y, section.H_i, section.H_k
-    M_0, kappa_min, kappa_max = 0.0, -np.inf, np.inf
-    for j in range(section.z.size):
-        z = section.z[j]
-        plastic_strain[j], peeq[j] = fibre.return_mapping(
-            -z * kappa, plastic_strain[j], peeq[j], E, S_y, H_i, H_k
-        )
-        M_0 -= E * section.area[j] * z * plastic_strain[j]
-        least, largest = fibre.elastic_range(plastic_strain[j], peeq[j], E, S_y, H_i, H_k)
-        kappa_min = max(kappa_min, -largest / z)
-        kappa_max = min(kappa_max, -least / z)
+    M_0, kappa_min, kappa_max = 0.0, -FAR, FAR
+    for j in range(z.size):
+        strain, slipped = plastic_strain[i, j], peeq[i, j]
+        strain, slipped = fibre.return_mapping(-z[j] * kappa, strain, slipped, E, S_y, H_i, H_k)
+        plastic_strain[i, j], peeq[i, j] = strain, slipped
+        M_0 -= lever[j] * strain
+        least, largest = fibre.elastic_range(strain, slipped, E, S_y, H_i, H_k)
+        kappa_min = max(kappa_min, -largest / z[j])
+        kappa_max = min(kappa_max, -least / z[j])
     return M_0, kappa_min, kappa_max
 
 

@@ -54,8 +54,8 @@ def perfectly_plastic(runs: xr.Dataset) -> bool:
 def _failures(runs: xr.Dataset) -> Iterator[str]:
     if failed := int(failed_runs(runs).sum()):
         yield (
-            f"{failed} of {count(runs)} runs failed: they miss at least one response. They are "
-            "left out of figures and tables, and listed below with the reason."
+            f"{failed} of {count(runs)} runs failed: they miss at least one response, and are left "
+            "out of figures and tables of what they miss. They are listed below with the reason."
         )
 
 

@@ -43,4 +43,5 @@ def note(runs: xr.Dataset, variables: Sequence[str]) -> str:
     found = [f"{number} × “{why}”" for why, number in causes(runs, mask).items()]
     total = int(mask.sum())
     verb = "is" if total == 1 else "are"
-    return f"{total} of {count(runs)} runs {verb} missing here: {words.listing(found)}."
+    where = "here" if len(held) == 1 else "in one panel or more"
+    return f"{total} of {count(runs)} runs {verb} missing {where}: {words.listing(found)}."

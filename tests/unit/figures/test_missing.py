@@ -22,6 +22,8 @@ def test_missing_runs_are_counted_with_their_reasons(velocity_study: Study, fail
     broken = failing(failing(runs, {"velocity": 5, "contact": 1}), {"velocity": 6, "contact": 0})
     bit, words = STATUS_FLAGS["first_contact_unfinished"]
     broken["status"][{"velocity": 6, "contact": 0}] = bit
+    both = missing.note(broken, ["contact_duration", "peak_force"])
+    assert both.startswith("2 of 16 runs are missing in one panel or more: ")
     note = missing.note(broken, ["contact_duration"])
     assert note.startswith("2 of 16 runs are missing here: ")
     assert f"1 × “{words}”" in note

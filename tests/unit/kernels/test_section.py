@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from impactlab.kernels import RULES
-from impactlab.kernels.section import bend, make_section, plastic_energies
+from impactlab.kernels.section import bend as bend_row
+from impactlab.kernels.section import make_section, plastic_energies
 from impactlab.reference import quadrature
 
 HARDENINGS = [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9), (2e9, 3e9)]
@@ -30,6 +31,12 @@ def cut(make_case):
         )
 
     return make
+
+
+def bend(section, kappa, plastic, peeq):
+    """Bend one section with its fibres' strains, shape (P // 2,)."""
+    cut = (section.z, section.lever, section.E, section.S_y, section.H_i, section.H_k)
+    return bend_row(*cut, kappa, plastic[np.newaxis], peeq[np.newaxis], 0)
 
 
 def follow(section, curvatures):
