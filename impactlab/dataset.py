@@ -135,6 +135,13 @@ _FIELDS = (
     Variable("plastic_strain", ("x", "z"), "1", "plastic strain along the beam"),
     Variable("deflection", ("x",), "m", "deflection at the end of the duration"),
 )
+ANALYSES: dict[str, str] = {
+    "convergence_in_nodes": "a grid that varies `nodes` over at least 3 values",
+    "convergence_in_points": "a grid that varies `points` over at least 2 values",
+    "sensitivity": "a sample (method: sobol)",
+}
+"""Names of the analyses (modules of impactlab.analysis), and what runs each one needs."""
+
 HISTORIES: dict[str, Variable] = {entry.name: entry for entry in _TIME}
 """Answers on `time`, by name."""
 PROFILES: dict[str, Variable] = {entry.name: entry for entry in _FIELDS}

@@ -54,7 +54,7 @@ def simulate(
     Raises ValueError when duration or samples is not valid.
     """
     grid = discretisation or Discretisation()
-    integer("simulate", "samples", samples, 2)
+    samples = integer("simulate", "samples", samples, 2)
     cases = case_table(impact, grid, duration=duration)
     answers = solve(cases, samples=samples, profiles=True)
     dataset = xr.Dataset(
@@ -208,5 +208,5 @@ def _mirror(half: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:
     """From fibres z > 0, outermost first, to all fibres in ascending z."""
-    axis = np.zeros((*lower.shape[:2], points % 2))
+    axis = np.abs(0.0 * lower[:, :, : points % 2])  # NaN where a run diverged, as all else
     return np.concatenate([sign * lower, axis, lower[:, :, ::-1]], axis=2)

@@ -26,7 +26,8 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Share of the variance of each response that comes from a parameter alone (first order) "
         "and with all its interactions (total order), over the ranges of this study; lines are "
-        f"95 % intervals. {missing.note(runs, names(runs, analysis))}".strip()
+        f"{verdicts.confidence(analysis)} intervals. "
+        f"{missing.note(runs, names(runs, analysis))}".strip()
     )
 
 

@@ -11,7 +11,7 @@ from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
 from impactlab.figures import responses_grid, sobol_indices, style
-from impactlab.figures.reading import missing, words
+from impactlab.figures.reading import missing, verdicts, words
 
 TITLE = "Sobol indices of second order"
 _INDEX = "second_order"
@@ -31,7 +31,8 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown and what is missing."""
     return (
         "Share of the variance that comes from the interaction of two parameters; columns are "
-        "numbered as the rows. Grey: zero lies within the 95 % interval. "
+        f"numbered as the rows. Grey: zero lies within the {verdicts.confidence(analysis)} "
+        "interval. "
         f"{missing.note(runs, sobol_indices.names(runs, analysis))}".strip()
     )
 
@@ -64,7 +65,7 @@ def pairs(index: xr.DataArray) -> NDArray[np.float64]:
 
 
 def _margins(analysis: xr.Dataset, name: str) -> NDArray[np.float64]:
-    """Half-widths of the 95 % intervals; infinite where not given, for then nothing is known."""
+    """Half-widths of the intervals; infinite where not given, for then nothing is known."""
     interval = analysis.get(f"{_INDEX}_interval")
     if interval is None:
         return np.full((analysis.sizes["parameter"],) * 2, np.inf)

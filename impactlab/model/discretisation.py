@@ -25,11 +25,13 @@ class Discretisation:
     courant: float = 0.9
 
     def __post_init__(self) -> None:
-        if integer("Discretisation", "nodes", self.nodes, 5) % 2 == 0:
+        for field, least in (("nodes", 5), ("points", 2)):  # 21.0, as YAML may give it, is 21
+            value = integer("Discretisation", field, getattr(self, field), least)
+            object.__setattr__(self, field, value)
+        if self.nodes % 2 == 0:
             raise ValueError(
                 f"Discretisation.nodes = {self.nodes!r}: must be odd, so that mid-span is a node"
             )
-        integer("Discretisation", "points", self.points, 2)
         one_of("Discretisation", "rule", self.rule, RULES)
         if positive("Discretisation", "courant", self.courant) > 1:
             raise ValueError(

@@ -7,6 +7,7 @@ from typing import Any
 
 import xarray as xr
 
+from impactlab.figures.reading import verdicts
 from impactlab.figures.reading.contents import count
 from impactlab.report import (
     answers,
@@ -65,5 +66,6 @@ def _results(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Any]:
             if table
         ],
         "indices": sensitivity.tables(runs, analysis),
+        "confidence": verdicts.confidence(analysis),
         "sentences": sensitivity.sentences(runs, analysis),
     }

@@ -17,14 +17,14 @@ _NAMED = 3
 
 
 def tables(runs: xr.Dataset, analysis: xr.Dataset) -> list[Table]:
-    """A table an order: responses by parameters, index ± half-width of the 95 % interval."""
+    """A table an order: responses by parameters, index ± half-width of its interval."""
     if not all(order in analysis for order in _ORDERS):
         return []
     parameters = [str(name) for name in analysis["parameter"].values]
     head = ["Response", *(words.sentence(words.parameter(name)) for name in parameters)]
     return [
         Table(
-            f"{caption}, with half-widths of the 95 % intervals",
+            f"{caption}, with half-widths of the {verdicts.confidence(analysis)} intervals",
             head,
             [_row(analysis, order, name) for name in responses(runs) if known(analysis, name)],
         )

@@ -109,6 +109,7 @@ def _attributes(study: Study) -> dict[str, Any]:
         "method": study.sampling.method,
         "varied": list(study.sampling.parameters),
         "responses": list(study.responses),
+        "analyses": list(study.analyses),
         "histories": int(study.store.histories),
         "profiles": int(study.store.profiles),
         "samples": study.store.samples,

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -103,7 +104,11 @@ SLOW = STUDY.replace("[11, 21, 41]", "[201, 203, 205, 207, 209, 211]").replace("
 def test_an_interrupted_study_goes_on(folder, how):
     (folder / "studies" / "slow.yaml").write_text(SLOW)
     command = [sys.executable, "-m", "impactlab", "run", "studies/slow.yaml", "--workers", "1"]
-    started = subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True)
+    # a shell starts its background jobs deaf to Ctrl-C, and these tests may run in one
+    hear = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    started = subprocess.Popen(
+        command, cwd=folder, stderr=subprocess.PIPE, text=True, preexec_fn=hear
+    )
     shards = folder / "results" / "slow" / "shards"
     deadline = time.monotonic() + 120
     while not list(shards.glob("*/*.nc")) and time.monotonic() < deadline:

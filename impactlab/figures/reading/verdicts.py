@@ -39,6 +39,13 @@ def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | Non
     return Verdict(flag, flag in sound, _descriptions(array).get(flag, ""))
 
 
+def confidence(analysis: xr.Dataset) -> str:
+    """Of the intervals of the Sobol indices, as text: "95 %"."""
+    interval = analysis.get("first_order_interval")
+    level = 0.95 if interval is None else float(interval.attrs.get("confidence", 0.95))
+    return f"{100 * level:.4g} %"
+
+
 def _integers(array: xr.DataArray) -> list[int]:
     return [int(flag) for flag in np.atleast_1d(array.attrs["flag_values"])]
 

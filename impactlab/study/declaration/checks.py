@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from impactlab.study.declaration.methods import Sobol
+from impactlab.dataset import ANALYSES
+from impactlab.study.declaration.methods import Grid, Sobol
 from impactlab.study.declaration.schema import StudyForm
 from impactlab.study.errors import Problem
 from impactlab.study.possible import refused_corner
@@ -59,6 +60,20 @@ def _analysis_of_a_sample(form: StudyForm) -> Findings:
         yield "analysis", "has no effect but with method: sobol: take it out"
 
 
+def _runs_for_the_analyses(form: StudyForm) -> Findings:
+    """Each analysis that is asked for by name can be made."""
+    grid = form.sampling.parameters if isinstance(form.sampling, Grid) else {}
+    counts = {name: len(values) for name, values in grid.items()}
+    possible = {
+        "convergence_in_nodes": counts.get("nodes", 0) >= 3,
+        "convergence_in_points": counts.get("points", 0) >= 2,
+        "sensitivity": not grid,
+    }
+    for name in form.analyses if form.analyses != tuple(ANALYSES) else ():
+        if not possible[name]:
+            yield "analyses", f"{name} needs {ANALYSES[name]}: take it out, or change the sampling"
+
+
 def _corners(form: StudyForm) -> Findings:
     """The model accepts all combinations of what is varied."""
     varied = form.sampling.bounds()
@@ -72,5 +87,6 @@ _CHECKS: tuple[tuple[Callable[[StudyForm], Findings], set[str]], ...] = (
     (_mass_and_density, {"impact", "sampling"}),
     (_one_mesh_for_profiles, {"store", "sampling"}),
     (_analysis_of_a_sample, {"analysis", "sampling"}),
+    (_runs_for_the_analyses, {"analyses", "sampling"}),
     (_corners, {"impact", "discretisation", "sampling"}),
 )

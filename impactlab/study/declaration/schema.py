@@ -6,6 +6,7 @@ nothing here.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Annotated, Any
 
 from pydantic import (
@@ -17,7 +18,7 @@ from pydantic import (
     TypeAdapter,
 )
 
-from impactlab.dataset import RESPONSES
+from impactlab.dataset import ANALYSES, RESPONSES
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.study.declaration.form import (
@@ -45,18 +46,21 @@ def _one_line(text: str) -> str:
     return text
 
 
-_WORDS: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of("response", RESPONSES)]])
+def _names(kind: str, choices: Collection[str]) -> PlainValidator:
+    """Reads `all`, or a list of some of the choices."""
+    words: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of(kind, choices)]])
 
+    def read(data: Any) -> tuple[str, ...]:
+        if data == "all":
+            return tuple(choices)
+        if not isinstance(data, list) or not data:
+            raise ValueError(f"expected `all`, or a list of names out of {', '.join(choices)}")
+        names = words.validate_python(data)
+        if twice := [name for at, name in enumerate(names) if name in names[:at]]:
+            raise ValueError(f"names {twice[0]} more than once: name each {kind} once")
+        return tuple(names)
 
-def _responses(data: Any) -> tuple[str, ...]:
-    if data == "all":
-        return tuple(RESPONSES)
-    if not isinstance(data, list) or not data:
-        raise ValueError(f"expected `all`, or a list of names out of {', '.join(RESPONSES)}")
-    names = _WORDS.validate_python(data)
-    if twice := [name for at, name in enumerate(names) if name in names[:at]]:
-        raise ValueError(f"names {twice[0]} more than once: name each response once")
-    return tuple(names)
+    return PlainValidator(read)
 
 
 Text = Annotated[
@@ -100,6 +104,7 @@ class StudyForm(Form):
     )
     duration: Annotated[quantity("s"), AfterValidator(above_zero)]  # type: ignore[valid-type]
     sampling: Annotated[Grid | Sobol, PlainValidator(read_sampling)]
-    responses: Annotated[tuple[str, ...], PlainValidator(_responses)] = tuple(RESPONSES)
+    responses: Annotated[tuple[str, ...], _names("response", RESPONSES)] = tuple(RESPONSES)
+    analyses: Annotated[tuple[str, ...], _names("analysis", ANALYSES)] = tuple(ANALYSES)
     store: Store = Field(default_factory=Store)
     analysis: Analysis | None = None

@@ -24,8 +24,8 @@ class Study:
 
     name: the file's, without the ending; path: as it was given. impact and discretisation: the
     base of all runs. duration: simulated time in s. sampling: Grid or Sobol. responses: names out
-    of dataset.RESPONSES. store: what else is kept of each run. analysis: how intervals of
-    sensitivity indices are made. text: the file as it was read.
+    of dataset.RESPONSES; analyses: out of dataset.ANALYSES. store: what else is kept of each run.
+    analysis: how intervals of sensitivity indices are made. text: the file as it was read.
     """
 
     name: str
@@ -37,6 +37,7 @@ class Study:
     duration: float
     sampling: Grid | Sobol
     responses: tuple[str, ...]
+    analyses: tuple[str, ...]
     store: Store
     analysis: Analysis
     text: str
@@ -76,6 +77,7 @@ def read_study(path: str | Path) -> Study:
         duration=form.duration,
         sampling=form.sampling,
         responses=form.responses,
+        analyses=form.analyses,
         store=form.store,
         analysis=form.analysis or Analysis(),
         text=text,

@@ -145,3 +145,10 @@ def test_histories_are_left_alone(grid_runs: Build) -> None:
     runs["contact_force"] = (("nodes", "time"), np.ones((3, 4)))
     found: Any = analyse(runs)
     assert "time" not in found.dims
+
+
+def test_only_the_wanted_analyses_are_made(discretisation: xr.Dataset) -> None:
+    found = analyse(discretisation.assign_attrs(analyses=["convergence_in_points"]))
+    assert "points_verdict" in found
+    assert "nodes_verdict" not in found
+    assert "missing_runs" in found  # failures are always counted

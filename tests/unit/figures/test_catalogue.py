@@ -102,7 +102,7 @@ def test_labels_carry_units(drawn: Figure) -> None:
 @every_figure
 def test_text_is_legible_and_does_not_overlap(drawn: Figure) -> None:
     for axes in drawn.axes:
-        for ticks in (axes.get_xticklabels(), axes.get_yticklabels()):
+        for ticks in (axes.get_xticklabels(which="both"), axes.get_yticklabels(which="both")):
             shown = [label for label in ticks if label.get_text() and _inside(axes, label)]
             boxes = sorted(
                 (label.get_window_extent() for label in shown), key=lambda b: (b.x0, b.y0)

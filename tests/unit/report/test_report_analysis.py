@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from impactlab.figures.catalogue import CATALOGUE
+
 Study = Any
 NODES = "Convergence in nodes along the span"
 POINTS = "Convergence in integration points over the depth"
@@ -80,6 +82,17 @@ def test_undefined_indices_are_not_zero(report: Any, sobol_study: Study) -> None
     table = "First-order Sobol indices, with half-widths of the 95 % intervals"
     assert _row(page, table, "Number of contacts")[1:] == 4 * ["undefined"]
     assert _row(page, table, "Peak force")[1:4] == ["0.71 ± 0.03", "0.12 ± 0.03", "−0.01 ± 0.03"]
+
+
+def test_the_confidence_is_that_of_the_analysis(report: Any, sobol_study: Study) -> None:
+    runs, analysis = sobol_study
+    analysis["first_order_interval"].attrs["confidence"] = 0.9
+    page = report(runs, analysis)
+    assert "half-width of the 90 % interval" in page.text
+    assert "First-order Sobol indices, with half-widths of the 90 % intervals" in page.tables
+    assert "95 %" not in page.text
+    for name in ("sobol_indices", "sobol_second_order"):
+        assert "90 % interval" in CATALOGUE[name].caption(runs, analysis)
 
 
 def test_no_significant_share_is_said(report: Any, sobol_study: Study) -> None:

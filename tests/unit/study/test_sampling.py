@@ -106,6 +106,7 @@ def test_attributes_say_what_is_asked(designed):
         "method": "grid",
         "varied": ["rule", "velocity"],
         "responses": ["peak_force"],
+        "analyses": ["convergence_in_nodes", "convergence_in_points", "sensitivity"],
         "histories": 1,
         "profiles": 0,
         "samples": 7,

@@ -94,20 +94,19 @@ def test_unloading_follows_the_exponent_of_the_curve(law, exponent):
 
 
 @pytest.mark.parametrize(
-    ("start", "stop", "error"),
-    [
-        (0.0, 1.0, 2e-4),
-        (1.0, 1.3, 1e-9),
-        (3.0, 4.0, 1e-9),
-        (60.0, 75.0, 1e-9),
-        (90.0, 300.0, 1e-12),
-    ],
+    ("start", "stop"), [(0.0, 1.0), (1.0, 1.3), (3.0, 4.0), (60.0, 75.0), (90.0, 300.0)]
 )
-def test_loading_work_is_the_closed_form_within_a_regime(start, stop, error):
-    """Four Gauss points; from zero the power 3/2 is not smooth."""
+def test_loading_work_is_the_closed_form_within_a_regime(start, stop):
     start, stop = start * STRONGE.yield_indentation, stop * STRONGE.yield_indentation
     expected = STRONGE.loading_work(stop) - STRONGE.loading_work(start)
-    assert loading_work(pair_of("stronge"), start, stop) == pytest.approx(expected, rel=error)
+    assert loading_work(pair_of("stronge"), start, stop) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(("start", "stop"), [(0.0, 30.0), (0.5, 2.0), (50.0, 120.0)])
+def test_loading_work_across_the_limit_of_a_regime(start, stop):
+    start, stop = start * STRONGE.yield_indentation, stop * STRONGE.yield_indentation
+    expected = STRONGE.loading_work(stop) - STRONGE.loading_work(start)
+    assert loading_work(pair_of("stronge"), start, stop) == pytest.approx(expected, rel=1e-3)
 
 
 @every_law

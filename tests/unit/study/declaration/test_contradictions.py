@@ -92,3 +92,15 @@ def test_contradictions_are_found_beside_mistakes_elsewhere(problems, grid):
 def test_a_broken_section_brings_no_contradictions(problems, grid):
     text = grid({"impact": "x", "sampling.parameters": {"beam_depth": [0.9]}})
     assert [key for key, _ in problems(text)] == ["impact"]
+
+
+@pytest.mark.parametrize("name", ["convergence_in_nodes", "convergence_in_points", "sensitivity"])
+def test_an_analysis_asked_for_by_name_must_be_possible(problems, read, grid, sample, name):
+    ((key, said),) = problems(grid({"analyses": [name]}))
+    assert key == "analyses"
+    assert name in said
+    assert read(grid({"analyses": "all"})).analyses
+    assert read(sample({"analyses": ["sensitivity"]})).analyses == ("sensitivity",)
+    several = {"nodes": [11, 21, 41], "points": [3, 5]}
+    both = {"analyses": ["convergence_in_nodes", "convergence_in_points"]}
+    read(grid({"sampling.parameters": several} | both))
