@@ -1,5 +1,6 @@
 # make study   from the study files to results/index.html
 # make test    the checks and the tests
+# make bench   the kernel's cost, in times an elastic C stencil (needs gcc)
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
 PYTHON ?= python3
@@ -17,7 +18,7 @@ IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
 
-.PHONY: study test lint pytest coverage constraints unlock clean
+.PHONY: study test lint pytest bench coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 study: $(MADE)-workflow
@@ -38,6 +39,9 @@ lint: $(MADE)-dev
 
 pytest: $(MADE)-dev
 	$(IN_VENV) python -m pytest $(PYTEST_ARGS)
+
+bench: $(MADE)-dev
+	$(IN_VENV) python tests/benchmarks/kernel.py
 
 # Compiled kernels hide from coverage: here they run as plain Python, on the small cases only.
 coverage: $(MADE)-dev
