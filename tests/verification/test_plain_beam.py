@@ -1,7 +1,7 @@
 """The kernels against the plain solver: same histories, strains and responses, case by case.
 
 They differ in everything that makes the kernels fast (half the beam, half the fibres, elastic
-intervals, wave front, blocks), so beyond rounding they may not differ in their answers.
+intervals, wave front), so beyond rounding they may not differ in their answers.
 """
 
 from __future__ import annotations
@@ -166,7 +166,7 @@ def test_same_answers_as_the_plain_solver():
         (
             {
                 "velocity": 40.0,
-                "nodes": 281,  # more than two of the kernels' blocks in half a beam
+                "nodes": 281,
                 "contact": "hertz",
                 "beam_isotropic_hardening_modulus": 2e9,
                 "beam_kinematic_hardening_modulus": 2e9,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numba
 import numpy as np
 import pytest
 
@@ -77,6 +78,17 @@ def test_a_run_that_diverges_gives_no_number_anywhere(courant):
     assert np.isnan([response[name] for name in ANSWERS]).all()
     for values in (answers.histories | answers.profiles).values():
         assert np.isnan(values).all()
+
+
+@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="plain Python warns of overflow")
+def test_a_run_that_overflows_between_two_audits_has_diverged():
+    """Then the energy error is not a number, and below no limit."""
+    cases = table(duration=1e25, contact=["hertz"])
+    cases["courant"] = 1e28
+    assert 8 < steps_of(cases[0])[1] < 64
+    (response,) = solve(cases).responses
+    assert response.status == status.DIVERGED
+    assert np.isnan([response[name] for name in ANSWERS]).all()
 
 
 def test_a_run_out_of_balance_gives_its_energy_error_and_no_other_answer():

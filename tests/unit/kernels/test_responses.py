@@ -74,6 +74,7 @@ def test_answers_are_the_responses_of_the_dataset():
 def test_clear_leaves_no_number_but_the_reason(answer):
     for name in ANSWERS:
         answer[name] = 1.0
+    answer.status = status.IN_CONTACT_AT_END
     clear(answer, status.DIVERGED)
     assert answer.status == status.DIVERGED
     assert np.isnan([answer[name] for name in ANSWERS]).all()
@@ -142,12 +143,12 @@ def test_the_rebound_is_over_once_the_sphere_moves_up_and_away(
 
 
 def test_strains_of_the_beam(answer, case, track, beam):
-    """The peak at mid-span; the remote one farther than a depth (2.78 DX) from there."""
+    """The peak in any fibre; the remote one farther than a depth (2.78 DX) from mid-span."""
     beam.peeq[N - 3, 0] = 3e-3
-    beam.peeq[N - 2, 1] = 5e-3  # not the outermost fibre, and within a depth
+    beam.peeq[N - 2, 1] = 9e-3
     beam.peeq[N, 0] = 7e-3
     read_beam(answer, case, track, beam, make_grid(N, DX, 1e-6, 13.0), 0.0)
-    assert answer.peak_plastic_strain == 7e-3
+    assert answer.peak_plastic_strain == 9e-3
     assert answer.remote_plastic_strain == 3e-3
 
 
