@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -147,11 +148,8 @@ def run(
         samples = sampled(read_study(design_file))
     path = output or RESULTS / samples.attrs["study"] / "runs.nc"
     engine = Engine("processes" if processes else "threads", workers, scheduler)
-    try:
-        write_netcdf(execute(samples, path.parent / "shards", engine), path)
-    except KeyboardInterrupt:
-        print("impactlab: interrupted; the same command goes on from here", file=sys.stderr)
-        sys.exit(130)
+    signal.signal(signal.SIGINT, _stop_at_once)
+    write_netcdf(execute(samples, path.parent / "shards", engine), path)
 
 
 @app.command()
@@ -219,3 +217,11 @@ def given(option: str, text: str, units: str) -> float:
         return si(text, units)
     except ValueError as error:
         raise ValueError(f"{option} = {text!r}: {error}") from None
+
+
+def _stop_at_once(number: int, frame: object) -> None:
+    """End on Ctrl-C: finished batches are on disk, and dask's own clean-up may hang in between."""
+    show_cursor = "\x1b[?25h\n" if sys.stderr.isatty() else ""
+    message = f"{show_cursor}impactlab: interrupted; the same command goes on from here\n"
+    os.write(sys.stderr.fileno(), message.encode())
+    os._exit(130)

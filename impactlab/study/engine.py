@@ -24,9 +24,11 @@ class Engine:
     @contextmanager
     def client(self) -> Iterator[Client]:
         """A dask client for the time of a study. Raises OSError when no scheduler answers."""
+        # not as default: xarray would lock its files through the scheduler, slowly, and for ever
+        # where Ctrl-C comes in between
         logging.getLogger("distributed").setLevel(logging.ERROR)
         if self.address:
-            client = Client(self.address, timeout=10)
+            client = Client(self.address, timeout=10, set_as_default=False)
         else:
             apart = self.kind == "processes"
             client = Client(
@@ -37,6 +39,7 @@ class Engine:
                 worker_dashboard_address=_LOOPBACK,
                 memory_limit=0,
                 silence_logs=logging.ERROR,
+                set_as_default=False,
             )
         with client:
             yield client

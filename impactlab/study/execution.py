@@ -112,7 +112,7 @@ def _solved(
             return future
 
         slots = _AHEAD * max(engine.workers, len(client.nthreads()))
-        queue = as_completed([submit(batch) for batch in islice(waiting, slots)])
+        queue = as_completed([submit(batch) for batch in islice(waiting, slots)], loop=client.loop)
         for future in queue:
             answers = future.result()
             future.release()

@@ -43,11 +43,16 @@ def test_whole_numbers_become_ints(value):
     assert type(result) is int
 
 
-@pytest.mark.parametrize("value", [4, 5.5, True, "5", None, INFINITE, NAN], ids=repr)
+@pytest.mark.parametrize("value", [4, 5.5, "5", None, INFINITE, NAN], ids=repr)
 def test_other_numbers_are_refused(value):
     message = r"^Owner\.field = .*: must be a whole number of at least 5$"
     with pytest.raises(ValueError, match=message):
         integer("Owner", "field", value, 5)
+
+
+def test_a_truth_is_no_count():
+    with pytest.raises(ValueError, match=r"^Owner\.field = True: must be a whole number"):
+        integer("Owner", "field", True, 1)
 
 
 def test_a_name_is_one_of_the_choices():

@@ -106,7 +106,7 @@ def test_loading_work_is_the_closed_form_within_a_regime(start, stop):
 def test_loading_work_across_the_limit_of_a_regime(start, stop):
     start, stop = start * STRONGE.yield_indentation, stop * STRONGE.yield_indentation
     expected = STRONGE.loading_work(stop) - STRONGE.loading_work(start)
-    assert loading_work(pair_of("stronge"), start, stop) == pytest.approx(expected, rel=1e-3)
+    assert loading_work(pair_of("stronge"), start, stop) == pytest.approx(expected, rel=1e-4)
 
 
 @every_law
