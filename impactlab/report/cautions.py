@@ -42,15 +42,6 @@ def _stale(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
         )
 
 
-def perfectly_plastic(runs: xr.Dataset) -> bool:
-    """Whether the beam has no hardening in some run."""
-    moduli = ("beam_isotropic_hardening_modulus", "beam_kinematic_hardening_modulus")
-    if any(name not in runs.coords for name in moduli):
-        return False
-    total = runs[moduli[0]] + runs[moduli[1]]
-    return bool((total == 0).any())
-
-
 def _failures(runs: xr.Dataset) -> Iterator[str]:
     if failed := int(failed_runs(runs).sum()):
         yield (
@@ -73,11 +64,11 @@ def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
 
 
 def _strain(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """PEEQ without a verdict of its own."""
+    """PEEQ without a verdict of its own, which it needs with hardening, too."""
     name = "peak_plastic_strain"
     if name not in runs or verdicts.verdict(analysis, "nodes_summary", name):
         return
-    if bool((usable(runs, name) > 0).any()) and perfectly_plastic(runs):
+    if bool((usable(runs, name) > 0).any()):
         yield (
             "The peak plastic strain depends on the number of nodes, and this study does not vary "
             "them: compare it between runs, but do not take it for a converged value."

@@ -8,8 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from impactlab.report.cautions import perfectly_plastic
-
 
 class Note(NamedTuple):
     """A text, and whether it matters for the runs."""
@@ -31,10 +29,6 @@ def _holds(runs: xr.Dataset, name: str, value: Any) -> bool:
 def _few_lobatto_points(runs: xr.Dataset) -> bool:
     few = _holds(runs, "points", 2) or _holds(runs, "points", 3)
     return few and _holds(runs, "rule", "lobatto")
-
-
-def _plastic(runs: xr.Dataset) -> bool:
-    return "peak_plastic_strain" in runs and perfectly_plastic(runs)
 
 
 def _about_the_end(runs: xr.Dataset) -> bool:
@@ -63,7 +57,7 @@ NOTES = (
         "the solver; the energy balance accounts for it.",
     ),
     Note(
-        _plastic,
+        lambda runs: "peak_plastic_strain" in runs,
         "In a perfectly plastic section the peak plastic strain (PEEQ) at mid-span does not "
         "converge as the nodes get closer: with 3 Lobatto points it doubles with each halving of "
         "the spacing, with 5 it still grows, and from 9 on it grows slowly.",

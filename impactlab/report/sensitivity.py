@@ -12,6 +12,8 @@ from impactlab.figures.reading.contents import known, responses
 from impactlab.report.table import Cell, Table
 
 _ORDERS = {"first_order": "First-order Sobol indices", "total_order": "Total-order Sobol indices"}
+_COARSE = 0.02
+"""Half-width from which on shares are told in whole per cent."""
 _NAMED = 3
 """At most so many parameters are named in a sentence."""
 
@@ -48,7 +50,7 @@ def _row(analysis: xr.Dataset, order: str, name: str) -> list[Cell]:
 def _cell(value: float, margin: float) -> Cell:
     if not np.isfinite(value):
         return Cell("undefined", "muted")
-    text = f"{value:.2f}".replace("-", "−")
+    text = f"{round(value, 2) + 0.0:.2f}".replace("-", "−")
     if np.isfinite(margin):
         text += f" ± {margin:.2f}"
     return Cell(text, "number" if abs(value) > margin else "muted")
@@ -114,4 +116,5 @@ def _index(analysis: xr.Dataset, order: str, name: str) -> tuple[np.ndarray, np.
 
 
 def _share(value: float, margin: float) -> str:
-    return f"{100 * value:.0f} % (± {100 * margin:.0f})"
+    decimals = 0 if margin >= _COARSE else 1
+    return f"{100 * value:.{decimals}f} % (± {100 * margin:.{decimals}f})"

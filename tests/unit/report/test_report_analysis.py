@@ -76,6 +76,20 @@ def test_sentences_name_significant_shares_alone(report: Any, sobol_study: Study
     )[-1].replace("Radius", "")
 
 
+def test_small_shares_keep_a_decimal(report: Any, sobol_study: Study) -> None:
+    runs, analysis = sobol_study
+    impulse = {"response": "impulse", "parameter": "sphere_radius"}
+    analysis["first_order"].loc[impulse] = 0.0123
+    analysis["first_order_interval"].loc[impulse] = 0.006
+    assert "1.2 % (± 0.6) from the radius of the sphere" in report(runs, analysis).text
+
+
+def test_nothing_is_minus_zero(report: Any, sobol_study: Study) -> None:
+    runs, analysis = sobol_study
+    analysis["first_order"].loc[{"response": "impulse"}] = -0.001
+    assert "−0.00" not in report(runs, analysis).text
+
+
 def test_undefined_indices_are_not_zero(report: Any, sobol_study: Study) -> None:
     page = report(*sobol_study)
     assert "The indices of the number of contacts are undefined: meaning of constant." in page.text

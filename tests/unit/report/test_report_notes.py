@@ -21,7 +21,7 @@ def test_plastic_strain_without_a_convergence_study(material_study: Study) -> No
     words = "depends on the number of nodes"
     assert _said(cautions(runs, analysis), words)
     hardening = runs.isel(beam_isotropic_hardening_modulus=slice(1, None))
-    assert not _said(cautions(hardening, analysis), words)
+    assert _said(cautions(hardening, analysis), words)
     elastic = runs.assign(peak_plastic_strain=0.0 * runs["peak_plastic_strain"])
     assert not _said(cautions(elastic, analysis), words)
 
