@@ -131,7 +131,7 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
     nodes, points, _ = next(iter(shapes)) if profiles else (-1, 0, 0)
     half, fibres, runs = nodes // 2 + 1, points // 2, cases.size
     responses = np.zeros(runs, dtype=RESPONSE)
-    histories = np.full((runs, 4, samples), np.nan)
+    histories = np.full((runs, len(HISTORIES), samples), np.nan)
     deflection = np.full((runs, half), np.nan)
     strains = np.full((2, runs, half, fibres), np.nan)
     run_all(cases, responses, histories, deflection, strains[0], strains[1])

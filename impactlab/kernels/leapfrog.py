@@ -57,16 +57,16 @@ def _sample(
     t: float,
     dt: float,
     interval: float,
-    before: tuple[float, float, float, float],
-    here: tuple[float, float, float, float],
+    before: tuple[float, float, float, float, float],
+    here: tuple[float, float, float, float, float],
 ) -> None:
-    """Fill the samples of `out`, shape (4, samples), that fall into the step that ends at t."""
+    """Fill the samples of `out`, shape (5, samples), that fall into the step that ends at t."""
     if out.shape[1] == 0:
         return
     k = math.ceil((t - dt) / interval - 1e-9)
     while k < out.shape[1] and k * interval <= t * (1.0 + 1e-12):
         share = 1.0 - (t - k * interval) / dt
-        for row in range(4):
+        for row in range(5):
             out[row, k] = before[row] + share * (here[row] - before[row])
         k += 1
 
@@ -188,9 +188,10 @@ def run(
             )
         watch.watch_contact(track, delta, contact.delta_r, v_s, t, dt)
         watch.watch_deflection(track, w_mid)
-        before = (track.F, track.w, w_s - v_s * dt, track.delta)
-        _sample(samples, t, dt, interval, before, (F, w_mid, w_s, delta))
-        watch.shift(track, delta, w_mid, F, dt)
+        kappa = 2.0 * (w[n - 1] - w_mid) * per_dx2
+        before = (track.F, track.w, track.kappa, w_s - v_s * dt, track.delta)
+        _sample(samples, t, dt, interval, before, (F, w_mid, kappa, w_s, delta))
+        watch.shift(track, delta, w_mid, kappa, F, dt)
         if (step + 1) % stride == 0 or step == steps:
             error = _imbalance(case, pair, section, grid, beam, contact, first, delta, F, w_s, v_s)
             track.energy_error = max(track.energy_error, error)

@@ -19,6 +19,7 @@ TRACK = np.dtype(
                 "w",
                 "w_before",
                 "w_max",
+                "kappa",
                 "F",
                 "contacts",
                 "touching",
@@ -33,10 +34,11 @@ TRACK = np.dtype(
     )
 )
 """At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before
-(m), force F (N). t_peak (s): time of the largest indentation; w_max (m). contacts: number begun;
-touching: 1 or 0; t_touch: when this contact began, t_first_end: when the first one ended (NaN:
-not yet), time_in_contact of the ended ones (s); v_exit (m/s): the sphere's velocity when the last
-contact ended. impulse (N s). energy_error: largest imbalance over the initial energy."""
+(m); at the last: mid-span curvature kappa (1/m), force F (N). t_peak (s): time of the largest
+indentation; w_max (m). contacts: number begun; touching: 1 or 0; t_touch: when this contact began,
+t_first_end: when the first one ended (NaN: not yet), time_in_contact of the ended ones (s); v_exit
+(m/s): the sphere's velocity when the last contact ended. impulse (N s). energy_error: largest
+imbalance over the initial energy."""
 
 
 @compiled
@@ -93,9 +95,9 @@ def watch_deflection(track: Record, w: float) -> None:
 
 
 @compiled
-def shift(track: Record, delta: float, w: float, F: float, dt: float) -> None:
+def shift(track: Record, delta: float, w: float, kappa: float, F: float, dt: float) -> None:
     """This step becomes the last one."""
     track.impulse += 0.5 * dt * (track.F + F)
     track.delta_before, track.delta = track.delta, delta
     track.w_before, track.w = track.w, w
-    track.F = F
+    track.kappa, track.F = kappa, F

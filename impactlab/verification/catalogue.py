@@ -1,0 +1,26 @@
+"""The table of checks: a new one is a new file and a line here."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from impactlab.verification import half_space
+from impactlab.verification.finding import Finding
+
+
+class CheckFile(Protocol):
+    """What a check's file offers. SOURCE: where the independent values come from."""
+
+    TITLE: str
+    SOURCE: str
+
+    def check(self) -> Finding:
+        """Run the solver and the independent solution."""
+        ...
+
+
+_FILES: tuple[CheckFile, ...] = (half_space,)
+CATALOGUE: dict[str, CheckFile] = {
+    str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
+}
+"""Every check by name, in the order of the report."""

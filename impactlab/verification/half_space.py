@@ -1,0 +1,44 @@
+"""A sphere on a beam too heavy to move: Hertz's impact on a half-space."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.model.paper import paper_impact
+from impactlab.reference import hertz
+from impactlab.simulate import simulate
+from impactlab.verification.finding import Finding, relative
+
+TITLE = "Impact on a half-space"
+SOURCE = "Hertz 1881; closed forms in impactlab.reference.hertz"
+
+
+def rigid_backed(velocity: float, contact: str) -> Impact:
+    """The paper's sphere on a beam of enormous mass (E* as it is), without gravity."""
+    impact = paper_impact(velocity, contact)
+    heavy = replace(impact.beam.material, density=7.8e9)
+    return replace(impact, beam=replace(impact.beam, material=heavy), gravity=0.0)
+
+
+def check() -> Finding:
+    """Peak force, largest indentation and contact duration."""
+    velocity = 0.99
+    impact = rigid_backed(velocity, "hertz")
+    modulus, radius = hertz.effective_modulus(impact), hertz.effective_radius(impact)
+    args = (impact.sphere.total_mass, velocity, modulus, radius)
+    # a small Courant number: here the contact alone sets the time step
+    grid = Discretisation(nodes=11, points=3, courant=0.005)
+    run = simulate(impact, grid, duration=0.4e-3)
+    where = f"the paper's sphere at {velocity} m/s"
+    return Finding(
+        [
+            relative(quantity, where, units, run[name].item(), expected(*args), 1e-4)
+            for quantity, name, units, expected in (
+                ("peak force", "peak_force", "N", hertz.peak_force),
+                ("contact duration", "contact_duration", "s", hertz.contact_duration),
+                ("largest indentation", "maximum_indentation", "m", hertz.maximum_indentation),
+            )
+        ]
+    )
