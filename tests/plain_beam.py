@@ -53,14 +53,15 @@ class Bar(NamedTuple):
 class Run(NamedTuple):
     """Histories at every step, shape (steps + 1,), and the final state of the beam.
 
-    contact_force (N), midspan_deflection, sphere_displacement, indentation (m); deepest (m): the
-    largest indentation so far; dent (m): the indentation at which the contact would end. deflection
-    (nodes,), plastic_strain and peeq (nodes, points).
+    contact_force (N), midspan_deflection (m), midspan_curvature (1/m), sphere_displacement and
+    indentation (m); deepest (m): the largest indentation so far; dent (m): the indentation at which
+    the contact would end. deflection (nodes,), plastic_strain and peeq (nodes, points).
     """
 
     dt: float
     contact_force: Array
     midspan_deflection: Array
+    midspan_curvature: Array
     sphere_displacement: Array
     indentation: Array
     deepest: Array
@@ -135,7 +136,7 @@ def moment(bar, kappa, plastic_strain, peeq):
 
 @numba.njit
 def march(bar, contact, v_0, g, m_s, dt, steps, histories, w, plastic_strain, peeq):
-    """Leapfrog from the first touch; fills histories, shape (6, steps + 1) as in Run."""
+    """Leapfrog from the first touch; fills histories, shape (7, steps + 1) as in Run."""
     last = w.size - 1
     middle = last // 2
     v, M, p = np.zeros(w.size), np.zeros(w.size), np.zeros(w.size)
@@ -150,8 +151,9 @@ def march(bar, contact, v_0, g, m_s, dt, steps, histories, w, plastic_strain, pe
             kappa = (w[i - 1] - 2.0 * w[i] + w[i + 1]) / bar.dx**2
             M[i] = moment(bar, kappa, plastic_strain[i], peeq[i])
         row = histories[:, step]
-        row[0], row[1], row[2], row[3] = F, w[middle], w_s, d
-        row[4], row[5] = deepest, unloading(contact, deepest)[0]
+        row[0], row[1], row[3], row[4] = F, w[middle], w_s, d
+        row[2] = (w[middle - 1] - 2.0 * w[middle] + w[middle + 1]) / bar.dx**2
+        row[5], row[6] = deepest, unloading(contact, deepest)[0]
         if step == steps:
             break
         kick = 0.5 * dt if step == 0 else dt
@@ -189,7 +191,7 @@ def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:
 
 def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> Run:
     """`steps` steps of dt seconds."""
-    histories = np.zeros((6, steps + 1))
+    histories = np.zeros((7, steps + 1))
     w = np.zeros(grid.nodes)
     plastic_strain = np.zeros((grid.nodes, grid.points))
     peeq = np.zeros((grid.nodes, grid.points))
