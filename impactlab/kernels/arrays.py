@@ -10,6 +10,7 @@ from numba.extending import intrinsic, overload
 
 from impactlab.kernels.types import Array
 
+_null: Any = cgutils.get_null_value  # numba has no types here
 ONE, TWO = np.uint64(1), np.uint64(2)
 """Offsets for an unsigned index. A loop over one gets vectorised from wherever it begins; a signed
 index might be negative, that is, count from the end."""
@@ -24,13 +25,10 @@ def lent(array: Array) -> Array:
     return array
 
 
-null: Any = cgutils.get_null_value
-
-
 def _make_view(context: Any, array: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         view = context.make_array(array)(context, builder, arguments[0])
-        view.meminfo = null(view.meminfo.type)
+        view.meminfo = _null(view.meminfo.type)
         return view._getvalue()
 
     return array(array), generate

@@ -9,7 +9,7 @@ direction, so nothing is lost.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -90,7 +90,7 @@ def follow_tangents(
         direction, ahead = tangent[i, 0], kappa - tangent[i, 3]
         if ahead * direction >= 0.0 and (tangent[i, 2] - kappa) * direction >= 0.0:
             tangent[i, 3] = kappa
-            add_moment(plastic, M_0, i, tangent[i, 1] * ahead, grid)
+            _add_moment(plastic, M_0, i, tangent[i, 1] * ahead, grid)
         else:
             tangent[i, 0] = 0.0
             ended += 1
@@ -98,7 +98,7 @@ def follow_tangents(
 
 
 @compiled
-def add_moment(plastic: Array, M_0: Array, i: Index, change: float, grid: Grid) -> None:
+def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: Grid) -> None:
     """Change M_0 of section i by so much (N m), and `plastic` with it."""
     share = grid.factor * change
     M_0[i] += change
@@ -120,7 +120,7 @@ def leave_tangents(beam: Beam, now: int, held: Yielding, section: Section, grid:
                 section, held.tangent[i, 3], held.plastic_strain, held.peeq, i
             )
             if held.kappa_min[i] <= kappa <= held.kappa_max[i]:
-                add_moment(beam.plastic, held.M_0, i, M_0 - held.M_0[i], grid)
+                _add_moment(beam.plastic, held.M_0, i, M_0 - held.M_0[i], grid)
                 held.on_tangent[k] = held.on_tangent[held.on_tangent[0]]
                 held.on_tangent[0] -= ONE
                 continue
@@ -165,7 +165,7 @@ def _begin_tangent(
     """Bend section i out of its elastic interval to kappa, where its tangent begins."""
     direction = 1.0 if kappa > held.kappa_max[i] else -1.0
     M_0, _, _ = bend(section, kappa, held.plastic_strain, held.peeq, i)
-    add_moment(beam.plastic, held.M_0, i, M_0 - held.M_0[i], grid)
+    _add_moment(beam.plastic, held.M_0, i, M_0 - held.M_0[i], grid)
     growth, limit = tangent(section, kappa, direction, held.plastic_strain, held.peeq, i)
     line = held.tangent[i]
     line[0], line[1], line[2], line[3] = direction, growth, limit, kappa
