@@ -34,6 +34,14 @@ class Comparison:
         """Whether the error is within the tolerance; never with a NaN."""
         return bool(abs(self.error) <= self.tolerance)
 
+    @property
+    def ratio(self) -> float:
+        """The error in tolerances: above 1 it fails; infinite where there is no number."""
+        size = abs(self.error)
+        if size == 0.0:
+            return 0.0
+        return float(size / self.tolerance) if size < np.inf and self.tolerance > 0 else np.inf
+
 
 def relative(
     quantity: str, where: str, units: str, ours: float, independent: float, tolerance: float
