@@ -16,7 +16,7 @@ def asked_studies(asked):
 def lists_checks(study):
     """Whether it is a verification; what is wrong with a file is told by the command that reads it."""
     file = Path(f"studies/{study}.yaml")
-    return file.exists() and bool(re.search(r"^checks\s*:", file.read_text("utf-8"), re.MULTILINE))
+    return file.exists() and bool(re.search(r"^checks\s*:", file.read_text("utf-8", "replace"), re.MULTILINE))
 
 
 def stored(wildcards):
@@ -32,6 +32,8 @@ def code(*patterns):
 
 MODEL = ("dataset.py", "model/*.py")
 SOLVER = (*MODEL, "simulate.py", "kernels/**/*.py")
+CHECKING = ("study/checking.py", "study/declaration/*.py", "study/storage.py")
+FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcome", "stored"))
 STUDIES = asked_studies(config.get("studies"))
 VERIFICATIONS = [study for study in STUDIES if lists_checks(study)]
 
@@ -121,7 +123,7 @@ rule analysis:
 # Checks that fail are findings like others: the report comes first, the verdict last.
 rule verify:
     input:
-        code=code(*SOLVER, "reference/*.py", "verification/*.py", "study/**/*.py"),
+        code=code(*SOLVER, "reference/*.py", "verification/*.py", *CHECKING),
         study="studies/{study}.yaml",
     output:
         "results/{study}/findings.nc",
@@ -138,7 +140,7 @@ rule verify:
 
 rule figures:
     input:
-        code=code("dataset.py", "verification/*.py", "figures/**/*.py"),
+        code=code("dataset.py", *FINDINGS, "figures/**/*.py"),
         stored=stored,
     output:
         report(
@@ -161,7 +163,7 @@ rule figures:
 
 rule report:
     input:
-        code=code("dataset.py", "verification/*.py", "report/**/*.py", "report/templates/*"),
+        code=code("dataset.py", *FINDINGS, "report/**/*.py", "report/templates/*"),
         stored=stored,
         figures="results/{study}/figures",
     output:
@@ -185,7 +187,7 @@ rule report:
 # After everything else, so that a failure hides no report.
 rule verdict:
     input:
-        code=code("verification/*.py"),
+        code=code(*FINDINGS),
         findings="results/{study}/findings.nc",
         index="results/index.html",
     output:
