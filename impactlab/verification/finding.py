@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,6 +71,13 @@ def curve(
     error = float(gap[worst] / np.max(np.abs(independent)))
     values = float(ours[worst]), float(independent[worst])
     return Comparison(quantity, where, units, *values, error, tolerance, "of the largest value")
+
+
+def worst(entries: Sequence[Comparison]) -> Comparison:
+    """The one nearest to failing, for a table that would else be long; a NaN comes first."""
+    shares = [abs(entry.error) / entry.tolerance for entry in entries]
+    entry = entries[int(np.argmax(np.nan_to_num(shares, nan=np.inf)))]
+    return replace(entry, where=f"{entry.where} (the worst of {len(entries)})")
 
 
 @dataclass(frozen=True)

@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
 from impactlab.reference import hertz
 from impactlab.simulate import simulate
+from impactlab.verification.cases import rigid_backed
 from impactlab.verification.finding import Finding, relative
 
 TITLE = "Impact on a half-space"
 SOURCE = "Hertz 1881; closed forms in impactlab.reference.hertz"
-
-
-def rigid_backed(velocity: float, contact: str) -> Impact:
-    """The paper's sphere on a beam of enormous mass (E* as it is), without gravity."""
-    impact = paper_impact(velocity, contact)
-    heavy = replace(impact.beam.material, density=7.8e9)
-    return replace(impact, beam=replace(impact.beam, material=heavy), gravity=0.0)
 
 
 def check() -> Finding:
