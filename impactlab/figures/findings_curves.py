@@ -23,10 +23,8 @@ _HEIGHT = 58.0
 """Of a panel, mm."""
 _FEW = 25
 """Curves of up to so many points have markers."""
-_LETTERS = 46
-"""Of a title or label before it is broken."""
-_SHARED = 8
-"""Up to so many labels stand in one legend for all panels."""
+_TITLE, _LABEL = 46, 32
+"""Letters of a panel's title, and of the label at its side, before they are broken."""
 
 
 def applies(outcome: Outcome) -> bool:
@@ -44,24 +42,23 @@ def caption(outcome: Outcome) -> str:
 
 @style.paper
 def plot(outcome: Outcome) -> Figure:
-    """A panel a panel, in two columns; one legend for all where the labels are few."""
+    """A panel a panel, in two columns; one legend for all where it is the same in all."""
     panels = [panel for panel in outcome.finding.panels if panel.curves]
     figure, axes = style.panels(len(panels), columns=_COLUMNS, height=_HEIGHT)
-    shared = len(_looks(panels)) <= _SHARED
-    for ax, panel in zip(axes, panels, strict=True):
-        _draw(ax, panel, _looks(panels if shared else [panel]))
-    if shared:
-        style.legend(figure, order=list(_looks(panels)))
+    looks = [_looks(panel) for panel in panels]
+    for ax, panel, look in zip(axes, panels, looks, strict=True):
+        _draw(ax, panel, look)
+    if all(look == looks[0] for look in looks):
+        style.legend(figure, order=list(looks[0]))
     else:
         style.panel_legends(figure)
     return figure
 
 
-def _looks(panels: Sequence[Panel]) -> dict[str, dict[str, Any]]:
+def _looks(panel: Panel) -> dict[str, dict[str, Any]]:
     """By label: ours first, coloured; then independent ones, black and broken."""
-    curves = [curve for panel in panels for curve in panel.curves]
     ours, independent = (
-        dict.fromkeys(_label(curve, curves) for curve in curves if curve.independent == kind)
+        dict.fromkeys(_label(c, panel.curves) for c in panel.curves if c.independent == kind)
         for kind in (False, True)
     )
     looks = {label: _coloured(at) for at, label in enumerate(ours)}
@@ -101,11 +98,11 @@ def _broken(at: int) -> dict[str, Any]:
 
 def _draw(ax: Axes, panel: Panel, looks: dict[str, dict[str, Any]]) -> None:
     units = [_unit(panel, axis) for axis in ("x", "y")]
-    ax.set_title(fill(panel.title, width=_LETTERS), loc="left")
+    ax.set_title(fill(words.sentence(panel.title), width=_TITLE), loc="left")
     names = panel.x[0], panel.y[0]
     labels = [words.axis(n, unit.symbol) for n, unit in zip(names, units, strict=True)]
-    ax.set(xlabel=labels[0], ylabel=fill(labels[1], width=_LETTERS))
-    for curve in panel.curves:
+    ax.set(xlabel=labels[0], ylabel=fill(labels[1], width=_LABEL))
+    for curve in sorted(panel.curves, key=lambda curve: curve.independent):
         x, y = (unit(values) for unit, values in zip(units, (curve.x, curve.y), strict=True))
         if panel.log:
             x, y = scales.positive(x), scales.positive(y)

@@ -45,7 +45,7 @@ def caption(outcomes: Sequence[Outcome]) -> str:
     shown = f" Drawn as triangles: {words.listing(edges)}." if edges else ""
     return (
         "Error over tolerance, a point a comparison and a row a check; right of the line at 1 a "
-        f"comparison fails. Within a row, points are spread in the order of the table.{shown}"
+        f"comparison fails. Within a row, points are spread in the order of the comparisons.{shown}"
     )
 
 
@@ -95,6 +95,12 @@ def _ratios(outcome: Outcome) -> NDArray[np.float64]:
     return np.array([entry.ratio for entry in outcome.finding.comparisons], dtype=float)
 
 
+def _least(outcomes: Sequence[Outcome]) -> float:
+    """The decade below all that is drawn."""
+    ratios = np.clip(np.concatenate([_ratios(o) for o in outcomes] + [[0.01]]), _LEAST, _MOST)
+    return float(10.0 ** np.floor(np.log10(ratios.min())))
+
+
 def _count(outcome: Outcome) -> tuple[str, bool]:
     """What stands right of a row, and whether it is bad news."""
     total, failed = len(outcome.finding.comparisons), len(outcome.failures)
@@ -106,7 +112,7 @@ def _count(outcome: Outcome) -> tuple[str, bool]:
 def _finish(axes: Axes, outcomes: Sequence[Outcome]) -> None:
     """Decades along x up to what is drawn; the checks' titles along y."""
     largest = max((float(_ratios(outcome).max(initial=0.0)) for outcome in outcomes), default=0.0)
-    limits = 0.6 * _LEAST, 2.5 * min(max(largest, 4.0), _MOST)
+    limits = 0.6 * _least(outcomes), 2.5 * min(max(largest, 4.0), _MOST)
     scales.logarithmic(axes, "x", limits, ticks=8)
     axes.set(xlim=limits, ylim=(len(outcomes) - 0.5, -0.5), xlabel="Error over tolerance (–)")
     axes.set_yticks(

@@ -129,9 +129,9 @@ def panel_legends(figure: Figure) -> None:
         place = axes.get_subplotspec()
         assert place is not None
         width = figure.get_figwidth() / MILLIMETRE / place.get_gridspec().ncols - _MARGIN
-        columns = _columns(width, labels)
+        columns = _columns(width, labels, letter=1.4)
         rows = max(rows, math.ceil(len(labels) / columns))
-        if labels:
+        if len(labels) > 1:
             axes.legend(handles, labels, title=axes.get_title(loc="left"), ncols=columns, **_ABOVE)
             axes.set_title("", loc="left")
     lines = figure.axes[0].get_subplotspec().get_gridspec().nrows  # type: ignore[union-attr]
@@ -150,10 +150,10 @@ _ABOVE: dict[str, Any] = {
 }
 
 
-def _columns(width: float, labels: list[str]) -> int:
-    """As many columns as fit into mm: a letter is about 1.6 mm wide at 7 pt, a handle 10 mm."""
+def _columns(width: float, labels: list[str], letter: float = 1.6) -> int:
+    """As many columns as fit into mm: a letter is up to 1.6 mm wide at 7 pt, a handle 10 mm."""
     longest = max((len(label) for label in labels), default=1)
-    fit = int(width / (1.6 * longest + 10.0))
+    fit = int(width / (letter * longest + 10.0))
     return max(1, min(fit, len(labels)))
 
 
