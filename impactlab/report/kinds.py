@@ -9,6 +9,7 @@ from pathlib import Path
 import xarray as xr
 
 from impactlab.figures.draw import draw_all, draw_findings
+from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import count
 from impactlab.report.outcome import failed_runs
 from impactlab.report.report import write_report
@@ -48,9 +49,12 @@ def _runs(runs: xr.Dataset) -> tuple[str, str]:
 
 def _findings(findings: xr.Dataset) -> tuple[str, str]:
     found = tally(unpacked(findings))
-    size = f"{found.checks} checks, {found.comparisons} comparisons"
-    failed = f"{found.bad_checks} checks and {found.failed} comparisons failed"
-    return size, "" if found.passed else failed
+    pairs = (found.checks, found.comparisons), (found.bad_checks, found.failed)
+    size, failed = (
+        [words.counted(checks, "check"), words.counted(comparisons, "comparison")]
+        for checks, comparisons in pairs
+    )
+    return ", ".join(size), "" if found.passed else f"{words.listing(failed)} failed"
 
 
 RUNS = Kind(("runs.nc", "analysis.nc"), draw_all, write_report, _runs)
@@ -67,7 +71,7 @@ def read_stored(paths: Sequence[Path]) -> tuple[Kind, list[xr.Dataset]]:
     kind = FINDINGS if "tolerance" in datasets[0] else RUNS
     if len(paths) != len(kind.files):
         asked = " and ".join(kind.files)
-        raise ValueError(f"{paths[0]}: expected {asked} of a study, but {len(paths)} files came")
+        raise ValueError(f"{paths[0]}: expected {asked}, but got {len(paths)} files")
     return kind, datasets
 
 

@@ -23,7 +23,7 @@ _ATTRIBUTES = {
 def provenance(runs: xr.Dataset, what: str = "runs") -> Table:
     """A row for each attribute of provenance that the runs, or what else it is, have."""
     rows = [
-        [Cell(label), Cell(_moment(str(runs.attrs[key])))]
+        [Cell(label), Cell((_moment if key == "created" else str)(str(runs.attrs[key])))]
         for key, label in _ATTRIBUTES.items()
         if key in runs.attrs
     ]

@@ -35,7 +35,7 @@ class Verification:
     @property
     def size(self) -> str:
         """How much there is to do, in words."""
-        return f"{len(self.checks)} checks"
+        return f"{len(self.checks)} check{'s' * (len(self.checks) > 1)}"
 
     @property
     def sha256(self) -> str:
