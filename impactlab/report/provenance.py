@@ -23,7 +23,7 @@ _ATTRIBUTES = {
 def provenance(runs: xr.Dataset, what: str = "runs") -> Table:
     """A row for each attribute of provenance that the runs, or what else it is, have."""
     rows = [
-        [Cell(label), Cell((_moment if key == "created" else str)(str(runs.attrs[key])))]
+        [Cell(label), Cell(_shown(key, str(runs.attrs[key])))]
         for key, label in _ATTRIBUTES.items()
         if key in runs.attrs
     ]
@@ -41,8 +41,10 @@ def commands(
     ]
 
 
-def _moment(text: str) -> str:
-    """An ISO time for reading; any other text as it is."""
+def _shown(key: str, text: str) -> str:
+    """A time for reading; any other text, and what is no ISO time, as it is."""
+    if key != "created":  # a hash may look like a time
+        return text
     try:
         return datetime.fromisoformat(text).strftime("%Y-%m-%d %H:%M:%S %Z").strip()
     except ValueError:
