@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from impactlab.verification import half_space, modal_series
+from impactlab.verification import half_space, modal_series, stronge_restitution, sub_impacts
 from impactlab.verification.finding import Finding
 
 
@@ -21,7 +21,9 @@ class CheckFile(Protocol):
 
 _FILES: tuple[CheckFile, ...] = (
     half_space,
+    stronge_restitution,
     modal_series,
+    sub_impacts,
 )
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
