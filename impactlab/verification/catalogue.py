@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from impactlab.verification import half_space, modal_series, stronge_restitution, sub_impacts
+from impactlab.verification import (
+    half_space,
+    infinite_beam,
+    modal_series,
+    stronge_restitution,
+    sub_impacts,
+)
 from impactlab.verification.finding import Finding
 
 
@@ -24,6 +30,7 @@ _FILES: tuple[CheckFile, ...] = (
     stronge_restitution,
     modal_series,
     sub_impacts,
+    infinite_beam,
 )
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
