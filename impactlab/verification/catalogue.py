@@ -8,6 +8,7 @@ from impactlab.verification import (
     half_space,
     infinite_beam,
     modal_series,
+    observed_order,
     stronge_restitution,
     sub_impacts,
 )
@@ -31,6 +32,7 @@ _FILES: tuple[CheckFile, ...] = (
     modal_series,
     sub_impacts,
     infinite_beam,
+    observed_order,
 )
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
