@@ -11,6 +11,7 @@ from impactlab.verification import (
     observed_order,
     stronge_restitution,
     sub_impacts,
+    time_reversal,
 )
 from impactlab.verification.finding import Finding
 
@@ -33,6 +34,7 @@ _FILES: tuple[CheckFile, ...] = (
     sub_impacts,
     infinite_beam,
     observed_order,
+    time_reversal,
 )
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
