@@ -9,6 +9,7 @@ from impactlab.verification import (
     infinite_beam,
     modal_series,
     observed_order,
+    similarity,
     stronge_restitution,
     sub_impacts,
     time_reversal,
@@ -35,6 +36,7 @@ _FILES: tuple[CheckFile, ...] = (
     infinite_beam,
     observed_order,
     time_reversal,
+    similarity,
 )
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
