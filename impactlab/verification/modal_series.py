@@ -85,7 +85,7 @@ def check() -> Finding:
 
     Of each, the velocity that comes out worst is told. The order is that of the root mean square
     over time. The largest error of the curvature falls as dx^2 log(1/dx): the kink that first touch
-    leaves in it is spread by dispersion, and gathers again at mid-span, in part, at simple fractions
+    leaves in it is spread by dispersion, and gathers in part at mid-span, at simple fractions
     of pi/(4 omega_1) (Talbot's effect); there the error has no smooth expansion in dx.
     """
     found: list[Comparison] = []
