@@ -13,7 +13,7 @@ SOURCE = "Hertz 1881; closed forms in impactlab.reference.hertz"
 
 
 def check() -> Finding:
-    """Peak force, largest indentation and contact duration."""
+    """Peak force, largest indentation, contact duration and restitution."""
     velocity = 0.99
     impact = rigid_backed(velocity, "hertz")
     modulus, radius = hertz.effective_modulus(impact), hertz.effective_radius(impact)
@@ -24,11 +24,12 @@ def check() -> Finding:
     where = f"the paper's sphere at {velocity} m/s"
     return Finding(
         [
-            relative(quantity, where, units, run[name].item(), expected(*args), 1e-4)
+            relative(quantity, where, units, run[name].item(), expected(*args), 2e-5)
             for quantity, name, units, expected in (
                 ("peak force", "peak_force", "N", hertz.peak_force),
                 ("contact duration", "contact_duration", "s", hertz.contact_duration),
                 ("largest indentation", "maximum_indentation", "m", hertz.maximum_indentation),
             )
         ]
+        + [relative("restitution", where, "1", run.restitution.item(), 1.0, 2e-5)]
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -76,49 +76,37 @@ def aluminium_impact() -> Impact:
 CASES = {
     "the paper's beam": Case(elastic(paper_impact()), (0.1, 0.99, 2.0, 5.0), 0.4e-3),
     "Timoshenko's beam": Case(elastic(timoshenko_impact()), (0.01, 0.1, 1.0, 5.0), 0.3e-3),
-    "a beam of aluminium": Case(elastic(aluminium_impact()), (0.05, 0.1, 0.3, 1.0), 0.4e-3),
+    "a beam of aluminium": Case(elastic(aluminium_impact()), (0.05, 0.1, 0.3, 0.8), 0.4e-3),
 }
 
 
 def check() -> Finding:
     """Histories at 201 nodes, at 801 nodes, and the order in which their errors fall.
 
-    The order is that of the root mean square over time. The largest error of the curvature falls a
-    little more slowly, as dx^2 log(1/dx): the kink that first touch leaves in it, spread by
-    dispersion, is whole again at mid-span at every fraction p/q of pi/(4 omega_1), and there the
-    error has no smooth expansion in dx.
+    Of each, the velocity that comes out worst is told. The order is that of the root mean square
+    over time. The largest error of the curvature falls as dx^2 log(1/dx): the kink that first touch
+    leaves in it is spread by dispersion, and gathers in part at mid-span, at simple fractions
+    of pi/(4 omega_1) (Talbot's effect); there the error has no smooth expansion in dx.
     """
     found: list[Comparison] = []
     for beam, case in CASES.items():
-        runs = [_compare(beam, case, velocity) for velocity in case.velocities]
-        found += [entry for run in runs for entry in run.middle]
-        for name in HISTORIES:
-            found.append(worst([run.finest[name] for run in runs]))
-            found.append(worst([run.orders[name] for run in runs]))
+        table = [_compare(beam, case, velocity) for velocity in case.velocities]
+        found += map(worst, zip(*table, strict=True))
     return Finding(found, _panels())
 
 
-@dataclass(frozen=True)
-class _Compared:
-    """One impact: comparisons at 201 nodes, and by history at 801 nodes and of the order."""
-
-    middle: Sequence[Comparison]
-    finest: Mapping[str, Comparison]
-    orders: Mapping[str, Comparison]
-
-
-def _compare(beam: str, case: Case, velocity: float) -> _Compared:
+def _compare(beam: str, case: Case, velocity: float) -> list[Comparison]:
+    """One impact: histories and responses at 201 nodes, histories at 801, and their orders."""
     impact = replace(case.impact, velocity=velocity)
     series = solve(impact, case.duration)
     runs = {nodes: run(impact, nodes, case.duration) for nodes in NODES}
     where = f"{beam}, {velocity:g} m/s"
-    middle = [_history(name, where, series, runs[MIDDLE], MIDDLE) for name in HISTORIES]
-    middle += _responses(where, series, runs[MIDDLE])
-    return _Compared(
-        middle,
-        {name: _history(name, where, series, runs[FINEST], FINEST) for name in HISTORIES},
-        {name: _order(name, where, series, runs) for name in HISTORIES},
-    )
+    return [
+        *(_history(name, where, series, runs[MIDDLE], MIDDLE) for name in HISTORIES),
+        *_responses(where, series, runs[MIDDLE]),
+        *(_history(name, where, series, runs[FINEST], FINEST) for name in HISTORIES),
+        *(_order(name, where, series, runs) for name in HISTORIES),
+    ]
 
 
 def run(impact: Impact, nodes: int, duration: float) -> xr.Dataset:
