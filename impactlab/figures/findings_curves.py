@@ -107,10 +107,17 @@ def _draw(ax: Axes, panel: Panel, looks: dict[str, dict[str, Any]]) -> None:
         if panel.log:
             x, y = scales.positive(x), scales.positive(y)
         label = _label(curve, panel.curves)
-        look = looks[label] | ({} if np.size(x) <= _FEW else {"marker": ""})
+        look = looks[label] | _points(curve, panel.curves)
         if np.isfinite(x + y).any():
             ax.plot(x, y, label=label, **look)
     _scale(ax, panel)
+
+
+def _points(curve: Curve, others: Sequence[Curve]) -> dict[str, Any]:
+    """No markers on a curve of many points, no line through few beside such a curve."""
+    if np.size(curve.x) > _FEW:
+        return {"marker": ""}
+    return {"linestyle": ""} if any(np.size(other.x) > _FEW for other in others) else {}
 
 
 def _scale(ax: Axes, panel: Panel) -> None:

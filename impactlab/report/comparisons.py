@@ -22,6 +22,8 @@ _HEAD = [
     "Verdict",
 ]
 _DIGITS = 6
+_PLAIN = ("absolute", "relative")
+"""Measures that show by themselves: a unit, or none."""
 _PERCENT = 1e-4
 """Tolerances from here on are told in %."""
 
@@ -39,21 +41,19 @@ def _row(entry: Comparison) -> list[Cell]:
         Cell(entry.where),
         Cell(_value(entry.ours, unit, _DIGITS), "number"),
         Cell(_value(entry.independent, unit, _DIGITS), "number"),
-        Cell(error, "number"),
+        Cell(error, "number", "" if entry.measure in _PLAIN else entry.measure),
         Cell(tolerance, "number"),
         Cell("passed") if entry.passed else Cell("FAILED", "warning"),
     ]
 
 
 def _gap(entry: Comparison) -> tuple[str, str]:
-    """Error and tolerance as text, in the same measure and unit."""
+    """Error and tolerance as text, in the same unit."""
     if entry.measure == "absolute":
-        unit, suffix = _display(entry, entry.tolerance), ""
+        unit = _display(entry, entry.tolerance)
     else:
         unit = Display(100.0, "%") if entry.tolerance >= _PERCENT else Display(1.0, "")
-        suffix = "" if entry.measure == "relative" else f" {entry.measure}"
-    error = f"{_value(entry.error, unit, 2)}{suffix}"
-    return error, _value(entry.tolerance, unit, 2)
+    return _value(entry.error, unit, 2), _value(entry.tolerance, unit, 2)
 
 
 def _value(value: float, unit: Display, digits: int) -> str:

@@ -115,6 +115,15 @@ def test_ours_and_independent_curves_differ_without_colour(outcomes: Outcomes) -
     assert open_.get_markerfacecolor() == "none"
 
 
+def test_few_points_beside_a_dense_curve_are_not_joined(outcomes: Outcomes) -> None:
+    x, dense = np.arange(5.0), np.linspace(0.0, 4.0, 99)
+    curves = [Curve("solver", x, x**2), Curve("closed form", dense, dense**2, True)]
+    panel = Panel("t", ("x", "m"), ("y", "m"), curves)
+    (axes,) = findings_curves.plot(_with_panels(outcomes, panel)).axes
+    assert [line.get_linestyle() for line in axes.lines] == ["None", "--"]
+    assert [line.get_marker() for line in axes.lines] == ["o", ""]
+
+
 def test_axes_are_in_display_units_and_decades(outcomes: Outcomes) -> None:
     force, error = findings_curves.plot(outcomes[1]).axes
     assert (force.get_xlabel(), force.get_ylabel()) == ("Time (ms)", "Contact force (kN)")

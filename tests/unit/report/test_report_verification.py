@@ -66,7 +66,7 @@ def test_rows_tell_both_values_the_difference_and_the_tolerance(
     ]
     assert rows[0][2:] == ["21.0648 kN", "21.0647 kN", "0.00032 %", "0.01 %", "passed"]
     assert rows[1][2:] == ["1.2003 mm", "1.2 mm", "0.3 µm", "2 µm", "passed"]
-    assert rows[2][2:] == ["0.03 1/m", "0.031 1/m", "3.2 % of the peak", "10 %", "passed"]
+    assert rows[2][2:] == ["0.03 1/m", "0.031 1/m", "3.2 %of the peak", "10 %", "passed"]
 
 
 def test_failed_rows_are_open_and_passed_ones_folded(told: Any, findings: xr.Dataset) -> None:
