@@ -44,7 +44,10 @@ class Contact(NamedTuple):
 
 
 def timoshenko_spheres() -> dict[str, tuple[Impact, float]]:
-    """Timoshenko's two spheres at 10 mm/s, and how long (s) each is to be followed."""
+    """Timoshenko's two spheres at 10 mm/s, and how long (s) each is to be followed.
+
+    The larger one touches three times. His numbers are at second hand: see timoshenko_impact.
+    """
     small = elastic(timoshenko_impact())
     large = replace(
         small,
