@@ -1,6 +1,7 @@
 """The command line as a person uses it: errors speak, nothing is lost."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -116,7 +117,7 @@ def test_mistakes_end_in_one_message(folder, args, words, monkeypatch, capsys):
 def test_checks_from_the_file_to_the_index(folder):
     said = impactlab("verify", "studies/checks.yaml", cwd=folder).stdout
     assert "half_space" in said
-    assert "3 of 3" in said
+    assert re.search(r"\b(\d+) of \1\b", said)
     findings = folder / "results" / "checks" / "findings.nc"
     impactlab("figures", findings, cwd=folder)
     impactlab("report", findings, cwd=folder)
