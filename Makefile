@@ -23,7 +23,7 @@ SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomple
 
 study: $(MADE)-workflow
 	@$(SNAKEMAKE) --quiet host reason rules $(if $(STUDIES),--config studies='$(STUDIES)') || { \
-	  echo; echo 'Not finished: see the messages above and the logs in results/*/logs.'; \
+	  echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
 	  echo 'What is done is kept: `make study` goes on from there (`make unlock` first, if it says locked).'; \
 	  exit 1; }
 	@echo; echo 'Done. Open results/index.html'

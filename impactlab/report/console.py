@@ -6,9 +6,11 @@ from collections.abc import Iterable
 
 import xarray as xr
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from impactlab.dataset import RESPONSES, reasons
+from impactlab.verification.outcome import Outcome, gravest_first
 
 
 def print_responses(dataset: xr.Dataset) -> None:
@@ -25,9 +27,24 @@ def print_responses(dataset: xr.Dataset) -> None:
         console.print(f"missing because {reason}; a longer duration may help", markup=False)
 
 
-def print_studies(rows: Iterable[tuple[str, int, str]]) -> None:
-    """One line a study: name, number of runs, title."""
-    table = Table("study", "runs", "title")
-    for name, runs, title in rows:
-        table.add_row(name, f"{runs:,}", title)
+def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
+    """One line a study: name, number of runs or checks, title."""
+    table = Table("study", "size", "title")
+    for row in rows:
+        table.add_row(*map(escape, row))
+    Console().print(table)
+
+
+def print_outcomes(outcomes: Iterable[Outcome]) -> None:
+    """One line a check: verdict, how many comparisons passed, the worst error over tolerance."""
+    table = Table("check", "verdict", "passed", "worst error / tolerance", "seconds")
+    for outcome in gravest_first(outcomes):
+        total, worst = len(outcome.finding.comparisons), outcome.worst
+        table.add_row(
+            escape(outcome.name),
+            outcome.verdict.upper() if outcome.verdict != "passed" else "passed",
+            f"{total - len(outcome.failures)} of {total}",
+            f"{worst.ratio:.2g}" if worst else "–",
+            f"{outcome.seconds:.1f}",
+        )
     Console().print(table)

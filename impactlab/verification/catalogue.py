@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from impactlab.verification import half_space
+from impactlab.verification import (
+    half_space,
+    infinite_beam,
+    modal_series,
+    observed_order,
+    similarity,
+    stronge_restitution,
+    sub_impacts,
+    time_reversal,
+)
 from impactlab.verification.finding import Finding
 
 
@@ -19,7 +28,16 @@ class CheckFile(Protocol):
         ...
 
 
-_FILES: tuple[CheckFile, ...] = (half_space,)
+_FILES: tuple[CheckFile, ...] = (
+    half_space,
+    stronge_restitution,
+    modal_series,
+    sub_impacts,
+    infinite_beam,
+    observed_order,
+    time_reversal,
+    similarity,
+)
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
 }
