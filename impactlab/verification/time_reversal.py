@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.kernels.beam import Grid, move, virgin_moments
+from impactlab.kernels.beam import Beam, Grid, make_beam, move_virgin, strike
 from impactlab.kernels.contact.history import CONTACT, Pair, force, make_pair
 from impactlab.kernels.leapfrog import discretise
 from impactlab.kernels.section import Section, make_section
@@ -33,13 +33,17 @@ TOLERANCE = 1e-9
 
 @dataclass
 class State:
-    """w, u, M as in kernels.beam.Beam; the sphere's displacement w_s and its u_s = dt w_s' (m)."""
+    """The beam, and the row of its w that is now; the sphere's w_s and u_s = dt w_s' (m)."""
 
-    w: Floats
-    u: Floats
-    M: Floats
+    beam: Beam
+    now: int
     w_s: float
     u_s: float
+
+    @property
+    def w(self) -> Floats:
+        """Deflection in m, as in kernels.beam, (n + 4,)."""
+        return np.asarray(self.beam.w[self.now])
 
 
 @dataclass(frozen=True)
@@ -55,21 +59,18 @@ class March:
     section: Section
     steps: int
 
-    def forces(self, state: State) -> float:
-        """Contact force in N; the beam's moments, into state.M."""
-        contact = np.zeros(1, CONTACT)[0]  # Hertz contact has no memory
-        contact.n = 1.5
-        cut = self.section
-        virgin_moments(state.w, state.M, 1, cut.stiffness, cut.yield_curvature, self.grid.per_dx2)
-        return float(force(contact, self.pair, state.w_s - state.w[self.grid.n]))
-
     def step(self, state: State) -> float:
         """One step on; returns the force (N) at its beginning."""
-        newtons = self.forces(state)
+        contact = np.zeros(1, CONTACT)  # Hertz contact has no memory
+        contact[0].n = 1.5
+        newtons = float(force(contact[0], self.pair, state.w_s - state.w[self.grid.mid]))
+        w, u, now = state.beam.w, state.beam.u, state.now
+        move_virgin(w, now, u, 2, self.grid.mid + 1, self.grid, self.section.yield_curvature)
+        strike(w, now, u, newtons, self.grid)
         gravity = self.impact.gravity - newtons / self.impact.sphere.total_mass
         state.u_s += self.grid.dt**2 * gravity
         state.w_s += state.u_s
-        move(state.w, state.u, state.M, 1, self.grid.factor, self.grid.push * newtons)
+        state.now = 1 - now
         return newtons
 
     def run(self, state: State) -> Floats:
@@ -77,13 +78,11 @@ class March:
         return np.array([self.step(state) for _ in range(self.steps)])
 
     def turn(self, state: State) -> None:
-        """Turn all velocities round, where the body now is."""
+        """Turn all velocities round, where the bodies now are."""
         self.step(state)  # for the velocities half a step later
-        state.u *= -1.0
+        state.beam.u[:] *= -1.0
         state.u_s *= -1.0
-        n = self.grid.n
-        state.w[: n + 1] += state.u
-        state.w[n + 1] = state.w[n - 1]
+        state.now = 1 - state.now
         state.w_s += state.u_s
 
 
@@ -93,8 +92,7 @@ def prepare(impact: Impact, grid: Discretisation, duration: float) -> tuple[Marc
     pair, section = make_pair(case), make_section(case)
     cut, steps = discretise(case, pair, section)
     before = impact.velocity * cut.dt - 0.5 * impact.gravity * cut.dt**2
-    beam = np.zeros(cut.n + 2), np.zeros(cut.n + 1), np.zeros(cut.n + 1)
-    return March(impact, cut, pair, section, steps), State(*beam, 0.0, before)
+    return March(impact, cut, pair, section, steps), State(make_beam(cut), 0, 0.0, before)
 
 
 def check() -> Finding:
@@ -104,7 +102,7 @@ def check() -> Finding:
     """
     impact = elastic(paper_impact(0.99))
     march, state = prepare(impact, _GRID, _DURATION)
-    start = replace(state, w=state.w.copy(), u=state.u.copy(), M=state.M.copy())
+    sphere = state.u_s
     there = march.run(state)
     largest = float(np.max(np.abs(state.w)))
     march.turn(state)
@@ -123,14 +121,15 @@ def check() -> Finding:
             TOLERANCE,
         ),
         curve("contact force, back and there", where, "N", back[:-1], there[1:], TOLERANCE),
-        *_returned(where, state, start, largest),
+        *_returned(where, state, sphere, largest),
     ]
     return Finding(found, [_panel(solver.time.values, there, back)])
 
 
-def _returned(where: str, state: State, start: State, largest: float) -> list[Comparison]:
-    velocity = state.u_s / start.u_s
-    beam = float(np.max(np.abs(state.u))) / start.u_s
+def _returned(where: str, state: State, sphere: float, largest: float) -> list[Comparison]:
+    """Against the start; sphere: u_s there (m), largest: the deflection when it turned (m)."""
+    velocity = state.u_s / sphere
+    beam = float(np.max(np.abs(state.beam.u))) / sphere
     return [
         absolute("sphere's velocity over the first", where, "1", velocity, 1.0, TOLERANCE),
         absolute("sphere's place over deflection", where, "1", state.w_s / largest, 0.0, TOLERANCE),
