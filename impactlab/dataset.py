@@ -10,13 +10,15 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from impactlab.kernels import status
 from impactlab.model.parameters import PARAMETERS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STATUS_FLAGS: dict[str, tuple[int, str]] = {
     "diverged": (status.DIVERGED, "the run diverged; every response is missing"),

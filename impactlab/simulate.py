@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 from impactlab.kernels import RULES
@@ -20,6 +19,9 @@ from impactlab.model.checks import integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.parameters import Value, flatten, with_values
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _NUMBERS = {"contact": LAWS.index, "rule": RULES.index}
 
@@ -53,6 +55,8 @@ def simulate(
 
     Raises ValueError when duration or samples is not valid.
     """
+    import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
+
     grid = discretisation or Discretisation()
     samples = integer("simulate", "samples", samples, 2)
     cases = case_table(impact, grid, duration=duration)
@@ -82,6 +86,8 @@ def simulate_many(
     Raises ValueError for an unknown parameter, unequal lengths, or a value that the model
     refuses, naming the run.
     """
+    import xarray as xr
+
     grid = discretisation or Discretisation()
     cases = case_table(impact, grid, duration=duration, varied=varied)
     labels = {name: ("run", np.asarray(values)) for name, values in varied.items()}
