@@ -95,7 +95,7 @@ def simulate(
         print_responses(solve(case_table(impact, grid, duration=seconds)).responses[0])
     else:
         from impactlab.simulate import simulate as solve_one
-        from impactlab.study.storage import write_netcdf
+        from impactlab.study.netcdf import write_netcdf
 
         dataset = solve_one(impact, grid, duration=seconds)
         print_responses(dataset)
@@ -124,8 +124,8 @@ def design(
 ) -> None:
     """Sample a study into its runs."""
     from impactlab.study.declaration import read_study
+    from impactlab.study.netcdf import write_netcdf
     from impactlab.study.sampling import design as sampled
-    from impactlab.study.storage import write_netcdf
 
     write_netcdf(sampled(read_study(study)), output or RESULTS / study.stem / "design.nc")
 
@@ -148,8 +148,8 @@ def run(
     from impactlab.study.declaration import read_study
     from impactlab.study.engine import Engine
     from impactlab.study.execution import execute
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.study.sampling import design as sampled
-    from impactlab.study.storage import read_netcdf, write_netcdf
 
     if design_file.suffix == ".nc":
         samples = read_netcdf(design_file)
@@ -168,7 +168,7 @@ def analyse(
 ) -> None:
     """Convergence and sensitivity from solved runs."""
     from impactlab.analysis.analyse import analyse as analysed
-    from impactlab.study.storage import read_netcdf, write_netcdf
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
 
     write_netcdf(analysed(read_netcdf(runs)), output or runs.with_name("analysis.nc"))
 
@@ -181,7 +181,7 @@ def figures(
 ) -> None:
     """Draw every figure that a study's runs and analysis allow."""
     from impactlab.figures.draw import draw_all
-    from impactlab.study.storage import read_netcdf
+    from impactlab.study.netcdf import read_netcdf
 
     draw_all(read_netcdf(runs), read_netcdf(analysis), output or runs.with_name("figures"))
 
@@ -197,7 +197,7 @@ def report(
 ) -> None:
     """Write a study's report."""
     from impactlab.report.report import write_report
-    from impactlab.study.storage import read_netcdf
+    from impactlab.study.netcdf import read_netcdf
 
     write_report(
         read_netcdf(runs),

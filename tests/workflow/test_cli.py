@@ -97,6 +97,12 @@ def test_simulate_loads_no_more_than_it_needs(tmp_path):
     assert {"netCDF4", "xarray"} <= loaded(*ONE, "--output", "one.nc", cwd=tmp_path)
 
 
+def test_only_what_solves_loads_the_compiler(folder):
+    assert "numba" not in loaded("design", "studies/small.yaml", cwd=folder)
+    assert "numba" in loaded("run", "studies/small.yaml", cwd=folder)
+    assert "numba" not in loaded("analyse", "results/small/runs.nc", cwd=folder)
+
+
 def test_simulate_prints_the_same_with_and_without_a_file(tmp_path):
     alone = impactlab(*ONE, cwd=tmp_path).stdout
     assert alone == impactlab(*ONE, "--output", "one.nc", cwd=tmp_path).stdout
