@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import os
 import signal
@@ -16,6 +17,7 @@ app = typer.Typer(
     help="A sphere strikes an elastic-plastic beam: from a study file to a report.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # plain help: boxes and colours take twice as long
     add_completion=False,
 )
 
@@ -37,6 +39,7 @@ RESULTS = Path("results")
 
 def main() -> None:
     """Run the command line; a user's mistake ends in one message and exit code 1."""
+    gc.set_threshold(100_000)  # loading modules makes many objects, but no rubbish
     try:
         app()
     except KeyboardInterrupt:
@@ -82,18 +85,24 @@ def simulate(
         Path | None, typer.Option(help="Keep histories and fields as netCDF.")
     ] = None,
 ) -> None:
-    """Solve one impact of the paper's sphere on the paper's beam and print its responses."""
+    """Solve one impact on the paper's beam and print its responses."""
     from impactlab.model.discretisation import Discretisation
     from impactlab.model.paper import paper_impact
     from impactlab.report.console import print_responses
-    from impactlab.simulate import simulate as solve_one
-    from impactlab.study.storage import write_netcdf
 
     impact = paper_impact(given("--velocity", velocity, "m s-1"), contact)
     grid = Discretisation(nodes=nodes, points=points, rule=rule)
-    dataset = solve_one(impact, grid, duration=given("--duration", duration, "s"))
-    print_responses(dataset)
-    if output:
+    seconds = given("--duration", duration, "s")
+    if output is None:
+        from impactlab.simulate import case_table, solve
+
+        print_responses(solve(case_table(impact, grid, duration=seconds)).responses[0])
+    else:
+        from impactlab.simulate import simulate as solve_one
+        from impactlab.study.netcdf import write_netcdf
+
+        dataset = solve_one(impact, grid, duration=seconds)
+        print_responses(dataset)
         write_netcdf(dataset, output)
 
 
@@ -119,8 +128,8 @@ def design(
 ) -> None:
     """Sample a study into its runs."""
     from impactlab.study.declaration import read_study
+    from impactlab.study.netcdf import write_netcdf
     from impactlab.study.sampling import design as sampled
-    from impactlab.study.storage import write_netcdf
 
     write_netcdf(sampled(read_study(study)), output or RESULTS / study.stem / "design.nc")
 
@@ -143,8 +152,8 @@ def run(
     from impactlab.study.declaration import read_study
     from impactlab.study.engine import Engine
     from impactlab.study.execution import execute
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.study.sampling import design as sampled
-    from impactlab.study.storage import read_netcdf, write_netcdf
 
     if design_file.suffix == ".nc":
         samples = read_netcdf(design_file)
@@ -163,7 +172,7 @@ def analyse(
 ) -> None:
     """Convergence and sensitivity from solved runs."""
     from impactlab.analysis.analyse import analyse as analysed
-    from impactlab.study.storage import read_netcdf, write_netcdf
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
 
     write_netcdf(analysed(read_netcdf(runs)), output or runs.with_name("analysis.nc"))
 
@@ -186,7 +195,7 @@ def verify(
     from impactlab.report.console import print_outcomes
     from impactlab.study.checking import check, failure
     from impactlab.study.declaration import read_verification
-    from impactlab.study.storage import read_netcdf, write_netcdf
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.verification.stored import unpacked
 
     if study.suffix == ".nc":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from impactlab.model.checks import positive
+from impactlab.model.columns import anywhere
 from impactlab.model.material import Material
 
 
@@ -24,7 +25,7 @@ class Beam:
     def __post_init__(self) -> None:
         for field in ("span", "width", "depth"):
             positive("Beam", field, getattr(self, field))
-        if self.depth >= self.span:
+        if anywhere(self.depth >= self.span):
             raise ValueError(
                 f"Beam.depth = {self.depth!r}: must be below the span ({self.span!r} m)"
             )

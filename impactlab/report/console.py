@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
-import xarray as xr
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -13,17 +13,20 @@ from impactlab.dataset import RESPONSES, reasons
 from impactlab.verification.outcome import Outcome, gravest_first
 
 
-def print_responses(dataset: xr.Dataset) -> None:
-    """The scalar responses of one run, each with its unit; a missing one as such, and why."""
+def print_responses(run: Any) -> None:
+    """The scalar responses of one run, each with its unit; a missing one as such, and why.
+
+    run: a dataset of simulate, or one record of kernels.responses.RESPONSE.
+    """
     table = Table("response", "value", "unit", "meaning")
     for name, entry in RESPONSES.items():
-        value = dataset[name].item()
+        value = run[name].item()
         table.add_row(
             name, "missing" if value != value else f"{value:.6g}", entry.units, entry.long_name
         )
     console = Console()
     console.print(table)
-    for reason in reasons(dataset["status"].item()):
+    for reason in reasons(run["status"].item()):
         console.print(f"missing because {reason}; a longer duration may help", markup=False)
 
 

@@ -14,7 +14,7 @@ from impactlab.figures.reading.contents import count
 from impactlab.report.outcome import failed_runs
 from impactlab.report.report import write_report
 from impactlab.report.verification import tally, write_verification
-from impactlab.study.storage import read_netcdf
+from impactlab.study.netcdf import read_netcdf
 from impactlab.verification.stored import unpacked
 
 

@@ -80,6 +80,48 @@ def test_simulate_prints_and_keeps(tmp_path):
     assert one["peak_force"].attrs["units"] == "N"
 
 
+def loaded(*args, cwd):
+    """The packages that a command loads."""
+    command = [sys.executable, "-X", "importtime", "-m", "impactlab", *args]
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    lines = [line for line in done.stderr.splitlines() if line.startswith("import time:")]
+    return {line.split("|")[-1].strip().split(".")[0] for line in lines}
+
+
+HEAVY = {"dask", "distributed", "matplotlib", "netCDF4", "pandas", "pint", "ruamel", "xarray"}
+ONE = ("simulate", "--nodes", "11", "--velocity", "99 cm/s")
+
+
+def test_help_loads_nothing_heavy(tmp_path):
+    packages = loaded("--help", cwd=tmp_path)
+    assert "typer" in packages
+    assert packages.isdisjoint(HEAVY | {"numba", "numpy", "pydantic", "rich", "scipy"})
+
+
+def test_simulate_loads_no_more_than_it_needs(tmp_path):
+    packages = loaded(*ONE, cwd=tmp_path)
+    assert "numba" in packages
+    assert packages.isdisjoint(HEAVY)
+    assert {"netCDF4", "xarray"} <= loaded(*ONE, "--output", "one.nc", cwd=tmp_path)
+
+
+def test_only_what_solves_loads_the_compiler(folder):
+    assert "numba" not in loaded("design", "studies/small.yaml", cwd=folder)
+    assert "numba" in loaded("run", "studies/small.yaml", cwd=folder)
+    assert "numba" not in loaded("analyse", "results/small/runs.nc", cwd=folder)
+
+
+def test_simulate_prints_the_same_with_and_without_a_file(tmp_path):
+    alone = impactlab(*ONE, cwd=tmp_path).stdout
+    assert alone == impactlab(*ONE, "--output", "one.nc", cwd=tmp_path).stdout
+    assert "peak_force" in alone
+
+
+def test_help_is_not_cut_short(tmp_path):
+    assert not re.search(r"\w\.\.\.", impactlab("--help", cwd=tmp_path).stdout)
+
+
 @pytest.mark.parametrize(
     ("args", "words"),
     [

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab.study.storage import write_netcdf
+from impactlab.study.netcdf import write_netcdf
 from impactlab.verification.finding import Finding, relative
 from impactlab.verification.outcome import Outcome
 from impactlab.verification.stored import packed

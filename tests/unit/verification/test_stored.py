@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from impactlab.study.storage import read_netcdf, write_netcdf
+from impactlab.study.netcdf import read_netcdf, write_netcdf
 from impactlab.verification.outcome import gravest_first
 from impactlab.verification.stored import packed, unpacked
 
