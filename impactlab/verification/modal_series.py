@@ -16,7 +16,7 @@ from impactlab.model.material import Material
 from impactlab.model.paper import paper_impact
 from impactlab.model.sphere import Sphere
 from impactlab.reference.modal import ModalSolution, solve
-from impactlab.reference.timoshenko import timoshenko_impact
+from impactlab.reference.timoshenko_1913 import timoshenko_impact
 from impactlab.simulate import simulate
 from impactlab.verification.cases import elastic
 from impactlab.verification.finding import (
