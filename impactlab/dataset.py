@@ -130,7 +130,12 @@ RESPONSES: dict[str, Variable] = {
 _TIME = (
     Variable("contact_force", ("time",), "N", "contact force"),
     Variable("midspan_deflection", ("time",), "m", "deflection of the beam at mid-span"),
-    Variable("midspan_curvature", ("time",), "m-1", "curvature w_xx of the beam at mid-span"),
+    Variable(
+        "midspan_curvature",
+        ("time",),
+        "m-1",
+        "curvature of the beam at mid-span (w_xx; psi_x of a Timoshenko beam)",
+    ),
     Variable("sphere_displacement", ("time",), "m", "displacement of the sphere since first touch"),
     Variable("indentation", ("time",), "m", "indentation (approach of sphere and beam axis)"),
 )

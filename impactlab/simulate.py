@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
-from impactlab.kernels import RULES, SCHEMES
+from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
 from impactlab.kernels.case import CASE, REAL, WHOLE
 from impactlab.kernels.contact import LAWS
 from impactlab.kernels.leapfrog import run_all
@@ -24,7 +24,12 @@ from impactlab.model.parameters import Value, flatten, with_values
 if TYPE_CHECKING:
     import xarray as xr
 
-_NUMBERED = {"contact": LAWS, "rule": RULES, "scheme": SCHEMES}
+_NUMBERED = {
+    "contact": LAWS,
+    "beam_model": BEAM_MODELS,
+    "rule": RULES,
+    "scheme": SCHEMES,
+}
 
 
 @dataclass(frozen=True)
@@ -121,8 +126,9 @@ def case_table(
         many = with_values(impact, discretisation, columns)
     except (TypeError, ValueError):  # some run may be wrong, or right in a way of its own
         each = _one_by_one(impact, discretisation, varied)
-        return np.concatenate([np.zeros(0, CASE), *(_table(*run, duration, 1) for run in each)])
-    return _table(*many, duration, lengths.pop() if lengths else 1)
+        tables = [np.zeros(0, CASE), *(_table(*run, duration, 1) for run in each)]
+        return _compatible(np.concatenate(tables))
+    return _compatible(_table(*many, duration, lengths.pop() if lengths else 1))
 
 
 def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False) -> Answers:
@@ -210,6 +216,19 @@ def _table(
     cases = np.zeros(runs, dtype=CASE)
     for name in (*WHOLE, *REAL):
         cases[name] = values[name]
+    return cases
+
+
+def _compatible(cases: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """The cases, none of which asks for a scheme that its model of the beam does not have."""
+    leapfrog_only = cases["beam_model"] > BEAM_MODELS.index("elastic")
+    wrong = np.flatnonzero(leapfrog_only & (cases["scheme"] != SCHEMES.index("leapfrog")))
+    if wrong.size:
+        case = cases[wrong[0]]
+        raise ValueError(
+            f"run {wrong[0]}: Discretisation.scheme = {SCHEMES[case.scheme]!r}: "
+            f"Impact.beam_model = {BEAM_MODELS[case.beam_model]!r} has 'leapfrog' alone"
+        )
     return cases
 
 

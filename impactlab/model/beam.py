@@ -13,14 +13,17 @@ from impactlab.model.material import Material
 class Beam:
     """A simply supported beam of rectangular section: span, width and depth in m.
 
+    shear_coefficient: k in Q = k G A times the shear angle, of the Timoshenko beam alone.
+
     Raises ValueError naming the field when a length is not finite and positive, or when the
-    depth is not below the span.
+    depth is not below the span, or the shear coefficient not in (0, 1].
     """
 
     span: float
     width: float
     depth: float
     material: Material
+    shear_coefficient: float = 5.0 / 6.0
 
     def __post_init__(self) -> None:
         for field in ("span", "width", "depth"):
@@ -28,6 +31,11 @@ class Beam:
         if anywhere(self.depth >= self.span):
             raise ValueError(
                 f"Beam.depth = {self.depth!r}: must be below the span ({self.span!r} m)"
+            )
+        if anywhere(positive("Beam", "shear_coefficient", self.shear_coefficient) > 1):
+            raise ValueError(
+                f"Beam.shear_coefficient = {self.shear_coefficient!r}: must be in (0, 1]; "
+                "5/6 holds for a rectangle"
             )
 
     @property
