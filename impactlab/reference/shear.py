@@ -13,29 +13,20 @@ from impactlab.model.beam import Beam
 from impactlab.model.checks import not_negative, positive
 from impactlab.reference import bending
 
-SHEAR_COEFFICIENT = 5.0 / 6.0
-"""k of a rectangle: a parabola of shear stress stores 1/k times the energy of an even stress."""
 
-
-def shear_stiffness(beam: Beam, shear_coefficient: float = SHEAR_COEFFICIENT) -> float:
-    """K G A in N, G = E/(2 (1 + nu)).
-
-    Raises ValueError when the shear coefficient is not finite and positive.
-    """
-    k = positive("shear", "shear_coefficient", shear_coefficient)
+def shear_stiffness(beam: Beam) -> float:
+    """K G A in N, G = E/(2 (1 + nu))."""
     modulus = beam.material.youngs_modulus / (2.0 * (1.0 + beam.material.poissons_ratio))
-    return k * modulus * beam.width * beam.depth
+    return beam.shear_coefficient * modulus * beam.width * beam.depth
 
 
-def static_deflection(
-    beam: Beam, load: float, shear_coefficient: float = SHEAR_COEFFICIENT
-) -> float:
+def static_deflection(beam: Beam, load: float) -> float:
     """Elastic mid-span deflection in m under a `load` P (N) there: P L^3/(48 EI) + P L/(4 k G A).
 
     Raises ValueError when the load is negative or not finite.
     """
     force = not_negative("shear", "load", load)
-    shear = force * beam.span / (4.0 * shear_stiffness(beam, shear_coefficient))
+    shear = force * beam.span / (4.0 * shear_stiffness(beam))
     return bending.static_deflection(beam, force) + shear
 
 
@@ -44,7 +35,7 @@ def bending_frequency(beam: Beam) -> float:
     return (math.pi / beam.span) ** 2 * math.sqrt(beam.bending_stiffness / beam.mass_per_length)
 
 
-def first_frequency(beam: Beam, shear_coefficient: float = SHEAR_COEFFICIENT) -> float:
+def first_frequency(beam: Beam) -> float:
     """omega_1 in rad/s with shear and rotary inertia.
 
     The smaller root of rho^2 I/(k G) omega^4 - (rho A + rho I q^2 (1 + E/(k G))) omega^2 + EI q^4,
@@ -52,24 +43,22 @@ def first_frequency(beam: Beam, shear_coefficient: float = SHEAR_COEFFICIENT) ->
     c x^2 - (1 + b) x + 1 = 0, x = (omega/omega_bending)^2.
     """
     r2 = beam.depth**2 / 12.0 * (math.pi / beam.span) ** 2
-    ratio = _modulus_ratio(beam, shear_coefficient)
+    ratio = _modulus_ratio(beam)
     b, c = r2 * (1.0 + ratio), r2**2 * ratio
     x = 2.0 / (1.0 + b + math.sqrt((1.0 + b) ** 2 - 4.0 * c))
     return bending_frequency(beam) * math.sqrt(x)
 
 
-def static_share(beam: Beam, shear_coefficient: float = SHEAR_COEFFICIENT) -> float:
+def static_share(beam: Beam) -> float:
     """Static deflection by shear over that by bending: 12 EI/(k G A L^2).
 
     Equals E/(k G) (H/L)^2; 3.12 (H/L)^2 for nu = 0.3. Where it is small, shear does not matter to
     motions as slow as the beam's first mode; whether it matters to a contact, impact_share tells.
     """
-    return _modulus_ratio(beam, shear_coefficient) * (beam.depth / beam.span) ** 2
+    return _modulus_ratio(beam) * (beam.depth / beam.span) ** 2
 
 
-def impact_share(
-    beam: Beam, duration: float, shear_coefficient: float = SHEAR_COEFFICIENT
-) -> float:
+def impact_share(beam: Beam, duration: float) -> float:
     """How much shear and rotary inertia slow the waves that a contact of `duration` (s) makes.
 
     omega = c q^2 (1 - q^2 I (1 + E/(k G))/(2 A) + ...), c = sqrt(EI/(rho A)), of the wave that
@@ -81,13 +70,11 @@ def impact_share(
     """
     wave_constant = math.sqrt(beam.bending_stiffness / beam.mass_per_length)
     square = math.pi / (wave_constant * positive("shear", "duration", duration))
-    ratio = _modulus_ratio(beam, shear_coefficient)
+    ratio = _modulus_ratio(beam)
     return 0.5 * square * beam.depth**2 / 12.0 * (1.0 + ratio)
 
 
-def early_deflection(
-    beam: Beam, load: float, time: float, shear_coefficient: float = SHEAR_COEFFICIENT
-) -> float:
+def early_deflection(beam: Beam, load: float, time: float) -> float:
     """Deflection in m under a `load` F (N) that set on suddenly, a short `time` t (s) ago.
 
     w = F (t/(2 sqrt(a rho A)) + t^3/(24 EI p (p + b)^2)) + O(t^5): first the load meets the
@@ -100,7 +87,7 @@ def early_deflection(
     Raises ValueError when load or time is negative or not finite.
     """
     force, t = not_negative("shear", "load", load), not_negative("shear", "time", time)
-    a = shear_stiffness(beam, shear_coefficient)
+    a = shear_stiffness(beam)
     shear = math.sqrt(beam.mass_per_length / a)
     bar = math.sqrt(beam.material.density / beam.material.youngs_modulus)
     first = t / (2.0 * math.sqrt(a * beam.mass_per_length))
@@ -108,7 +95,7 @@ def early_deflection(
     return force * (first + third)
 
 
-def _modulus_ratio(beam: Beam, shear_coefficient: float) -> float:
+def _modulus_ratio(beam: Beam) -> float:
     """E/(k G)."""
     area = beam.width * beam.depth
-    return beam.material.youngs_modulus * area / shear_stiffness(beam, shear_coefficient)
+    return beam.material.youngs_modulus * area / shear_stiffness(beam)

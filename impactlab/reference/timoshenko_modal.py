@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from impactlab.model.impact import Impact
 from impactlab.reference.modal import ModalSolution, solve_with
-from impactlab.reference.shear import SHEAR_COEFFICIENT
 from impactlab.reference.timoshenko_modes import odd_modes
 
 
@@ -19,7 +18,6 @@ def solve(
     *,
     modes: int = 100,
     step: float | None = None,
-    shear_coefficient: float = SHEAR_COEFFICIENT,
 ) -> ModalSolution:
     """The impact on an elastic Timoshenko beam over `duration` (s), with that many odd n.
 
@@ -27,7 +25,6 @@ def solve(
     peak force and contact duration, and 1e-5 of the largest curvature. amplitudes and rates of the
     solution have the shape (time, 2 modes): the lower spectrum, then the higher one.
 
-    Raises ValueError as modal.solve does, and when the shear coefficient is not positive.
+    Raises ValueError as modal.solve does.
     """
-    table = odd_modes(impact.beam, modes, shear_coefficient)
-    return solve_with(table, impact, duration, step)
+    return solve_with(odd_modes(impact.beam, modes), impact, duration, step)

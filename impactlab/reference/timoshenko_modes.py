@@ -18,22 +18,21 @@ from numpy.typing import NDArray
 
 from impactlab.model.beam import Beam
 from impactlab.reference.beam_modes import BeamModes, odd_wave_numbers
-from impactlab.reference.shear import SHEAR_COEFFICIENT, shear_stiffness
+from impactlab.reference.shear import shear_stiffness
 
 Floats = NDArray[np.float64]
 
 
-def odd_modes(beam: Beam, count: int, shear_coefficient: float = SHEAR_COEFFICIENT) -> BeamModes:
+def odd_modes(beam: Beam, count: int) -> BeamModes:
     """Both spectra of the first `count` odd n: first the lower frequencies, then the higher ones.
 
     Mode masses: 1/m = 2/(rho A L) times W's share in the mode, the square of W's entry in the unit
     eigenvector of (sqrt(rho A) W, sqrt(rho I) Psi); the shares of one n add up to 1. Curvatures:
     psi_x = -q Psi, q Psi = (q^2 - rho A omega^2/a) W, by the first equation without load.
 
-    Raises ValueError when count is not a whole number of at least 1, or the shear coefficient is
-    not finite and positive.
+    Raises ValueError when count is not a whole number of at least 1.
     """
-    q, a = odd_wave_numbers(beam, count), shear_stiffness(beam, shear_coefficient)
+    q, a = odd_wave_numbers(beam, count), shear_stiffness(beam)
     squares, shares = _two_oscillators(beam, q, a)
     flexibilities = 2.0 * shares / (beam.mass_per_length * beam.span * squares)
     curvatures = beam.mass_per_length * squares / a - q**2

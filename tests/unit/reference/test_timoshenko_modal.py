@@ -191,7 +191,6 @@ def test_papers_case():
         ({"duration": 0.0}, "duration"),
         ({"step": -1e-7}, "step"),
         ({"modes": 0}, "modes|count"),
-        ({"shear_coefficient": np.nan}, "shear_coefficient"),
         ({"impact": paper_impact(contact="stronge")}, "contact"),
     ],
 )
