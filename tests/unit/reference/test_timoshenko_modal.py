@@ -15,6 +15,7 @@ from impactlab.reference.modal_march import contact_stiffness
 from impactlab.reference.shear import shear_stiffness
 from impactlab.reference.timoshenko_1913 import timoshenko_impact
 from impactlab.reference.timoshenko_modal import solve
+from impactlab.verification.cases import slimmer
 
 PAPER, TIMOSHENKO = paper_impact(contact="hertz"), timoshenko_impact()
 STUBBY = replace(PAPER, beam=replace(PAPER.beam, span=0.2))
@@ -143,23 +144,6 @@ def test_moment_under_a_slow_load_is_that_of_statics():
     force = solution.contact_force[deepest]
     expected = -force * beam.span / (4 * beam.bending_stiffness)
     assert solution.midspan_curvature[deepest] == pytest.approx(expected, rel=0.02)
-
-
-def slimmer(impact, times):
-    """The same bending and contact, with depth/span so many times smaller.
-
-    rho A, EI and E* stay: E grows with the square of `times`, width makes up for depth, and the
-    sphere gives way for what the beam no longer does.
-    """
-    beam, sphere = impact.beam, impact.sphere
-    E, nu = beam.material.youngs_modulus, beam.material.poissons_ratio
-    sphere_nu, sphere_E = sphere.material.poissons_ratio, sphere.material.youngs_modulus
-    whole = (1 - nu**2) / E + (1 - sphere_nu**2) / sphere_E
-    new = (1 - sphere_nu**2) / (whole - (1 - nu**2) / (E * times**2))
-    material = replace(beam.material, youngs_modulus=E * times**2)
-    soft = replace(sphere.material, youngs_modulus=new)
-    slim = replace(beam, depth=beam.depth / times, width=beam.width * times, material=material)
-    return replace(impact, beam=slim, sphere=replace(sphere, material=soft))
 
 
 @CASES
