@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from impactlab.verification import half_space
+from impactlab.verification import half_space, static_collapse, static_deflection
 from impactlab.verification.finding import Finding
 
 
@@ -19,7 +19,11 @@ class CheckFile(Protocol):
         ...
 
 
-_FILES: tuple[CheckFile, ...] = (half_space,)
+_FILES: tuple[CheckFile, ...] = (
+    half_space,
+    static_deflection,
+    static_collapse,
+)
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
 }
