@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from impactlab.verification import half_space, static_collapse, static_deflection
+from impactlab.verification import half_space, moment_curvature, static_collapse, static_deflection
 from impactlab.verification.finding import Finding
 
 
@@ -21,6 +21,7 @@ class CheckFile(Protocol):
 
 _FILES: tuple[CheckFile, ...] = (
     half_space,
+    moment_curvature,
     static_deflection,
     static_collapse,
 )
