@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from impactlab.verification import half_space, moment_curvature, static_collapse, static_deflection
+from impactlab.verification import (
+    half_space,
+    moment_curvature,
+    rigid_plastic_mode,
+    static_collapse,
+    static_deflection,
+)
 from impactlab.verification.finding import Finding
 
 
@@ -24,6 +30,7 @@ _FILES: tuple[CheckFile, ...] = (
     moment_curvature,
     static_deflection,
     static_collapse,
+    rigid_plastic_mode,
 )
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
