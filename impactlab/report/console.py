@@ -8,7 +8,7 @@ import xarray as xr
 from rich.console import Console
 from rich.table import Table
 
-from impactlab.dataset import RESPONSES, reasons
+from impactlab.dataset import RESPONSES, reasons, remarked
 
 
 def print_responses(dataset: xr.Dataset) -> None:
@@ -23,6 +23,8 @@ def print_responses(dataset: xr.Dataset) -> None:
     console.print(table)
     for reason in reasons(dataset["status"].item()):
         console.print(f"missing because {reason}; a longer duration may help", markup=False)
+    for remark in remarked(dataset["remarks"].item()):
+        console.print(f"note: {remark}", markup=False)
 
 
 def print_studies(rows: Iterable[tuple[str, int, str]]) -> None:

@@ -9,7 +9,16 @@ import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab.dataset import COORDINATES, HISTORIES, PROFILES, RESPONSES, STATUS_FLAGS
+from impactlab.dataset import (
+    COORDINATES,
+    FLAGS,
+    HISTORIES,
+    PROFILES,
+    REMARKS,
+    RESPONSES,
+    STATUS_FLAGS,
+    remarked,
+)
 from impactlab.kernels import RULES
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.simulate import case_table, solve
@@ -30,17 +39,18 @@ def test_every_variable_is_there_on_its_dimensions(run):
     for name, entry in (RESPONSES | HISTORIES | PROFILES).items():
         assert run[name].dims == entry.dims, name
         assert run[name].dtype == np.float64, name
-    assert set(run.data_vars) == {*RESPONSES, *HISTORIES, *PROFILES, "status"}
+    assert set(run.data_vars) == {*RESPONSES, *HISTORIES, *PROFILES, *FLAGS}
     assert run.status.dtype == np.int32
     assert run.status.dims == ()
 
 
 def test_every_variable_has_units_and_a_long_name(run):
-    for name in set(run.variables) - {"status"}:
+    for name in set(run.variables) - {*FLAGS}:
         assert run[name].attrs["units"], name
         assert run[name].attrs["long_name"], name
     assert run.status.attrs["long_name"]
     assert run.status.attrs["flag_meanings"].split() == list(STATUS_FLAGS)
+    assert run.remarks.attrs["flag_meanings"].split() == list(REMARKS)
     assert run.status.attrs["flag_masks"].tolist() == list(BITS.values())
 
 
@@ -136,8 +146,8 @@ def test_many_runs_are_single_runs_bit_by_bit():
 def test_many_runs_carry_labels_units_and_reasons():
     varied = {"velocity": np.array([1.0, 2.0]), "rule": np.array(["layers", "lobatto"])}
     many = il.simulate_many(IMPACT, GRID, duration=DURATION, varied=varied)
-    assert set(many.data_vars) == {*RESPONSES, "status"}
-    for name in (*RESPONSES, "status"):
+    assert set(many.data_vars) == {*RESPONSES, *FLAGS}
+    for name in many.data_vars:
         assert many[name].dims == ("run",)
         assert many[name].attrs["long_name"]
     assert many.velocity.values.tolist() == [1.0, 2.0]
@@ -151,6 +161,17 @@ def test_many_runs_carry_labels_units_and_reasons():
 def test_one_run_and_none(varied):
     many = il.simulate_many(IMPACT, GRID, duration=DURATION, varied=varied)
     assert many.sizes == {"run": 1 - len(varied)}
+
+
+def test_a_run_in_which_the_contact_law_creates_energy_says_so():
+    """Stronge's law at 20 and at 990 mm/s: within and above 2.673 times the yield indentation."""
+    run = il.simulate(il.paper_impact(0.02), GRID, duration=4e-3)
+    assert run.remarks.item() & REMARKS["contact_created_energy"][0]
+    assert run.contact_dissipation < 0
+    assert "creates energy" in run.contact_dissipation.attrs["comment"]
+    assert "created energy" in remarked(run.remarks.item())[0]
+    assert il.simulate(il.paper_impact(0.99), GRID, duration=4e-3).remarks == 0
+    assert remarked(0) == []
 
 
 def flags(run):
@@ -197,7 +218,7 @@ def diverged(points):
 def test_a_diverged_run_gives_no_number(points):
     run = diverged(points)
     assert flags(run) == {"diverged"}
-    for name in set(run.data_vars) - {"status"}:
+    for name in set(run.data_vars) - {*FLAGS}:
         assert run[name].isnull().all(), name
 
 
