@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from impactlab.verification import (
+    balances,
     half_space,
     moment_curvature,
     rigid_plastic_mode,
@@ -31,6 +32,7 @@ _FILES: tuple[CheckFile, ...] = (
     static_deflection,
     static_collapse,
     rigid_plastic_mode,
+    balances,
 )
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
