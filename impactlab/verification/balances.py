@@ -1,4 +1,8 @@
-"""Energy and momentum in drawn cases: nothing is lost, and only a contact law creates energy."""
+"""Energy and momentum in drawn cases: nothing is lost, and only a contact law creates energy.
+
+Central differences conserve both exactly while the beam is elastic, so that rounding alone is
+allowed there; a fibre that yields within a time step costs second order in the step.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +32,6 @@ TITLE = "Balances of energy and momentum"
 SOURCE = "Sums over the dataset in impactlab.verification.audit; loops of Stronge's law"
 _CASES = 80
 _SEED = 20240607
-_DRAWN = f"{_CASES} drawn cases"
 _ROUNDING = 1e-9
 """Share of the energy brought, below which a dissipation counts as none."""
 Case = tuple[Impact, Audit]
@@ -40,9 +43,13 @@ def check() -> Finding:
     cases = [_solved(random) for _ in range(_CASES)]
     audits = [found for _, found in cases]
     comparisons = [
-        _worst("energy in excess", [found.energy for found in audits], 3e-3),
-        _middle("energy in excess", [found.energy for found in audits], 5e-5),
-        _worst("sphere's momentum in excess", [found.momentum for found in audits], 3e-3),
+        _worst(
+            "energy in excess, the beam elastic", [a.energy for a in audits if not a.plastic], 1e-9
+        ),
+        _worst(
+            "energy in excess, the beam yielding", [a.energy for a in audits if a.plastic], 2e-3
+        ),
+        _worst("sphere's momentum in excess", [found.momentum for found in audits], 1e-9),
         _worst("contact dissipation", [_contact(found) for found in audits], 2e-3),
         _worst("plastic dissipation", [_plastic(found) for found in audits], 1e-12),
         _never_negative("plastic_dissipation", audits),
@@ -87,13 +94,13 @@ def _solved(random: np.random.Generator) -> Case:
 
 def _worst(quantity: str, errors: list[float], tolerance: float) -> Comparison:
     worst = float(np.max(np.abs(errors)))
-    return absolute(quantity, f"worst of {_DRAWN}, over what is brought", "1", worst, 0, tolerance)
-
-
-def _middle(quantity: str, errors: list[float], tolerance: float) -> Comparison:
-    middle = float(np.median(np.abs(errors)))
     return absolute(
-        quantity, f"median of {_DRAWN}, over what is brought", "1", middle, 0, tolerance
+        quantity,
+        f"worst of {len(errors)} drawn cases, over what is brought",
+        "1",
+        worst,
+        0,
+        tolerance,
     )
 
 
