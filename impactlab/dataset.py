@@ -182,6 +182,7 @@ COORDINATES: dict[str, Variable] = {
     "x": Variable("x", ("x",), "m", "distance from the left support"),
     "z": Variable("z", ("z",), "m", "distance below the beam's axis"),
     "duration": Variable("duration", (), "s", "simulated time"),
+    "run": Variable("run", ("run",), "1", "number of the run"),
 }
 VARIABLES = RESPONSES | HISTORIES | PROFILES | COORDINATES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""

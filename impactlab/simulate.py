@@ -79,8 +79,8 @@ def simulate_many(
     the same length. Returns a Dataset of every response, `status` and `remarks` on `run`, the
     varied parameters as coordinates.
 
-    Raises ValueError for an unknown parameter, unequal lengths, or a value that the model
-    refuses, naming the run.
+    Raises ValueError for an unknown parameter, one that is no list, unequal lengths, or a value
+    that the model refuses, naming the run.
     """
     grid = discretisation or Discretisation()
     cases = case_table(impact, grid, duration=duration, varied=varied)
@@ -106,6 +106,9 @@ def case_table(
     """
     positive("simulate", "duration", duration)
     varied = varied or {}
+    for name, column in varied.items():
+        if isinstance(column, str) or np.ndim(column) != 1:
+            raise ValueError(f"varied: {name} = {column!r}: must be a list with one value a run")
     lengths = {len(values) for values in varied.values()}
     if len(lengths) > 1:
         raise ValueError(f"varied: every parameter needs one value a run, got lengths {lengths}")
@@ -210,4 +213,5 @@ def _mirror(half: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:
     """From fibres z > 0, outermost first, to all fibres in ascending z."""
     axis = np.abs(0.0 * lower[:, :, : points % 2])  # NaN where a run diverged, as all else
-    return np.concatenate([sign * lower, axis, lower[:, :, ::-1]], axis=2)
+    upper = sign * lower + 0.0  # no -0.0
+    return np.concatenate([upper, axis, lower[:, :, ::-1]], axis=2)

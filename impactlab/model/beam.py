@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from impactlab.model.checks import positive
+from impactlab.model.checks import instance, positive
 from impactlab.model.material import Material
 
 
@@ -13,7 +13,7 @@ class Beam:
     """A simply supported beam of rectangular section: span, width and depth in m.
 
     Raises ValueError naming the field when a length is not finite and positive, or when the
-    depth is not below the span.
+    depth is not below the span, or the material is none.
     """
 
     span: float
@@ -22,6 +22,7 @@ class Beam:
     material: Material
 
     def __post_init__(self) -> None:
+        instance("Beam", "material", self.material, Material)
         for field in ("span", "width", "depth"):
             positive("Beam", field, getattr(self, field))
         if self.depth >= self.span:

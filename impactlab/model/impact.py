@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from impactlab.kernels.contact import LAWS
 from impactlab.model.beam import Beam
-from impactlab.model.checks import not_negative, one_of, positive
+from impactlab.model.checks import instance, not_negative, one_of, positive
 from impactlab.model.sphere import Sphere
 
 
@@ -27,6 +27,8 @@ class Impact:
     gravity: float = 9.81
 
     def __post_init__(self) -> None:
+        instance("Impact", "sphere", self.sphere, Sphere)
+        instance("Impact", "beam", self.beam, Beam)
         positive("Impact", "velocity", self.velocity)
         not_negative("Impact", "gravity", self.gravity)
         one_of("Impact", "contact", self.contact, LAWS)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from impactlab.model.checks import positive
+from impactlab.model.checks import instance, positive
 from impactlab.model.material import Material
 
 
@@ -13,7 +13,8 @@ from impactlab.model.material import Material
 class Sphere:
     """A solid sphere: radius in m, mass in kg (None: density times volume).
 
-    Raises ValueError naming the field when radius or mass is not finite and positive.
+    Raises ValueError naming the field when radius or mass is not finite and positive, or the
+    material is none.
     """
 
     radius: float
@@ -21,6 +22,7 @@ class Sphere:
     mass: float | None = None
 
     def __post_init__(self) -> None:
+        instance("Sphere", "material", self.material, Material)
         positive("Sphere", "radius", self.radius)
         if self.mass is not None:
             positive("Sphere", "mass", self.mass)

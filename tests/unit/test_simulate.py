@@ -68,7 +68,7 @@ def test_every_parameter_is_a_coordinate(run):
         "duration": DURATION,
     }
     assert {name: run[name].item() for name in (*PARAMETERS, "duration")} == expected
-    assert set(run.coords) == {*PARAMETERS, *COORDINATES}
+    assert set(run.coords) == {*PARAMETERS, *COORDINATES} - {"run"}
 
 
 def test_default_discretisation():
@@ -103,6 +103,18 @@ def test_profiles_mirror_about_mid_span_and_strains_about_the_axis(rule, points)
     assert np.all(peeq >= np.abs(strain))
     assert peeq.max() == run.peak_plastic_strain
     assert run.deflection[0] == run.deflection[-1] == 0
+
+
+def test_an_elastic_beam_has_no_negative_zeros():
+    run = il.simulate(il.paper_impact(0.1), GRID, duration=DURATION, samples=2)
+    assert not np.signbit(run.plastic_strain.values).any()
+    assert (run.plastic_strain == 0).all()
+
+
+@pytest.mark.parametrize("values", [5.0, np.float64(5), np.array(5.0), "hertz", [[1.0, 2.0]]])
+def test_what_varies_is_a_list(values):
+    with pytest.raises(ValueError, match=r"^varied: velocity = .*: must be a list"):
+        il.simulate_many(IMPACT, GRID, duration=DURATION, varied={"velocity": values})
 
 
 def test_the_lower_side_is_stretched_at_mid_span():
@@ -154,6 +166,7 @@ def test_many_runs_carry_labels_units_and_reasons():
     assert many.velocity.attrs["units"] == "m s-1"
     assert many.rule.values.tolist() == ["layers", "lobatto"]
     assert many.run.values.tolist() == [0, 1]
+    assert many.run.attrs["long_name"]
     assert many.duration.item() == DURATION
 
 
