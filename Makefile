@@ -1,6 +1,7 @@
 # make study   from the study files to results/index.html
 # make test    the checks and the tests
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc)
+# make mutants the tests' own test: faults seeded into the kernels, and what catches each
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
 PYTHON ?= python3
@@ -18,7 +19,7 @@ IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
 
-.PHONY: study test lint pytest bench coverage constraints unlock clean
+.PHONY: study test lint pytest bench mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 study: $(MADE)-workflow
@@ -42,6 +43,9 @@ pytest: $(MADE)-dev
 
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
+
+mutants: $(MADE)-dev
+	$(BIN)/python tests/mutations/run.py
 
 # Compiled kernels hide from coverage: here they run as plain Python, on the small cases only.
 coverage: $(MADE)-dev
