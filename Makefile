@@ -1,6 +1,7 @@
 # make study   from the study files to results/index.html
 # make test    the checks and the tests
-# make bench   the kernel's cost, in times an elastic C stencil (needs gcc)
+# make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
+#              its kernels, and what a second thread brings: wants an idle machine
 # make mutants the tests' own test: faults seeded into the kernels, and what catches each
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
@@ -24,7 +25,7 @@ SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomple
 
 study: $(MADE)-workflow
 	@$(SNAKEMAKE) --quiet host reason rules $(if $(STUDIES),--config studies='$(STUDIES)') || { \
-	  echo; echo 'Not finished: see the messages above and the logs in results/*/logs.'; \
+	  echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
 	  echo 'What is done is kept: `make study` goes on from there (`make unlock` first, if it says locked).'; \
 	  exit 1; }
 	@echo; echo 'Done. Open results/index.html'
@@ -43,6 +44,7 @@ pytest: $(MADE)-dev
 
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
+	$(IN_VENV) python tests/benchmarks/batch.py
 
 mutants: $(MADE)-dev
 	$(BIN)/python tests/mutations/run.py

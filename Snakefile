@@ -1,6 +1,8 @@
 # studies/NAME.yaml -> design.nc -> runs.nc -> analysis.nc -> figures/ -> report.html, and one index.
+# A study of checks: studies/NAME.yaml -> findings.nc -> figures/ -> report.html, then the verdict.
 # All committed studies: snakemake --cores all. Some: snakemake --cores all --config studies=smoke,sobol
 import os
+import re
 from pathlib import Path
 
 
@@ -11,6 +13,18 @@ def asked_studies(asked):
     return str(asked).replace(",", " ").split() if not isinstance(asked, list) else asked
 
 
+def lists_checks(study):
+    """Whether it is a verification; what is wrong with a file is told by the command that reads it."""
+    file = Path(f"studies/{study}.yaml")
+    return file.exists() and bool(re.search(r"^checks\s*:", file.read_text("utf-8", "replace"), re.MULTILINE))
+
+
+def stored(wildcards):
+    """What figures and report are made from."""
+    names = ["findings.nc"] if lists_checks(wildcards.study) else ["runs.nc", "analysis.nc"]
+    return [f"results/{wildcards.study}/{name}" for name in names]
+
+
 def code(*patterns):
     """Sources that a step depends on: when they change, the step is done again."""
     return sorted(str(path) for pattern in patterns for path in Path("impactlab").glob(pattern))
@@ -18,7 +32,10 @@ def code(*patterns):
 
 MODEL = ("dataset.py", "model/*.py")
 SOLVER = (*MODEL, "simulate.py", "kernels/**/*.py")
+CHECKING = ("study/checking.py", "study/declaration/*.py", "study/storage.py")
+FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcome", "stored"))
 STUDIES = asked_studies(config.get("studies"))
+VERIFICATIONS = [study for study in STUDIES if lists_checks(study)]
 
 
 report: "workflow/captions/workflow.rst"
@@ -26,6 +43,12 @@ report: "workflow/captions/workflow.rst"
 
 wildcard_constraints:
     study="[A-Za-z0-9_-]+",
+
+
+rule all:
+    input:
+        "results/index.html",
+        expand("results/{study}/passed", study=VERIFICATIONS),
 
 
 rule index:
@@ -97,11 +120,28 @@ rule analysis:
         "impactlab --log {log} analyse {input.runs} --output {output}"
 
 
+# Checks that fail are findings like others: the report comes first, the verdict last.
+rule verify:
+    input:
+        code=code(*SOLVER, "reference/*.py", "verification/*.py", *CHECKING),
+        study="studies/{study}.yaml",
+    output:
+        "results/{study}/findings.nc",
+    log:
+        "results/{study}/logs/verify.log",
+    benchmark:
+        "results/{study}/benchmarks/verify.tsv"
+    threads: 1
+    conda:
+        "environment.yaml"
+    shell:
+        "impactlab --log {log} verify {input.study} --output {output} --exit-zero"
+
+
 rule figures:
     input:
-        code=code("dataset.py", "figures/**/*.py"),
-        runs="results/{study}/runs.nc",
-        analysis="results/{study}/analysis.nc",
+        code=code("dataset.py", *FINDINGS, "figures/**/*.py"),
+        stored=stored,
     output:
         report(
             directory("results/{study}/figures"),
@@ -118,14 +158,13 @@ rule figures:
     conda:
         "environment.yaml"
     shell:
-        "impactlab --log {log} figures {input.runs} {input.analysis} --output {output}"
+        "impactlab --log {log} figures {input.stored} --output {output}"
 
 
 rule report:
     input:
-        code=code("dataset.py", "report/**/*.py", "report/templates/*"),
-        runs="results/{study}/runs.nc",
-        analysis="results/{study}/analysis.nc",
+        code=code("dataset.py", *FINDINGS, "report/**/*.py", "report/templates/*"),
+        stored=stored,
         figures="results/{study}/figures",
     output:
         report(
@@ -142,5 +181,23 @@ rule report:
     conda:
         "environment.yaml"
     shell:
-        "impactlab --log {log} report {input.runs} {input.analysis} --figures {input.figures}"
-        " --output {output}"
+        "impactlab --log {log} report {input.stored} --figures {input.figures} --output {output}"
+
+
+# After everything else, so that a failure hides no report.
+rule verdict:
+    input:
+        code=code(*FINDINGS),
+        findings="results/{study}/findings.nc",
+        index="results/index.html",
+    output:
+        touch("results/{study}/passed"),
+    log:
+        "results/{study}/logs/verdict.log",
+    benchmark:
+        "results/{study}/benchmarks/verdict.tsv"
+    threads: 1
+    conda:
+        "environment.yaml"
+    shell:
+        "impactlab --log {log} verify {input.findings}"

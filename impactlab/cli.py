@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import os
 import signal
@@ -16,6 +17,7 @@ app = typer.Typer(
     help="A sphere strikes an elastic-plastic beam: from a study file to a report.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # plain help: boxes and colours take twice as long
     add_completion=False,
 )
 
@@ -25,14 +27,19 @@ StudyFile = Annotated[
 RunsFile = Annotated[
     Path, typer.Argument(metavar="RUNS", help="Solved runs, results/NAME/runs.nc.")
 ]
-AnalysisFile = Annotated[
-    Path, typer.Argument(metavar="ANALYSIS", help="Their analysis, results/NAME/analysis.nc.")
+StoredFiles = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="STORED...",
+        help="Of a study: runs.nc and analysis.nc. Of a verification: findings.nc.",
+    ),
 ]
 RESULTS = Path("results")
 
 
 def main() -> None:
     """Run the command line; a user's mistake ends in one message and exit code 1."""
+    gc.set_threshold(100_000)  # loading modules makes many objects, but no rubbish
     try:
         app()
     except KeyboardInterrupt:
@@ -78,18 +85,24 @@ def simulate(
         Path | None, typer.Option(help="Keep histories and fields as netCDF.")
     ] = None,
 ) -> None:
-    """Solve one impact of the paper's sphere on the paper's beam and print its responses."""
+    """Solve one impact on the paper's beam and print its responses."""
     from impactlab.model.discretisation import Discretisation
     from impactlab.model.paper import paper_impact
     from impactlab.report.console import print_responses
-    from impactlab.simulate import simulate as solve_one
-    from impactlab.study.storage import write_netcdf
 
     impact = paper_impact(given("--velocity", velocity, "m s-1"), contact)
     grid = Discretisation(nodes=nodes, points=points, rule=rule)
-    dataset = solve_one(impact, grid, duration=given("--duration", duration, "s"))
-    print_responses(dataset)
-    if output:
+    seconds = given("--duration", duration, "s")
+    if output is None:
+        from impactlab.simulate import case_table, solve
+
+        print_responses(solve(case_table(impact, grid, duration=seconds)).responses[0])
+    else:
+        from impactlab.simulate import simulate as solve_one
+        from impactlab.study.netcdf import write_netcdf
+
+        dataset = solve_one(impact, grid, duration=seconds)
+        print_responses(dataset)
         write_netcdf(dataset, output)
 
 
@@ -97,15 +110,15 @@ def simulate(
 def studies(
     folder: Annotated[Path, typer.Argument(help="Where the study files lie.")] = Path("studies"),
 ) -> None:
-    """List the studies of a folder with their titles and number of runs."""
+    """List the studies of a folder with their titles and number of runs or checks."""
     from impactlab.report.console import print_studies
-    from impactlab.study.declaration import read_study
+    from impactlab.study.declaration import read_any
 
     files = sorted(folder.glob("*.yaml"))
     if not files:
         raise FileNotFoundError(f"{folder}: no study files (*.yaml) there")
-    read = [read_study(path) for path in files]
-    print_studies((study.name, study.sampling.runs, study.title) for study in read)
+    read = [read_any(path) for path in files]
+    print_studies((study.name, study.size, study.title) for study in read)
 
 
 @app.command()
@@ -115,8 +128,8 @@ def design(
 ) -> None:
     """Sample a study into its runs."""
     from impactlab.study.declaration import read_study
+    from impactlab.study.netcdf import write_netcdf
     from impactlab.study.sampling import design as sampled
-    from impactlab.study.storage import write_netcdf
 
     write_netcdf(sampled(read_study(study)), output or RESULTS / study.stem / "design.nc")
 
@@ -139,8 +152,8 @@ def run(
     from impactlab.study.declaration import read_study
     from impactlab.study.engine import Engine
     from impactlab.study.execution import execute
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.study.sampling import design as sampled
-    from impactlab.study.storage import read_netcdf, write_netcdf
 
     if design_file.suffix == ".nc":
         samples = read_netcdf(design_file)
@@ -159,42 +172,76 @@ def analyse(
 ) -> None:
     """Convergence and sensitivity from solved runs."""
     from impactlab.analysis.analyse import analyse as analysed
-    from impactlab.study.storage import read_netcdf, write_netcdf
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
 
     write_netcdf(analysed(read_netcdf(runs)), output or runs.with_name("analysis.nc"))
 
 
 @app.command()
-def figures(
-    runs: RunsFile,
-    analysis: AnalysisFile,
-    output: Annotated[Path | None, typer.Option(help="Default: figures/ beside the runs.")] = None,
+def verify(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY", help="A study file of checks, or its findings.nc.")
+    ],
+    output: Annotated[Path | None, typer.Option(help="Default: results/NAME/findings.nc.")] = None,
+    exit_zero: Annotated[
+        bool,
+        typer.Option("--exit-zero", help="End with exit code 0 although a check fails."),
+    ] = False,
 ) -> None:
-    """Draw every figure that a study's runs and analysis allow."""
-    from impactlab.figures.draw import draw_all
-    from impactlab.study.storage import read_netcdf
+    """Hold the solver against independent solutions; exit code 1 where a check fails.
 
-    draw_all(read_netcdf(runs), read_netcdf(analysis), output or runs.with_name("figures"))
+    What was found is written all the same. Of a findings.nc the verdict is told again.
+    """
+    from impactlab.report.console import print_outcomes
+    from impactlab.study.checking import check, failure
+    from impactlab.study.declaration import read_verification
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
+    from impactlab.verification.stored import unpacked
+
+    if study.suffix == ".nc":
+        findings = read_netcdf(study)
+    else:
+        findings = check(read_verification(study))
+        write_netcdf(findings, output or RESULTS / study.stem / "findings.nc")
+    outcomes = unpacked(findings)
+    print_outcomes(outcomes)
+    if said := failure(outcomes):
+        logging.getLogger("impactlab").error("%s", said)
+        raise typer.Exit(code=0 if exit_zero else 1)
+
+
+@app.command()
+def figures(
+    stored: StoredFiles,
+    output: Annotated[
+        Path | None, typer.Option(help="Default: figures/ beside the first of them.")
+    ] = None,
+) -> None:
+    """Draw every figure that the stored answers of a study, or the findings of checks, allow."""
+    from impactlab.report.kinds import read_stored
+
+    kind, datasets = read_stored(stored)
+    kind.draw(datasets, output or stored[0].with_name("figures"))
 
 
 @app.command()
 def report(
-    runs: RunsFile,
-    analysis: AnalysisFile,
-    figures: Annotated[Path | None, typer.Option(help="Default: figures/ beside the runs.")] = None,
+    stored: StoredFiles,
+    figures: Annotated[
+        Path | None, typer.Option(help="Default: figures/ beside the first of them.")
+    ] = None,
     output: Annotated[
-        Path | None, typer.Option(help="Default: report.html beside the runs.")
+        Path | None, typer.Option(help="Default: report.html beside the first of them.")
     ] = None,
 ) -> None:
     """Write a study's report."""
-    from impactlab.report.report import write_report
-    from impactlab.study.storage import read_netcdf
+    from impactlab.report.kinds import read_stored
 
-    write_report(
-        read_netcdf(runs),
-        read_netcdf(analysis),
-        figures or runs.with_name("figures"),
-        output or runs.with_name("report.html"),
+    kind, datasets = read_stored(stored)
+    kind.write(
+        datasets,
+        figures or stored[0].with_name("figures"),
+        output or stored[0].with_name("report.html"),
     )
 
 

@@ -8,15 +8,18 @@ import subprocess
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from impactlab.kernels import remarks, status
 from impactlab.model.parameters import PARAMETERS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STATUS_FLAGS: dict[str, tuple[int, str]] = {
     "diverged": (status.DIVERGED, "the run diverged; every response is missing"),
@@ -209,9 +212,9 @@ def attributes(name: str) -> dict[str, Any]:
 def described(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with the attributes of the table on every variable that the table knows."""
     known = VARIABLES | PARAMETERS | FLAGS
-    for name in dataset.variables:
+    for name, variable in dataset.variables.items():
         if name in known:
-            dataset[name].attrs = attributes(str(name)) | dataset[name].attrs
+            variable.attrs = attributes(str(name)) | variable.attrs
     return dataset
 
 
@@ -241,17 +244,25 @@ def provenance() -> dict[str, str]:
     """Where numbers come from: versions, source revision, time and class of processor."""
     return {
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "versions": ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
-        + f", python {platform.python_version()}",
-        "source_revision": _revision(),
+        "versions": _versions(),
+        "source_revision": _revision(Path(__file__).resolve().parent),
         "processor": _processor(),
         "Conventions": "CF-1.11",
     }
 
 
-def _revision() -> str:
+# What a process has loaded stays as it is, so each of these is found out once.
+
+
+@cache
+def _versions() -> str:
+    packages = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
+    return f"{packages}, python {platform.python_version()}"
+
+
+@cache
+def _revision(here: Path) -> str:
     """The commit of the source tree, marked when it has changes; "release" outside a checkout."""
-    here = Path(__file__).resolve().parent
     command = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
     if not (here.parent / ".git").exists():
         return f"release {version('impactlab')}"
@@ -262,6 +273,7 @@ def _revision() -> str:
     return result.stdout.strip()
 
 
+@cache
 def _processor() -> str:
     info = Path("/proc/cpuinfo")
     if info.exists():

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 from impactlab.kernels import RULES
@@ -17,11 +16,15 @@ from impactlab.kernels.leapfrog import run_all
 from impactlab.kernels.quadrature import rule_points
 from impactlab.kernels.responses import RESPONSE
 from impactlab.model.checks import integer, positive
+from impactlab.model.columns import column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.parameters import Value, flatten, with_values
 
-_NUMBERS = {"contact": LAWS.index, "rule": RULES.index}
+if TYPE_CHECKING:
+    import xarray as xr
+
+_NUMBERED = {"contact": LAWS, "rule": RULES}
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,8 @@ def simulate(
 
     Raises ValueError when duration or samples is not valid.
     """
+    import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
+
     grid = discretisation or Discretisation()
     samples = integer("simulate", "samples", samples, 2)
     cases = case_table(impact, grid, duration=duration)
@@ -82,6 +87,8 @@ def simulate_many(
     Raises ValueError for an unknown parameter, one that is no list, unequal lengths, or a value
     that the model refuses, naming the run.
     """
+    import xarray as xr
+
     grid = discretisation or Discretisation()
     cases = case_table(impact, grid, duration=duration, varied=varied)
     labels = {name: ("run", np.asarray(values)) for name, values in varied.items()}
@@ -106,20 +113,19 @@ def case_table(
     """
     positive("simulate", "duration", duration)
     varied = varied or {}
-    for name, column in varied.items():
-        if isinstance(column, str) or np.ndim(column) != 1:
-            raise ValueError(f"varied: {name} = {column!r}: must be a list with one value a run")
+    for name, values in varied.items():
+        if isinstance(values, str) or np.ndim(values) != 1:
+            raise ValueError(f"varied: {name} = {values!r}: must be a list with one value a run")
     lengths = {len(values) for values in varied.values()}
     if len(lengths) > 1:
         raise ValueError(f"varied: every parameter needs one value a run, got lengths {lengths}")
-    cases = np.zeros(lengths.pop() if lengths else 1, dtype=CASE)
-    for run in range(cases.size):
-        values = {name: _plain(column[run]) for name, column in varied.items()}
-        try:
-            cases[run] = _case(*with_values(impact, discretisation, values), duration)
-        except ValueError as error:
-            raise ValueError(f"run {run}: {error}") from None
-    return cases
+    try:
+        columns = {name: column(values) for name, values in varied.items()}
+        many = with_values(impact, discretisation, columns)
+    except (TypeError, ValueError):  # some run may be wrong, or right in a way of its own
+        each = _one_by_one(impact, discretisation, varied)
+        return np.concatenate([np.zeros(0, CASE), *(_table(*run, duration, 1) for run in each)])
+    return _table(*many, duration, lengths.pop() if lengths else 1)
 
 
 def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False) -> Answers:
@@ -128,10 +134,9 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
     samples: length of each history (0: none). profiles: keep the fields along the beam, for
     which all cases must share nodes and points; raises ValueError where they do not.
     """
-    shapes = {(int(case.nodes), int(case.points), int(case.rule)) for case in cases}
-    if profiles and len(shapes) > 1:
+    if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
         raise ValueError("profiles need the same nodes, points and rule in every run")
-    nodes, points, _ = next(iter(shapes)) if profiles else (-1, 0, 0)
+    nodes, points = (int(cases[0].nodes), int(cases[0].points)) if profiles else (-1, 0)
     half, fibres, runs = nodes // 2 + 1, points // 2, cases.size
     responses = np.zeros(runs, dtype=RESPONSE)
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
@@ -184,12 +189,32 @@ def _plain(value: Any) -> Value:
     return plain
 
 
-def _case(impact: Impact, discretisation: Discretisation, duration: float) -> tuple[Value, ...]:
-    values = flatten(impact, discretisation)
-    values |= {"sphere_mass": impact.sphere.total_mass, "duration": duration}
-    for name, number in _NUMBERS.items():
-        values[name] = number(str(values[name]))
-    return tuple(values[name] for name in (*WHOLE, *REAL))
+def _one_by_one(
+    impact: Impact,
+    discretisation: Discretisation,
+    varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]],
+) -> Iterator[tuple[Impact, Discretisation]]:
+    """The impact of every run. Raises ValueError naming the first one that the model refuses."""
+    for run, row in enumerate(zip(*varied.values(), strict=True)):
+        values = dict(zip(varied, map(_plain, row), strict=True))
+        try:
+            yield with_values(impact, discretisation, values)
+        except ValueError as error:
+            raise ValueError(f"run {run}: {error}") from None
+
+
+def _table(
+    impact: Impact, discretisation: Discretisation, duration: float, runs: int
+) -> np.ndarray[Any, Any]:
+    """The records of as many runs as the columns in the impact are long, or one for all."""
+    values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
+    values["sphere_mass"] = impact.sphere.total_mass
+    for name, words in _NUMBERED.items():
+        values[name] = sum(at * (values[name] == word) for at, word in enumerate(words))
+    cases = np.zeros(runs, dtype=CASE)
+    for name in (*WHOLE, *REAL):
+        cases[name] = values[name]
+    return cases
 
 
 def _whole_beam(

@@ -3,41 +3,92 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import style
+from impactlab.figures import findings_curves, findings_overview, style
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.files import replaced
+from impactlab.verification.outcome import gravest_first
+from impactlab.verification.stored import unpacked
 
 FORMATS = ("svg", "png")
 CAPTIONS = "captions.json"
+OVERVIEW = "overview"
+"""Name of the figure of all comparisons; the others are named for their checks."""
+
+
+class Drawing(NamedTuple):
+    """A figure to come: made only when its turn is, for figures are large."""
+
+    name: str
+    title: str
+    plot: Callable[[], Figure]
+    caption: Callable[[], str]
 
 
 def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]:
-    """Write NAME.svg and NAME.png of each figure that applies, and captions.json.
+    """Draw each figure of the catalogue that applies to a study of runs; see `draw`."""
+    pair = runs, analysis
+    drawings = [
+        Drawing(name, file.TITLE, partial(file.plot, *pair), partial(file.caption, *pair))
+        for name, file in CATALOGUE.items()
+        if file.applies(*pair)
+    ]
+    return draw(drawings, folder, study=str(runs.attrs.get("study")))
+
+
+def draw_findings(findings: xr.Dataset, folder: Path) -> list[Path]:
+    """Draw the overview of a verification, and the curves of each check; see `draw`."""
+    outcomes = gravest_first(unpacked(findings))
+    drawings = [
+        Drawing(
+            OVERVIEW,
+            findings_overview.TITLE,
+            partial(findings_overview.plot, outcomes),
+            partial(findings_overview.caption, outcomes),
+        )
+    ]
+    drawings += [
+        Drawing(
+            outcome.name,
+            outcome.title,
+            partial(findings_curves.plot, outcome),
+            partial(findings_curves.caption, outcome),
+        )
+        for outcome in outcomes
+        if findings_curves.applies(outcome)
+    ]
+    return draw(drawings, folder, study=str(findings.attrs.get("study")))
+
+
+def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
+    """Write NAME.svg and NAME.png of each figure, and captions.json.
 
     captions.json: {NAME: {"title", "caption"}} in the order of the report. Files of figures that
-    do not apply any more are removed. The same datasets give the same bytes. Returns the paths
-    written. Raises what drawing raises, with the figure's name added.
+    it named before and that are not drawn any more are removed. The same datasets give the same
+    bytes. Returns the paths written. Raises what drawing raises, with the figure's name added.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    before = _captions(folder / CAPTIONS)
     written: list[Path] = []
     captions: dict[str, dict[str, str]] = {}
-    for name, file in CATALOGUE.items():
-        if not file.applies(runs, analysis):
-            _remove(folder, name)
-            continue
+    for drawing in drawings:
         try:
-            written += save(file.plot(runs, analysis), folder, name)
-            captions[name] = {"title": file.TITLE, "caption": file.caption(runs, analysis)}
+            written += save(drawing.plot(), folder, drawing.name)
+            captions[drawing.name] = {"title": drawing.title, "caption": drawing.caption()}
         except Exception as error:
-            error.add_note(f"while drawing the figure {name} of study {runs.attrs.get('study')}")
+            error.add_note(f"while drawing the figure {drawing.name} of study {study}")
             raise
     with replaced(folder / CAPTIONS) as path:
         path.write_text(json.dumps(captions, indent=2, ensure_ascii=False) + "\n", "utf-8")
+    for name in before - captions.keys():
+        _remove(folder, name)
     return [*written, folder / CAPTIONS]
 
 
@@ -49,6 +100,11 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         with style.applied(), replaced(path) as temporary:
             figure.savefig(temporary, format=path.suffix[1:], metadata=metadata)
     return paths
+
+
+def _captions(path: Path) -> set[str]:
+    """The figures that captions.json names; none where there is no such file."""
+    return set(json.loads(path.read_bytes())) if path.exists() else set()
 
 
 def _remove(folder: Path, name: str) -> None:

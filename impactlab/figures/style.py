@@ -113,7 +113,7 @@ def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
     if len(found) < 2 and not title:
         return
     found = {label: found[label] for label in order if label in found} or found
-    columns = _columns(figure, list(found))
+    columns = _columns(figure.get_figwidth() / MILLIMETRE, list(found))
     rows = math.ceil(len(found) / columns) + bool(title)
     figure.set_figheight(figure.get_figheight() + (rows * 4.2 + 1.0) * MILLIMETRE)
     figure.legend(
@@ -121,10 +121,39 @@ def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
     )
 
 
-def _columns(figure: Figure, labels: list[str]) -> int:
-    """As many columns as fit: a letter is about 1.6 mm wide at 7 pt, a handle 10 mm."""
+def panel_legends(figure: Figure) -> None:
+    """A legend above each panel, headed by the panel's title; the figure grows to hold them."""
+    rows = 0
+    for axes in figure.axes:
+        handles, labels = axes.get_legend_handles_labels()
+        place = axes.get_subplotspec()
+        assert place is not None
+        width = figure.get_figwidth() / MILLIMETRE / place.get_gridspec().ncols - _MARGIN
+        columns = _columns(width, labels, letter=1.4)
+        rows = max(rows, math.ceil(len(labels) / columns))
+        if len(labels) > 1:
+            axes.legend(handles, labels, title=axes.get_title(loc="left"), ncols=columns, **_ABOVE)
+            axes.set_title("", loc="left")
+    lines = figure.axes[0].get_subplotspec().get_gridspec().nrows  # type: ignore[union-attr]
+    figure.set_figheight(figure.get_figheight() + lines * rows * 4.2 * MILLIMETRE)
+
+
+_MARGIN = 15.0
+"""Left of a panel, for numbers and label, mm."""
+_ABOVE: dict[str, Any] = {
+    "loc": "lower left",
+    "bbox_to_anchor": (0.0, 1.0),
+    "borderaxespad": 0.0,
+    "borderpad": 0.2,
+    "alignment": "left",
+    "title_fontsize": 8,
+}
+
+
+def _columns(width: float, labels: list[str], letter: float = 1.6) -> int:
+    """As many columns as fit into mm: a letter is up to 1.6 mm wide at 7 pt, a handle 10 mm."""
     longest = max((len(label) for label in labels), default=1)
-    fit = int(figure.get_figwidth() / MILLIMETRE / (1.6 * longest + 10.0))
+    fit = int(width / (letter * longest + 10.0))
     return max(1, min(fit, len(labels)))
 
 

@@ -1,7 +1,12 @@
 """The Euler-Bernoulli beam by finite differences: rho A w_tt = M_xx + p, kappa = w_xx.
 
-By symmetry only the half from the left support (node 0) to mid-span (node n) is solved; node
-n + 1 of w mirrors node n - 1. w = M = 0 at the support. Deflection is positive downwards.
+By symmetry only the half from the left support to mid-span is solved. Arrays along it have n + 4
+entries: 1 is the support, where w = M = 0, `mid` = n + 1 is mid-span, and 0, mid + 1, mid + 2
+mirror the nodes within. Deflection is positive downwards.
+
+With M = M_0 - EI kappa (section.py), M_xx is the fourth difference of w and the second one of
+M_0. M_0 changes only where sections yield, so a step is one loop over w, and the share of M_0 in
+it, `plastic`, is kept from step to step.
 """
 
 from __future__ import annotations
@@ -10,42 +15,38 @@ from typing import NamedTuple
 
 import numpy as np
 
+from impactlab.kernels.arrays import ONE, TWO, lent
 from impactlab.kernels.jit import compiled, vectorised
-from impactlab.kernels.section import Section, bend, plastic_energies
 from impactlab.kernels.types import Array
 
 
 class Beam(NamedTuple):
     """The half beam's state.
 
-    w (m, n + 2), u = dt w_t at half steps (m, n + 1), M (N m, n + 1); each section's elastic
-    interval M_0 (N m), kappa_min, kappa_max (1/m), n + 1 each; plastic_strain and peeq of its
-    fibres, (n + 1, P // 2).
+    w: deflection (m) at this step and the next, in turns, (2, n + 4). u = dt w_t at half steps and
+    plastic = dt^2/(rho A) (M_0)_xx, both in m, (n + 4,).
     """
 
     w: Array
     u: Array
-    M: Array
-    M_0: Array
-    kappa_min: Array
-    kappa_max: Array
-    plastic_strain: Array
-    peeq: Array
+    plastic: Array
 
 
 class Grid(NamedTuple):
-    """n: index of mid-span; dx (m); dt (s); mu = rho A (kg/m).
+    """mid: index of mid-span; dx (m); dt (s); mu = rho A (kg/m).
 
-    per_dx2 = 1/dx^2; factor = dt^2/(mu dx^2), from moments to w; push = dt^2/(mu dx), from the
-    mid-span force to w.
+    per_dx2 = 1/dx^2. Shares in w of one step: factor = dt^2/(mu dx^2) of a second difference of
+    moments, stiffness = factor EI/dx^2 of a fourth difference of w, push = dt^2/(mu dx) of the
+    mid-span force.
     """
 
-    n: int
+    mid: int
     dx: float
     dt: float
     mu: float
     per_dx2: float
     factor: float
+    stiffness: float
     push: float
 
 
@@ -54,172 +55,85 @@ _NOTHING = 1e-100
 
 
 @compiled
-def make_grid(n: int, dx: float, dt: float, mu: float) -> Grid:
-    """The grid and what follows from it."""
-    return Grid(n, dx, dt, mu, 1.0 / dx**2, dt**2 / (mu * dx**2), dt**2 / (mu * dx))
+def make_grid(n: int, dx: float, dt: float, mu: float, EI: float) -> Grid:
+    """A grid with n spacings in the half beam, and what follows from it."""
+    factor = dt**2 / (mu * dx**2)
+    return Grid(n + 1, dx, dt, mu, 1.0 / dx**2, factor, factor * EI / dx**2, dt**2 / (mu * dx))
 
 
 @compiled
-def make_beam(n: int, section: Section) -> Beam:
+def make_beam(grid: Grid) -> Beam:
     """A beam at rest, nowhere yielded."""
-    fibres = section.z.size
-    return Beam(
-        np.zeros(n + 2),
-        np.zeros(n + 1),
-        np.zeros(n + 1),
-        np.zeros(n + 1),
-        np.full(n + 1, -section.yield_curvature),
-        np.full(n + 1, section.yield_curvature),
-        np.zeros((n + 1, fibres)),
-        np.zeros((n + 1, fibres)),
-    )
+    size = grid.mid + 3
+    return Beam(np.zeros((2, size)), np.zeros(size), np.zeros(size))
 
 
 @compiled
-def reach(w: Array, first: int) -> int:
-    """First node that the wave from mid-span has reached, one step after it had reached `first`."""
-    moved = abs(w[first]) > _NOTHING or abs(w[first + 1]) > _NOTHING
-    return max(first - 2, 1) if moved else first
+def lend_beam(beam: Beam) -> Beam:
+    """The same beam, its arrays lent."""
+    return Beam(lent(beam.w), lent(beam.u), lent(beam.plastic))
 
 
-# What follows runs at every step, so it takes arrays: handing on a whole Beam would count eight
-# references up and down each time. The loops run from 0 over slices, because an index that might
-# be negative would keep numba from vectorising them.
+@compiled
+def reach(w: Array, now: int, first: int) -> int:
+    """Where the wave from mid-span begins, one step after it began at `first`."""
+    moved = abs(w[now, first]) > _NOTHING or abs(w[now, first + 1]) > _NOTHING
+    return max(first - 2, 2) if moved else first
+
+
+# What follows runs at every step, so it takes arrays: a whole Beam takes longer to hand on.
 
 
 @vectorised
-def virgin_moments(
-    w: Array, M: Array, first: int, EI: float, kappa_y: float, per_dx2: float
+def move_virgin(
+    w: Array, now: int, u: Array, first: int, stop: int, grid: Grid, kappa_y: float
 ) -> float:
-    """Moments from node `first` on, of a beam never yielded; how many nodes now yield."""
-    w, M = w[first - 1 :], M[first:]
-    outside = 0.0
-    for i in range(M.size):
-        kappa = (w[i] - 2.0 * w[i + 1] + w[i + 2]) * per_dx2
-        M[i] = -EI * kappa
-        outside += 1.0 if abs(kappa) > kappa_y else 0.0
+    """One leapfrog step of the nodes from `first` to before `stop`, where nothing has yielded yet.
+
+    Returns the number of sections that are now beyond the yield curvature kappa_y (1/m).
+    """
+    after, outside = 1 - now, 0.0
+    for i in range(np.uint64(first), np.uint64(stop)):
+        here, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]
+        outside += 1.0 if abs((beside - 2.0 * here) * grid.per_dx2) > kappa_y else 0.0
+        u[i] -= grid.stiffness * (w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * here)
+        w[after, i] = here + u[i]
     return outside
 
 
 @vectorised
-def elastic_moments(
+def move(
     w: Array,
-    M: Array,
-    M_0: Array,
+    now: int,
+    u: Array,
+    plastic: Array,
     kappa_min: Array,
     kappa_max: Array,
     first: int,
-    EI: float,
-    per_dx2: float,
+    grid: Grid,
 ) -> float:
-    """Moments from node `first` on, as if none yields now; how many nodes left their interval."""
-    w, M, M_0 = w[first - 1 :], M[first:], M_0[first:]
-    kappa_min, kappa_max = kappa_min[first:], kappa_max[first:]
-    outside = 0.0
-    for i in range(M.size):
-        kappa = (w[i] - 2.0 * w[i + 1] + w[i + 2]) * per_dx2
-        M[i] = M_0[i] - EI * kappa
+    """One leapfrog step from `first` to mid-span, as if none yielded further and without a force.
+
+    Returns the number of sections that are now outside their elastic interval (1/m).
+    """
+    after, outside = 1 - now, 0.0
+    for i in range(np.uint64(first), np.uint64(grid.mid + 1)):
+        here, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]
+        kappa = (beside - 2.0 * here) * grid.per_dx2
         outside += 1.0 if kappa > kappa_max[i] else 0.0
         outside += 1.0 if kappa < kappa_min[i] else 0.0
+        fourth = w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * here
+        u[i] += plastic[i] - grid.stiffness * fourth
+        w[after, i] = here + u[i]
     return outside
 
 
 @compiled
-def bend_yielding(
-    w: Array,
-    M: Array,
-    M_0: Array,
-    kappa_min: Array,
-    kappa_max: Array,
-    plastic_strain: Array,
-    peeq: Array,
-    z: Array,
-    lever: Array,
-    constants: tuple[float, float, float, float, float],
-    outside: float,
-    per_dx2: float,
-) -> None:
-    """Bend the sections that have left their elastic interval, `outside` in number.
-
-    From mid-span outwards, where they most often are, until all are found. constants: E, S_y, H_i,
-    H_k (Pa) and the stiffness (N m2) of the section.
-    """
-    E, S_y, H_i, H_k, EI = constants
-    i = M.size
-    while outside > 0.0 and i > 1:
-        i -= 1
-        kappa = (w[i - 1] - 2.0 * w[i] + w[i + 1]) * per_dx2
-        if kappa > kappa_max[i] or kappa < kappa_min[i]:
-            M_0[i], kappa_min[i], kappa_max[i] = bend(
-                z, lever, E, S_y, H_i, H_k, kappa, plastic_strain, peeq, i
-            )
-            M[i] = M_0[i] - EI * kappa
-            outside -= 1.0
-
-
-@vectorised
-def move(w: Array, u: Array, M: Array, first: int, factor: float, push: float) -> None:
-    """One leapfrog step of w and u from node `first` on.
-
-    factor: dt^2/(rho A dx^2). push: dt^2 F/(rho A dx), by the contact force at mid-span, in m.
-    """
-    n = M.size - 1
-    w_, u_, M_ = w[first:n], u[first:n], M[first - 1 :]
-    for i in range(u_.size):
-        u_[i] += factor * (M_[i] - 2.0 * M_[i + 1] + M_[i + 2])
-        w_[i] += u_[i]
-    u[n] += 2.0 * factor * (M[n - 1] - M[n]) + push
-    w[n] += u[n]
-    w[n + 1] = w[n - 1]
-
-
-@vectorised
-def _kinetic_sum(u: Array, M: Array, factor: float) -> float:
-    """Sum of u (m,) times its next value under the moments M (m + 2,)."""
-    total = 0.0
-    for i in range(u.size):
-        total += u[i] * (u[i] + factor * (M[i] - 2.0 * M[i + 1] + M[i + 2]))
-    return total
-
-
-@compiled
-def kinetic_energy(beam: Beam, grid: Grid, first: int, F: float) -> float:
-    """Kinetic energy (J) of the whole beam at a full step.
-
-    From the product of the velocities half a step before and after, which with the elastic
-    energy is what leapfrog conserves exactly in a linear beam.
-    """
-    n, factor, push = grid.n, grid.factor, grid.push * F
-    kick = 2.0 * factor * (beam.M[n - 1] - beam.M[n]) + push
-    total = 2.0 * _kinetic_sum(beam.u[first:n], beam.M[first - 1 :], factor)
-    total += beam.u[n] * (beam.u[n] + kick)
-    return 0.5 * grid.mu * grid.dx / grid.dt**2 * total
-
-
-@vectorised
-def _bending_sum(M: Array, M_0: Array) -> float:
-    total = 0.0
-    for i in range(M.size):
-        total += M[i] * M[i] - M_0[i] * M_0[i]
-    return total
-
-
-@compiled
-def strain_energies(beam: Beam, section: Section, grid: Grid, first: int) -> tuple[float, float]:
-    """(stored, dissipated) energy (J) of the whole beam.
-
-    Per length, the elastic interval stores EI kappa^2/2 - M_0 kappa = (M^2 - M_0^2)/(2 EI) over
-    what its plastic strains store at zero curvature.
-    """
-    n = grid.n
-    bending = (
-        2.0 * _bending_sum(beam.M[first:n], beam.M_0[first:n]) + beam.M[n] ** 2 - beam.M_0[n] ** 2
-    )
-    stored, dissipated = bending / (2.0 * section.stiffness), 0.0
-    for i in range(first, n + 1):
-        if beam.peeq[i, 0] > 0.0:  # the outermost fibre yields first
-            times = 1.0 if i == n else 2.0
-            kept, lost = plastic_energies(section, beam.plastic_strain[i], beam.peeq[i])
-            stored += times * kept
-            dissipated += times * lost
-    return stored * grid.dx, dissipated * grid.dx
+def strike(w: Array, now: int, u: Array, F: float, grid: Grid) -> None:
+    """Add the contact force F (N) to a step already made, and mirror the nodes beyond the ends."""
+    after, mid = 1 - now, grid.mid
+    u[mid] += grid.push * F
+    w[after, mid] += grid.push * F
+    w[after, 0] = -w[after, 2]
+    w[after, mid + 1] = w[after, mid - 1]
+    w[after, mid + 2] = w[after, mid - 2]

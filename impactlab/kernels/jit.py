@@ -1,19 +1,15 @@
-"""The one way in which kernels are compiled: cached on disk, free of the GIL, never stale.
-
-numba's own cache notices a changed function, but not a changed callee in another file. So the
-cache lies in a folder named by a hash of every kernel source.
-"""
+"""The one way in which kernels are compiled: cached on disk (cache.py), free of the GIL."""
 
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-import platformdirs
+
+from impactlab.kernels.cache import cache_folder
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -31,17 +27,17 @@ SOURCES_HASH = sources_hash()
 """Hash of the kernels that this process runs: the same hash, the same numbers."""
 
 
-def _cache_folder() -> Path:
-    root = os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_path("impactlab")
-    return Path(root) / f"kernels-{SOURCES_HASH[:16]}"
+_CACHE = cache_folder(SOURCES_HASH)
 
 
 def _jit(function: Function, fastmath: Any) -> Function:
     config: Any = numba.config  # numba's types do not list its settings
     before = config.CACHE_DIR
-    config.CACHE_DIR = str(_cache_folder())
+    config.CACHE_DIR = str(_CACHE or "")
     try:
-        jit: Any = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=fastmath)
+        jit: Any = numba.njit(
+            cache=_CACHE is not None, nogil=True, error_model="numpy", fastmath=fastmath
+        )
         return cast(Function, jit(function))
     finally:
         config.CACHE_DIR = before

@@ -11,31 +11,40 @@ import numpy as np
 
 from impactlab.kernels import responses
 from impactlab.kernels import track as watch
+from impactlab.kernels.arrays import lent
 from impactlab.kernels.beam import (
     Beam,
     Grid,
-    bend_yielding,
-    elastic_moments,
-    kinetic_energy,
+    lend_beam,
     make_beam,
     make_grid,
     move,
+    move_virgin,
     reach,
-    strain_energies,
-    virgin_moments,
+    strike,
 )
 from impactlab.kernels.contact import history as contact_history
 from impactlab.kernels.contact.history import CONTACT, Pair, make_pair
+from impactlab.kernels.energy import kinetic_energy, strain_energies
 from impactlab.kernels.jit import compiled
-from impactlab.kernels.section import Section, make_section
+from impactlab.kernels.section import Section, lend_section, make_section
 from impactlab.kernels.stability import critical_time_step
 from impactlab.kernels.status import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.kernels.track import TRACK
 from impactlab.kernels.types import Array, Record
+from impactlab.kernels.yielding import (
+    Yielding,
+    begin_tangents,
+    catch_up,
+    follow_tangents,
+    leave_tangents,
+    lend_yielding,
+    make_yielding,
+)
 
 _AUDITS = 500
-_LEAST_STRIDE, _LARGEST_STRIDE = 8, 64
-"""Energy is audited 500 times a run, but no more often than every 8 steps nor less than 64."""
+_LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
+"""Energy is audited 500 times a run, but no more often than every 16 steps nor less than 64."""
 
 WORST_ENERGY_ERROR = 0.05
 """Imbalance over the initial kinetic energy beyond which a run gives no other answer."""
@@ -48,24 +57,22 @@ def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
     dt = case.courant * critical_time_step(case, pair, section.stiffness, dx)
     steps = math.ceil(case.duration / dt)
     mu = case.beam_density * case.beam_width * case.beam_depth
-    return make_grid(case.nodes // 2, dx, case.duration / steps, mu), steps
+    return make_grid(case.nodes // 2, dx, case.duration / steps, mu, section.stiffness), steps
 
 
 @compiled
 def _sample(
     out: Array,
-    t: float,
-    dt: float,
-    interval: float,
+    step: int,
+    steps: int,
     before: tuple[float, float, float, float, float],
     here: tuple[float, float, float, float, float],
 ) -> None:
-    """Fill the samples of `out`, shape (5, samples), that fall into the step that ends at t."""
-    if out.shape[1] == 0:
-        return
-    k = math.ceil((t - dt) / interval - 1e-9)
-    while k < out.shape[1] and k * interval <= t * (1.0 + 1e-12):
-        share = 1.0 - (t - k * interval) / dt
+    """Fill the samples of `out`, shape (5, samples), that fall into the step that ends here."""
+    per_step = (out.shape[1] - 1) / steps
+    k = max(math.ceil((step - 1) * per_step - 1e-9), 0)
+    while k < out.shape[1] and k <= step * per_step * (1.0 + 1e-12):
+        share = 1.0 - (step - k / per_step)
         for row in range(5):
             out[row, k] = before[row] + share * (here[row] - before[row])
         k += 1
@@ -78,21 +85,24 @@ def _imbalance(
     section: Section,
     grid: Grid,
     beam: Beam,
+    held: Yielding,
     contact: Record,
-    first: int,
-    delta: float,
+    now: int,
+    sphere: tuple[float, float, float, float],
     F: float,
-    w_s: float,
-    v_s: float,
+    u_mid: float,
 ) -> float:
-    """Energy missing or in excess, over the initial kinetic energy."""
+    """Energy missing or in excess, over the initial kinetic energy.
+
+    sphere: its displacement (m), velocity before and after the step (m/s), indentation (m).
+    """
+    w_s, v_before, v_after, delta = sphere
     start = 0.5 * case.sphere_mass * case.velocity**2
-    v_next = v_s + grid.dt * (case.gravity - F / case.sphere_mass)
-    sphere = 0.5 * case.sphere_mass * v_s * v_next - case.sphere_mass * case.gravity * w_s
-    stored, dissipated = strain_energies(beam, section, grid, first)
-    held, lost = contact_history.energies(contact, pair, delta)
-    total = sphere + kinetic_energy(beam, grid, first, F) + stored + dissipated + held + lost
-    return abs(total - start) / start
+    moving = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
+    moving += kinetic_energy(beam, grid, now, u_mid)
+    stored, dissipated = strain_energies(beam, held, section, grid, now)
+    kept, lost = contact_history.energies(contact, pair, delta)
+    return abs(moving + stored + dissipated + kept + lost - start) / start
 
 
 @compiled
@@ -115,17 +125,17 @@ def _answer(
     section: Section,
     grid: Grid,
     beam: Beam,
+    held: Yielding,
     contact: Record,
     track: Record,
-    first: int,
-    v_s: float,
+    now: int,
 ) -> None:
     """All responses, or none and why, at the end of a run that has not diverged."""
-    _, dissipated = strain_energies(beam, section, grid, first)
+    _, dissipated = strain_energies(beam, held, section, grid, now)
     responses.clear(answer, 0)
     responses.read_contact(answer, track, contact, pair)
-    responses.read_rebound(answer, case, track, v_s, beam.u[grid.n] / grid.dt)
-    responses.read_beam(answer, case, track, beam, grid, dissipated)
+    responses.read_rebound(answer, case, track)
+    responses.read_beam(answer, case, track, held.peeq, grid, dissipated)
     if track.energy_error > WORST_ENERGY_ERROR:
         responses.clear(answer, ENERGY_OUT_OF_BALANCE)
     answer.energy_error = track.energy_error
@@ -142,74 +152,104 @@ def run(
 ) -> None:
     """Solve one case.
 
-    case: a CASE record. answer: a RESPONSE record, filled. samples: shape (4, S), filled with
-    force, mid-span deflection, sphere displacement and indentation at S equal intervals from 0
-    to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq
+    case: a CASE record. answer: a RESPONSE record, filled. samples: shape (5, S), filled with
+    force, mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
+    intervals from 0 to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq
     (n + 1, P // 2): filled with the half beam's final state; length 0 for none. A run that
     diverges leaves NaN and its status.
     """
     pair, section = make_pair(case), make_section(case)
     grid, steps = discretise(case, pair, section)
-    beam, n, dt, per_dx2 = make_beam(grid.n, section), grid.n, grid.dt, grid.per_dx2
-    w, u, M, EI, kappa_y = beam.w, beam.u, beam.M, section.stiffness, section.yield_curvature
-    M_0, kappa_min, kappa_max = beam.M_0, beam.kappa_min, beam.kappa_max
-    strain, peeq_, z, lever = beam.plastic_strain, beam.peeq, section.z, section.lever
-    constants = (section.E, section.S_y, section.H_i, section.H_k, EI)
-    contact, track = np.zeros(1, CONTACT)[0], np.zeros(1, TRACK)[0]
+    beam, held = make_beam(grid), make_yielding(grid, section)
+    contact, track = np.zeros(1, CONTACT), np.zeros(1, TRACK)
+    now = march(
+        case,
+        pair,
+        lend_section(section),
+        grid,
+        lend_beam(beam),
+        lend_yielding(held),
+        contact[0],
+        track[0],
+        lent(samples),
+        steps,
+    )
+    if now < 0:
+        responses.clear(answer, DIVERGED)
+        samples[:] = np.nan
+        return
+    _answer(answer, case, pair, section, grid, beam, held, contact[0], track[0], now)
+    if deflection.size > 0:
+        along = slice(1, grid.mid + 1)
+        deflection[:] = beam.w[now, along]
+        plastic_strain[:] = held.plastic_strain[along]
+        peeq[:] = held.peeq[along]
+
+
+@compiled
+def march(
+    case: Record,
+    pair: Pair,
+    section: Section,
+    grid: Grid,
+    beam: Beam,
+    held: Yielding,
+    contact: Record,
+    track: Record,
+    samples: Array,
+    steps: int,
+) -> int:
+    """From first touch to the end of the duration; which row of beam.w is the last, or -1.
+
+    -1: it diverged. The arrays are lent ones; contact and track are kept up to date.
+    """
+    w, u, plastic = beam.w, beam.u, beam.plastic
+    kappa_min, kappa_max, M_0 = held.kappa_min, held.kappa_max, held.M_0
+    on_tangent, tangent = held.on_tangent, held.tangent
+    kappa_y, dt, mid = section.yield_curvature, grid.dt, grid.mid
+    stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
+    # half a step before the first touch
+    w_s, v_s, per_mass = 0.0, case.velocity - 0.5 * dt * case.gravity, 1.0 / case.sphere_mass
+    now, first, yielded, to_audit = 0, mid, mid + 1, stride
+    here = (0.0, 0.0, 0.0, 0.0, 0.0)
     contact.n = 1.5
     watch.start(track)
-    stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
-    interval = case.duration / max(samples.shape[1] - 1, 1)
-    w_s, v_s, first, yielded = 0.0, case.velocity, n, False
-
     for step in range(steps + 1):
-        t, w_mid = step * dt, w[n]
+        w_mid, u_mid = w[now, mid], u[mid]
         delta = w_s - w_mid
-        F = _contact_force(contact, track, pair, delta, t, dt)
-        if yielded:
-            outside = elastic_moments(w, M, M_0, kappa_min, kappa_max, first, EI, per_dx2)
-        else:
-            outside = virgin_moments(w, M, first, EI, kappa_y, per_dx2)
+        F = _contact_force(contact, track, pair, delta, step * dt, dt)
+        v_after = v_s + dt * (case.gravity - F * per_mass)
+        watch.watch(track, delta, contact.delta_r, w_mid, F, v_s, step * dt, dt)
+        if samples.shape[1] > 0:
+            before, kappa = here, 2.0 * (w[now, mid - 1] - w_mid) * grid.per_dx2
+            here = (F, w_mid, kappa, w_s, delta)
+            _sample(samples, step, steps, before, here)
+
+        if on_tangent[0] > 0 and follow_tangents(w, now, plastic, M_0, on_tangent, tangent, grid):
+            leave_tangents(beam, now, held, section, grid)
+        outside = move_virgin(w, now, u, first, yielded, grid, kappa_y)
+        if yielded <= mid:
+            outside += move(w, now, u, plastic, kappa_min, kappa_max, yielded, grid)
         if outside > 0.0:
-            yielded = True
-            bend_yielding(
-                w,
-                M,
-                M_0,
-                kappa_min,
-                kappa_max,
-                strain,
-                peeq_,
-                z,
-                lever,
-                constants,
-                outside,
-                per_dx2,
+            bent = begin_tangents(beam, now, outside, held, section, grid)
+            yielded = min(yielded, max(bent - 1, 2))
+        strike(w, now, u, F, grid)
+
+        to_audit -= 1
+        if to_audit == 0 or step == steps:
+            to_audit = stride
+            catch_up(held, section)
+            track.v_s, track.v_mid = v_s, u_mid / dt
+            sphere = (w_s, v_s, v_after, delta)
+            error = _imbalance(
+                case, pair, section, grid, beam, held, contact, now, sphere, F, u_mid
             )
-        watch.watch_contact(track, delta, contact.delta_r, v_s, t, dt)
-        watch.watch_deflection(track, w_mid)
-        kappa = 2.0 * (w[n - 1] - w_mid) * per_dx2
-        before = (track.F, track.w, track.kappa, w_s - v_s * dt, track.delta)
-        _sample(samples, t, dt, interval, before, (F, w_mid, kappa, w_s, delta))
-        watch.shift(track, delta, w_mid, kappa, F, dt)
-        if (step + 1) % stride == 0 or step == steps:
-            error = _imbalance(case, pair, section, grid, beam, contact, first, delta, F, w_s, v_s)
             track.energy_error = max(track.energy_error, error)
             if not error < 1.0:
-                responses.clear(answer, DIVERGED)
-                samples[:] = np.nan
-                return
-        if step < steps:
-            v_s += (0.5 if step == 0 else 1.0) * dt * (case.gravity - F / case.sphere_mass)
-            move(w, u, M, first, grid.factor, grid.push * F)
-            w_s += dt * v_s
-            first = reach(w, first)
-
-    _answer(answer, case, pair, section, grid, beam, contact, track, first, v_s)
-    if deflection.size > 0:
-        deflection[:] = w[: n + 1]
-        plastic_strain[:] = beam.plastic_strain
-        peeq[:] = beam.peeq
+                return -1
+        w_s, v_s, now = w_s + dt * v_after, v_after, 1 - now
+        first = reach(w, now, first)
+    return 1 - now
 
 
 @compiled

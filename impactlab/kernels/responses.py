@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from impactlab.kernels.beam import Beam, Grid
+from impactlab.kernels.beam import Grid
 from impactlab.kernels.contact.history import Pair, energies
 from impactlab.kernels.jit import compiled
 from impactlab.kernels.remarks import CONTACT_CREATED_ENERGY, CONTACT_LEFT_A_BULGE
@@ -18,7 +18,7 @@ from impactlab.kernels.status import (
     INDENTATION_STILL_GROWING,
     SPHERE_NOT_LEAVING,
 )
-from impactlab.kernels.types import Record
+from impactlab.kernels.types import Array, Record
 
 ANSWERS = (
     "peak_force",
@@ -102,9 +102,9 @@ def read_contact(answer: Record, track: Record, contact: Record, pair: Pair) -> 
 
 
 @compiled
-def read_rebound(answer: Record, case: Record, track: Record, v_s: float, v_beam: float) -> None:
+def read_rebound(answer: Record, case: Record, track: Record) -> None:
     """Rebound, once the sphere moves upwards and away from the beam."""
-    if track.touching == 1.0 or v_s >= 0.0 or v_s >= v_beam:
+    if track.touching == 1.0 or track.v_s >= 0.0 or track.v_s >= track.v_mid:
         answer.status |= SPHERE_NOT_LEAVING
     else:
         answer.rebound_velocity = -track.v_exit
@@ -113,9 +113,9 @@ def read_rebound(answer: Record, case: Record, track: Record, v_s: float, v_beam
 
 @compiled
 def read_beam(
-    answer: Record, case: Record, track: Record, beam: Beam, grid: Grid, dissipated: float
+    answer: Record, case: Record, track: Record, peeq: Array, grid: Grid, dissipated: float
 ) -> None:
-    """Deflection and plastic strain."""
+    """Deflection and plastic strain; peeq: of the half beam, see Yielding."""
     if track.w > track.w_max:
         answer.status |= DEFLECTION_STILL_GROWING
     else:
@@ -124,14 +124,13 @@ def read_beam(
     answer.remote_plastic_strain = 0.0
     answer.plastic_zone_length = 0.0
     strain_before = 0.0
-    for i in range(grid.n + 1):
-        strain = np.max(beam.peeq[i])
+    for i in range(2, grid.mid + 1):
+        strain = np.max(peeq[i])
         answer.peak_plastic_strain = max(answer.peak_plastic_strain, strain)
-        if (grid.n - i) * grid.dx > case.beam_depth:
+        if (grid.mid - i) * grid.dx > case.beam_depth:
             answer.remote_plastic_strain = max(answer.remote_plastic_strain, strain)
-        if i > 0:
-            share = share_above(strain_before, strain, PLASTIC_ZONE_STRAIN)
-            answer.plastic_zone_length += 2.0 * grid.dx * share
+        share = share_above(strain_before, strain, PLASTIC_ZONE_STRAIN)
+        answer.plastic_zone_length += 2.0 * grid.dx * share
         strain_before = strain
     answer.plastic_dissipation = dissipated
 

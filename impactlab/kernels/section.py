@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.kernels import fibre
+from impactlab.kernels.arrays import lent
 from impactlab.kernels.jit import compiled, vectorised
 from impactlab.kernels.quadrature import upper_half
 from impactlab.kernels.types import Array, Record
@@ -21,13 +22,25 @@ from impactlab.kernels.types import Array, Record
 FAR = 1e300
 """A curvature that no section reaches (1/m)."""
 
+_ROUND_OFF = 1e-12
+"""A fibre so near its yield strain, in shares of it, yields."""
+
+
+class Moduli(NamedTuple):
+    """Young's modulus, yield stress, isotropic and kinematic hardening modulus (Pa)."""
+
+    E: float
+    S_y: float
+    H_i: float
+    H_k: float
+
 
 class Section(NamedTuple):
     """The rule's fibres and their material, for one run.
 
     z: distance from the axis, m, outermost first; area: twice B times the rule's weight, m2;
     lever: E area z, N m; each of shape (P // 2,). stiffness: (EI)_q = sum(E area z^2), N m2, the
-    rule's own. yield_curvature: where the outermost fibre first yields, 1/m. E, S_y, H_i, H_k: Pa.
+    rule's own. yield_curvature: where the outermost fibre first yields, 1/m.
     """
 
     z: Array
@@ -35,10 +48,7 @@ class Section(NamedTuple):
     lever: Array
     stiffness: float
     yield_curvature: float
-    E: float
-    S_y: float
-    H_i: float
-    H_k: float
+    moduli: Moduli
 
 
 @compiled
@@ -58,33 +68,39 @@ def make_section(case: Record) -> Section:
         E * area * z,
         stiffness,
         case.beam_yield_stress / (E * z[0]),
-        E,
-        case.beam_yield_stress,
-        case.beam_isotropic_hardening_modulus,
-        case.beam_kinematic_hardening_modulus,
+        Moduli(
+            E,
+            case.beam_yield_stress,
+            case.beam_isotropic_hardening_modulus,
+            case.beam_kinematic_hardening_modulus,
+        ),
+    )
+
+
+@compiled
+def lend_section(section: Section) -> Section:
+    """The same section, its arrays lent."""
+    return Section(
+        lent(section.z),
+        lent(section.area),
+        lent(section.lever),
+        section.stiffness,
+        section.yield_curvature,
+        section.moduli,
     )
 
 
 @vectorised
 def bend(
-    z: Array,
-    lever: Array,
-    E: float,
-    S_y: float,
-    H_i: float,
-    H_k: float,
-    kappa: float,
-    plastic_strain: Array,
-    peeq: Array,
-    i: int,
+    section: Section, kappa: float, plastic_strain: Array, peeq: Array, i: int
 ) -> tuple[float, float, float]:
-    """Take the fibres of section i to curvature kappa.
+    """Take the fibres of section i to curvature kappa (1/m).
 
-    Updates row i of plastic_strain and peeq, shape (sections, P // 2). The first six arguments are
-    the section's. Returns (M_0, kappa_min, kappa_max) of its new
-    elastic interval. Runs at every yielding section and step, so it takes arrays, not a Section:
-    handing that on would count references up and down.
+    Updates row i of plastic_strain and peeq, shape (sections, P // 2). Returns (M_0, kappa_min,
+    kappa_max) of the new elastic interval.
     """
+    z, lever = section.z, section.lever
+    E, S_y, H_i, H_k = section.moduli
     M_0, kappa_min, kappa_max = 0.0, -FAR, FAR
     for j in range(z.size):
         strain, slipped = plastic_strain[i, j], peeq[i, j]
@@ -98,10 +114,21 @@ def bend(
 
 
 @compiled
-def plastic_energies(section: Section, plastic_strain: Array, peeq: Array) -> tuple[float, float]:
-    """(stored at zero curvature, dissipated) energy per length of beam, J/m."""
-    stored, dissipated = 0.0, 0.0
-    for j in range(section.z.size):
-        stored += section.area[j] * fibre.stored_energy(plastic_strain[j], section.E, section.H_k)
-        dissipated += section.area[j] * fibre.dissipated_energy(peeq[j], section.S_y, section.H_i)
-    return stored, dissipated
+def tangent(
+    section: Section, kappa: float, direction: float, plastic_strain: Array, peeq: Array, i: int
+) -> tuple[float, float]:
+    """(growth of M_0 with kappa in N m2, curvature in 1/m at which a further fibre yields).
+
+    Of section i, which `bend` has taken to kappa, when it is bent on towards greater (direction 1)
+    or smaller (-1) curvature.
+    """
+    z, (E, S_y, H_i, H_k) = section.z, section.moduli
+    growth, limit = 0.0, direction * FAR
+    for j in range(z.size):
+        least, largest = fibre.elastic_range(plastic_strain[i, j], peeq[i, j], E, S_y, H_i, H_k)
+        end = -(least if direction > 0.0 else largest) / z[j]
+        if direction * (end - kappa) <= _ROUND_OFF * S_y / (E * z[j]):
+            growth += section.lever[j] * z[j] * E / (E + H_i + H_k)
+        elif direction * (limit - end) > 0.0:
+            limit = end
+    return growth, limit

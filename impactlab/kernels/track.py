@@ -19,7 +19,6 @@ TRACK = np.dtype(
                 "w",
                 "w_before",
                 "w_max",
-                "kappa",
                 "F",
                 "contacts",
                 "touching",
@@ -27,6 +26,8 @@ TRACK = np.dtype(
                 "t_first_end",
                 "time_in_contact",
                 "v_exit",
+                "v_s",
+                "v_mid",
                 "impulse",
                 "energy_error",
             )
@@ -34,11 +35,11 @@ TRACK = np.dtype(
     )
 )
 """At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before
-(m); at the last: mid-span curvature kappa (1/m), force F (N). t_peak (s): time of the largest
-indentation; w_max (m). contacts: number begun; touching: 1 or 0; t_touch: when this contact began,
-t_first_end: when the first one ended (NaN: not yet), time_in_contact of the ended ones (s); v_exit
-(m/s): the sphere's velocity when the last contact ended. impulse (N s). energy_error: largest
-imbalance over the initial energy."""
+(m), force F (N). t_peak (s): time of the largest indentation; w_max (m). contacts: number begun;
+touching: 1 or 0; t_touch: when this contact began, t_first_end: when the first one ended (NaN:
+not yet), time_in_contact of the ended ones (s); v_exit (m/s): the sphere's velocity when the last
+contact ended; v_s, v_mid (m/s): of sphere and mid-span at the last audit. impulse (N s).
+energy_error: largest imbalance over the initial energy."""
 
 
 @compiled
@@ -65,6 +66,23 @@ def vertex(before: float, here: float, after: float) -> tuple[float, float]:
 def passed_peak(track: Record, delta: float, delta_m: float) -> bool:
     """Whether the largest indentation so far lies between the last two steps and this one."""
     return track.delta == delta_m and delta < track.delta and track.delta >= track.delta_before
+
+
+@compiled
+def watch(
+    track: Record,
+    delta: float,
+    delta_r: float,
+    w: float,
+    F: float,
+    v_s: float,
+    t: float,
+    dt: float,
+) -> None:
+    """Note what happened in the step that ends at t."""
+    watch_contact(track, delta, delta_r, v_s, t, dt)
+    watch_deflection(track, w)
+    shift(track, delta, w, F, dt)
 
 
 @compiled
@@ -95,9 +113,9 @@ def watch_deflection(track: Record, w: float) -> None:
 
 
 @compiled
-def shift(track: Record, delta: float, w: float, kappa: float, F: float, dt: float) -> None:
+def shift(track: Record, delta: float, w: float, F: float, dt: float) -> None:
     """This step becomes the last one."""
     track.impulse += 0.5 * dt * (track.F + F)
     track.delta_before, track.delta = track.delta, delta
     track.w_before, track.w = track.w, w
-    track.kappa, track.F = kappa, F
+    track.F = F

@@ -11,5 +11,7 @@ Array = np.ndarray[Any, Any]
 """An array; the docstring gives shape and unit."""
 Record = Any
 """One record of a structured array, its fields read and set by name."""
+Index = Any
+"""A position in an array, of either sign's type: see arrays.py."""
 Curve = Callable[..., tuple[float, float, float, float]]
 """A contact law: see contact/hertz.py."""

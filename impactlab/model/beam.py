@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from impactlab.model.checks import instance, positive
+from impactlab.model.columns import anywhere
 from impactlab.model.material import Material
 
 
@@ -25,7 +26,7 @@ class Beam:
         instance("Beam", "material", self.material, Material)
         for field in ("span", "width", "depth"):
             positive("Beam", field, getattr(self, field))
-        if self.depth >= self.span:
+        if anywhere(self.depth >= self.span):
             raise ValueError(
                 f"Beam.depth = {self.depth!r}: must be below the span ({self.span!r} m)"
             )

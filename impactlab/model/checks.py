@@ -1,72 +1,86 @@
-"""Checks that the frozen model classes make of their own fields."""
+"""Checks that the frozen model classes make of their own fields: a number each, or a column."""
 
 from __future__ import annotations
 
 import math
 from numbers import Integral, Real
-from typing import TypeGuard
+from typing import Any
+
+import numpy as np
+
+from impactlab.model.columns import Column, anywhere
 
 _MOST = 2**31 - 1
 """The largest count; no memory holds so much."""
 
 
-def number(owner: str, field: str, value: object) -> float:
+def number(owner: str, field: str, value: Any) -> float:
     """`value` as a finite float. Raises ValueError naming `owner.field` otherwise."""
-    if isinstance(value, bool) or not isinstance(value, Real) or not _finite(value):
+    if isinstance(value, Column):
+        sound = value.dtype.kind == "f" and bool(np.isfinite(value).all())
+    else:
+        real = isinstance(value, Real) and not isinstance(value, bool)
+        sound = real and _finite(value)
+    if not sound:
         raise ValueError(f"{owner}.{field} = {_shown(value)}: must be a finite number")
-    return float(value)
+    return value if isinstance(value, Column) else float(value)  # type: ignore[return-value]
 
 
-def positive(owner: str, field: str, value: object) -> float:
+def positive(owner: str, field: str, value: Any) -> float:
     """`value` as a finite float above zero, or a ValueError naming the field."""
-    if (result := number(owner, field, value)) <= 0:
+    if anywhere((result := number(owner, field, value)) <= 0):
         raise ValueError(f"{owner}.{field} = {value!r}: must be above zero")
     return result
 
 
-def not_negative(owner: str, field: str, value: object) -> float:
+def not_negative(owner: str, field: str, value: Any) -> float:
     """`value` as a finite float of zero or more, or a ValueError naming the field."""
-    if (result := number(owner, field, value)) < 0:
+    if anywhere((result := number(owner, field, value)) < 0):
         raise ValueError(f"{owner}.{field} = {value!r}: must not be negative")
     return result
 
 
-def integer(owner: str, field: str, value: object, least: int) -> int:
+def integer(owner: str, field: str, value: Any, least: int) -> int:
     """`value` as an int of at least `least`, or a ValueError naming the field."""
-    whole = isinstance(value, Integral) or (isinstance(value, float) and value.is_integer())
-    if isinstance(value, bool) or not whole or int(value) < least:  # type: ignore[call-overload]
-        raise ValueError(
-            f"{owner}.{field} = {_shown(value)}: must be a whole number of at least {least}"
-        )
-    if (result := int(value)) > _MOST:  # type: ignore[call-overload]
+    if isinstance(value, Column):
+        whole = value.dtype.kind == "f" and bool(np.all(value == np.floor(value)))
+        whole = whole and bool(np.all(value >= least))
+    else:
+        whole = isinstance(value, Integral) or (isinstance(value, float) and value.is_integer())
+        whole = whole and not isinstance(value, bool) and int(value) >= least
+    if not whole:
+        shown = _shown(value)
+        raise ValueError(f"{owner}.{field} = {shown}: must be a whole number of at least {least}")
+    if anywhere(value > _MOST):
         raise ValueError(f"{owner}.{field} = {_shown(value)}: must be at most {_MOST}")
-    return result  # type: ignore[no-any-return]
+    return value.astype(np.int64) if isinstance(value, Column) else int(value)  # type: ignore[return-value]
 
 
-def one_of(owner: str, field: str, value: object, choices: tuple[str, ...]) -> str:
+def one_of(owner: str, field: str, value: Any, choices: tuple[str, ...]) -> str:
     """`value` if it is among `choices`, or a ValueError naming the field and the choices."""
-    if not isinstance(value, str) or value not in choices:  # an array has no truth
+    if isinstance(value, Column):
+        among = set(value.tolist()) <= set(choices)
+    else:  # other arrays have no truth
+        among = isinstance(value, str) and value in choices
+    if not among:
         raise ValueError(f"{owner}.{field} = {value!r}: must be one of {', '.join(choices)}")
-    return str(value)
+    return value if isinstance(value, Column) else str(value)  # type: ignore[return-value]
 
 
-def instance(owner: str, field: str, value: object, kind: type) -> None:
+def instance(owner: str, field: str, value: Any, kind: type) -> None:
     """Raises ValueError naming the field when `value` is not a `kind`."""
     if not isinstance(value, kind):
         raise ValueError(f"{owner}.{field} = {value!r}: must be a {kind.__name__}")
 
 
-def _finite(value: Real) -> bool:
+def _finite(value: Any) -> bool:
     try:
         return math.isfinite(value)
     except OverflowError:  # a whole number beyond what a float holds
         return False
 
 
-def _shown(value: object) -> str:
+def _shown(value: Any) -> str:
     """The value as it is written; Python refuses to write out numbers of thousands of digits."""
-    return f"a number of {value.bit_length()} bits" if _is_huge(value) else repr(value)
-
-
-def _is_huge(value: object) -> TypeGuard[int]:
-    return isinstance(value, int) and value.bit_length() > 1024
+    huge = isinstance(value, int) and value.bit_length() > 1024
+    return f"a number of {value.bit_length()} bits" if huge else repr(value)

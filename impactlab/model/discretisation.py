@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from impactlab.kernels import RULES
 from impactlab.model.checks import integer, one_of, positive
+from impactlab.model.columns import anywhere
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,12 +29,12 @@ class Discretisation:
         for field, least in (("nodes", 5), ("points", 2)):  # 21.0, as YAML may give it, is 21
             value = integer("Discretisation", field, getattr(self, field), least)
             object.__setattr__(self, field, value)
-        if self.nodes % 2 == 0:
+        if anywhere(self.nodes % 2 == 0):
             raise ValueError(
                 f"Discretisation.nodes = {self.nodes!r}: must be odd, so that mid-span is a node"
             )
         one_of("Discretisation", "rule", self.rule, RULES)
-        if positive("Discretisation", "courant", self.courant) > 1:
+        if anywhere(positive("Discretisation", "courant", self.courant) > 1):
             raise ValueError(
                 f"Discretisation.courant = {self.courant!r}: must be in (0, 1]; above 1 the "
                 "explicit scheme is unstable"

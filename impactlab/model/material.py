@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from impactlab.model.checks import not_negative, number, positive
+from impactlab.model.columns import anywhere
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,11 +32,12 @@ class Material:
             positive("Material", field, getattr(self, field))
         for field in ("isotropic_hardening_modulus", "kinematic_hardening_modulus"):
             not_negative("Material", field, getattr(self, field))
-        if not 0 <= number("Material", "poissons_ratio", self.poissons_ratio) < 0.5:
+        ratio = number("Material", "poissons_ratio", self.poissons_ratio)
+        if anywhere(ratio < 0) or anywhere(ratio >= 0.5):
             raise ValueError(
                 f"Material.poissons_ratio = {self.poissons_ratio!r}: must be from 0 to below 0.5"
             )
-        if self.yield_stress >= self.youngs_modulus:
+        if anywhere(self.yield_stress >= self.youngs_modulus):
             raise ValueError(
                 f"Material.yield_stress = {self.yield_stress!r}: must be below youngs_modulus "
                 f"({self.youngs_modulus!r} Pa); are both in Pa?"

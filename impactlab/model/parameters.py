@@ -12,6 +12,7 @@ from typing import Any
 
 from impactlab.kernels import RULES
 from impactlab.kernels.contact import LAWS
+from impactlab.model.columns import Column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 
@@ -84,9 +85,9 @@ def flatten(impact: Impact, discretisation: Discretisation) -> dict[str, Value]:
 
 
 def with_values(
-    impact: Impact, discretisation: Discretisation, values: Mapping[str, Value]
+    impact: Impact, discretisation: Discretisation, values: Mapping[str, Value | Column]
 ) -> tuple[Impact, Discretisation]:
-    """The base with the named parameters replaced, checked anew.
+    """The base with the named parameters replaced, checked anew; columns are many at once.
 
     Raises ValueError for an unknown name, or where the model classes refuse a value.
     """

@@ -1,6 +1,8 @@
-"""The infinite elastic Euler-Bernoulli beam struck by an impulse.
+"""The infinite elastic Euler-Bernoulli beam struck at x = 0, by an impulse or by a given force.
 
-Source: J. Boussinesq (1885); the Fourier integral of mu w_tt + EI w_xxxx = J delta(x) delta(t).
+Source: J. Boussinesq (1885); the Fourier integral of mu w_tt + EI w_xxxx = J delta(x) delta(t),
+w(x, t) = J/(pi mu k) * integral of sin(k q^2 t) cos(q x)/q^2 over q > 0, k = sqrt(EI/mu),
+mu = rho A. All of it holds for a beam of finite span until the supports' echo is back.
 """
 
 from __future__ import annotations
@@ -9,23 +11,85 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.special import fresnel
 
 from impactlab.model.beam import Beam
 from impactlab.model.checks import number
 
+Floats = NDArray[np.float64]
 
-def deflection_under_impulse(beam: Beam, impulse: float, time: ArrayLike) -> NDArray[np.float64]:
-    """w(0, t) = J sqrt(t)/(mu sqrt(2 pi k)) in m, k = sqrt(EI/mu), mu = rho A.
 
-    The deflection where an `impulse` J (N s) struck at t = 0, at each `time` (s, any shape). It
-    holds for a beam of finite span until the supports' echo is back.
+def deflection_under_impulse(beam: Beam, impulse: float, time: ArrayLike) -> Floats:
+    """w(0, t) = J sqrt(t)/(mu sqrt(2 pi k)) in m.
+
+    The deflection where an `impulse` J (N s) struck at t = 0, at each `time` (s, any shape).
 
     Raises ValueError when the impulse is not finite, or a time is negative or not finite.
     """
-    seconds = np.asarray(time, dtype=np.float64)
-    if not np.all(np.isfinite(seconds) & (seconds >= 0)):
-        raise ValueError("time: every value must be a finite number of zero or more")
-    mu = beam.mass_per_length
-    k = math.sqrt(beam.bending_stiffness / mu)
-    scale = number("infinite_beam", "impulse", impulse) / (mu * math.sqrt(2.0 * math.pi * k))
-    return np.asarray(scale * np.sqrt(seconds))
+    return _scale(beam, impulse) * np.sqrt(_not_negative("time", time))
+
+
+def profile_under_impulse(beam: Beam, impulse: float, time: ArrayLike, x: ArrayLike) -> Floats:
+    """w(x, t) in m at each distance `x` (m) from where an `impulse` J (N s) struck.
+
+    w(x, t) = w(0, t) (cos(a^2) + sin(a^2) - sqrt(2 pi) a (C - S)), a = |x|/(2 sqrt(k t)), with
+    Fresnel's integrals C and S at a sqrt(2/pi): w_xx of the Fourier integral, integrated twice.
+    time (s) and x broadcast.
+
+    Raises ValueError when the impulse or an x is not finite, or a time is not finite and positive.
+    """
+    seconds, distance = _not_negative("time", time), np.abs(np.asarray(x, dtype=np.float64))
+    if not np.all(np.isfinite(distance)) or np.any(seconds == 0):
+        raise ValueError("x, time: every value must be finite, and every time above zero")
+    a = distance / (2.0 * np.sqrt(_wave_constant(beam) * seconds))
+    S, C = fresnel(a * math.sqrt(2.0 / math.pi))
+    shape = np.cos(a**2) + np.sin(a**2) - math.sqrt(2.0 * math.pi) * a * (C - S)
+    return np.asarray(_scale(beam, impulse) * np.sqrt(seconds) * shape)
+
+
+def deflection_under_force(beam: Beam, time: ArrayLike, force: ArrayLike) -> Floats:
+    """w(0, t) in m at each `time` (s, shape (n,), ascending), under a `force` (N, shape (n,)).
+
+    The response to an impulse convolved with the force, exactly so for a force that begins at zero
+    and is linear between the times: every kink begins a ramp, and a ramp of s (N/s) leaves
+    (4/15) s t^2.5/(mu sqrt(2 pi k)).
+
+    Raises ValueError when a value is not finite, a time negative or not above the one before, the
+    first force not zero, or the shapes differ.
+    """
+    return _scale(beam, 4.0 / 15.0) * _ramps(time, force, 2.5)
+
+
+def curvature_under_force(beam: Beam, time: ArrayLike, force: ArrayLike) -> Floats:
+    """w_xx(0, t) = -w_t(0, t)/k in 1/m; arguments and errors as in deflection_under_force."""
+    return -_scale(beam, 2.0 / 3.0) / _wave_constant(beam) * _ramps(time, force, 1.5)
+
+
+def _wave_constant(beam: Beam) -> float:
+    """Return k in m2/s."""
+    return math.sqrt(beam.bending_stiffness / beam.mass_per_length)
+
+
+def _scale(beam: Beam, impulse: float) -> float:
+    """J/(mu sqrt(2 pi k)), in m s^-0.5 for J in N s."""
+    root = math.sqrt(2.0 * math.pi * _wave_constant(beam))
+    return number("infinite_beam", "impulse", impulse) / (beam.mass_per_length * root)
+
+
+def _ramps(time: ArrayLike, force: ArrayLike, power: float) -> Floats:
+    """Sum over the kinks of a force, before each time: change of slope x (time since)^power."""
+    seconds, newtons = _not_negative("time", time), np.asarray(force, dtype=np.float64)
+    if newtons.shape != seconds.shape or newtons.ndim != 1 or not np.all(np.isfinite(newtons)):
+        raise ValueError("force: must be one finite value for each time")
+    if newtons[0] != 0 or np.any(np.diff(seconds) <= 0):
+        raise ValueError("time, force: the times must ascend, and the force begin at zero")
+    kinks = np.diff(np.diff(newtons) / np.diff(seconds), prepend=0.0)
+    since = np.maximum(seconds[:, np.newaxis] - seconds[:-1], 0.0)
+    return np.asarray(since**power @ kinks)
+
+
+def _not_negative(field: str, values: ArrayLike) -> Floats:
+    array = np.asarray(values, dtype=np.float64)
+    if not np.all(np.isfinite(array) & (array >= 0)):
+        raise ValueError(f"{field}: every value must be a finite number of zero or more")
+    return array

@@ -3,33 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
-import xarray as xr
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from impactlab.dataset import RESPONSES, reasons, remarked
+from impactlab.verification.outcome import Outcome, gravest_first
 
 
-def print_responses(dataset: xr.Dataset) -> None:
-    """The scalar responses of one run, each with its unit; a missing one as such, and why."""
+def print_responses(run: Any) -> None:
+    """The scalar responses of one run, each with its unit; a missing one as such, and why.
+
+    run: a dataset of simulate, or one record of kernels.responses.RESPONSE.
+    """
     table = Table("response", "value", "unit", "meaning")
     for name, entry in RESPONSES.items():
-        value = dataset[name].item()
+        value = run[name].item()
         table.add_row(
             name, "missing" if value != value else f"{value:.6g}", entry.units, entry.long_name
         )
     console = Console()
     console.print(table)
-    for reason in reasons(dataset["status"].item()):
+    for reason in reasons(run["status"].item()):
         console.print(f"missing because {reason}; a longer duration may help", markup=False)
-    for remark in remarked(dataset["remarks"].item()):
+    for remark in remarked(run["remarks"].item()):
         console.print(f"note: {remark}", markup=False)
 
 
-def print_studies(rows: Iterable[tuple[str, int, str]]) -> None:
-    """One line a study: name, number of runs, title."""
-    table = Table("study", "runs", "title")
-    for name, runs, title in rows:
-        table.add_row(name, f"{runs:,}", title)
+def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
+    """One line a study: name, number of runs or checks, title."""
+    table = Table("study", "size", "title")
+    for row in rows:
+        table.add_row(*map(escape, row))
+    Console().print(table)
+
+
+def print_outcomes(outcomes: Iterable[Outcome]) -> None:
+    """One line a check: verdict, how many comparisons passed, the worst error over tolerance."""
+    table = Table("check", "verdict", "passed", "worst error / tolerance", "seconds")
+    for outcome in gravest_first(outcomes):
+        total, worst = len(outcome.finding.comparisons), outcome.worst
+        table.add_row(
+            escape(outcome.name),
+            outcome.verdict.upper() if outcome.verdict != "passed" else "passed",
+            f"{total - len(outcome.failures)} of {total}",
+            f"{worst.ratio:.2g}" if worst else "–",
+            f"{outcome.seconds:.1f}",
+        )
     Console().print(table)

@@ -11,21 +11,23 @@ from urllib.parse import quote
 import xarray as xr
 
 from impactlab.figures.draw import CAPTIONS
-from impactlab.figures.reading.contents import count
-from impactlab.report.outcome import failed_runs
+from impactlab.report.kinds import Kind, kind_in
 from impactlab.report.page import write_page
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A study in the index. report, thumbnail: addresses relative to the index ("" for none)."""
+    """A study in the index.
+
+    size: how much there is; failed: what failed ("" for nothing). report, thumbnail: addresses
+    relative to the index ("" for none).
+    """
 
     study: str
     title: str
     description: str
-    method: str
-    runs: int
-    failed: int
+    size: str
+    failed: str
     report: str
     thumbnail: str
     alt: str
@@ -34,24 +36,24 @@ class Entry:
 def write_index(results: Path, path: Path) -> None:
     """Write a page with a link to each report under `results` (results/NAME/report.html).
 
-    A study without runs.nc beside its report is left out. Raises OSError when `path` cannot be
-    written.
+    A report without the stored results that it was made from is left out. Raises OSError when
+    `path` cannot be written.
     """
     folders = [report.parent for report in sorted(results.glob("*/report.html"))]
-    entries = [_entry(folder, path.parent) for folder in folders if (folder / "runs.nc").exists()]
+    entries = [_entry(folder, kind, path.parent) for folder in folders if (kind := kind_in(folder))]
     write_page("index.html.j2", path, entries=entries)
 
 
-def _entry(folder: Path, home: Path) -> Entry:
+def _entry(folder: Path, kind: Kind, home: Path) -> Entry:
     thumbnail, alt = _thumbnail(folder)
-    with xr.open_dataset(folder / "runs.nc") as runs:
+    with xr.open_dataset(folder / kind.files[0]) as stored:
+        size, failed = kind.listed(stored)
         return Entry(
             study=folder.name,
-            title=str(runs.attrs.get("title") or folder.name),
-            description=str(runs.attrs.get("description", "")),
-            method=str(runs.attrs.get("method", "grid")),
-            runs=count(runs),
-            failed=int(failed_runs(runs).sum()),
+            title=str(stored.attrs.get("title") or folder.name),
+            description=str(stored.attrs.get("description", "")),
+            size=size,
+            failed=failed,
             report=_address(folder / "report.html", home),
             thumbnail=_address(thumbnail, home) if thumbnail else "",
             alt=alt,

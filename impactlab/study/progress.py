@@ -1,4 +1,4 @@
-"""The progress bar: runs done, runs a second, time left, failures."""
+"""The progress bar: what is done, how much a second, time left, failures."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from rich.progress import Progress as Bar
 class Progress:
     """A bar on the terminal's error stream, as a context; silent where there is no terminal."""
 
-    def __init__(self, total: int, done: int) -> None:
-        """total: runs of the study; done: those solved before."""
+    def __init__(self, total: int, done: int, what: str = "runs") -> None:
+        """total: runs of the study, or what else is counted; done: those solved before."""
+        self._what = what
         self._failed = 0
         self._fresh = 0
         self._console = Console(stderr=True)
         self._bar = Bar(
-            TextColumn("runs"),
+            TextColumn(what),
             BarColumn(),
             MofNCompleteColumn(),
             TextColumn("{task.fields[rate]}"),
@@ -28,7 +29,7 @@ class Progress:
             disable=not self._console.is_terminal,
         )
         self._task: TaskID = self._bar.add_task(
-            "runs", total=total, completed=done, failed=0, rate=""
+            what, total=total, completed=done, failed=0, rate=""
         )
 
     def __enter__(self) -> Progress:
@@ -45,10 +46,11 @@ class Progress:
         """Close the bar, also on an error."""
         self._bar.stop()
 
-    def advance(self, runs: int, failed: int) -> None:
-        """Count this many more runs done, and how many of them failed."""
+    def advance(self, done: int, failed: int) -> None:
+        """Count this many more done, and how many of them failed."""
         self._failed += failed
-        self._fresh += runs
+        self._fresh += done
         elapsed = self._bar.tasks[self._task].elapsed or 0.0
-        rate = f"{self._fresh / elapsed:,.0f} runs/s" if elapsed > 0 else ""
-        self._bar.update(self._task, advance=runs, failed=self._failed, rate=rate)
+        speed = self._fresh / elapsed if elapsed > 0 else 0.0
+        rate = f"{speed:,.0f} {self._what}/s" if speed >= 1 else ""
+        self._bar.update(self._task, advance=done, failed=self._failed, rate=rate)

@@ -8,6 +8,8 @@ from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING
 
+from impactlab.study.si_units import scale
+
 if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
 
@@ -38,7 +40,7 @@ def si(value: object, units: str) -> float:
     units: SI, in UDUNITS spelling ("kg m-3"), as in the tables of parameters and variables.
     Plain numbers are taken as SI. Strings are converted in decimal arithmetic, so that
     "27.8 mm" is 0.0278 to the last digit. One number and one unit are read, never an
-    expression; of the unit, each name alone is looked up by pint.
+    expression; of the unit, each name alone is looked up, by pint where si_units has it not.
 
     Raises ValueError when the value is no number, not finite, or of another dimension.
     """
@@ -88,10 +90,12 @@ def _parsed(text: str, units: str) -> float:
         return float(number)
     if written == "%" or units == "1":
         return _percentage(number, written, units)
-    unit, target = _unit(written, units), _unit(units, units)
-    if unit.dimensionality != target.dimensionality:
+    unit, target = scale(_factors(written)), scale(_factors(units))
+    if unit is None or target is None:
+        return _by_pint(number, written, units)
+    if unit.dimension != target.dimension:
         raise ValueError(f"{written!r} has the wrong dimension; {expected(units)}")
-    return float(_registry().Quantity(number, unit).m_as(target))
+    return float(number.scaleb(unit.ten - target.ten))
 
 
 def _percentage(number: Decimal, written: str, units: str) -> float:
@@ -100,13 +104,27 @@ def _percentage(number: Decimal, written: str, units: str) -> float:
     return float(number / 100)
 
 
-def _unit(written: str, units: str) -> Unit:
-    """The product of the factors before the first "/", over each one behind a "/"."""
+def _factors(written: str) -> list[tuple[str, int]]:
+    """(name, power) of the factors before the first "/" and of those behind a "/"."""
     above, *below = written.split("/")
+    return [
+        (name, sign * int(power or 1))
+        for sign, part in [(1, above), *((-1, part) for part in below)]
+        for name, power in re.findall(_FACTOR, part)
+    ]
+
+
+def _by_pint(number: Decimal, written: str, units: str) -> float:
+    unit, target = _unit(written, units), _unit(units, units)
+    if unit.dimensionality != target.dimensionality:
+        raise ValueError(f"{written!r} has the wrong dimension; {expected(units)}")
+    return float(_registry().Quantity(number, unit).m_as(target))
+
+
+def _unit(written: str, units: str) -> Unit:
     result = _registry().Unit("")
-    for sign, part in [(1, above), *((-1, part) for part in below)]:
-        for name, power in re.findall(_FACTOR, part):
-            result *= _named(name, units) ** (sign * int(power or 1))
+    for name, power in _factors(written):
+        result *= _named(name, units) ** power
     return result
 
 

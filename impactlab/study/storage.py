@@ -8,12 +8,10 @@ from __future__ import annotations
 
 import hashlib
 import logging
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
 import numpy as np
 import xarray as xr
@@ -23,6 +21,7 @@ from impactlab.kernels.case import CASE
 from impactlab.kernels.jit import SOURCES_HASH
 from impactlab.kernels.responses import RESPONSE
 from impactlab.simulate import Answers
+from impactlab.study.netcdf import read_netcdf, write_netcdf
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
@@ -35,36 +34,6 @@ class Form:
 
     samples: int
     profiles: bool
-
-
-def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
-    """Write under a temporary name, then rename: readers see all of a file or none of it.
-
-    Raises OSError when the disk does not take it; an older file then stays as it was.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{path.name}.{uuid4().hex}")
-    large = {
-        str(name): {"zlib": True, "complevel": 1}
-        for name, values in dataset.data_vars.items()
-        if values.dtype.kind == "f" and values.size > 10_000
-    }
-    try:
-        dataset.to_netcdf(unfinished, engine="netcdf4", encoding=large)
-        with unfinished.open("rb") as handle:
-            os.fsync(handle.fileno())
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
-
-
-def read_netcdf(path: Path) -> xr.Dataset:
-    """A dataset in memory, its file closed. Raises OSError, naming a file that cannot be read."""
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
-    except (OSError, ValueError, RuntimeError) as error:
-        raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
 
 
 def run_keys(cases: Array, form: Form) -> list[bytes]:

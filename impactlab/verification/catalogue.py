@@ -7,10 +7,17 @@ from typing import Protocol
 from impactlab.verification import (
     balances,
     half_space,
+    infinite_beam,
+    modal_series,
     moment_curvature,
+    observed_order,
     rigid_plastic_mode,
+    similarity,
     static_collapse,
     static_deflection,
+    stronge_restitution,
+    sub_impacts,
+    time_reversal,
 )
 from impactlab.verification.finding import Finding
 
@@ -28,6 +35,13 @@ class CheckFile(Protocol):
 
 _FILES: tuple[CheckFile, ...] = (
     half_space,
+    stronge_restitution,
+    modal_series,
+    sub_impacts,
+    infinite_beam,
+    observed_order,
+    time_reversal,
+    similarity,
     moment_curvature,
     static_deflection,
     static_collapse,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,14 @@ class Comparison:
         """Whether the error is within the tolerance; never with a NaN."""
         return bool(abs(self.error) <= self.tolerance)
 
+    @property
+    def ratio(self) -> float:
+        """The error in tolerances: above 1 it fails; infinite where there is no number."""
+        size = abs(self.error)
+        if size == 0.0:
+            return 0.0
+        return float(size / self.tolerance) if size < np.inf and self.tolerance > 0 else np.inf
+
 
 def relative(
     quantity: str, where: str, units: str, ours: float, independent: float, tolerance: float
@@ -63,6 +71,13 @@ def curve(
     error = float(gap[worst] / np.max(np.abs(independent)))
     values = float(ours[worst]), float(independent[worst])
     return Comparison(quantity, where, units, *values, error, tolerance, "of the largest value")
+
+
+def worst(entries: Sequence[Comparison]) -> Comparison:
+    """The one nearest to failing, for a table that would else be long; a NaN comes first."""
+    shares = [abs(entry.error) / entry.tolerance for entry in entries]
+    entry = entries[int(np.argmax(np.nan_to_num(shares, nan=np.inf)))]
+    return replace(entry, where=f"{entry.where} (the worst of {len(entries)})")
 
 
 @dataclass(frozen=True)

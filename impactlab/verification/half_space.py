@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
 from impactlab.reference import hertz
 from impactlab.simulate import simulate
+from impactlab.verification.cases import rigid_backed
 from impactlab.verification.finding import Finding, relative
 
 TITLE = "Impact on a half-space"
 SOURCE = "Hertz 1881; closed forms in impactlab.reference.hertz"
 
 
-def rigid_backed(velocity: float, contact: str) -> Impact:
-    """The paper's sphere on a beam of enormous mass (E* as it is), without gravity."""
-    impact = paper_impact(velocity, contact)
-    heavy = replace(impact.beam.material, density=7.8e9)
-    return replace(impact, beam=replace(impact.beam, material=heavy), gravity=0.0)
-
-
 def check() -> Finding:
-    """Peak force, largest indentation and contact duration."""
+    """Peak force, largest indentation, contact duration and restitution."""
     velocity = 0.99
     impact = rigid_backed(velocity, "hertz")
     modulus, radius = hertz.effective_modulus(impact), hertz.effective_radius(impact)
@@ -34,11 +24,12 @@ def check() -> Finding:
     where = f"the paper's sphere at {velocity} m/s"
     return Finding(
         [
-            relative(quantity, where, units, run[name].item(), expected(*args), 1e-4)
+            relative(quantity, where, units, run[name].item(), expected(*args), 2e-5)
             for quantity, name, units, expected in (
                 ("peak force", "peak_force", "N", hertz.peak_force),
                 ("contact duration", "contact_duration", "s", hertz.contact_duration),
                 ("largest indentation", "maximum_indentation", "m", hertz.maximum_indentation),
             )
         ]
+        + [relative("restitution", where, "1", run.restitution.item(), 1.0, 2e-5)]
     )

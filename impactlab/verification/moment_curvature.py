@@ -48,11 +48,10 @@ def moments(beam: Beam, rule: str, points: int, curvatures: Floats) -> Floats:
     impact = replace(paper_impact(), beam=beam)
     grid = Discretisation(rule=rule, points=points)
     cut = section.make_section(case_table(impact, grid, duration=1.0)[0])
-    fibres = cut.z, cut.lever, cut.E, cut.S_y, cut.H_i, cut.H_k
     strain, peeq = np.zeros((1, points // 2)), np.zeros((1, points // 2))
     found = []
     for kappa in curvatures:
-        moment, _, _ = section.bend(*fibres, kappa, strain, peeq, 0)
+        moment, _, _ = section.bend(cut, float(kappa), strain, peeq, 0)
         found.append(cut.stiffness * kappa - moment)
     return np.array(found)
 

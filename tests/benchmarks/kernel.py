@@ -92,9 +92,9 @@ def kernel(case: Case) -> tuple[Callable[[], float], int]:
     solve(cases)  # compiles
 
     def seconds() -> float:
-        start = time.perf_counter()
+        start = time.thread_time()
         solve(cases)
-        return (time.perf_counter() - start) / cost
+        return (time.thread_time() - start) / cost
 
     return seconds, int(2 * cost / case.nodes)
 

@@ -13,6 +13,9 @@ from impactlab.dataset import RESPONSES, described
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import flatten
+from impactlab.verification.finding import Comparison, Curve, Finding, Panel, absolute, relative
+from impactlab.verification.outcome import Outcome
+from impactlab.verification.stored import packed
 
 Study = tuple[xr.Dataset, xr.Dataset]
 ATTRIBUTES = {
@@ -234,3 +237,47 @@ def failing() -> Callable[[xr.Dataset, dict[str, int]], xr.Dataset]:
         return broken
 
     return fail
+
+
+@pytest.fixture
+def outcomes() -> list[Outcome]:
+    """A check that passed, one with curves that failed in part, an error, and one of nothing."""
+    good = [
+        relative("peak force", "at 1 m/s", "N", 21064.7892, 21064.7221, 1e-4),
+        absolute("deflection", "at 1 m/s", "m", 1.2003e-3, 1.2e-3, 2e-6),
+        Comparison("curvature", "at 1 m/s", "m-1", 0.03, 0.031, 0.032, 0.1, "of the peak"),
+    ]
+    bad = [relative("force", f"case {i}", "N", 100.0 + 0.01 * i, 100.0, 0.01) for i in range(15)]
+    bad += [relative("force", "slightly off", "N", 102.0, 100.0, 0.01)]
+    bad += [relative("force", "far off", "N", 300.0, 100.0, 0.01)]
+    bad += [relative("force", "diverged", "N", np.nan, 100.0, 0.01)]
+    time, nodes = np.linspace(0.0, 1e-3, 40), np.array([51.0, 101.0, 201.0])
+    force = 2e4 * np.sin(3e3 * time)
+    panels = [
+        Panel(
+            "force at 1 m/s",
+            ("time", "s"),
+            ("contact force", "N"),
+            [Curve("201 nodes", time, force), Curve("series", time, 1.01 * force, True)],
+        ),
+        Panel(
+            "error",
+            ("nodes", "1"),
+            ("error of the contact force over its largest value", "1"),
+            [Curve("force", nodes, 5 / nodes**2), Curve("second order", nodes, 8 / nodes**2, True)],
+            log=True,
+        ),
+    ]
+    return [
+        Outcome("good", "A good check", "Hertz 1881", 0.25, Finding(good)),
+        Outcome("bad", "A bad check", "a series & more", 1.5, Finding(bad, panels)),
+        Outcome("broken", "A broken check", "a book", 0.5, Finding(()), "ValueError: <no> (a.py)"),
+        Outcome("void", "A check of nothing", "nowhere", 0.0, Finding(())),
+    ]
+
+
+@pytest.fixture
+def findings(outcomes: list[Outcome]) -> xr.Dataset:
+    """The outcomes as findings.nc holds them."""
+    given = ATTRIBUTES | {"study": "verification", "title": "The verification"}
+    return packed(outcomes).assign_attrs(given | {"kernels_sha256": "1" * 64})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -20,9 +21,11 @@ from impactlab.dataset import (
     remarked,
 )
 from impactlab.kernels import RULES
+from impactlab.kernels.contact import LAWS
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.simulate import case_table, solve
 
+DOOR = import_module("impactlab.simulate")
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
 DURATION = 2e-3
@@ -247,6 +250,83 @@ def test_a_wrong_run_is_named_with_its_field():
     refused({"contact": ["hertz", "hooke"]}, r"^run 1: Impact\.contact = 'hooke': must be one of")
     refused({"weight": [1.0]}, r"^run 0: unknown parameter 'weight': choose from velocity")
     refused({"velocity": [1.0, 2.0], "nodes": [11]}, r"one value a run.*\{1, 2\}")
+
+
+RUNS = 40
+RANDOM = np.random.default_rng(3)
+WORDS = {"contact": LAWS, "rule": RULES}
+COUNTS = {"nodes": (5, 7, 1201), "points": (2, 3, 64)}
+
+
+def any_values(name):
+    """Values that every run may have beside any of the others."""
+    if choices := WORDS.get(name) or COUNTS.get(name):
+        return RANDOM.choice(choices, RUNS)
+    value = flatten(IMPACT, GRID).get(name) or {"sphere_mass": 1.4}.get(name, 1e9)
+    return value * RANDOM.uniform(0.9, 1.1, RUNS)
+
+
+@pytest.fixture
+def one_by_one(monkeypatch):
+    """The case table as it is when each run is made and checked alone."""
+
+    def refuse(values):
+        raise ValueError("no columns")
+
+    def table(varied):
+        with monkeypatch.context() as without:
+            without.setattr(DOOR, "column", refuse)
+            return case_table(IMPACT, GRID, duration=DURATION, varied=varied)
+
+    return table
+
+
+@pytest.mark.parametrize("names", [*((name,) for name in PARAMETERS), tuple(PARAMETERS)])
+def test_columns_give_the_table_of_single_runs_bit_by_bit(names, one_by_one, monkeypatch):
+    varied = {name: any_values(name) for name in names}
+    alone = one_by_one(varied)
+    monkeypatch.setattr(DOOR, "_one_by_one", None)
+    for form in (np.asarray, list, np.ndarray.tolist, lambda values: values.astype(object)):
+        given = {name: form(values) for name, values in varied.items()}
+        many = case_table(IMPACT, GRID, duration=DURATION, varied=given)
+        assert many.tobytes() == alone.tobytes()
+        assert many.dtype == alone.dtype
+
+
+WRONG = {
+    "beam_density": [0, -1.0, np.nan, np.inf, "1", None, True],
+    "beam_yield_stress": [210e9, np.nan],
+    "beam_poissons_ratio": [-0.1, 0.5, np.nan],
+    "beam_isotropic_hardening_modulus": [-1e-9, np.inf],
+    "sphere_mass": [0, True],
+    "beam_depth": [0.78, 1.0],
+    "gravity": [-1.0],
+    "contact": ["hooke", "", 0, None],
+    "rule": ["Lobatto"],
+    "nodes": [3, 20, 21.5, np.nan, "21", None, True],
+    "points": [1, 2.5],
+    "courant": [0, 1.0001],
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong"), [(name, value) for name, values in WRONG.items() for value in values]
+)
+def test_a_refused_run_is_told_in_the_words_of_the_model(name, wrong):
+    right = any_values(name).tolist()[0]
+    with pytest.raises(ValueError, match=name.split("_")[-1]) as alone:
+        with_values(IMPACT, GRID, {name: wrong})
+    with pytest.raises(ValueError, match=r"^run 2: ") as among:
+        case_table(IMPACT, GRID, duration=DURATION, varied={name: [right, right, wrong, right]})
+    assert str(among.value) == f"run 2: {alone.value}"
+
+
+def test_what_is_no_column_may_still_be_right(one_by_one):
+    """A mass that follows from the density in some runs."""
+    varied = {"sphere_mass": [None, 2.0], "velocity": [1, 2.0]}
+    cases = case_table(IMPACT, GRID, duration=DURATION, varied=varied)
+    assert cases["sphere_mass"].tolist() == [IMPACT.sphere.total_mass, 2.0]
+    assert cases.tobytes() == one_by_one(varied).tobytes()
 
 
 @pytest.mark.parametrize("duration", [0.0, -1e-3, np.nan, np.inf, None, "1 ms"])

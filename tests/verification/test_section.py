@@ -17,8 +17,7 @@ IMPACT = il.paper_impact()
 
 def bend(section, kappa, plastic, peeq):
     """Bend one section with its fibres' strains, shape (P // 2,)."""
-    cut = (section.z, section.lever, section.E, section.S_y, section.H_i, section.H_k)
-    return bend_row(*cut, kappa, plastic[np.newaxis], peeq[np.newaxis], 0)
+    return bend_row(section, kappa, plastic[np.newaxis], peeq[np.newaxis], 0)
 
 
 def make_section(points, rule, isotropic=0.0, kinematic=0.0):
@@ -84,7 +83,7 @@ def test_three_lobatto_points_yield_fully_at_the_yield_moment():
 def test_reversed_loading(isotropic, kinematic):
     """After loading, the elastic range of the outermost fibre is 2 (S_y + H_i p) wide."""
     cut, _ = make_section(9, "lobatto", isotropic, kinematic)
-    E, S_y = cut.E, cut.S_y
+    E, S_y = cut.moduli.E, cut.moduli.S_y
     kappa = 6 * cut.yield_curvature
     plastic, peeq = np.zeros(cut.z.size), np.zeros(cut.z.size)
     _, low, high = bend(cut, kappa, plastic, peeq)

@@ -1,17 +1,21 @@
 """The command line as a person uses it: errors speak, nothing is lost."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
 import time
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import xarray as xr
 
 from impactlab.cli import main
+from impactlab.verification.catalogue import CATALOGUE
+from impactlab.verification.finding import Finding, relative
 
 STUDY = """
 title: Small
@@ -26,6 +30,10 @@ sampling:
     nodes: [11, 21, 41]
 responses: [peak_force, contact_duration]
 """
+CHECKS = """
+title: Checks
+checks: [half_space]
+"""
 
 
 def impactlab(*args, cwd):
@@ -39,6 +47,7 @@ def impactlab(*args, cwd):
 def folder(tmp_path):
     (tmp_path / "studies").mkdir()
     (tmp_path / "studies" / "small.yaml").write_text(STUDY)
+    (tmp_path / "studies" / "checks.yaml").write_text(CHECKS)
     return tmp_path
 
 
@@ -56,8 +65,9 @@ def test_every_step_without_snakemake(folder):
 def test_studies_are_listed(folder):
     listed = impactlab("studies", cwd=folder).stdout
     assert "small" in listed
-    assert "9" in listed
+    assert "9 runs" in listed
     assert "Small" in listed
+    assert "1 check" in listed
 
 
 def test_simulate_prints_and_keeps(tmp_path):
@@ -70,6 +80,48 @@ def test_simulate_prints_and_keeps(tmp_path):
     assert one["peak_force"].attrs["units"] == "N"
 
 
+def loaded(*args, cwd):
+    """The packages that a command loads."""
+    command = [sys.executable, "-X", "importtime", "-m", "impactlab", *args]
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    lines = [line for line in done.stderr.splitlines() if line.startswith("import time:")]
+    return {line.split("|")[-1].strip().split(".")[0] for line in lines}
+
+
+HEAVY = {"dask", "distributed", "matplotlib", "netCDF4", "pandas", "pint", "ruamel", "xarray"}
+ONE = ("simulate", "--nodes", "11", "--velocity", "99 cm/s")
+
+
+def test_help_loads_nothing_heavy(tmp_path):
+    packages = loaded("--help", cwd=tmp_path)
+    assert "typer" in packages
+    assert packages.isdisjoint(HEAVY | {"numba", "numpy", "pydantic", "rich", "scipy"})
+
+
+def test_simulate_loads_no_more_than_it_needs(tmp_path):
+    packages = loaded(*ONE, cwd=tmp_path)
+    assert "numba" in packages
+    assert packages.isdisjoint(HEAVY)
+    assert {"netCDF4", "xarray"} <= loaded(*ONE, "--output", "one.nc", cwd=tmp_path)
+
+
+def test_only_what_solves_loads_the_compiler(folder):
+    assert "numba" not in loaded("design", "studies/small.yaml", cwd=folder)
+    assert "numba" in loaded("run", "studies/small.yaml", cwd=folder)
+    assert "numba" not in loaded("analyse", "results/small/runs.nc", cwd=folder)
+
+
+def test_simulate_prints_the_same_with_and_without_a_file(tmp_path):
+    alone = impactlab(*ONE, cwd=tmp_path).stdout
+    assert alone == impactlab(*ONE, "--output", "one.nc", cwd=tmp_path).stdout
+    assert "peak_force" in alone
+
+
+def test_help_is_not_cut_short(tmp_path):
+    assert not re.search(r"\w\.\.\.", impactlab("--help", cwd=tmp_path).stdout)
+
+
 @pytest.mark.parametrize(
     ("args", "words"),
     [
@@ -78,6 +130,12 @@ def test_simulate_prints_and_keeps(tmp_path):
         (["simulate", "--velocity", "3 kg"], ["velocity", "3 kg", "m/s"]),
         (["simulate", "--duration", "-1 ms"], ["duration", "-0.001"]),
         (["run", "studies/none.yaml"], ["studies/none.yaml"]),
+        (["run", "studies/checks.yaml"], ["checks.yaml", "impactlab verify"]),
+        (["design", "studies/checks.yaml"], ["checks.yaml", "impactlab verify"]),
+        (["verify", "studies/small.yaml"], ["small.yaml", "impactlab run"]),
+        (["verify", "studies/misspelt.yaml"], ["misspelt.yaml", "checks.0", "half_space"]),
+        (["verify", "none.nc"], ["none.nc"]),
+        (["figures", "studies/small.yaml"], ["small.yaml", "netCDF"]),
         (["run", "studies/broken.yaml"], ["broken.yaml", "velocty", "velocity"]),
         (["analyse", "studies/small.yaml"], ["studies/small.yaml", "netCDF"]),
         (["report", "none.nc", "none.nc"], ["none.nc"]),
@@ -86,6 +144,7 @@ def test_simulate_prints_and_keeps(tmp_path):
 )
 def test_mistakes_end_in_one_message(folder, args, words, monkeypatch, capsys):
     (folder / "studies" / "broken.yaml").write_text(STUDY.replace("velocity", "velocty"))
+    (folder / "studies" / "misspelt.yaml").write_text(CHECKS.replace("space", "spce"))
     monkeypatch.chdir(folder)
     monkeypatch.setattr(sys, "argv", ["impactlab", *args])
     with pytest.raises(SystemExit) as stop:
@@ -95,6 +154,62 @@ def test_mistakes_end_in_one_message(folder, args, words, monkeypatch, capsys):
     assert "Traceback" not in said
     for word in words:
         assert word in said, said
+
+
+def test_checks_from_the_file_to_the_index(folder):
+    said = impactlab("verify", "studies/checks.yaml", cwd=folder).stdout
+    assert "half_space" in said
+    assert re.search(r"\b(\d+) of \1\b", said)
+    findings = folder / "results" / "checks" / "findings.nc"
+    impactlab("figures", findings, cwd=folder)
+    impactlab("report", findings, cwd=folder)
+    impactlab("index", cwd=folder)
+    assert "checks/report.html" in (folder / "results" / "index.html").read_text()
+    assert "Every comparison" in findings.with_name("report.html").read_text()
+    stored = xr.load_dataset(findings)
+    assert stored["ours"].values == pytest.approx(stored["independent"].values, rel=1e-4)
+
+
+def fails():
+    entries = [relative("one", "here", "1", 1.0, 1.0, 0.1), relative("two", "", "1", 2.0, 1.0, 0.1)]
+    return Finding(entries)
+
+
+def breaks():
+    raise RuntimeError("of all things")
+
+
+@pytest.mark.parametrize(
+    ("check", "words"),
+    [(fails, "bad: 1 of 2 comparisons"), (breaks, "bad: RuntimeError: of all things")],
+)
+def test_a_failing_check_is_told_everywhere(folder, check, words, monkeypatch, capsys):
+    file = SimpleNamespace(TITLE="A bad check", SOURCE="made up", check=check)
+    monkeypatch.setitem(CATALOGUE, "bad", file)
+    monkeypatch.chdir(folder)
+    (folder / "studies" / "checks.yaml").write_text(CHECKS.replace("half_space", "half_space, bad"))
+
+    def exit_code(*args):
+        monkeypatch.setattr(sys, "argv", ["impactlab", *args])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        return stop.value.code
+
+    findings = "results/checks/findings.nc"
+    assert exit_code("verify", "studies/checks.yaml") == 1
+    said = capsys.readouterr()
+    assert "half_space" in said.out
+    assert words in said.err
+    assert "Traceback" not in said.err
+    assert exit_code("figures", findings) == 0
+    assert exit_code("report", findings) == 0
+    page = Path("results/checks/report.html").read_text()
+    assert "Verification failed" in page
+    assert '<a href="#bad">A bad check</a>' in page
+    assert exit_code("verify", "studies/checks.yaml", "--exit-zero") == 0
+    assert words in capsys.readouterr().err
+    assert exit_code("verify", findings) == 1
+    assert words in capsys.readouterr().err
 
 
 SLOW = STUDY.replace("[11, 21, 41]", "[201, 203, 205, 207, 209, 211]").replace("1 ms", "20 ms")

@@ -10,13 +10,17 @@ import pytest
 import xarray as xr
 
 import impactlab as il
+from impactlab.study.netcdf import write_netcdf
+from impactlab.verification.finding import Finding, relative
+from impactlab.verification.outcome import Outcome
+from impactlab.verification.stored import packed
 
 ROOT = Path(__file__).parents[2]
 
 
-def snakemake(folder, *args):
+def snakemake(folder, *args, studies="smoke,again,checks"):
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--config", "studies=smoke,again"]
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--config", f"studies={studies}"]
     return subprocess.run(
         [*command, *args],
         cwd=folder,
@@ -36,6 +40,7 @@ def folder(tmp_path_factory):
         shutil.copy(ROOT / name, copy)
     smoke = (copy / "studies" / "smoke.yaml").read_text()
     (copy / "studies" / "again.yaml").write_text(smoke.replace("0.99 m/s", "2 m/s"))
+    (copy / "studies" / "checks.yaml").write_text("title: Checks\nchecks: [half_space]\n")
     done = snakemake(copy)
     assert done.returncode == 0, done.stderr
     return copy
@@ -47,6 +52,11 @@ def test_every_product_is_there(folder):
         assert f"{study}/report.html" in (results / "index.html").read_text()
         for name in ("design.nc", "runs.nc", "analysis.nc", "report.html", "figures/captions.json"):
             assert (results / study / name).stat().st_size > 0
+    assert "checks/report.html" in (results / "index.html").read_text()
+    for name in ("findings.nc", "report.html", "figures/captions.json"):
+        assert (results / "checks" / name).stat().st_size > 0
+    assert (results / "checks" / "passed").exists()
+    assert not (results / "smoke" / "passed").exists()
 
 
 def test_stored_runs_are_those_of_the_library(folder):
@@ -78,3 +88,19 @@ def test_a_changed_study_reruns_alone(folder):
         study.write_text(before)
     assert "results/again/runs.nc" in planned
     assert "results/smoke/" not in planned.replace("results/smoke/report.html", "")
+
+
+def test_failed_checks_come_after_the_report(folder):
+    """The findings are put there, as if made: Snakemake takes files newer than their sources."""
+    (folder / "studies" / "bad.yaml").write_text("title: Bad checks\nchecks: [half_space]\n")
+    results = folder / "results" / "bad"
+    entry = relative("peak force", "here", "N", 2.0, 1.0, 0.1)
+    outcome = Outcome("half_space", "Half-space", "made up", 0.0, Finding([entry]))
+    write_netcdf(packed([outcome]), results / "findings.nc")
+    done = snakemake(folder, studies="bad")
+    assert done.returncode != 0
+    assert "half_space: 1 of 1 comparisons" in done.stderr
+    assert "Verification failed" in (results / "report.html").read_text()
+    assert "bad/report.html" in (folder / "results" / "index.html").read_text()
+    assert not (results / "passed").exists()
+    assert "half_space" in (results / "logs" / "verdict.log").read_text()

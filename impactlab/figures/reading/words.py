@@ -59,6 +59,11 @@ def number(value: float, digits: int = 4, plain: tuple[float, float] = (1e-4, 1e
     return power if text == "1" else f"{text}×{power}"
 
 
+def counted(number: int, what: str) -> str:
+    """A number of things: "1 check", "1,024 checks"."""
+    return f"{number:,} {what}" if number == 1 else f"{number:,} {what}s"
+
+
 def listing(items: Sequence[str]) -> str:
     """The items in a row: "a, b and c"."""
     return " and ".join(filter(None, (", ".join(items[:-1]), *items[-1:])))

@@ -11,6 +11,8 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    PlainValidator,
+    TypeAdapter,
     ValidationInfo,
     model_validator,
 )
@@ -59,6 +61,23 @@ def one_of(kind: str, choices: Collection[str]) -> BeforeValidator:
         return value
 
     return BeforeValidator(check)
+
+
+def names(kind: str, choices: Collection[str]) -> PlainValidator:
+    """Reads `all`, or a list of some of the choices."""
+    words: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of(kind, choices)]])
+
+    def read(data: Any) -> tuple[str, ...]:
+        if data == "all":
+            return tuple(choices)
+        if not isinstance(data, list) or not data:
+            raise ValueError(f"expected `all`, or a list of names out of {', '.join(choices)}")
+        found = words.validate_python(data)
+        if twice := [name for at, name in enumerate(found) if name in found[:at]]:
+            raise ValueError(f"names {twice[0]} more than once: name each {kind} once")
+        return tuple(found)
+
+    return PlainValidator(read)
 
 
 def chosen(key: str, forms: Mapping[str, type[Form]]) -> Reader:

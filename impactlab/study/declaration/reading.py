@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,23 @@ LARGEST = 256 * 1024
 """Bytes in a study file, and values in it once its aliases are followed."""
 _DEEPEST = 20
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,100}")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A study file as it was read. name: the file's, without the ending; data: what it holds."""
+
+    name: str
+    path: Path
+    text: str
+    data: dict[str, Any]
+
+
+def read_source(path: str | Path) -> Source:
+    """Name, text and data of a study file. Raises StudyError, naming the file."""
+    path = Path(path)
+    name, text = read_name(path), read_text(path)
+    return Source(name, path, text, read_mapping(text, str(path)))
 
 
 def read_name(path: Path) -> str:

@@ -1,4 +1,4 @@
-"""A study as its file declares it."""
+"""A study of runs as its file declares it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.study.declaration import checks, messages
 from impactlab.study.declaration.methods import Grid, Sobol
-from impactlab.study.declaration.reading import read_mapping, read_name, read_text
+from impactlab.study.declaration.reading import Source
 from impactlab.study.declaration.schema import Analysis, Store, StudyForm
 from impactlab.study.errors import Problem, StudyError
 
@@ -43,6 +43,11 @@ class Study:
     text: str
 
     @property
+    def size(self) -> str:
+        """How much there is to do, in words."""
+        return f"{self.runs:,} runs"
+
+    @property
     def runs(self) -> int:
         """How many runs the study has."""
         return self.sampling.runs
@@ -53,22 +58,16 @@ class Study:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
 
-def read_study(path: str | Path) -> Study:
-    """The study that a YAML file declares (docs/studies.md describes the form).
-
-    Raises StudyError that holds everything wrong with the file, a line each with file, key and
-    value; just the first where there is no file, no YAML, or no mapping in it.
-    """
-    path = Path(path)
-    name, text = read_name(path), read_text(path)
-    data = read_mapping(text, str(path))
+def study(source: Source) -> Study:
+    """The study that a file declares. Raises StudyError that holds everything wrong with it."""
+    data, path = source.data, source.path
     form, problems = _validated(data, str(path))
     sound = set(StudyForm.model_fields) - {problem.key.split(".")[0] for problem in problems}
     problems += checks.problems(form, str(path), sound)
     if problems:
         raise StudyError(*problems)
     return Study(
-        name=name,
+        name=source.name,
         path=path,
         title=form.title,
         description=form.description,
@@ -80,7 +79,7 @@ def read_study(path: str | Path) -> Study:
         analyses=form.analyses,
         store=form.store,
         analysis=form.analysis or Analysis(),
-        text=text,
+        text=source.text,
     )
 
 

@@ -38,7 +38,7 @@ def test_time_steps_fill_the_duration_and_obey_the_courant_number(make_case, cou
 
 def test_mid_span_is_a_node(make_case):
     grid, _, _ = steps_of(make_case(nodes=31))
-    assert grid.n == 15
+    assert grid.mid == 16
     assert grid.dx == pytest.approx(0.78 / 30)
     assert grid.mu == pytest.approx(7800 * 0.06 * 0.0278)
 

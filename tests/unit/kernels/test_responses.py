@@ -7,7 +7,7 @@ import pytest
 
 from impactlab.dataset import RESPONSES
 from impactlab.kernels import remarks, status
-from impactlab.kernels.beam import make_beam, make_grid
+from impactlab.kernels.beam import make_grid
 from impactlab.kernels.contact.history import CONTACT, load, make_pair
 from impactlab.kernels.responses import (
     ANSWERS,
@@ -19,10 +19,11 @@ from impactlab.kernels.responses import (
     read_rebound,
     share_above,
 )
-from impactlab.kernels.section import make_section
 from impactlab.kernels.track import TRACK
 
-N, DX = 20, 0.01
+DX = 0.01
+GRID = make_grid(20, DX, 1e-6, 13.0, 2e4)
+MID = GRID.mid
 
 
 @pytest.fixture
@@ -44,7 +45,7 @@ def track():
     record.contacts, record.touching = 1, 0
     record.t_first_end, record.time_in_contact, record.t_peak = 3e-4, 3e-4, 1e-4
     record.delta, record.w, record.w_max = -1e-4, 1e-4, 2e-4
-    record.v_exit, record.impulse = -0.4, 2.0
+    record.v_exit, record.v_s, record.v_mid, record.impulse = -0.4, -0.4, -0.1, 2.0
     return record
 
 
@@ -55,15 +56,16 @@ def contact(case):
     return record
 
 
-def read_everything(answer, case, track, contact, beam):
+def read_everything(answer, case, track, contact, peeq):
     read_contact(answer, track, contact, make_pair(case))
-    read_rebound(answer, case, track, -0.4, -0.1)
-    read_beam(answer, case, track, beam, make_grid(N, DX, 1e-6, 13.0), 0.7)
+    read_rebound(answer, case, track)
+    read_beam(answer, case, track, peeq, GRID, 0.7)
 
 
 @pytest.fixture
-def beam(case):
-    return make_beam(N, make_section(case))
+def peeq():
+    """Of a half beam with two fibres a section: indices as in kernels/beam.py."""
+    return np.zeros((MID + 3, 2))
 
 
 def test_answers_are_the_responses_of_the_dataset():
@@ -81,8 +83,8 @@ def test_clear_leaves_no_number_but_the_reason(answer):
     assert np.isnan([answer[name] for name in ANSWERS]).all()
 
 
-def test_a_run_that_ended_well_gives_every_answer(answer, case, track, contact, beam):
-    read_everything(answer, case, track, contact, beam)
+def test_a_run_that_ended_well_gives_every_answer(answer, case, track, contact, peeq):
+    read_everything(answer, case, track, contact, peeq)
     assert answer.status == 0
     assert answer.peak_force == contact.F_m
     assert answer.time_of_peak_force == 1e-4
@@ -144,11 +146,11 @@ UNFINISHED = {
 
 @pytest.mark.parametrize(("changes", "bits"), UNFINISHED.values(), ids=UNFINISHED)
 def test_what_is_missing_is_what_the_status_explains(
-    answer, case, track, contact, beam, changes, bits
+    answer, case, track, contact, peeq, changes, bits
 ):
     for name, value in changes.items():
         track[name] = value
-    read_everything(answer, case, track, contact, beam)
+    read_everything(answer, case, track, contact, peeq)
     assert answer.status == bits
     flags = {bit: name.lower() for name, bit in vars(status).items() if name.isupper()}
     expected = {
@@ -165,34 +167,34 @@ def split(bits):
 
 
 @pytest.mark.parametrize(
-    ("v_s", "v_beam", "leaves"),
+    ("v_s", "v_mid", "leaves"),
     [(-0.4, -0.1, True), (0.1, 0.2, False), (-0.1, -0.4, False), (0.0, 0.5, False)],
     ids=["up and away", "down", "up, the beam faster", "at rest"],
 )
 def test_the_rebound_is_over_once_the_sphere_moves_up_and_away(
-    answer, case, track, v_s, v_beam, leaves
+    answer, case, track, v_s, v_mid, leaves
 ):
-    read_rebound(answer, case, track, v_s, v_beam)
+    track.v_s, track.v_mid = v_s, v_mid
+    read_rebound(answer, case, track)
     assert np.isfinite(answer.rebound_velocity) == leaves
     assert answer.status == (0 if leaves else status.SPHERE_NOT_LEAVING)
 
 
-def test_strains_of_the_beam(answer, case, track, beam):
+def test_strains_of_the_beam(answer, case, track, peeq):
     """The peak in any fibre; the remote one farther than a depth (2.78 DX) from mid-span."""
-    beam.peeq[N - 3, 0] = 3e-3
-    beam.peeq[N - 2, 1] = 9e-3
-    beam.peeq[N, 0] = 7e-3
-    read_beam(answer, case, track, beam, make_grid(N, DX, 1e-6, 13.0), 0.0)
+    peeq[MID - 3, 0] = 3e-3
+    peeq[MID - 2, 1] = 9e-3
+    peeq[MID, 0] = 7e-3
+    read_beam(answer, case, track, peeq, GRID, 0.0)
     assert answer.peak_plastic_strain == 9e-3
     assert answer.remote_plastic_strain == 3e-3
 
 
-def test_plastic_zone_is_measured_between_the_nodes(answer, case, track, beam):
+def test_plastic_zone_is_measured_between_the_nodes(answer, case, track, peeq):
     """PEEQ linear in x around mid-span, zero from 6 DX on either side."""
     slope = 4e-5
-    beam.peeq[:, 0] = slope * np.maximum(6.0 - np.arange(N, -1, -1), 0)
-    grid = make_grid(N, DX, 1e-6, 13.0)
-    read_beam(answer, case, track, beam, grid, 0.0)
+    peeq[: MID + 1, 0] = slope * np.maximum(6.0 - np.arange(MID, -1, -1), 0)
+    read_beam(answer, case, track, peeq, GRID, 0.0)
     reaches = 6.0 - PLASTIC_ZONE_STRAIN / slope
     assert answer.plastic_zone_length == pytest.approx(2 * reaches * DX, rel=1e-12)
     assert PLASTIC_ZONE_STRAIN == 1e-5  # as dataset.py tells the reader

@@ -30,7 +30,7 @@ def follow(track, deltas, delta_r=0.0, velocities=None):
     velocities = np.zeros(len(deltas)) if velocities is None else velocities
     for step, (delta, v_s) in enumerate(zip(deltas, velocities, strict=True)):
         watch_contact(track, delta, delta_r, v_s, step * DT, DT)
-        shift(track, delta, 0.0, 0.0, 0.0, DT)
+        shift(track, delta, 0.0, 0.0, DT)
 
 
 @pytest.mark.parametrize("top", [-0.4, 0.0, 0.3])
@@ -95,20 +95,20 @@ def test_the_largest_deflection_is_the_top_of_its_parabola(track):
     time = DT * np.arange(50)
     for w in np.where(time < 2, 1 - (time - 1.03) ** 2, 2 - (time - 3.04) ** 2):
         watch_deflection(track, w)
-        shift(track, 0.0, w, 0.0, 0.0, DT)
+        shift(track, 0.0, w, 0.0, DT)
     assert track.w_max == pytest.approx(2.0, rel=1e-12)
 
 
 def test_a_deflection_that_only_grows_has_no_peak(track):
     for w in np.arange(10.0):
         watch_deflection(track, w)
-        shift(track, 0.0, w, 0.0, 0.0, DT)
+        shift(track, 0.0, w, 0.0, DT)
     assert track.w_max == 0.0
 
 
 def test_impulse_is_the_trapezoidal_sum(track):
     forces = np.array([0.0, 3.0, 5.0, 2.0])
     for F in forces:
-        shift(track, 0.0, 0.0, 0.0, F, DT)
+        shift(track, 0.0, 0.0, F, DT)
     # the first step begins at zero force
     assert track.impulse == pytest.approx(np.trapezoid(forces, dx=DT))

@@ -2,13 +2,19 @@ from __future__ import annotations
 
 import math
 import re
+import subprocess
+import sys
 import time
+from decimal import Decimal
+from itertools import product
 
 import pytest
 
 from impactlab.dataset import VARIABLES
 from impactlab.model.parameters import PARAMETERS
+from impactlab.study import quantities
 from impactlab.study.quantities import KINDS, si, whole
+from impactlab.study.si_units import UNITS
 
 
 @pytest.mark.parametrize(
@@ -43,6 +49,37 @@ def test_what_is_written_becomes_exactly_this_si_number(written, units, number):
 @pytest.mark.parametrize("tenths", range(1, 1000, 7))
 def test_units_leave_no_trace_of_binary_rounding(tenths):
     assert si(f"{tenths / 10} mm", "m") == float(f"{tenths}e-4")
+
+
+@pytest.mark.parametrize("target", [units for units in KINDS if units != "1"])
+def test_known_units_are_what_pint_says(target):
+    """To the last bit, and with the same dimension."""
+    compared = 0
+    names = [*UNITS, *(f"{one}/{other}" for one, other in product(UNITS, UNITS)), "g/cm3", "m/s2"]
+    for name, number in product(names, ("1", "27.8", "-.3e-7", "123456789.123456789")):
+        try:
+            expected = quantities._by_pint(Decimal(number), name, target)
+        except ValueError as error:
+            with pytest.raises(ValueError, match=re.escape(str(error))):
+                si(f"{number} {name}", target)
+        else:
+            assert si(f"{number} {name}", target) == expected, name
+            compared += 1
+    assert compared >= 4
+
+
+def test_units_of_most_studies_do_without_pint():
+    code = """
+import sys
+from impactlab.study.quantities import KINDS, si
+for units, (_, example) in KINDS.items():
+    si(example, units)
+assert "pint" not in sys.modules
+assert si("1 inch", "m") == 0.0254
+assert "pint" in sys.modules
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize(
@@ -83,7 +120,7 @@ def test_anything_else_is_refused_with_what_was_expected(written, units, words):
     "text", ["1e9**1e9 m", "9**9**9**9 m", "1 m" + "**9" * 20, "1 " + "m*" * 35]
 )
 def test_expressions_are_refused_without_being_computed(text):
-    si("1 m", "m")  # units are loaded
+    si("1 inch", "m")  # pint is loaded
     start = time.perf_counter()
     with pytest.raises(ValueError, match="cannot be read"):
         si(text, "m")

@@ -6,7 +6,8 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.simulate import case_table, solve
-from impactlab.study.storage import Form, Shards, read_netcdf, run_keys, write_netcdf
+from impactlab.study.netcdf import read_netcdf
+from impactlab.study.storage import Form, Shards, run_keys
 
 FORM = Form(samples=11, profiles=True)
 
@@ -83,12 +84,3 @@ def test_one_shard_takes_the_place_of_all(shards):
     shards.replace_all(keys, answers)
     ((found, _),) = shards.read()
     assert found == keys
-
-
-def test_failed_write_leaves_the_old_file_and_no_rubbish(tmp_path):
-    path = tmp_path / "runs.nc"
-    write_netcdf(xr.Dataset({"a": 1.0}), path)
-    with pytest.raises((TypeError, ValueError)):
-        write_netcdf(xr.Dataset({"a": ((), object())}), path)
-    assert read_netcdf(path)["a"].item() == 1.0
-    assert [entry.name for entry in tmp_path.iterdir()] == ["runs.nc"]

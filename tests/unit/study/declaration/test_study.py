@@ -13,7 +13,7 @@ from impactlab.model.material import Material
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.model.sphere import Sphere
-from impactlab.study.declaration import Grid, Sobol, read_study
+from impactlab.study.declaration import Grid, Sobol, read_any, read_study
 from impactlab.study.declaration.schema import Analysis, Store
 
 STUDIES = sorted((Path(__file__).parents[4] / "studies").glob("*.yaml"))
@@ -46,14 +46,21 @@ store: {histories: true, profiles: true, samples: 11}
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
 def test_committed_studies_are_sound(path):
-    study = read_study(path)
+    study = read_any(path)
     assert study.name == path.stem
     assert study.text == path.read_text(encoding="utf-8")
 
 
 def test_committed_studies_are_those_asked_for():
     by_name = {path.stem: path for path in STUDIES}
-    assert {"velocity", "discretisation", "material", "sobol", "smoke"} <= by_name.keys()
+    assert {
+        "velocity",
+        "discretisation",
+        "material",
+        "sobol",
+        "smoke",
+        "verification",
+    } <= by_name.keys()
     sobol = read_study(by_name["sobol"]).sampling
     assert isinstance(sobol, Sobol)
     assert sobol.base_samples >= 1024

@@ -1,0 +1,42 @@
+"""Datasets on disk, written whole or not at all.
+
+Apart from the shards: not every step that reads a file needs to load a compiler.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from uuid import uuid4
+
+import xarray as xr
+
+
+def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
+    """Write under a temporary name, then rename: readers see all of a file or none of it.
+
+    Raises OSError when the disk does not take it; an older file then stays as it was.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_name(f".{path.name}.{uuid4().hex}")
+    large = {
+        str(name): {"zlib": True, "complevel": 1}
+        for name, values in dataset.data_vars.items()
+        if values.dtype.kind == "f" and values.size > 10_000
+    }
+    try:
+        dataset.to_netcdf(unfinished, engine="netcdf4", encoding=large)
+        with unfinished.open("rb") as handle:
+            os.fsync(handle.fileno())
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def read_netcdf(path: Path) -> xr.Dataset:
+    """A dataset in memory, its file closed. Raises OSError, naming a file that cannot be read."""
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            return dataset.load()
+    except (OSError, ValueError, RuntimeError) as error:
+        raise OSError(f"{path}: cannot be read as netCDF ({error})") from None

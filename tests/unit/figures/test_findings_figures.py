@@ -1,0 +1,154 @@
+"""The figures of a verification: nothing hidden, nothing overlapping."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from impactlab.figures import findings_curves, findings_overview, style
+from impactlab.figures.draw import draw_findings
+from impactlab.verification.finding import Curve, Finding, Panel
+from impactlab.verification.outcome import gravest_first
+from impactlab.verification.stored import packed
+
+Outcomes = Any
+MANY = [Curve(f"{n} nodes", np.arange(9.0), n + np.arange(9.0), n % 2 == 1) for n in range(9)]
+
+
+def _laid_out(figure: Figure) -> Figure:
+    with style.applied():
+        FigureCanvasAgg(figure).draw()
+    return figure
+
+
+def _with_panels(outcomes: Outcomes, *panels: Panel) -> Any:
+    return replace(outcomes[1], finding=Finding((), panels))
+
+
+def test_files_are_the_overview_and_each_check_with_curves(
+    findings: xr.Dataset, outcomes: Outcomes, tmp_path: Path
+) -> None:
+    written = [path.name for path in draw_findings(findings, tmp_path)]
+    assert written == ["overview.svg", "overview.png", "bad.svg", "bad.png", "captions.json"]
+    captions = json.loads((tmp_path / "captions.json").read_text("utf-8"))
+    assert captions["bad"]["title"] == "A bad check"
+    assert "a series & more" in captions["bad"]["caption"]
+    draw_findings(packed(outcomes[:1]), tmp_path)
+    assert not list(tmp_path.glob("bad.*"))
+
+
+def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes: Outcomes) -> None:
+    (axes,) = findings_overview.plot(outcomes).axes
+    found = [line for line in axes.lines if line.get_marker() not in ("None", "")]
+    assert sum(len(line.get_xdata()) for line in found) == 21
+    failed = [line for line in found if line.get_label() in ("failed", "_failed")]
+    assert sum(len(line.get_xdata()) for line in failed) == 3
+    assert all(np.min(line.get_xdata()) > 1.0 for line in failed)
+    assert {line.get_color() for line in failed} == {style.COLOURS[1]}
+    assert {line.get_color() for line in found if line not in failed} == {style.COLOURS[0]}
+    ends = [line for line in found if line.get_marker() == ">"]
+    assert [len(line.get_xdata()) for line in ends] == [1]  # NaN: at the edge, not left out
+    assert axes.get_xlim()[1] >= np.max(ends[0].get_xdata())
+    said = [text.get_text() for text in axes.texts]
+    assert said == ["all 3", "3 of 18 failed", "error", "nothing"]
+
+
+def test_the_caption_counts_what_lies_at_the_edges(outcomes: Outcomes) -> None:
+    assert "1 above 1000 or without a number at the right edge" in findings_overview.caption(
+        outcomes
+    )
+    assert "triangles" not in findings_overview.caption(outcomes[:1])
+
+
+@pytest.mark.parametrize("kind", ["overview", "same legend", "other legends", "one", "many"])
+def test_nothing_overlaps_at_paper_width(kind: str, outcomes: Outcomes) -> None:
+    bad = outcomes[1]
+    first, second = bad.finding.panels
+    long = "a title that goes on and on, for it states every parameter of the case"
+    figure = _laid_out(
+        {
+            "overview": lambda: findings_overview.plot(gravest_first(outcomes * 4)),
+            "same legend": lambda: findings_curves.plot(_with_panels(outcomes, first, first)),
+            "other legends": lambda: findings_curves.plot(bad),
+            "one": lambda: findings_curves.plot(_with_panels(outcomes, second)),
+            "many": lambda: findings_curves.plot(
+                _with_panels(outcomes, *[first, replace(first, title=long, curves=MANY)] * 3)
+            ),
+        }[kind]()
+    )
+    width = figure.get_figwidth() / style.MILLIMETRE
+    assert min(abs(width - style.SINGLE), abs(width - style.DOUBLE)) < 1e-6
+    boxes = [axes.get_tightbbox() for axes in figure.axes]
+    boxes += [legend.get_window_extent() for legend in figure.legends]
+    for at, box in enumerate(boxes):
+        assert box is not None
+        assert box.x0 >= -1
+        assert box.x1 <= figure.bbox.x1 + 1
+        assert box.y1 <= figure.bbox.y1 + 1
+        assert not any(box.padded(-1).overlaps(other) for other in boxes[at + 1 :])  # type: ignore[arg-type]
+    for axes in figure.axes:
+        height = axes.get_window_extent().height
+        assert height > 20 * style.MILLIMETRE * figure.dpi
+        for ticks in (axes.get_xticklabels(), axes.get_yticklabels()):
+            labels = [label.get_window_extent() for label in ticks if label.get_text()]
+            inside = [b for b in labels if axes.get_tightbbox().padded(1).contains(b.x0, b.y0)]  # type: ignore[union-attr]
+            ordered = sorted(inside, key=lambda b: (b.x0, b.y0))
+            assert not any(left.overlaps(right) for left, right in pairwise(ordered))
+
+
+def test_ours_and_independent_curves_differ_without_colour(outcomes: Outcomes) -> None:
+    ours, independent = findings_curves.plot(outcomes[1]).axes[0].lines
+    assert (ours.get_linestyle(), independent.get_linestyle()) == ("-", "--")
+    assert independent.get_color() == "black"
+    marked, open_ = findings_curves.plot(outcomes[1]).axes[1].lines
+    assert marked.get_marker() not in ("", "None")
+    assert marked.get_markerfacecolor() != "none"
+    assert open_.get_markerfacecolor() == "none"
+
+
+def test_few_points_beside_a_dense_curve_are_not_joined(outcomes: Outcomes) -> None:
+    x, dense = np.arange(5.0), np.linspace(0.0, 4.0, 99)
+    curves = [Curve("solver", x, x**2), Curve("closed form", dense, dense**2, True)]
+    panel = Panel("t", ("x", "m"), ("y", "m"), curves)
+    (axes,) = findings_curves.plot(_with_panels(outcomes, panel)).axes
+    assert [line.get_linestyle() for line in axes.lines] == ["None", "--"]
+    assert [line.get_marker() for line in axes.lines] == ["o", ""]
+
+
+def test_axes_are_in_display_units_and_decades(outcomes: Outcomes) -> None:
+    force, error = findings_curves.plot(outcomes[1]).axes
+    assert (force.get_xlabel(), force.get_ylabel()) == ("Time (ms)", "Contact force (kN)")
+    assert np.max(force.lines[0].get_xdata()) == pytest.approx(1.0)
+    assert np.max(force.lines[0].get_ydata()) == pytest.approx(20.0, rel=1e-3)
+    assert force.get_xscale() == "linear"
+    assert (error.get_xscale(), error.get_yscale()) == ("log", "log")
+    assert error.get_ylabel().replace("\n", " ").endswith("(–)")
+
+
+def test_a_curve_named_as_the_solvers_is_told_apart(outcomes: Outcomes) -> None:
+    x = np.arange(3.0)
+    panel = Panel("t", ("x", "m"), ("y", "m"), [Curve("steel", x, x), Curve("steel", x, x, True)])
+    (axes,) = findings_curves.plot(_with_panels(outcomes, panel)).axes
+    assert [line.get_label() for line in axes.lines] == ["steel", "steel, independent"]
+
+
+def test_nothing_to_draw_is_said(outcomes: Outcomes) -> None:
+    x = np.arange(3.0)
+    below = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, -1.0 - x)], log=True)
+    missing = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, x * np.nan)])
+    figure = _laid_out(findings_curves.plot(_with_panels(outcomes, below, missing)))
+    said = [axes.texts[0].get_text() for axes in figure.axes]
+    assert said == ["no finite values above zero", "no finite values"]
+    assert not findings_curves.applies(outcomes[0])
+    assert not findings_curves.applies(
+        _with_panels(outcomes, Panel("t", ("x", "m"), ("y", "m"), []))
+    )

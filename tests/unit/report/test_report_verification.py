@@ -1,0 +1,134 @@
+"""The page of a verification: the verdict first, failures never folded away."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+from impactlab.figures.draw import draw_findings
+from impactlab.report.index import write_index
+from impactlab.report.kinds import FINDINGS, RUNS, read_stored
+from impactlab.report.verification import write_verification
+from impactlab.verification.stored import packed
+
+
+@pytest.fixture
+def told(tmp_path: Path, page: Any) -> Any:
+    """Writes a page, without figures, and reads it back."""
+
+    def write(findings: xr.Dataset) -> Any:
+        (tmp_path / "captions.json").write_text("{}")
+        write_verification(findings, tmp_path, tmp_path / "report.html")
+        return page((tmp_path / "report.html").read_text("utf-8"))
+
+    return write
+
+
+def test_the_verdict_is_at_the_top_and_names_what_failed(told: Any, findings: xr.Dataset) -> None:
+    found = told(findings)
+    assert "Verification failed" in found.text[:600]
+    assert "3 of 21 comparisons failed; 3 of 4 checks did not pass" in found.text
+    assert "A bad check : 3 of 18 comparisons failed" in found.text
+    assert "A broken check : ended in an error" in found.text
+    assert "A check of nothing : it compared nothing" in found.text
+    headings = [row[0] for row in found.tables["Checks, what failed first"][1:]]
+    assert headings == ["A broken check", "A bad check", "A check of nothing", "A good check"]
+    sections = [attrs["id"] for attrs in found.named("section")]
+    assert sections[2:6] == ["broken", "bad", "void", "good"]
+
+
+def test_all_passed_is_said_plainly(told: Any, outcomes: Any) -> None:
+    found = told(packed(outcomes[:1]))
+    assert "Every comparison of every check is within its tolerance." in found.text
+    assert "failed" not in found.text.replace("what failed first", "").replace("0 failed", "")
+
+
+def test_no_check_at_all_is_no_success(told: Any) -> None:
+    assert "Verification failed" in told(packed([])).text
+
+
+def test_rows_tell_both_values_the_difference_and_the_tolerance(
+    told: Any, findings: xr.Dataset
+) -> None:
+    head, *rows = told(findings).tables["Passed: A good check"]
+    assert head == [
+        "Quantity",
+        "Case",
+        "Ours",
+        "Independent value",
+        "Difference",
+        "Tolerance",
+        "Verdict",
+    ]
+    assert rows[0][2:] == ["21.0648 kN", "21.0647 kN", "0.00032 %", "0.01 %", "passed"]
+    assert rows[1][2:] == ["1.2003 mm", "1.2 mm", "0.3 µm", "2 µm", "passed"]
+    assert rows[2][2:] == ["0.03 1/m", "0.031 1/m", "3.2 %of the peak", "10 %", "passed"]
+
+
+def test_failed_rows_are_open_and_passed_ones_folded(told: Any, findings: xr.Dataset) -> None:
+    found = told(findings)
+    assert len(found.named("details")) == 1
+    opened = found.source.index("<details>")
+    closed = found.source.index("</details>")
+    folded = found.source[opened:closed]
+    assert "15 comparisons that passed" in folded
+    assert "FAILED" not in folded
+    rows = found.tables["Failed: A bad check"][1:]
+    assert [row[1] for row in rows] == ["diverged", "far off", "slightly off"]
+    assert {row[-1] for row in rows} == {"FAILED"}
+    assert rows[0][2] == "missing"
+
+
+def test_sources_reasons_and_provenance_are_told(told: Any, findings: xr.Dataset) -> None:
+    found = told(findings)
+    assert "Independent values: Hertz 1881." in found.text
+    assert "ValueError: <no> (a.py)" in found.text  # escaped, not markup
+    assert found.named("no") == []
+    assert "1" * 64 in found.text
+    assert "impactlab verify studies/verification.yaml" in found.text
+    assert findings.attrs["study_text"].strip() in found.text
+
+
+def test_the_page_is_sound_and_holds_its_figures(
+    findings: xr.Dataset, tmp_path: Path, page: Any
+) -> None:
+    draw_findings(findings, tmp_path)
+    write_verification(findings, tmp_path, tmp_path / "report.html")
+    found = page((tmp_path / "report.html").read_text("utf-8"))
+    assert found.open == []
+    assert [image["alt"] for image in found.named("img")] == ["All comparisons", "A bad check"]
+    assert all(image["src"].startswith("data:") for image in found.named("img"))
+    ids = [attrs["id"] for _, attrs in found.elements if "id" in attrs]
+    assert len(ids) == len(set(ids))
+    assert {attrs["href"][1:] for attrs in found.named("a")} <= set(ids)
+    levels = [int(tag[1]) for tag, _ in found.elements if tag in ("h1", "h2", "h3")]
+    assert all(after - before <= 1 for before, after in pairwise(levels))
+
+
+def test_the_index_lists_it_with_its_counts(
+    results: Path, findings: xr.Dataset, outcomes: Any, page: Any
+) -> None:
+    for name, dataset in {"checks": findings, "sound": packed(outcomes[:1])}.items():
+        (results / name).mkdir()
+        (results / name / "report.html").touch()
+        dataset.to_netcdf(results / name / "findings.nc")
+    write_index(results, results / "index.html")
+    text = page((results / "index.html").read_text("utf-8")).text
+    assert "checks: 4 checks, 21 comparisons, 3 checks and 3 comparisons failed" in text
+    assert "sound: 1 check, 3 comparisons, none failed" in text
+    assert "6 runs (grid), none failed" in text
+
+
+def test_stored_files_tell_their_kind(findings: xr.Dataset, results: Path) -> None:
+    path, runs = results / "findings.nc", results / "velocity" / "runs.nc"
+    findings.to_netcdf(path)
+    assert read_stored([path])[0] is FINDINGS
+    assert read_stored([runs, runs])[0] is RUNS
+    with pytest.raises(ValueError, match=r"runs\.nc: expected runs\.nc and analysis\.nc"):
+        read_stored([runs])
+    with pytest.raises(ValueError, match=r"findings\.nc: expected findings\.nc"):
+        read_stored([path, path])

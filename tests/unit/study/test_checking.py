@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from impactlab.kernels.jit import SOURCES_HASH
+from impactlab.study.checking import check, failure
+from impactlab.study.declaration import Verification
+from impactlab.verification.catalogue import CATALOGUE
+from impactlab.verification.finding import Finding, relative
+from impactlab.verification.stored import unpacked
+
+
+def made(value):
+    """A check of one comparison with 1; a NaN value raises."""
+
+    def check():
+        if value != value:
+            raise RuntimeError("no value")
+        return Finding([relative("a", "b", "1", value, 1.0, 0.1)])
+
+    return SimpleNamespace(TITLE="t", SOURCE="s", check=check)
+
+
+@pytest.fixture
+def verification(monkeypatch):
+    for name, value in {"first": 1.0, "second": float("nan"), "third": 2.0}.items():
+        monkeypatch.setitem(CATALOGUE, name, made(value))
+    checks = ("first", "second", "third")
+    return Verification("some", Path("studies/some.yaml"), "Title", "Words", checks, "title: x\n")
+
+
+def test_an_error_does_not_stop_the_others(verification):
+    found = unpacked(check(verification))
+    assert [outcome.verdict for outcome in found] == ["passed", "error", "failed"]
+
+
+def test_findings_say_where_they_come_from(verification):
+    attrs = check(verification).attrs
+    assert (attrs["study"], attrs["title"], attrs["description"]) == ("some", "Title", "Words")
+    assert attrs["study_text"] == "title: x\n"
+    assert attrs["study_sha256"] == verification.sha256
+    assert attrs["kernels_sha256"] == SOURCES_HASH
+    assert {"created", "versions", "source_revision", "processor"} <= attrs.keys()
+
+
+def test_failure_names_what_failed(outcomes):
+    told = failure(outcomes)
+    assert "failed in 3 of 4 checks" in told
+    assert "bad: 3 of 18 comparisons" in told
+    assert "broken: ValueError" in told
+    assert "void: it compared nothing" in told
+    assert "good" not in told
+    assert failure(outcomes[:1]) == ""
