@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
-from impactlab.kernels import RULES
+from impactlab.kernels import RULES, SCHEMES
 from impactlab.kernels.case import CASE, REAL, WHOLE
 from impactlab.kernels.contact import LAWS
 from impactlab.kernels.leapfrog import run_all
@@ -24,7 +24,7 @@ from impactlab.model.parameters import Value, flatten, with_values
 if TYPE_CHECKING:
     import xarray as xr
 
-_NUMBERED = {"contact": LAWS, "rule": RULES}
+_NUMBERED = {"contact": LAWS, "rule": RULES, "scheme": SCHEMES}
 
 
 @dataclass(frozen=True)

@@ -5,3 +5,5 @@ This file stays free of numba, so that names can be looked up without compiling 
 
 RULES = ("lobatto", "legendre", "layers")
 """Names of the integration rules over the depth; the index is the kernels' switch."""
+SCHEMES = ("leapfrog", "semi_implicit")
+"""Names of the schemes in time; the index is the kernels' switch."""

@@ -23,12 +23,14 @@ from impactlab.kernels.types import Array
 class Beam(NamedTuple):
     """The half beam's state.
 
-    w: deflection (m) at this step and the next, in turns, (2, n + 4). u = dt w_t at half steps and
-    plastic = dt^2/(rho A) (M_0)_xx, both in m, (n + 4,).
+    w: deflection (m) at this step and the next, in turns, (2, n + 4). u = dt w_t at half steps, du
+    its increment (of the semi-implicit scheme alone), plastic = dt^2/(rho A) (M_0)_xx, all in m,
+    (n + 4,).
     """
 
     w: Array
     u: Array
+    du: Array
     plastic: Array
 
 
@@ -65,13 +67,13 @@ def make_grid(n: int, dx: float, dt: float, mu: float, EI: float) -> Grid:
 def make_beam(grid: Grid) -> Beam:
     """A beam at rest, nowhere yielded."""
     size = grid.mid + 3
-    return Beam(np.zeros((2, size)), np.zeros(size), np.zeros(size))
+    return Beam(np.zeros((2, size)), np.zeros(size), np.zeros(size), np.zeros(size))
 
 
 @compiled
 def lend_beam(beam: Beam) -> Beam:
     """The same beam, its arrays lent."""
-    return Beam(lent(beam.w), lent(beam.u), lent(beam.plastic))
+    return Beam(lent(beam.w), lent(beam.u), lent(beam.du), lent(beam.plastic))
 
 
 @compiled
@@ -131,9 +133,15 @@ def move(
 @compiled
 def strike(w: Array, now: int, u: Array, F: float, grid: Grid) -> None:
     """Add the contact force F (N) to a step already made, and mirror the nodes beyond the ends."""
+    u[grid.mid] += grid.push * F
+    w[1 - now, grid.mid] += grid.push * F
+    mirror(w, now, grid)
+
+
+@compiled
+def mirror(w: Array, now: int, grid: Grid) -> None:
+    """Set the nodes beyond both ends after a step: w is odd at the support, even at mid-span."""
     after, mid = 1 - now, grid.mid
-    u[mid] += grid.push * F
-    w[after, mid] += grid.push * F
     w[after, 0] = -w[after, 2]
     w[after, mid + 1] = w[after, mid - 1]
     w[after, mid + 2] = w[after, mid - 2]

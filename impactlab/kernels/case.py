@@ -1,7 +1,7 @@
 """The case table: one record a run, everything the kernels need to know of it.
 
-The fields are the parameters of model/parameters.py, in SI, with the contact law and the rule
-as numbers (their places in contact.LAWS and RULES) and the sphere's mass resolved; and the
+The fields are the parameters of model/parameters.py, in SI, with contact law, rule and scheme as
+numbers (their places in contact.LAWS, RULES and SCHEMES) and the sphere's mass resolved; and the
 duration in s.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-WHOLE = ("contact", "nodes", "points", "rule")
+WHOLE = ("contact", "nodes", "points", "rule", "scheme")
 REAL = (
     "duration",
     "velocity",

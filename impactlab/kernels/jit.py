@@ -51,3 +51,8 @@ def compiled(function: Function) -> Function:
 def vectorised(function: Function) -> Function:
     """Like `compiled`, for loops over arrays: free to reorder sums, blind to NaN."""
     return _jit(function, True)
+
+
+def ordered(function: Function) -> Function:
+    """Like `compiled`, free to fuse a product with a sum, but not to reorder sums."""
+    return _jit(function, fastmath={"contract"})

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from impactlab.kernels import responses
+from impactlab.kernels import SCHEMES, responses
 from impactlab.kernels import track as watch
 from impactlab.kernels.arrays import lent
 from impactlab.kernels.beam import (
@@ -28,7 +28,15 @@ from impactlab.kernels.contact.history import CONTACT, Pair, make_pair
 from impactlab.kernels.energy import kinetic_energy, strain_energies
 from impactlab.kernels.jit import compiled
 from impactlab.kernels.section import Section, lend_section, make_section
-from impactlab.kernels.stability import critical_time_step
+from impactlab.kernels.semi_implicit import (
+    Filter,
+    filtered_kinetic_energy,
+    filtered_step,
+    lend_filter,
+    make_filter,
+    no_filter,
+)
+from impactlab.kernels.stability import critical_time_step, semi_implicit_time_step
 from impactlab.kernels.status import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.kernels.track import TRACK
 from impactlab.kernels.types import Array, Record
@@ -42,6 +50,7 @@ from impactlab.kernels.yielding import (
     make_yielding,
 )
 
+SEMI_IMPLICIT = SCHEMES.index("semi_implicit")
 _AUDITS = 500
 _LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
 """Energy is audited 500 times a run, but no more often than every 16 steps nor less than 64."""
@@ -54,7 +63,10 @@ WORST_ENERGY_ERROR = 0.05
 def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
     """Nodes and time steps of a case: (grid, number of steps)."""
     dx = case.beam_span / (case.nodes - 1)
-    dt = case.courant * critical_time_step(case, pair, section.stiffness, dx)
+    if case.scheme == SEMI_IMPLICIT:
+        dt = case.courant * semi_implicit_time_step(case, pair, dx)
+    else:
+        dt = case.courant * critical_time_step(case, pair, section.stiffness, dx)
     steps = math.ceil(case.duration / dt)
     mu = case.beam_density * case.beam_width * case.beam_depth
     return make_grid(case.nodes // 2, dx, case.duration / steps, mu, section.stiffness), steps
@@ -69,6 +81,8 @@ def _sample(
     here: tuple[float, float, float, float, float],
 ) -> None:
     """Fill the samples of `out`, shape (5, samples), that fall into the step that ends here."""
+    if out.shape[1] == 0:
+        return
     per_step = (out.shape[1] - 1) / steps
     k = max(math.ceil((step - 1) * per_step - 1e-9), 0)
     while k < out.shape[1] and k <= step * per_step * (1.0 + 1e-12):
@@ -86,6 +100,7 @@ def _imbalance(
     grid: Grid,
     beam: Beam,
     held: Yielding,
+    filter: Filter,
     contact: Record,
     now: int,
     sphere: tuple[float, float, float, float],
@@ -99,7 +114,10 @@ def _imbalance(
     w_s, v_before, v_after, delta = sphere
     start = 0.5 * case.sphere_mass * case.velocity**2
     moving = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
-    moving += kinetic_energy(beam, grid, now, u_mid)
+    if filter.length > 0:
+        moving += filtered_kinetic_energy(beam, grid, filter, now, F)
+    else:
+        moving += kinetic_energy(beam, grid, now, u_mid)
     stored, dissipated = strain_energies(beam, held, section, grid, now)
     kept, lost = contact_history.energies(contact, pair, delta)
     return abs(moving + stored + dissipated + kept + lost - start) / start
@@ -161,6 +179,7 @@ def run(
     pair, section = make_pair(case), make_section(case)
     grid, steps = discretise(case, pair, section)
     beam, held = make_beam(grid), make_yielding(grid, section)
+    filter = make_filter(grid, section.stiffness) if case.scheme == SEMI_IMPLICIT else no_filter()
     contact, track = np.zeros(1, CONTACT), np.zeros(1, TRACK)
     now = march(
         case,
@@ -169,6 +188,7 @@ def run(
         grid,
         lend_beam(beam),
         lend_yielding(held),
+        lend_filter(filter),
         contact[0],
         track[0],
         lent(samples),
@@ -194,6 +214,7 @@ def march(
     grid: Grid,
     beam: Beam,
     held: Yielding,
+    filter: Filter,
     contact: Record,
     track: Record,
     samples: Array,
@@ -220,20 +241,24 @@ def march(
         F = _contact_force(contact, track, pair, delta, step * dt, dt)
         v_after = v_s + dt * (case.gravity - F * per_mass)
         watch.watch(track, delta, contact.delta_r, w_mid, F, v_s, step * dt, dt)
-        if samples.shape[1] > 0:
-            before, kappa = here, 2.0 * (w[now, mid - 1] - w_mid) * grid.per_dx2
-            here = (F, w_mid, kappa, w_s, delta)
-            _sample(samples, step, steps, before, here)
+        kappa = 2.0 * (w[now, mid - 1] - w_mid) * grid.per_dx2
+        before, here = here, (F, w_mid, kappa, w_s, delta)
+        _sample(samples, step, steps, before, here)
 
-        if on_tangent[0] > 0 and follow_tangents(w, now, plastic, M_0, on_tangent, tangent, grid):
-            leave_tangents(beam, now, held, section, grid)
-        outside = move_virgin(w, now, u, first, yielded, grid, kappa_y)
-        if yielded <= mid:
-            outside += move(w, now, u, plastic, kappa_min, kappa_max, yielded, grid)
-        if outside > 0.0:
-            bent = begin_tangents(beam, now, outside, held, section, grid)
-            yielded = min(yielded, max(bent - 1, 2))
-        strike(w, now, u, F, grid)
+        if filter.length > 0:
+            filtered_step(beam, held, section, grid, filter, now, F)
+        else:
+            if on_tangent[0] > 0 and follow_tangents(
+                w, now, plastic, M_0, on_tangent, tangent, grid
+            ):
+                leave_tangents(beam, now, held, section, grid)
+            outside = move_virgin(w, now, u, first, yielded, grid, kappa_y)
+            if yielded <= mid:
+                outside += move(w, now, u, plastic, kappa_min, kappa_max, yielded, grid)
+            if outside > 0.0:
+                bent = begin_tangents(beam, now, outside, held, section, grid, u, w[1 - now])
+                yielded = min(yielded, max(bent - 1, 2))
+            strike(w, now, u, F, grid)
 
         to_audit -= 1
         if to_audit == 0 or step == steps:
@@ -242,7 +267,7 @@ def march(
             track.v_s, track.v_mid = v_s, u_mid / dt
             sphere = (w_s, v_s, v_after, delta)
             error = _imbalance(
-                case, pair, section, grid, beam, held, contact, now, sphere, F, u_mid
+                case, pair, section, grid, beam, held, filter, contact, now, sphere, F, u_mid
             )
             track.energy_error = max(track.energy_error, error)
             if not error < 1.0:

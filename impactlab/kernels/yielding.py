@@ -130,11 +130,19 @@ def leave_tangents(beam: Beam, now: int, held: Yielding, section: Section, grid:
 
 @compiled
 def begin_tangents(
-    beam: Beam, now: int, outside: float, held: Yielding, section: Section, grid: Grid
+    beam: Beam,
+    now: int,
+    outside: float,
+    held: Yielding,
+    section: Section,
+    grid: Grid,
+    u: Array,
+    w: Array,
 ) -> int:
-    """Bend the `outside` sections that have left their interval, and mend the step made before.
+    """Bend the `outside` sections that have left their interval.
 
-    Returns the first section looked at.
+    Adds what that changes to u and, unless it is empty, to w: a step is mended that has been made
+    before. Returns the first section looked at.
     """
     i = np.uint64(grid.mid + 1)
     while outside > 0.0 and i > TWO:  # from mid-span, near which they most often are
@@ -146,8 +154,9 @@ def begin_tangents(
             _begin_tangent(beam, held, section, grid, i, kappa)
             for j in range(max(i - ONE, TWO), i + TWO):  # the support does not move
                 change = beam.plastic[j] - near[j + ONE - i]
-                beam.u[j] += change
-                beam.w[1 - now, j] += change
+                u[j] += change
+                if w.size > 0:
+                    w[j] += change
             held.on_tangent[0] += ONE
             held.on_tangent[held.on_tangent[0]] = i
     return int(i)

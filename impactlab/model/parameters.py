@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from impactlab.kernels import RULES
+from impactlab.kernels import RULES, SCHEMES
 from impactlab.kernels.contact import LAWS
 from impactlab.model.columns import Column
 from impactlab.model.discretisation import Discretisation
@@ -72,7 +72,13 @@ PARAMETERS: dict[str, Parameter] = {
             whole=True,
         ),
         Parameter("rule", "1", "integration rule", ("discretisation", "rule"), choices=RULES),
-        Parameter("courant", "1", "time step over the critical one", ("discretisation", "courant")),
+        Parameter("scheme", "1", "scheme in time", ("discretisation", "scheme"), choices=SCHEMES),
+        Parameter(
+            "courant",
+            "1",
+            "time step over the scheme's largest",
+            ("discretisation", "courant"),
+        ),
     )
 }
 

@@ -11,7 +11,8 @@ from impactlab.dataset import provenance
 from impactlab.kernels.jit import SOURCES_HASH
 from impactlab.study.declaration import Verification
 from impactlab.study.progress import Progress
-from impactlab.verification.outcome import Outcome, run
+from impactlab.verification.outcome import Outcome
+from impactlab.verification.running import run
 from impactlab.verification.stored import packed
 
 log = logging.getLogger(__name__)

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import logging
-import traceback
 from collections.abc import Iterable
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Literal
 
-from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.finding import Comparison, Finding
 
-log = logging.getLogger(__name__)
 Verdict = Literal["passed", "failed", "error"]
 _GRAVITY = {"error": 0, "failed": 1, "passed": 2}
 
@@ -51,25 +46,6 @@ class Outcome:
         return max(self.finding.comparisons, key=lambda entry: entry.ratio, default=None)
 
 
-def run(name: str) -> Outcome:
-    """Make a check of the catalogue. Whatever it raises becomes the outcome's reason."""
-    file, start = CATALOGUE[name], perf_counter()
-    finding, reason = Finding(()), ""
-    try:
-        finding = file.check()
-    except Exception as error:
-        reason = _words(error)
-        log.debug("the check %s ended in an error", name, exc_info=True)
-    return Outcome(name, file.TITLE, file.SOURCE, perf_counter() - start, finding, reason)
-
-
 def gravest_first(outcomes: Iterable[Outcome]) -> list[Outcome]:
     """Errors, then failures, then what passed; otherwise in the order given."""
     return sorted(outcomes, key=lambda outcome: _GRAVITY[outcome.verdict])
-
-
-def _words(error: Exception) -> str:
-    """An error with the innermost place that it came from."""
-    place = traceback.extract_tb(error.__traceback__)[-1]
-    file = place.filename.replace("\\", "/").rpartition("/")[2]
-    return f"{type(error).__name__}: {error} ({file}, line {place.lineno})"

@@ -63,7 +63,7 @@ def step(beam, held, section, now):
     intervals = (held.kappa_min, held.kappa_max)
     outside = move(beam.w, now, beam.u, beam.plastic, *intervals, 2, GRID)
     if outside:
-        begin_tangents(beam, now, outside, held, section, GRID)
+        begin_tangents(beam, now, outside, held, section, GRID, beam.u, beam.w[1 - now])
     return outside
 
 

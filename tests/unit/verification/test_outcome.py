@@ -7,7 +7,8 @@ import pytest
 
 from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.finding import Finding, absolute, relative
-from impactlab.verification.outcome import Outcome, gravest_first, run
+from impactlab.verification.outcome import Outcome, gravest_first
+from impactlab.verification.running import run
 
 
 @pytest.mark.parametrize(
