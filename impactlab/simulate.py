@@ -56,8 +56,8 @@ def simulate(
 
     duration: simulated time in s. samples: length of `time`, equally spaced from 0 to the
     duration. Returns a Dataset with the histories on `time`, the strains on `x` and `z`, every
-    response of impactlab.dataset.RESPONSES as a scalar, and `status`; a response that the run
-    could not give is NaN, and `status` says why.
+    response of impactlab.dataset.RESPONSES as a scalar, `status` and `remarks`; a response that
+    the run could not give is NaN, and `status` says why. `remarks` says what to know of the others.
 
     Raises ValueError when duration or samples is not valid.
     """
@@ -86,11 +86,11 @@ def simulate_many(
     """Solve many impacts for their responses, on one thread.
 
     varied: parameter name (see impactlab.model.parameters.PARAMETERS) -> one value a run, all of
-    the same length. Returns a Dataset of every response and `status` on `run`, the varied
-    parameters as coordinates.
+    the same length. Returns a Dataset of every response, `status` and `remarks` on `run`, the
+    varied parameters as coordinates.
 
-    Raises ValueError for an unknown parameter, unequal lengths, or a value that the model
-    refuses, naming the run.
+    Raises ValueError for an unknown parameter, one that is no list, unequal lengths, or a value
+    that the model refuses, naming the run.
     """
     import xarray as xr
 
@@ -118,6 +118,9 @@ def case_table(
     """
     positive("simulate", "duration", duration)
     varied = varied or {}
+    for name, values in varied.items():
+        if isinstance(values, str) or np.ndim(values) != 1:
+            raise ValueError(f"varied: {name} = {values!r}: must be a list with one value a run")
     lengths = {len(values) for values in varied.values()}
     if len(lengths) > 1:
         raise ValueError(f"varied: every parameter needs one value a run, got lengths {lengths}")
@@ -158,7 +161,7 @@ def answer_variables(
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray[Any, Any]]]:
     """The answers as data variables on `dims` (for one run: none), the asked responses only.
 
-    `status` keeps the bits that matter to these responses.
+    `status` keeps the bits that matter to these responses; `remarks` are of the run as a whole.
     """
     lead = dims or ("run",)
     bits = (answers.responses["status"] & status_bits(responses)).astype(np.int32)
@@ -167,7 +170,8 @@ def answer_variables(
         name: ((*lead, *(HISTORIES | PROFILES)[name].dims), values)
         for name, values in (answers.histories | answers.profiles).items()
     }
-    return scalars | fields | {"status": (lead, bits)}
+    remarks = answers.responses["remarks"].astype(np.int32)
+    return scalars | fields | {"status": (lead, bits), "remarks": (lead, remarks)}
 
 
 def sample_coordinates(duration: float, samples: int) -> dict[str, Any]:
@@ -253,4 +257,5 @@ def _mirror(half: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:
     """From fibres z > 0, outermost first, to all fibres in ascending z."""
     axis = np.abs(0.0 * lower[:, :, : points % 2])  # NaN where a run diverged, as all else
-    return np.concatenate([sign * lower, axis, lower[:, :, ::-1]], axis=2)
+    upper = sign * lower + 0.0  # no -0.0
+    return np.concatenate([upper, axis, lower[:, :, ::-1]], axis=2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from impactlab.model.checks import positive
+from impactlab.model.checks import instance, positive
 from impactlab.model.columns import anywhere
 from impactlab.model.material import Material
 
@@ -16,7 +16,7 @@ class Beam:
     shear_coefficient: k in Q = k G A times the shear angle, of the Timoshenko beam alone.
 
     Raises ValueError naming the field when a length is not finite and positive, or when the
-    depth is not below the span, or the shear coefficient not in (0, 1].
+    depth is not below the span, the shear coefficient not in (0, 1], or the material is none.
     """
 
     span: float
@@ -26,6 +26,7 @@ class Beam:
     shear_coefficient: float = 5.0 / 6.0
 
     def __post_init__(self) -> None:
+        instance("Beam", "material", self.material, Material)
         for field in ("span", "width", "depth"):
             positive("Beam", field, getattr(self, field))
         if anywhere(self.depth >= self.span):

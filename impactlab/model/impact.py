@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from impactlab.kernels import BEAM_MODELS
 from impactlab.kernels.contact import LAWS
 from impactlab.model.beam import Beam
-from impactlab.model.checks import not_negative, one_of, positive
+from impactlab.model.checks import instance, not_negative, one_of, positive
 from impactlab.model.sphere import Sphere
 
 
@@ -32,6 +32,8 @@ class Impact:
     beam_model: str = "euler_bernoulli"
 
     def __post_init__(self) -> None:
+        instance("Impact", "sphere", self.sphere, Sphere)
+        instance("Impact", "beam", self.beam, Beam)
         positive("Impact", "velocity", self.velocity)
         not_negative("Impact", "gravity", self.gravity)
         one_of("Impact", "contact", self.contact, LAWS)
