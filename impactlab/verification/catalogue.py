@@ -11,13 +11,17 @@ from impactlab.verification import (
     modal_series,
     moment_curvature,
     observed_order,
+    rigid_beam,
     rigid_plastic_mode,
     similarity,
+    slender_limit,
+    spring_mass,
     static_collapse,
     static_deflection,
     stronge_restitution,
     sub_impacts,
     time_reversal,
+    timoshenko_beam,
 )
 from impactlab.verification.finding import Finding
 
@@ -46,6 +50,10 @@ _FILES: tuple[CheckFile, ...] = (
     static_deflection,
     static_collapse,
     rigid_plastic_mode,
+    timoshenko_beam,
+    slender_limit,
+    spring_mass,
+    rigid_beam,
     balances,
 )
 CATALOGUE: dict[str, CheckFile] = {
