@@ -11,7 +11,7 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.dataset import COORDINATES, HISTORIES, PROFILES, RESPONSES, STATUS_FLAGS
-from impactlab.kernels import RULES
+from impactlab.kernels import RULES, SCHEMES
 from impactlab.kernels.contact import LAWS
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.simulate import case_table, solve
@@ -123,6 +123,7 @@ def test_many_runs_are_single_runs_bit_by_bit():
         "points": [2, 3, 4, 5],
         "rule": ["lobatto", "layers", "legendre", "lobatto"],
         "beam_isotropic_hardening_modulus": [0.0, 1e9, 0.0, 2e9],
+        "scheme": ["leapfrog", "semi_implicit", "semi_implicit", "leapfrog"],
         "sphere_radius": [0.03, 0.035, 0.02, 0.035],
     }
     many = il.simulate_many(IMPACT, GRID, duration=DURATION, varied=varied)
@@ -215,13 +216,17 @@ def test_a_wrong_run_is_named_with_its_field():
     refused({"beam_depth": [0.02, np.nan]}, r"^run 1: Beam\.depth = nan: must be a finite number")
     refused({"contact": ["hertz", "hooke"]}, r"^run 1: Impact\.contact = 'hooke': must be one of")
     refused({"weight": [1.0]}, r"^run 0: unknown parameter 'weight': choose from velocity")
+    filtered = {"scheme": ["leapfrog", "semi_implicit", "semi_implicit"], "nodes": [5, 17, 15]}
+    refused(
+        filtered, r"^run 2: Discretisation\.nodes = 15: the semi_implicit scheme needs at least"
+    )
     refused({"velocity": [1.0, 2.0], "nodes": [11]}, r"one value a run.*\{1, 2\}")
 
 
 RUNS = 40
 RANDOM = np.random.default_rng(3)
-WORDS = {"contact": LAWS, "rule": RULES}
-COUNTS = {"nodes": (5, 7, 1201), "points": (2, 3, 64)}
+WORDS = {"contact": LAWS, "rule": RULES, "scheme": SCHEMES}
+COUNTS = {"nodes": (17, 19, 1201), "points": (2, 3, 64)}
 
 
 def any_values(name):
@@ -269,6 +274,7 @@ WRONG = {
     "gravity": [-1.0],
     "contact": ["hooke", "", 0, None],
     "rule": ["Lobatto"],
+    "scheme": ["semi-implicit", "Leapfrog", 1, None],
     "nodes": [3, 20, 21.5, np.nan, "21", None, True],
     "points": [1, 2.5],
     "courant": [0, 1.0001],
@@ -285,6 +291,19 @@ def test_a_refused_run_is_told_in_the_words_of_the_model(name, wrong):
     with pytest.raises(ValueError, match=r"^run 2: ") as among:
         case_table(IMPACT, GRID, duration=DURATION, varied={name: [right, right, wrong, right]})
     assert str(among.value) == f"run 2: {alone.value}"
+
+
+@pytest.mark.parametrize(
+    ("grid", "varied"),
+    [
+        ({"scheme": "semi_implicit"}, {"nodes": [17, 1201, 15]}),
+        ({"nodes": 15}, {"scheme": ["leapfrog", "leapfrog", "semi_implicit"]}),
+    ],
+    ids=["nodes", "scheme"],
+)
+def test_the_run_is_named_that_has_too_few_nodes_for_its_scheme(grid, varied):
+    with pytest.raises(ValueError, match=r"^run 2: Discretisation\.nodes = 15: the semi_implicit"):
+        case_table(IMPACT, il.Discretisation(**grid), duration=DURATION, varied=varied)
 
 
 def test_what_is_no_column_may_still_be_right(one_by_one):
