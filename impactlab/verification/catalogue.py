@@ -9,6 +9,7 @@ from impactlab.verification import (
     infinite_beam,
     modal_series,
     observed_order,
+    schemes,
     similarity,
     stronge_restitution,
     sub_impacts,
@@ -35,6 +36,7 @@ _FILES: tuple[CheckFile, ...] = (
     sub_impacts,
     infinite_beam,
     observed_order,
+    schemes,
     time_reversal,
     similarity,
 )
