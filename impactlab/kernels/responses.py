@@ -9,12 +9,14 @@ import numpy as np
 
 from impactlab.kernels.beam import Grid
 from impactlab.kernels.contact.history import Pair, energies
+from impactlab.kernels.contact.switch import limit
 from impactlab.kernels.jit import compiled
 from impactlab.kernels.status import (
     DEFLECTION_STILL_GROWING,
     FIRST_CONTACT_UNFINISHED,
     IN_CONTACT_AT_END,
     INDENTATION_STILL_GROWING,
+    OUTSIDE_CONTACT_LAW,
     SPHERE_NOT_LEAVING,
 )
 from impactlab.kernels.types import Array, Record
@@ -70,7 +72,9 @@ def clear(answer: Record, status: int) -> None:
 
 @compiled
 def read_contact(answer: Record, track: Record, contact: Record, pair: Pair) -> None:
-    """Force, indentation and contact times."""
+    """Force, indentation and contact times; marked where the contact law does not hold."""
+    if contact.delta_m > limit(pair.law, pair.E, pair.R, pair.S_y, pair.nu):
+        answer.status |= OUTSIDE_CONTACT_LAW
     if track.delta == contact.delta_m:
         answer.status |= INDENTATION_STILL_GROWING
     else:

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab.dataset import COORDINATES, HISTORIES, PROFILES, RESPONSES, STATUS_FLAGS
+from impactlab.dataset import COORDINATES, FAILURES, HISTORIES, PROFILES, RESPONSES, STATUS_FLAGS
 from impactlab.kernels import RULES
 from impactlab.kernels.contact import LAWS
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
@@ -170,7 +170,7 @@ def test_a_response_is_missing_exactly_where_a_flag_says_so():
             for name, entry in RESPONSES.items():
                 missing = entry.missing in flags(run)
                 assert np.isnan(run[name].item()) == missing, (name, duration)
-    assert seen == {*STATUS_FLAGS, "none"} - {"diverged", "energy_out_of_balance"}
+    assert seen == {*FAILURES, "none"} - {"diverged", "energy_out_of_balance"}
 
 
 def test_flags_come_off_as_the_run_grows_longer():
@@ -179,7 +179,7 @@ def test_flags_come_off_as_the_run_grows_longer():
     assert flags(whole) == set()
     peak, end = whole.time_of_peak_force.item(), whole.contact_duration.item()
     loading = il.simulate(impact, grid, duration=0.7 * peak)
-    assert flags(loading) == set(STATUS_FLAGS) - {"diverged", "energy_out_of_balance"}
+    assert flags(loading) == set(FAILURES) - {"diverged", "energy_out_of_balance"}
     unloading = il.simulate(impact, grid, duration=0.5 * (peak + end))
     assert flags(loading) - flags(unloading) == {"indentation_still_growing"}
     assert unloading.peak_force.item() == pytest.approx(whole.peak_force.item(), rel=1e-2)
