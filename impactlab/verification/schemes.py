@@ -22,6 +22,7 @@ from impactlab.model.paper import paper_impact
 from impactlab.reference.modal import ModalSolution, solve
 from impactlab.simulate import simulate, simulate_many
 from impactlab.verification import modal_series
+from impactlab.verification import series as series_of
 from impactlab.verification.finding import (
     Comparison,
     Curve,
@@ -102,9 +103,9 @@ def _elastic() -> list[Comparison]:
 def _histories(
     where: str, run: xr.Dataset, series: ModalSolution, nodes: int
 ) -> Iterator[Comparison]:
-    for name, (quantity, units, tolerance) in modal_series.HISTORIES.items():
+    for name, (quantity, units, tolerance) in series_of.HISTORIES.items():
         histories = run[name].values, series.at(name, run.time.values)
-        tolerance *= (modal_series.MIDDLE / nodes) ** modal_series.ORDER
+        tolerance *= (series_of.MIDDLE / nodes) ** series_of.ORDER
         yield curve(f"history of {quantity}", where, units, *histories, tolerance)
 
 
@@ -172,7 +173,7 @@ def _elastic_panel() -> Panel:
 
     def errors(run: xr.Dataset) -> dict[str, float]:
         return {
-            f"history of {modal_series.HISTORIES[name][0]}": modal_series.error(name, series, run)
+            f"history of {series_of.HISTORIES[name][0]}": series_of.error(name, series, run)
             for name in names
         }
 

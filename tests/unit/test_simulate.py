@@ -12,6 +12,7 @@ import xarray as xr
 import impactlab as il
 from impactlab.dataset import (
     COORDINATES,
+    FAILURES,
     FLAGS,
     HISTORIES,
     PROFILES,
@@ -205,7 +206,7 @@ def test_a_response_is_missing_exactly_where_a_flag_says_so():
             for name, entry in RESPONSES.items():
                 missing = entry.missing in flags(run)
                 assert np.isnan(run[name].item()) == missing, (name, duration)
-    assert seen == {*STATUS_FLAGS, "none"} - {"diverged", "energy_out_of_balance"}
+    assert seen == {*FAILURES, "none"} - {"diverged", "energy_out_of_balance"}
 
 
 def test_flags_come_off_as_the_run_grows_longer():
@@ -214,7 +215,7 @@ def test_flags_come_off_as_the_run_grows_longer():
     assert flags(whole) == set()
     peak, end = whole.time_of_peak_force.item(), whole.contact_duration.item()
     loading = il.simulate(impact, grid, duration=0.7 * peak)
-    assert flags(loading) == set(STATUS_FLAGS) - {"diverged", "energy_out_of_balance"}
+    assert flags(loading) == set(FAILURES) - {"diverged", "energy_out_of_balance"}
     unloading = il.simulate(impact, grid, duration=0.5 * (peak + end))
     assert flags(loading) - flags(unloading) == {"indentation_still_growing"}
     assert unloading.peak_force.item() == pytest.approx(whole.peak_force.item(), rel=1e-2)
