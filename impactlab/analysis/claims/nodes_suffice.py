@@ -34,14 +34,15 @@ def _judged(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> J
     found = [_error(data, velocity, name) for name in names]
     errors, needed = [error for error, _ in found], [least for _, least in found]
     worst = names[int(np.argmax([error.high for error in errors]))].replace("_", " ")
+    least = max(needed)
+    numbers = (*errors, Number("least nodes for all of them", least, "1"))
     if max(error.high for error in errors) > TOLERANCE:
         why = f"With {PRINTED} nodes the {worst} is not known to {TOLERANCE:.0%}."
-        return Judgement(case, tuple(errors), Verdict.FAILS, why)
-    least = max(needed)
+        return Judgement(case, numbers, Verdict.FAILS, why)
     if least == PRINTED:
-        return Judgement(case, tuple(errors), Verdict.HOLDS, "Fewer nodes of the study fall short.")
-    why = f"Read as “601 are enough”: {least:g} already are (the {worst} is the slowest)."
-    return Judgement(case, tuple(errors), Verdict.READING, why)
+        return Judgement(case, numbers, Verdict.HOLDS, "Fewer nodes of the study fall short.")
+    why = f"Read as “{PRINTED} are enough”: {least:g} already are."
+    return Judgement(case, numbers, Verdict.READING, why)
 
 
 def _error(data: Data, velocity: float, name: str) -> tuple[Number, float]:

@@ -17,7 +17,7 @@ HOLDS = (
     "dt ≤ (dx²/2) √(ρA/(EI)q), (EI)q the stiffness that the integration rule really has; with the "
     "contact ω² ≤ 16 (EI)q/(ρA dx⁴) + k (1/(ρA dx) + 1/m)"
 )
-_NODES, _STEPS = 601, 40
+_NODES, _STEPS = 601, 20
 _SHARE = 0.99
 """Of each limit: the rule says “less than”."""
 _FACTOR = 1e3
