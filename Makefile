@@ -2,6 +2,7 @@
 # make test    the checks and the tests
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings: wants an idle machine
+# make mutants the tests' own test: faults seeded into the kernels, and what catches each
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
 PYTHON ?= python3
@@ -19,7 +20,7 @@ IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
 
-.PHONY: study test lint pytest bench coverage constraints unlock clean
+.PHONY: study test lint pytest bench mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 study: $(MADE)-workflow
@@ -44,6 +45,9 @@ pytest: $(MADE)-dev
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
+
+mutants: $(MADE)-dev
+	$(BIN)/python tests/mutations/run.py
 
 # Compiled kernels hide from coverage: here they run as plain Python, on the small cases only.
 coverage: $(MADE)-dev

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from impactlab.kernels import status
+from impactlab.kernels import remarks, status
 from impactlab.model.parameters import PARAMETERS
 
 if TYPE_CHECKING:
@@ -50,12 +50,31 @@ STATUS_FLAGS: dict[str, tuple[int, str]] = {
 }
 """Reasons for a missing response, by name: (bit in `status`, in words)."""
 
+REMARKS: dict[str, tuple[int, str]] = {
+    "contact_created_energy": (
+        remarks.CONTACT_CREATED_ENERGY,
+        "the contact law created energy: the contact dissipation is below zero",
+    ),
+    "contact_left_a_bulge": (
+        remarks.CONTACT_LEFT_A_BULGE,
+        "the contact law left a bulge: the permanent indentation is below zero",
+    ),
+}
+"""What to know of responses that are there, by name: (bit in `remarks`, in words)."""
+
+FLAGS: dict[str, tuple[str, dict[str, tuple[int, str]]]] = {
+    "status": ("why responses are missing (0: none is)", STATUS_FLAGS),
+    "remarks": ("what to know of the responses that are there (0: nothing)", REMARKS),
+}
+"""The variables made of bits: (long_name, flags)."""
+
 
 @dataclass(frozen=True)
 class Variable:
     """One dataset variable: where it lives, its unit (UDUNITS) and its meaning.
 
     missing: the status flag that explains why a response is NaN (besides those of the whole run).
+    comment: what a reader of the number has to know.
     """
 
     name: str
@@ -63,10 +82,13 @@ class Variable:
     units: str
     long_name: str
     missing: str | None = None
+    comment: str | None = None
 
 
-def _response(name: str, units: str, long_name: str, missing: str | None = None) -> Variable:
-    return Variable(name, (), units, long_name, missing)
+def _response(
+    name: str, units: str, long_name: str, missing: str | None = None, comment: str | None = None
+) -> Variable:
+    return Variable(name, (), units, long_name, missing, comment)
 
 
 RESPONSES: dict[str, Variable] = {
@@ -90,6 +112,8 @@ RESPONSES: dict[str, Variable] = {
             "m",
             "indentation left after the last contact",
             "in_contact_at_end",
+            "below zero where the contact law itself leaves a bulge, as Stronge's does for largest "
+            "indentations of 1 to 1.998 times that of first yield; `remarks` says so, too",
         ),
         _response(
             "maximum_deflection", "m", "largest mid-span deflection", "deflection_still_growing"
@@ -119,7 +143,12 @@ RESPONSES: dict[str, Variable] = {
             "plastic_zone_length", "m", "length of beam with a PEEQ above 1e-5 in the section"
         ),
         _response(
-            "contact_dissipation", "J", "energy dissipated in the contact", "in_contact_at_end"
+            "contact_dissipation",
+            "J",
+            "energy dissipated in the contact",
+            "in_contact_at_end",
+            "below zero where the contact law itself creates energy, as Stronge's does for largest "
+            "indentations of 1 to 2.673 times that of first yield; `remarks` says so, too",
         ),
         _response("plastic_dissipation", "J", "energy dissipated in the fibres"),
         _response("energy_error", "1", "largest energy imbalance over the initial kinetic energy"),
@@ -130,7 +159,12 @@ RESPONSES: dict[str, Variable] = {
 _TIME = (
     Variable("contact_force", ("time",), "N", "contact force"),
     Variable("midspan_deflection", ("time",), "m", "deflection of the beam at mid-span"),
-    Variable("midspan_curvature", ("time",), "m-1", "curvature w_xx of the beam at mid-span"),
+    Variable(
+        "midspan_curvature",
+        ("time",),
+        "m-1",
+        "curvature of the beam at mid-span (w_xx; psi_x of a Timoshenko beam)",
+    ),
     Variable("sphere_displacement", ("time",), "m", "displacement of the sphere since first touch"),
     Variable("indentation", ("time",), "m", "indentation (approach of sphere and beam axis)"),
 )
@@ -156,29 +190,33 @@ COORDINATES: dict[str, Variable] = {
     "x": Variable("x", ("x",), "m", "distance from the left support"),
     "z": Variable("z", ("z",), "m", "distance below the beam's axis"),
     "duration": Variable("duration", (), "s", "simulated time"),
+    "run": Variable("run", ("run",), "1", "number of the run"),
 }
 VARIABLES = RESPONSES | HISTORIES | PROFILES | COORDINATES
-"""Every variable but `status` and the varied parameters (for these see PARAMETERS)."""
+"""Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
 
 def attributes(name: str) -> dict[str, Any]:
-    """CF attributes of a variable, a parameter or `status`. Raises KeyError if unknown."""
-    if name == "status":
+    """CF attributes of a variable, a parameter or a name of FLAGS. Raises KeyError if unknown."""
+    if name in FLAGS:
+        long_name, flags = FLAGS[name]
         return {
-            "long_name": "why responses are missing (0: none is)",
-            "flag_masks": np.array([bit for bit, _ in STATUS_FLAGS.values()], dtype=np.int32),
-            "flag_meanings": " ".join(STATUS_FLAGS),
+            "long_name": long_name,
+            "flag_masks": np.array([bit for bit, _ in flags.values()], dtype=np.int32),
+            "flag_meanings": " ".join(flags),
         }
     entry = VARIABLES[name] if name in VARIABLES else PARAMETERS[name]
     attrs: dict[str, Any] = {"units": entry.units, "long_name": entry.long_name}
     if isinstance(entry, Variable) and entry.missing:
         attrs["missing_because"] = f"diverged energy_out_of_balance {entry.missing}"
+    if isinstance(entry, Variable) and entry.comment:
+        attrs["comment"] = entry.comment
     return attrs
 
 
 def described(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with the attributes of the table on every variable that the table knows."""
-    known = VARIABLES | PARAMETERS | {"status": None}
+    known = VARIABLES | PARAMETERS | FLAGS
     for name, variable in dataset.variables.items():
         if name in known:
             variable.attrs = attributes(str(name)) | variable.attrs
@@ -197,6 +235,11 @@ def status_bits(responses: Iterable[str]) -> int:
 def reasons(bits: int) -> list[str]:
     """The flags of a status in words, for a person."""
     return [words for bit, words in STATUS_FLAGS.values() if bits & bit]
+
+
+def remarked(bits: int) -> list[str]:
+    """The flags of `remarks` in words, for a person."""
+    return [words for bit, words in REMARKS.values() if bits & bit]
 
 
 _PACKAGES = ("impactlab", "numpy", "numba", "xarray", "netCDF4", "dask", "SALib", "scipy")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
-from impactlab.kernels import RULES, SCHEMES
+from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
 from impactlab.kernels.case import CASE, REAL, WHOLE
 from impactlab.kernels.contact import LAWS
 from impactlab.kernels.leapfrog import run_all
@@ -24,7 +24,12 @@ from impactlab.model.parameters import Value, flatten, with_values
 if TYPE_CHECKING:
     import xarray as xr
 
-_NUMBERED = {"contact": LAWS, "rule": RULES, "scheme": SCHEMES}
+_NUMBERED = {
+    "contact": LAWS,
+    "beam_model": BEAM_MODELS,
+    "rule": RULES,
+    "scheme": SCHEMES,
+}
 
 
 @dataclass(frozen=True)
@@ -51,8 +56,8 @@ def simulate(
 
     duration: simulated time in s. samples: length of `time`, equally spaced from 0 to the
     duration. Returns a Dataset with the histories on `time`, the strains on `x` and `z`, every
-    response of impactlab.dataset.RESPONSES as a scalar, and `status`; a response that the run
-    could not give is NaN, and `status` says why.
+    response of impactlab.dataset.RESPONSES as a scalar, `status` and `remarks`; a response that
+    the run could not give is NaN, and `status` says why. `remarks` says what to know of the others.
 
     Raises ValueError when duration or samples is not valid.
     """
@@ -81,11 +86,11 @@ def simulate_many(
     """Solve many impacts for their responses, on one thread.
 
     varied: parameter name (see impactlab.model.parameters.PARAMETERS) -> one value a run, all of
-    the same length. Returns a Dataset of every response and `status` on `run`, the varied
-    parameters as coordinates.
+    the same length. Returns a Dataset of every response, `status` and `remarks` on `run`, the
+    varied parameters as coordinates.
 
-    Raises ValueError for an unknown parameter, unequal lengths, or a value that the model
-    refuses, naming the run.
+    Raises ValueError for an unknown parameter, one that is no list, unequal lengths, or a value
+    that the model refuses, naming the run.
     """
     import xarray as xr
 
@@ -113,6 +118,9 @@ def case_table(
     """
     positive("simulate", "duration", duration)
     varied = varied or {}
+    for name, values in varied.items():
+        if isinstance(values, str) or np.ndim(values) != 1:
+            raise ValueError(f"varied: {name} = {values!r}: must be a list with one value a run")
     lengths = {len(values) for values in varied.values()}
     if len(lengths) > 1:
         raise ValueError(f"varied: every parameter needs one value a run, got lengths {lengths}")
@@ -121,8 +129,9 @@ def case_table(
         many = with_values(impact, discretisation, columns)
     except (TypeError, ValueError):  # some run may be wrong, or right in a way of its own
         each = _one_by_one(impact, discretisation, varied)
-        return np.concatenate([np.zeros(0, CASE), *(_table(*run, duration, 1) for run in each)])
-    return _table(*many, duration, lengths.pop() if lengths else 1)
+        tables = [np.zeros(0, CASE), *(_table(*run, duration, 1) for run in each)]
+        return _compatible(np.concatenate(tables))
+    return _compatible(_table(*many, duration, lengths.pop() if lengths else 1))
 
 
 def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False) -> Answers:
@@ -152,7 +161,7 @@ def answer_variables(
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray[Any, Any]]]:
     """The answers as data variables on `dims` (for one run: none), the asked responses only.
 
-    `status` keeps the bits that matter to these responses.
+    `status` keeps the bits that matter to these responses; `remarks` are of the run as a whole.
     """
     lead = dims or ("run",)
     bits = (answers.responses["status"] & status_bits(responses)).astype(np.int32)
@@ -161,7 +170,8 @@ def answer_variables(
         name: ((*lead, *(HISTORIES | PROFILES)[name].dims), values)
         for name, values in (answers.histories | answers.profiles).items()
     }
-    return scalars | fields | {"status": (lead, bits)}
+    remarks = answers.responses["remarks"].astype(np.int32)
+    return scalars | fields | {"status": (lead, bits), "remarks": (lead, remarks)}
 
 
 def sample_coordinates(duration: float, samples: int) -> dict[str, Any]:
@@ -213,6 +223,19 @@ def _table(
     return cases
 
 
+def _compatible(cases: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """The cases, none of which asks for a scheme that its model of the beam does not have."""
+    leapfrog_only = cases["beam_model"] > BEAM_MODELS.index("elastic")
+    wrong = np.flatnonzero(leapfrog_only & (cases["scheme"] != SCHEMES.index("leapfrog")))
+    if wrong.size:
+        case = cases[wrong[0]]
+        raise ValueError(
+            f"run {wrong[0]}: Discretisation.scheme = {SCHEMES[case.scheme]!r}: "
+            f"Impact.beam_model = {BEAM_MODELS[case.beam_model]!r} has 'leapfrog' alone"
+        )
+    return cases
+
+
 def _whole_beam(
     deflection: np.ndarray[Any, Any],
     plastic_strain: np.ndarray[Any, Any],
@@ -234,4 +257,5 @@ def _mirror(half: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:
     """From fibres z > 0, outermost first, to all fibres in ascending z."""
     axis = np.abs(0.0 * lower[:, :, : points % 2])  # NaN where a run diverged, as all else
-    return np.concatenate([sign * lower, axis, lower[:, :, ::-1]], axis=2)
+    upper = sign * lower + 0.0  # no -0.0
+    return np.concatenate([upper, axis, lower[:, :, ::-1]], axis=2)

@@ -1,15 +1,15 @@
 """The case table: one record a run, everything the kernels need to know of it.
 
-The fields are the parameters of model/parameters.py, in SI, with contact law, rule and scheme as
-numbers (their places in contact.LAWS, RULES and SCHEMES) and the sphere's mass resolved; and the
-duration in s.
+The fields are the parameters of model/parameters.py, in SI, with contact law, model of the beam,
+rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, RULES and SCHEMES) and the
+sphere's mass resolved; and the duration in s.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-WHOLE = ("contact", "nodes", "points", "rule", "scheme")
+WHOLE = ("contact", "beam_model", "nodes", "points", "rule", "scheme")
 REAL = (
     "duration",
     "velocity",
@@ -23,6 +23,7 @@ REAL = (
     "beam_span",
     "beam_width",
     "beam_depth",
+    "shear_coefficient",
     "beam_density",
     "beam_youngs_modulus",
     "beam_poissons_ratio",

@@ -35,16 +35,18 @@ def _kinetic_sum(w: Array, now: int, u: Array, plastic: Array, grid: Grid, u_mid
 
 
 @compiled
-def strain_energies(
-    beam: Beam, held: Yielding, section: Section, grid: Grid, now: int
-) -> tuple[float, float]:
-    """(stored, dissipated) energy in J, of fibres that are up to date.
+def bending_energy(beam: Beam, held: Yielding, section: Section, grid: Grid, now: int) -> float:
+    """What the sections store in J over what their plastic strains store at zero curvature.
 
-    Per length, the elastic interval stores EI kappa^2/2 - M_0 kappa over what the plastic strains
-    store at zero curvature.
+    Within the elastic interval, EI kappa^2/2 - M_0 kappa per length.
     """
-    stored = _bending_sum(beam.w, now, held.M_0, section.stiffness, grid)
-    dissipated = 0.0
+    return grid.dx * _bending_sum(beam.w, now, held.M_0, section.stiffness, grid)
+
+
+@compiled
+def plastic_energy(held: Yielding, section: Section, grid: Grid) -> tuple[float, float]:
+    """(stored at zero curvature, dissipated) energy in J, of fibres that are up to date."""
+    stored, dissipated = 0.0, 0.0
     for i in range(2, grid.mid + 1):
         if held.peeq[i, 0] > 0.0:  # the outermost fibre yields first
             kept, lost = plastic_energies(section, held.plastic_strain, held.peeq, i)

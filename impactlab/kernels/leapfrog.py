@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from impactlab.kernels import SCHEMES, responses
+from impactlab.kernels import responses
 from impactlab.kernels import track as watch
 from impactlab.kernels.arrays import lent
 from impactlab.kernels.beam import (
@@ -25,32 +25,43 @@ from impactlab.kernels.beam import (
 )
 from impactlab.kernels.contact import history as contact_history
 from impactlab.kernels.contact.history import CONTACT, Pair, make_pair
-from impactlab.kernels.energy import kinetic_energy, strain_energies
+from impactlab.kernels.energy import plastic_energy
 from impactlab.kernels.jit import compiled
-from impactlab.kernels.section import Section, lend_section, make_section
-from impactlab.kernels.semi_implicit import (
-    Filter,
-    filtered_kinetic_energy,
-    filtered_step,
-    lend_filter,
-    make_filter,
-    no_filter,
+from impactlab.kernels.lumped import mid_span
+from impactlab.kernels.others import (
+    RIGID,
+    SEMI_IMPLICIT,
+    SPRING_MASS,
+    TIMOSHENKO,
+    Others,
+    beam_energy,
+    is_explicit,
+    lend_others,
+    make_others,
+    other_step,
 )
-from impactlab.kernels.stability import critical_time_step, semi_implicit_time_step
+from impactlab.kernels.section import Section, lend_section, make_section
+from impactlab.kernels.stability import (
+    critical_time_step,
+    lumped_time_step,
+    semi_implicit_time_step,
+    timoshenko_time_step,
+)
 from impactlab.kernels.status import DIVERGED, ENERGY_OUT_OF_BALANCE
+from impactlab.kernels.timoshenko import make_shear
 from impactlab.kernels.track import TRACK
 from impactlab.kernels.types import Array, Record
 from impactlab.kernels.yielding import (
     Yielding,
     begin_tangents,
     catch_up,
+    curvature,
     follow_tangents,
     leave_tangents,
     lend_yielding,
     make_yielding,
 )
 
-SEMI_IMPLICIT = SCHEMES.index("semi_implicit")
 _AUDITS = 500
 _LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
 """Energy is audited 500 times a run, but no more often than every 16 steps nor less than 64."""
@@ -63,13 +74,25 @@ WORST_ENERGY_ERROR = 0.05
 def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
     """Nodes and time steps of a case: (grid, number of steps)."""
     dx = case.beam_span / (case.nodes - 1)
-    if case.scheme == SEMI_IMPLICIT:
-        dt = case.courant * semi_implicit_time_step(case, pair, dx)
-    else:
-        dt = case.courant * critical_time_step(case, pair, section.stiffness, dx)
+    dt = case.courant * _largest_time_step(case, pair, section.stiffness, dx)
     steps = math.ceil(case.duration / dt)
     mu = case.beam_density * case.beam_width * case.beam_depth
     return make_grid(case.nodes // 2, dx, case.duration / steps, mu, section.stiffness), steps
+
+
+@compiled
+def _largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
+    """In s, of the case's model of the beam and scheme."""
+    if case.beam_model == TIMOSHENKO:
+        return timoshenko_time_step(case, pair, EI, make_shear(case, 0).stiffness, dx)
+    if case.beam_model == SPRING_MASS:
+        mass, stiffness = mid_span(case, EI)
+        return lumped_time_step(case, pair, mass, stiffness)
+    if case.beam_model == RIGID:
+        return lumped_time_step(case, pair, 0.0, 0.0)
+    if case.scheme == SEMI_IMPLICIT:
+        return semi_implicit_time_step(case, pair, dx)
+    return critical_time_step(case, pair, EI, dx)
 
 
 @compiled
@@ -100,7 +123,7 @@ def _imbalance(
     grid: Grid,
     beam: Beam,
     held: Yielding,
-    filter: Filter,
+    others: Others,
     contact: Record,
     now: int,
     sphere: tuple[float, float, float, float],
@@ -113,14 +136,10 @@ def _imbalance(
     """
     w_s, v_before, v_after, delta = sphere
     start = 0.5 * case.sphere_mass * case.velocity**2
-    moving = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
-    if filter.length > 0:
-        moving += filtered_kinetic_energy(beam, grid, filter, now, F)
-    else:
-        moving += kinetic_energy(beam, grid, now, u_mid)
-    stored, dissipated = strain_energies(beam, held, section, grid, now)
+    falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
+    in_beam = beam_energy(case.beam_model, beam, held, section, grid, others, now, F, u_mid)
     kept, lost = contact_history.energies(contact, pair, delta)
-    return abs(moving + stored + dissipated + kept + lost - start) / start
+    return abs(falling + in_beam + kept + lost - start) / start
 
 
 @compiled
@@ -142,14 +161,12 @@ def _answer(
     pair: Pair,
     section: Section,
     grid: Grid,
-    beam: Beam,
     held: Yielding,
     contact: Record,
     track: Record,
-    now: int,
 ) -> None:
     """All responses, or none and why, at the end of a run that has not diverged."""
-    _, dissipated = strain_energies(beam, held, section, grid, now)
+    _, dissipated = plastic_energy(held, section, grid)
     responses.clear(answer, 0)
     responses.read_contact(answer, track, contact, pair)
     responses.read_rebound(answer, case, track)
@@ -179,7 +196,7 @@ def run(
     pair, section = make_pair(case), make_section(case)
     grid, steps = discretise(case, pair, section)
     beam, held = make_beam(grid), make_yielding(grid, section)
-    filter = make_filter(grid, section.stiffness) if case.scheme == SEMI_IMPLICIT else no_filter()
+    others = make_others(case, section, grid)
     contact, track = np.zeros(1, CONTACT), np.zeros(1, TRACK)
     now = march(
         case,
@@ -188,7 +205,7 @@ def run(
         grid,
         lend_beam(beam),
         lend_yielding(held),
-        lend_filter(filter),
+        lend_others(others),
         contact[0],
         track[0],
         lent(samples),
@@ -198,7 +215,7 @@ def run(
         responses.clear(answer, DIVERGED)
         samples[:] = np.nan
         return
-    _answer(answer, case, pair, section, grid, beam, held, contact[0], track[0], now)
+    _answer(answer, case, pair, section, grid, held, contact[0], track[0])
     if deflection.size > 0:
         along = slice(1, grid.mid + 1)
         deflection[:] = beam.w[now, along]
@@ -214,7 +231,7 @@ def march(
     grid: Grid,
     beam: Beam,
     held: Yielding,
-    filter: Filter,
+    others: Others,
     contact: Record,
     track: Record,
     samples: Array,
@@ -226,7 +243,8 @@ def march(
     """
     w, u, plastic = beam.w, beam.u, beam.plastic
     kappa_min, kappa_max, M_0 = held.kappa_min, held.kappa_max, held.M_0
-    on_tangent, tangent = held.on_tangent, held.tangent
+    on_tangent, tangent, psi = held.on_tangent, held.tangent, others.shear.psi
+    explicit = is_explicit(case)
     kappa_y, dt, mid = section.yield_curvature, grid.dt, grid.mid
     stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
     # half a step before the first touch
@@ -241,24 +259,24 @@ def march(
         F = _contact_force(contact, track, pair, delta, step * dt, dt)
         v_after = v_s + dt * (case.gravity - F * per_mass)
         watch.watch(track, delta, contact.delta_r, w_mid, F, v_s, step * dt, dt)
-        kappa = 2.0 * (w[now, mid - 1] - w_mid) * grid.per_dx2
+        kappa = curvature(w, now, psi, grid, np.uint64(mid))
         before, here = here, (F, w_mid, kappa, w_s, delta)
         _sample(samples, step, steps, before, here)
 
-        if filter.length > 0:
-            filtered_step(beam, held, section, grid, filter, now, F)
-        else:
+        if explicit:
             if on_tangent[0] > 0 and follow_tangents(
-                w, now, plastic, M_0, on_tangent, tangent, grid
+                w, now, psi, plastic, M_0, on_tangent, tangent, grid
             ):
-                leave_tangents(beam, now, held, section, grid)
+                leave_tangents(beam, now, psi, held, section, grid)
             outside = move_virgin(w, now, u, first, yielded, grid, kappa_y)
             if yielded <= mid:
                 outside += move(w, now, u, plastic, kappa_min, kappa_max, yielded, grid)
             if outside > 0.0:
-                bent = begin_tangents(beam, now, outside, held, section, grid, u, w[1 - now])
+                bent = begin_tangents(beam, now, psi, outside, held, section, grid, u, w[1 - now])
                 yielded = min(yielded, max(bent - 1, 2))
             strike(w, now, u, F, grid)
+        else:
+            other_step(case.beam_model, beam, held, section, grid, others, now, F)
 
         to_audit -= 1
         if to_audit == 0 or step == steps:
@@ -267,7 +285,7 @@ def march(
             track.v_s, track.v_mid = v_s, u_mid / dt
             sphere = (w_s, v_s, v_after, delta)
             error = _imbalance(
-                case, pair, section, grid, beam, held, filter, contact, now, sphere, F, u_mid
+                case, pair, section, grid, beam, held, others, contact, now, sphere, F, u_mid
             )
             track.energy_error = max(track.energy_error, error)
             if not error < 1.0:

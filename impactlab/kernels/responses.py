@@ -10,6 +10,7 @@ import numpy as np
 from impactlab.kernels.beam import Grid
 from impactlab.kernels.contact.history import Pair, energies
 from impactlab.kernels.jit import compiled
+from impactlab.kernels.remarks import CONTACT_CREATED_ENERGY, CONTACT_LEFT_A_BULGE
 from impactlab.kernels.status import (
     DEFLECTION_STILL_GROWING,
     FIRST_CONTACT_UNFINISHED,
@@ -38,17 +39,23 @@ ANSWERS = (
     "plastic_dissipation",
     "energy_error",
 )
-RESPONSE = np.dtype((np.record, [("status", np.int64)] + [(name, float) for name in ANSWERS]))
-"""Record type of the answers; `status` is made of the bits of status.py."""
+_BITS = ("status", "remarks")
+RESPONSE = np.dtype(
+    (np.record, [(name, np.int64) for name in _BITS] + [(name, float) for name in ANSWERS])
+)
+"""Record type of the answers; made of the bits of status.py and remarks.py, and of numbers."""
 
 PLASTIC_ZONE_STRAIN = 1e-5
 """PEEQ from which on a section counts as plastic."""
+_ROUNDING = 1e-9
+"""Share of the loading work below which the contact has created no energy."""
 
 
 @compiled
 def clear(answer: Record, status: int) -> None:
     """No answers, and the reason."""
     answer.status = status
+    answer.remarks = 0
     answer.peak_force = np.nan
     answer.time_of_peak_force = np.nan
     answer.contact_duration = np.nan
@@ -88,6 +95,10 @@ def read_contact(answer: Record, track: Record, contact: Record, pair: Pair) -> 
         answer.permanent_indentation = contact.delta_r
         answer.impulse = track.impulse
         _, answer.contact_dissipation = energies(contact, pair, track.delta)
+        if answer.contact_dissipation < -_ROUNDING * contact.work:
+            answer.remarks |= CONTACT_CREATED_ENERGY
+        if contact.delta_r < 0.0:
+            answer.remarks |= CONTACT_LEFT_A_BULGE
 
 
 @compiled

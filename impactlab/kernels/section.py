@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.kernels import fibre
+from impactlab.kernels import BEAM_MODELS, fibre
 from impactlab.kernels.arrays import lent
 from impactlab.kernels.jit import compiled, vectorised
 from impactlab.kernels.quadrature import upper_half
@@ -22,6 +22,7 @@ from impactlab.kernels.types import Array, Record
 FAR = 1e300
 """A curvature that no section reaches (1/m)."""
 
+_ELASTIC = BEAM_MODELS.index("elastic")
 _ROUND_OFF = 1e-12
 """A fibre so near its yield strain, in shares of it, yields."""
 
@@ -67,7 +68,7 @@ def make_section(case: Record) -> Section:
         area,
         E * area * z,
         stiffness,
-        case.beam_yield_stress / (E * z[0]),
+        FAR if case.beam_model == _ELASTIC else case.beam_yield_stress / (E * z[0]),
         Moduli(
             E,
             case.beam_yield_stress,

@@ -222,12 +222,12 @@ def filtered_step(
     """One step of the beam under the contact force F (N)."""
     w, u, du, plastic = beam.w, beam.u, beam.du, beam.plastic
     if held.on_tangent[0] > 0 and follow_tangents(
-        w, now, plastic, held.M_0, held.on_tangent, held.tangent, grid
+        w, now, du[:0], plastic, held.M_0, held.on_tangent, held.tangent, grid
     ):
-        leave_tangents(beam, now, held, section, grid)
+        leave_tangents(beam, now, du[:0], held, section, grid)
     outside = pull(w, now, du, plastic, held.kappa_min, held.kappa_max, grid)
     if outside > 0.0:
-        begin_tangents(beam, now, outside, held, section, grid, du, du[:0])
+        begin_tangents(beam, now, du[:0], outside, held, section, grid, du, du[:0])
     du[grid.mid] += grid.push * F
     solve(du, filter, grid)
     advance(w, now, u, du, filter.by_s, filter.by_t, filter.first + filter.length, grid)

@@ -54,6 +54,38 @@ def critical_time_step(case: Record, pair: Pair, bending_stiffness: float, dx: f
 
 
 @compiled
+def timoshenko_time_step(
+    case: Record, pair: Pair, bending_stiffness: float, shear_stiffness: float, dx: float
+) -> float:
+    """Largest stable time step (s) of the Timoshenko beam; shear_stiffness: k G A in N.
+
+    omega^2 <= 4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) and the contact's.
+    """
+    mu = case.beam_density * case.beam_width * case.beam_depth
+    inertia = mu * case.beam_depth**2 / 12.0
+    omega_squared = (4.0 * bending_stiffness / dx**2 + shear_stiffness) / inertia
+    omega_squared += 4.0 * shear_stiffness / (mu * dx**2)
+    omega_squared += stiffest_contact(case, pair) * (1.0 / (mu * dx) + 1.0 / case.sphere_mass)
+    return 2.0 / math.sqrt(omega_squared)
+
+
+_LUMPED_STEPS = 1000.0
+
+
+@compiled
+def lumped_time_step(case: Record, pair: Pair, mass: float, stiffness: float) -> float:
+    """Largest time step (s) of the spring-mass model and, with mass = 0, of the rigid beam.
+
+    A thousandth of the critical one, for accuracy: no wave asks for small steps here.
+    """
+    k_c = stiffest_contact(case, pair)
+    omega_squared = k_c / case.sphere_mass
+    if mass > 0.0:
+        omega_squared += (k_c + stiffness) / mass
+    return 2.0 / math.sqrt(omega_squared) / _LUMPED_STEPS
+
+
+@compiled
 def semi_implicit_time_step(case: Record, pair: Pair, dx: float) -> float:
     """Largest time step (s) of the semi-implicit scheme for node spacing dx (m).
 

@@ -69,9 +69,18 @@ def lend_yielding(held: Yielding) -> Yielding:
 
 
 @compiled
+def curvature(w: Array, now: int, psi: Array, grid: Grid, i: Index) -> float:
+    """kappa in 1/m: w_xx, or psi_x where there is a rotation of its own (timoshenko.py)."""
+    if psi.size > 0:
+        return (psi[i] - psi[i - ONE]) / grid.dx
+    return (w[now, i - ONE] - 2.0 * w[now, i] + w[now, i + ONE]) * grid.per_dx2
+
+
+@compiled
 def follow_tangents(
     w: Array,
     now: int,
+    psi: Array,
     plastic: Array,
     M_0: Array,
     on_tangent: Array,
@@ -80,13 +89,14 @@ def follow_tangents(
 ) -> int:
     """Bend the sections on a tangent, before the beam makes its step.
 
-    Returns how many have come to the end of their tangent; these get the direction 0 and are left
-    as they are. Runs at every step: see beam.py.
+    psi: the rotation of a Timoshenko beam, else empty. Returns how many have come to the end of
+    their tangent; these get the direction 0 and are left as they are. Runs at every step: see
+    beam.py.
     """
     ended = 0
     for k in range(ONE, on_tangent[0] + ONE):
         i = on_tangent[k]
-        kappa = (w[now, i - ONE] - 2.0 * w[now, i] + w[now, i + ONE]) * grid.per_dx2
+        kappa = curvature(w, now, psi, grid, i)
         direction, ahead = tangent[i, 0], kappa - tangent[i, 3]
         if ahead * direction >= 0.0 and (tangent[i, 2] - kappa) * direction >= 0.0:
             tangent[i, 3] = kappa
@@ -109,13 +119,15 @@ def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: Grid) -
 
 
 @compiled
-def leave_tangents(beam: Beam, now: int, held: Yielding, section: Section, grid: Grid) -> None:
+def leave_tangents(
+    beam: Beam, now: int, psi: Array, held: Yielding, section: Section, grid: Grid
+) -> None:
     """Bend the sections that follow_tangents has left, before the beam makes its step."""
     k = np.uint64(1)
     while k <= held.on_tangent[0]:
         i = held.on_tangent[k]
         if held.tangent[i, 0] == 0.0:
-            kappa = _curvature(beam, now, grid, i)
+            kappa = curvature(beam.w, now, psi, grid, i)
             M_0, held.kappa_min[i], held.kappa_max[i] = bend(
                 section, held.tangent[i, 3], held.plastic_strain, held.peeq, i
             )
@@ -132,6 +144,7 @@ def leave_tangents(beam: Beam, now: int, held: Yielding, section: Section, grid:
 def begin_tangents(
     beam: Beam,
     now: int,
+    psi: Array,
     outside: float,
     held: Yielding,
     section: Section,
@@ -147,7 +160,7 @@ def begin_tangents(
     i = np.uint64(grid.mid + 1)
     while outside > 0.0 and i > TWO:  # from mid-span, near which they most often are
         i -= ONE
-        kappa = _curvature(beam, now, grid, i)
+        kappa = curvature(beam.w, now, psi, grid, i)
         if kappa > held.kappa_max[i] or kappa < held.kappa_min[i]:
             outside -= 1.0
             near = beam.plastic[i - ONE : i + TWO].copy()
@@ -160,11 +173,6 @@ def begin_tangents(
             held.on_tangent[0] += ONE
             held.on_tangent[held.on_tangent[0]] = i
     return int(i)
-
-
-@compiled
-def _curvature(beam: Beam, now: int, grid: Grid, i: Index) -> float:
-    return (beam.w[now, i - ONE] - 2.0 * beam.w[now, i] + beam.w[now, i + ONE]) * grid.per_dx2
 
 
 @compiled

@@ -10,8 +10,8 @@ import numpy as np
 
 from impactlab.model.columns import Column, anywhere
 
-_EXACT = 2.0**53
-"""From here on not every whole number is a float."""
+_MOST = 2**31 - 1
+"""The largest count; no memory holds so much."""
 
 
 def number(owner: str, field: str, value: Any) -> float:
@@ -20,9 +20,9 @@ def number(owner: str, field: str, value: Any) -> float:
         sound = value.dtype.kind == "f" and bool(np.isfinite(value).all())
     else:
         real = isinstance(value, Real) and not isinstance(value, bool)
-        sound = real and math.isfinite(value)
+        sound = real and _finite(value)
     if not sound:
-        raise ValueError(f"{owner}.{field} = {value!r}: must be a finite number")
+        raise ValueError(f"{owner}.{field} = {_shown(value)}: must be a finite number")
     return value if isinstance(value, Column) else float(value)  # type: ignore[return-value]
 
 
@@ -44,18 +44,43 @@ def integer(owner: str, field: str, value: Any, least: int) -> int:
     """`value` as an int of at least `least`, or a ValueError naming the field."""
     if isinstance(value, Column):
         whole = value.dtype.kind == "f" and bool(np.all(value == np.floor(value)))
-        whole = whole and bool(np.all((value >= least) & (value < _EXACT)))
+        whole = whole and bool(np.all(value >= least))
     else:
         whole = isinstance(value, Integral) or (isinstance(value, float) and value.is_integer())
         whole = whole and not isinstance(value, bool) and int(value) >= least
     if not whole:
-        raise ValueError(f"{owner}.{field} = {value!r}: must be a whole number of at least {least}")
+        shown = _shown(value)
+        raise ValueError(f"{owner}.{field} = {shown}: must be a whole number of at least {least}")
+    if anywhere(value > _MOST):
+        raise ValueError(f"{owner}.{field} = {_shown(value)}: must be at most {_MOST}")
     return value.astype(np.int64) if isinstance(value, Column) else int(value)  # type: ignore[return-value]
 
 
 def one_of(owner: str, field: str, value: Any, choices: tuple[str, ...]) -> str:
     """`value` if it is among `choices`, or a ValueError naming the field and the choices."""
-    among = set(value.tolist()) <= set(choices) if isinstance(value, Column) else value in choices
+    if isinstance(value, Column):
+        among = set(value.tolist()) <= set(choices)
+    else:  # other arrays have no truth
+        among = isinstance(value, str) and value in choices
     if not among:
         raise ValueError(f"{owner}.{field} = {value!r}: must be one of {', '.join(choices)}")
     return value if isinstance(value, Column) else str(value)  # type: ignore[return-value]
+
+
+def instance(owner: str, field: str, value: Any, kind: type) -> None:
+    """Raises ValueError naming the field when `value` is not a `kind`."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{owner}.{field} = {value!r}: must be a {kind.__name__}")
+
+
+def _finite(value: Any) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond what a float holds
+        return False
+
+
+def _shown(value: Any) -> str:
+    """The value as it is written; Python refuses to write out numbers of thousands of digits."""
+    huge = isinstance(value, int) and value.bit_length() > 1024
+    return f"a number of {value.bit_length()} bits" if huge else repr(value)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from impactlab.kernels import BEAM_MODELS
 from impactlab.kernels.contact import LAWS
 from impactlab.model.beam import Beam
-from impactlab.model.checks import not_negative, one_of, positive
+from impactlab.model.checks import instance, not_negative, one_of, positive
 from impactlab.model.sphere import Sphere
 
 
@@ -15,9 +16,12 @@ class Impact:
     """A sphere hits the middle of a beam at rest.
 
     velocity: the sphere's, downwards at first touch, in m/s. contact: the name of a contact law
-    ("hertz" or "stronge"). gravity: acts on the sphere alone, in m/s2.
+    ("hertz" or "stronge"). gravity: acts on the sphere alone, in m/s2. beam_model:
+    "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
+    "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one degree
+    of freedom) or "rigid" (the beam does not move).
 
-    Raises ValueError naming the field when a value is not physical or the law is unknown.
+    Raises ValueError naming the field when a value is not physical or a name is unknown.
     """
 
     sphere: Sphere
@@ -25,8 +29,12 @@ class Impact:
     velocity: float
     contact: str = "stronge"
     gravity: float = 9.81
+    beam_model: str = "euler_bernoulli"
 
     def __post_init__(self) -> None:
+        instance("Impact", "sphere", self.sphere, Sphere)
+        instance("Impact", "beam", self.beam, Beam)
         positive("Impact", "velocity", self.velocity)
         not_negative("Impact", "gravity", self.gravity)
         one_of("Impact", "contact", self.contact, LAWS)
+        one_of("Impact", "beam_model", self.beam_model, BEAM_MODELS)

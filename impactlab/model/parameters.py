@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from impactlab.kernels import RULES, SCHEMES
+from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
 from impactlab.kernels.contact import LAWS
 from impactlab.model.columns import Column
 from impactlab.model.discretisation import Discretisation
@@ -56,12 +56,21 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter("velocity", "m s-1", "impact velocity", ("impact", "velocity")),
         Parameter("gravity", "m s-2", "gravity on the sphere", ("impact", "gravity")),
         Parameter("contact", "1", "contact law", ("impact", "contact"), choices=LAWS),
+        Parameter(
+            "beam_model", "1", "model of the beam", ("impact", "beam_model"), choices=BEAM_MODELS
+        ),
         Parameter("sphere_radius", "m", "radius of the sphere", ("impact", "sphere", "radius")),
         Parameter("sphere_mass", "kg", "mass of the sphere", ("impact", "sphere", "mass")),
         *_material("sphere")[:4],
         Parameter("beam_span", "m", "span of the beam", ("impact", "beam", "span")),
         Parameter("beam_width", "m", "width of the beam", ("impact", "beam", "width")),
         Parameter("beam_depth", "m", "depth of the beam", ("impact", "beam", "depth")),
+        Parameter(
+            "shear_coefficient",
+            "1",
+            "shear coefficient of the beam",
+            ("impact", "beam", "shear_coefficient"),
+        ),
         *_material("beam"),
         Parameter("nodes", "1", "nodes along the span", ("discretisation", "nodes"), whole=True),
         Parameter(

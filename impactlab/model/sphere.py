@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from impactlab.model.checks import positive
+from impactlab.model.checks import instance, positive
 from impactlab.model.columns import Column, column
 from impactlab.model.material import Material
 
@@ -15,7 +15,8 @@ from impactlab.model.material import Material
 class Sphere:
     """A solid sphere: radius in m, mass in kg (None: density times volume).
 
-    Raises ValueError naming the field when radius or mass is not finite and positive.
+    Raises ValueError naming the field when radius or mass is not finite and positive, or the
+    material is none.
     """
 
     radius: float
@@ -23,6 +24,7 @@ class Sphere:
     mass: float | None = None
 
     def __post_init__(self) -> None:
+        instance("Sphere", "material", self.material, Material)
         positive("Sphere", "radius", self.radius)
         if self.mass is not None:
             positive("Sphere", "mass", self.mass)

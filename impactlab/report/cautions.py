@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from impactlab.dataset import REMARKS
 from impactlab.figures.reading import verdicts, words
 from impactlab.figures.reading.contents import count, responses, usable
 from impactlab.report.outcome import failed_runs
@@ -29,6 +30,7 @@ def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
         _verdicts(runs, analysis),
         _strain(runs, analysis),
         _values(runs),
+        _remarks(runs),
     )
     return [sentence for sentences in found for sentence in sentences]
 
@@ -86,7 +88,13 @@ def _values(runs: xr.Dataset) -> Iterator[str]:
                 f"initial kinetic energy in {number} of {count(runs)} runs (largest: {worst})."
             )
     if "restitution" in runs and (number := int((usable(runs, "restitution") > 1).sum())):
-        yield (
-            f"The coefficient of restitution is above 1 in {number} of {count(runs)} runs: the "
-            "contact law creates energy there."
-        )
+        yield f"The coefficient of restitution is above 1 in {number} of {count(runs)} runs."
+
+
+def _remarks(runs: xr.Dataset) -> Iterator[str]:
+    """What the runs say of themselves."""
+    if "remarks" not in runs:
+        return
+    for bit, text in REMARKS.values():
+        if number := int(((runs["remarks"] & bit) != 0).sum()):
+            yield f"In {number} of {count(runs)} runs {text}."

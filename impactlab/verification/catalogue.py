@@ -5,11 +5,16 @@ from __future__ import annotations
 from typing import Protocol
 
 from impactlab.verification import (
+    balances,
     half_space,
     infinite_beam,
     modal_series,
+    moment_curvature,
     observed_order,
+    rigid_plastic_mode,
     similarity,
+    static_collapse,
+    static_deflection,
     stronge_restitution,
     sub_impacts,
     time_reversal,
@@ -37,6 +42,11 @@ _FILES: tuple[CheckFile, ...] = (
     observed_order,
     time_reversal,
     similarity,
+    moment_curvature,
+    static_deflection,
+    static_collapse,
+    rigid_plastic_mode,
+    balances,
 )
 CATALOGUE: dict[str, CheckFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES

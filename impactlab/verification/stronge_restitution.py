@@ -104,4 +104,5 @@ def _panel(velocities: Sequence[float], runs: Sequence[xr.Dataset]) -> Panel:
                 independent=True,
             ),
         ],
+        log=True,
     )

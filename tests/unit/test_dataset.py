@@ -18,6 +18,7 @@ from impactlab.dataset import (
     COORDINATES,
     HISTORIES,
     PROFILES,
+    REMARKS,
     RESPONSES,
     STATUS_FLAGS,
     attributes,
@@ -58,10 +59,11 @@ def test_responses_name_the_flags_that_make_them_missing():
         assert named <= set(STATUS_FLAGS)
 
 
-def test_status_attributes_are_cf_flags():
-    attrs = attributes("status")
-    assert attrs["flag_meanings"].split() == list(STATUS_FLAGS)
-    assert attrs["flag_masks"].tolist() == list(BITS.values())
+@pytest.mark.parametrize(("name", "flags"), [("status", STATUS_FLAGS), ("remarks", REMARKS)])
+def test_bits_are_cf_flags(name, flags):
+    attrs = attributes(name)
+    assert attrs["flag_meanings"].split() == list(flags)
+    assert attrs["flag_masks"].tolist() == [bit for bit, _ in flags.values()]
     assert attrs["flag_masks"].dtype == np.int32
 
 

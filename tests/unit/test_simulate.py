@@ -10,7 +10,16 @@ import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab.dataset import COORDINATES, HISTORIES, PROFILES, RESPONSES, STATUS_FLAGS
+from impactlab.dataset import (
+    COORDINATES,
+    FLAGS,
+    HISTORIES,
+    PROFILES,
+    REMARKS,
+    RESPONSES,
+    STATUS_FLAGS,
+    remarked,
+)
 from impactlab.kernels import RULES
 from impactlab.kernels.contact import LAWS
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
@@ -33,17 +42,18 @@ def test_every_variable_is_there_on_its_dimensions(run):
     for name, entry in (RESPONSES | HISTORIES | PROFILES).items():
         assert run[name].dims == entry.dims, name
         assert run[name].dtype == np.float64, name
-    assert set(run.data_vars) == {*RESPONSES, *HISTORIES, *PROFILES, "status"}
+    assert set(run.data_vars) == {*RESPONSES, *HISTORIES, *PROFILES, *FLAGS}
     assert run.status.dtype == np.int32
     assert run.status.dims == ()
 
 
 def test_every_variable_has_units_and_a_long_name(run):
-    for name in set(run.variables) - {"status"}:
+    for name in set(run.variables) - {*FLAGS}:
         assert run[name].attrs["units"], name
         assert run[name].attrs["long_name"], name
     assert run.status.attrs["long_name"]
     assert run.status.attrs["flag_meanings"].split() == list(STATUS_FLAGS)
+    assert run.remarks.attrs["flag_meanings"].split() == list(REMARKS)
     assert run.status.attrs["flag_masks"].tolist() == list(BITS.values())
 
 
@@ -61,7 +71,7 @@ def test_every_parameter_is_a_coordinate(run):
         "duration": DURATION,
     }
     assert {name: run[name].item() for name in (*PARAMETERS, "duration")} == expected
-    assert set(run.coords) == {*PARAMETERS, *COORDINATES}
+    assert set(run.coords) == {*PARAMETERS, *COORDINATES} - {"run"}
 
 
 def test_default_discretisation():
@@ -96,6 +106,18 @@ def test_profiles_mirror_about_mid_span_and_strains_about_the_axis(rule, points)
     assert np.all(peeq >= np.abs(strain))
     assert peeq.max() == run.peak_plastic_strain
     assert run.deflection[0] == run.deflection[-1] == 0
+
+
+def test_an_elastic_beam_has_no_negative_zeros():
+    run = il.simulate(il.paper_impact(0.1), GRID, duration=DURATION, samples=2)
+    assert not np.signbit(run.plastic_strain.values).any()
+    assert (run.plastic_strain == 0).all()
+
+
+@pytest.mark.parametrize("values", [5.0, np.float64(5), np.array(5.0), "hertz", [[1.0, 2.0]]])
+def test_what_varies_is_a_list(values):
+    with pytest.raises(ValueError, match=r"^varied: velocity = .*: must be a list"):
+        il.simulate_many(IMPACT, GRID, duration=DURATION, varied={"velocity": values})
 
 
 def test_the_lower_side_is_stretched_at_mid_span():
@@ -139,14 +161,15 @@ def test_many_runs_are_single_runs_bit_by_bit():
 def test_many_runs_carry_labels_units_and_reasons():
     varied = {"velocity": np.array([1.0, 2.0]), "rule": np.array(["layers", "lobatto"])}
     many = il.simulate_many(IMPACT, GRID, duration=DURATION, varied=varied)
-    assert set(many.data_vars) == {*RESPONSES, "status"}
-    for name in (*RESPONSES, "status"):
+    assert set(many.data_vars) == {*RESPONSES, *FLAGS}
+    for name in many.data_vars:
         assert many[name].dims == ("run",)
         assert many[name].attrs["long_name"]
     assert many.velocity.values.tolist() == [1.0, 2.0]
     assert many.velocity.attrs["units"] == "m s-1"
     assert many.rule.values.tolist() == ["layers", "lobatto"]
     assert many.run.values.tolist() == [0, 1]
+    assert many.run.attrs["long_name"]
     assert many.duration.item() == DURATION
 
 
@@ -154,6 +177,17 @@ def test_many_runs_carry_labels_units_and_reasons():
 def test_one_run_and_none(varied):
     many = il.simulate_many(IMPACT, GRID, duration=DURATION, varied=varied)
     assert many.sizes == {"run": 1 - len(varied)}
+
+
+def test_a_run_in_which_the_contact_law_creates_energy_says_so():
+    """Stronge's law at 20 and at 990 mm/s: within and above 2.673 times the yield indentation."""
+    run = il.simulate(il.paper_impact(0.02), GRID, duration=4e-3)
+    assert run.remarks.item() & REMARKS["contact_created_energy"][0]
+    assert run.contact_dissipation < 0
+    assert "creates energy" in run.contact_dissipation.attrs["comment"]
+    assert "created energy" in remarked(run.remarks.item())[0]
+    assert il.simulate(il.paper_impact(0.99), GRID, duration=4e-3).remarks == 0
+    assert remarked(0) == []
 
 
 def flags(run):
@@ -200,7 +234,7 @@ def diverged(points):
 def test_a_diverged_run_gives_no_number(points):
     run = diverged(points)
     assert flags(run) == {"diverged"}
-    for name in set(run.data_vars) - {"status"}:
+    for name in set(run.data_vars) - {*FLAGS}:
         assert run[name].isnull().all(), name
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.dataset import RESPONSES
-from impactlab.kernels import status
+from impactlab.kernels import remarks, status
 from impactlab.kernels.beam import make_grid
 from impactlab.kernels.contact.history import CONTACT, load, make_pair
 from impactlab.kernels.responses import (
@@ -70,14 +70,15 @@ def peeq():
 
 def test_answers_are_the_responses_of_the_dataset():
     assert list(RESPONSES) == list(ANSWERS)
-    assert RESPONSE.names == ("status", *ANSWERS)
+    assert RESPONSE.names == ("status", "remarks", *ANSWERS)
 
 
 def test_clear_leaves_no_number_but_the_reason(answer):
     for name in ANSWERS:
         answer[name] = 1.0
-    answer.status = status.IN_CONTACT_AT_END
+    answer.status, answer.remarks = status.IN_CONTACT_AT_END, 1
     clear(answer, status.DIVERGED)
+    assert answer.remarks == 0
     assert answer.status == status.DIVERGED
     assert np.isnan([answer[name] for name in ANSWERS]).all()
 
@@ -99,6 +100,40 @@ def test_a_run_that_ended_well_gives_every_answer(answer, case, track, contact, 
     assert answer.plastic_dissipation == 0.7
     # the last one, energy_error, is the time loop's own
     assert [name for name in ANSWERS if np.isnan(answer[name])] == ["energy_error"]
+
+
+@pytest.mark.parametrize(
+    ("law", "times", "creates", "bulges"),
+    [
+        ("hertz", 1.5, False, False),
+        ("stronge", 0.99, False, False),
+        ("stronge", 1.01, True, True),
+        ("stronge", 1.99, True, True),
+        ("stronge", 2.01, True, False),
+        ("stronge", 2.66, True, False),
+        ("stronge", 2.69, False, False),
+    ],
+)
+def test_flaws_of_the_contact_law_are_marked(answer, make_case, track, law, times, creates, bulges):
+    """times: largest indentation over that of first yield."""
+    pair = make_pair(make_case(contact=law))
+    yield_indentation = (0.75 * np.pi * 1.1 * pair.S_y / pair.E) ** 2 * pair.R
+    contact = np.zeros(1, CONTACT)[0]
+    load(contact, pair, times * yield_indentation)
+    read_contact(answer, track, contact, pair)
+    assert bool(answer.remarks & remarks.CONTACT_CREATED_ENERGY) == creates
+    assert bool(answer.remarks & remarks.CONTACT_LEFT_A_BULGE) == bulges
+    assert (answer.permanent_indentation < 0) == bulges
+    assert (answer.contact_dissipation < -1e-4 * contact.work) == creates
+
+
+def test_no_remark_on_an_answer_that_is_missing(answer, make_case, track):
+    pair = make_pair(make_case(contact="stronge"))
+    contact = np.zeros(1, CONTACT)[0]
+    load(contact, pair, 1.5 * (0.75 * np.pi * 1.1 * pair.S_y / pair.E) ** 2 * pair.R)
+    track.touching = 1
+    read_contact(answer, track, contact, pair)
+    assert answer.remarks == 0
 
 
 UNFINISHED = {

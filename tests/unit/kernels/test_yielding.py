@@ -18,6 +18,7 @@ from impactlab.kernels.yielding import (
 N = 12
 GRID = make_grid(N, 0.02, 1e-6, 13.0, 2e4)
 MID = GRID.mid
+NONE = np.zeros(0)
 INNER = slice(2, MID + 1)
 
 
@@ -58,12 +59,14 @@ def bent(kappa):
 
 def step(beam, held, section, now):
     """What the time loop does."""
-    if follow_tangents(beam.w, now, beam.plastic, held.M_0, held.on_tangent, held.tangent, GRID):
-        leave_tangents(beam, now, held, section, GRID)
+    if follow_tangents(
+        beam.w, now, NONE, beam.plastic, held.M_0, held.on_tangent, held.tangent, GRID
+    ):
+        leave_tangents(beam, now, NONE, held, section, GRID)
     intervals = (held.kappa_min, held.kappa_max)
     outside = move(beam.w, now, beam.u, beam.plastic, *intervals, 2, GRID)
     if outside:
-        begin_tangents(beam, now, outside, held, section, GRID, beam.u, beam.w[1 - now])
+        begin_tangents(beam, now, NONE, outside, held, section, GRID, beam.u, beam.w[1 - now])
     return outside
 
 

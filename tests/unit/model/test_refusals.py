@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import FrozenInstanceError, fields, replace
 
+import numpy as np
 import pytest
 
 import impactlab as il
@@ -84,6 +85,37 @@ def test_every_field_is_covered():
 def test_what_is_made_stays_as_it_is(part, field):
     with pytest.raises(FrozenInstanceError):
         setattr(PARTS[part], field, getattr(PARTS[part], field))
+
+
+@pytest.mark.parametrize(
+    "value", [None, 0.03, IMPACT, "steel"], ids=["none", "3", "impact", "word"]
+)
+@pytest.mark.parametrize(
+    ("part", "field", "kind"),
+    [
+        ("Impact", "sphere", "Sphere"),
+        ("Impact", "beam", "Beam"),
+        ("Beam", "material", "Material"),
+        ("Sphere", "material", "Material"),
+    ],
+)
+def test_a_part_is_of_its_class(part, field, kind, value):
+    with pytest.raises(ValueError, match=rf"^{part}\.{field} = .*: must be a {kind}$"):
+        replace(PARTS[part], **{field: value})
+
+
+@pytest.mark.parametrize("value", [10**400, -(10**400), 10**5000], ids=["large", "least", "huge"])
+def test_a_number_too_large_for_a_float_is_refused(value):
+    with pytest.raises(ValueError, match=r"^Material\.density = .* bits: must be a finite number$"):
+        replace(PARTS["Material"], density=value)
+    with pytest.raises(ValueError, match=r"^Discretisation\.nodes = "):
+        replace(PARTS["Discretisation"], nodes=value)
+
+
+def test_an_array_is_no_name():
+    for contact in (np.array(["hertz", "stronge"]), np.array("hertz")):
+        with pytest.raises(ValueError, match=r"^Impact\.contact = .*: must be one of"):
+            replace(IMPACT, contact=contact)
 
 
 def test_fields_go_by_name():

@@ -40,6 +40,16 @@ def test_energy_imbalance_and_restitution_above_one(material_study: Study) -> No
     assert _said(found, "restitution is above 1 in 1 of 24 runs")
 
 
+def test_runs_whose_contact_law_created_energy_are_counted(material_study: Study) -> None:
+    runs, analysis = material_study
+    words = "the contact law created energy"
+    assert not _said(cautions(runs, analysis), words)
+    runs["remarks"] = xr.zeros_like(runs["status"])
+    assert not _said(cautions(runs, analysis), words)
+    runs["remarks"][0, :, 0] = 1
+    assert _said(cautions(runs, analysis), f"In 3 of 24 runs {words}")
+
+
 def test_an_analysis_of_other_runs_is_told(material_study: Study) -> None:
     runs, analysis = material_study
     words = "The analysis is not of these runs"

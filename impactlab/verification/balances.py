@@ -1,0 +1,185 @@
+"""Energy and momentum in drawn cases: nothing is lost, and only a contact law creates energy.
+
+Central differences conserve both exactly while the beam is elastic, so that rounding alone is
+allowed there; a fibre that yields within a time step costs second order in the step.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from impactlab.dataset import REMARKS
+from impactlab.kernels import RULES
+from impactlab.kernels.contact import LAWS
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.model.paper import paper_impact
+from impactlab.model.parameters import Value, with_values
+from impactlab.reference.stronge import stronge_impact
+from impactlab.verification.audit import Audit, audit
+from impactlab.verification.finding import (
+    Comparison,
+    Curve,
+    Finding,
+    Floats,
+    Panel,
+    absolute,
+)
+
+TITLE = "Balances of energy and momentum"
+SOURCE = "Sums over the dataset in impactlab.verification.audit; loops of Stronge's law"
+_CASES = 80
+_SEED = 20240607
+_ROUNDING = 1e-9
+"""Share of the energy brought, below which a dissipation counts as none."""
+Case = tuple[Impact, Audit]
+
+
+def check() -> Finding:
+    """The worst of all cases, each quantity by itself."""
+    random = np.random.default_rng(_SEED)
+    cases = [_solved(random) for _ in range(_CASES)]
+    audits = [found for _, found in cases]
+    comparisons = [
+        _worst(
+            "energy in excess, the beam elastic", [a.energy for a in audits if not a.plastic], 1e-7
+        ),
+        _worst(
+            "energy in excess, the beam yielding", [a.energy for a in audits if a.plastic], 2e-3
+        ),
+        _worst("sphere's momentum in excess", [found.momentum for found in audits], 1e-9),
+        _worst("contact dissipation", [_contact(found) for found in audits], 2e-3),
+        _worst("plastic dissipation", [_plastic(found) for found in audits], 1e-12),
+        _never_negative("plastic_dissipation", audits),
+        _never_negative("contact_dissipation", [a for a in audits if not _says(a)]),
+        *_created(cases),
+    ]
+    return Finding(comparisons, [_excess_panel(audits), _loop_panel(cases)])
+
+
+def drawn(random: np.random.Generator) -> dict[str, Value]:
+    """Values of a case: half of them soft, so that the beam yields; slow ones graze the yield."""
+    soft = bool(random.random() < 0.5)
+
+    def modulus() -> float:
+        return float(random.choice([0.0, random.uniform(0.0, 20e9)]))
+
+    return {
+        "velocity": float(
+            10.0 ** (random.uniform(0.0, 1.4) if soft else random.uniform(-2.3, -0.7))
+        ),
+        "gravity": float(random.choice([0.0, 9.81, 50.0])),
+        "contact": str(random.choice(LAWS)),
+        "sphere_radius": float(random.uniform(0.01, 0.05)),
+        "sphere_yield_stress": float(random.uniform(300e6, 3e9)),
+        "beam_span": float(random.uniform(0.4, 1.0)),
+        "beam_width": float(random.uniform(0.02, 0.1)),
+        "beam_depth": float(random.uniform(0.01, 0.04)),
+        "beam_yield_stress": float(random.uniform(50e6, 200e6) if soft else 600e6),
+        "beam_isotropic_hardening_modulus": modulus(),
+        "beam_kinematic_hardening_modulus": modulus(),
+        "nodes": int(2 * random.integers(20, 51) + 1),
+        "points": int(random.integers(2, 16)),
+        "rule": str(random.choice(RULES)),
+        "courant": float(random.uniform(0.3, 0.9)),
+    }
+
+
+def _solved(random: np.random.Generator) -> Case:
+    impact, grid = with_values(paper_impact(), Discretisation(), drawn(random))
+    return impact, audit(impact, grid, float(random.uniform(1e-3, 5e-3)))
+
+
+def _worst(quantity: str, errors: list[float], tolerance: float) -> Comparison:
+    worst = float(np.max(np.abs(errors)))
+    return absolute(
+        quantity,
+        f"worst of {len(errors)} drawn cases, over what is brought",
+        "1",
+        worst,
+        0,
+        tolerance,
+    )
+
+
+def _contact(found: Audit) -> float:
+    """Dissipation told less the loop's area; none where the contact has not ended."""
+    told = found.run["contact_dissipation"].item()
+    return 0.0 if math.isnan(told) else float(told - found.contact) / found.brought
+
+
+def _plastic(found: Audit) -> float:
+    return float(found.run["plastic_dissipation"].item() - found.plastic) / found.brought
+
+
+def _says(found: Audit) -> bool:
+    """Whether the run says that its contact law created energy."""
+    return bool(found.run["remarks"].item() & REMARKS["contact_created_energy"][0])
+
+
+def _never_negative(name: str, audits: list[Audit]) -> Comparison:
+    least = float(np.nanmin([found.run[name].item() / found.brought for found in audits]))
+    where = f"least of {len(audits)} cases, over what is brought"
+    return absolute(name.replace("_", " "), where, "1", min(least, 0.0), 0.0, _ROUNDING)
+
+
+def _created(cases: list[Case]) -> list[Comparison]:
+    """The runs that say so are those in which Stronge's loop gives back more than it took."""
+    ended = [case for case in cases if not math.isnan(case[1].run["contact_dissipation"].item())]
+    says = np.array([_says(found) for _, found in ended])
+    known = np.array([_creates(impact, found) for impact, found in ended])
+    where = "runs marked; runs whose largest indentation says so by the law's closed form"
+    wrong = float(np.sum(says != known))
+    return [
+        absolute("contact law created energy", where, "1", says.sum(), known.sum(), 0.0),
+        absolute("contact law created energy", "runs marked wrongly", "1", wrong, 0.0, 0.0),
+    ]
+
+
+def _creates(impact: Impact, found: Audit) -> bool:
+    law, deepest = stronge_impact(impact), found.run["maximum_indentation"].item()
+    if impact.contact != "stronge" or deepest <= law.yield_indentation:
+        return False
+    return law.released_work(deepest) > law.loading_work(deepest)
+
+
+def _excess_panel(audits: list[Audit]) -> Panel:
+    def sort(errors: list[float]) -> Floats:
+        return np.asarray(np.maximum(np.sort(np.abs(errors)), 1e-12))
+
+    rank = np.arange(1.0, _CASES + 1.0)
+    return Panel(
+        "In excess at the end, case by case",
+        ("cases, the best first", "1"),
+        ("share of what is brought", "1"),
+        [
+            Curve("energy", rank, sort([found.energy for found in audits])),
+            Curve("sphere's momentum", rank, sort([found.momentum for found in audits])),
+        ],
+        log=True,
+    )
+
+
+def _loop_panel(cases: list[Case]) -> Panel:
+    """Dissipation over the work of loading, where the law creates energy and beyond."""
+    points = []
+    for impact, found in cases:
+        law, told = stronge_impact(impact), found.run["contact_dissipation"].item()
+        times = found.run["maximum_indentation"].item() / law.yield_indentation
+        if impact.contact == "stronge" and 0.2 < times < 8.0 and not math.isnan(told):
+            points.append((times, told / law.loading_work(times * law.yield_indentation)))
+    solver = np.array(sorted(points)).reshape(-1, 2)
+    law = stronge_impact(paper_impact())
+    x = np.linspace(1.001, 8.0, 200)
+    share = [1.0 - law.released_work(d) / law.loading_work(d) for d in x * law.yield_indentation]
+    return Panel(
+        "Stronge's law creates energy below 2.673 times the yield indentation",
+        ("largest indentation over that of first yield", "1"),
+        ("contact dissipation over the work of loading", "1"),
+        [
+            Curve("solver", solver[:, 0], solver[:, 1]),
+            Curve("the law's loop", x, np.array(share), independent=True),
+        ],
+    )

@@ -1,0 +1,118 @@
+"""A slowly growing load carried past yield: the plastic hinge and 4 M_p/L."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from impactlab.model.beam import Beam
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.paper import paper_impact
+from impactlab.reference import bending, quadrature, static_loading
+from impactlab.simulate import simulate
+from impactlab.verification.finding import (
+    Comparison,
+    Curve,
+    Finding,
+    Floats,
+    Panel,
+    curve,
+    relative,
+)
+from impactlab.verification.slow_load import slow_impact
+
+TITLE = "Static collapse"
+SOURCE = "Prager and Hodge 1951, chapter 2; impactlab.reference.static_loading"
+_HINGE = 20e-3
+"""Mid-span deflection in m from which on the load stands still: 20/9 of 6.1 mm at first yield."""
+_LARGEST = 30e-3
+"""Deflection in m up to which curves are compared; every run gets farther."""
+_DURATION = 1.0
+"""In s, 107 periods: the striker comes, stops, and has left after 0.86 s."""
+
+
+def check() -> Finding:
+    """Load against deflection, plateau and what is left; the plateau of coarse rules."""
+    perfect = _beam(0.0)
+    run = _run(perfect, "layers", 40)
+    hardening = _beam(5e9)
+    harder = _run(hardening, "layers", 40)
+    collapse = bending.collapse_load(perfect)
+    comparisons = [
+        _loading(run, perfect, "elastic-perfectly plastic, 40 layers", 8e-3),
+        _loading(harder, hardening, "isotropic hardening 5 GPa, 40 layers", 4e-3),
+        relative("collapse load", "40 layers; 4 M_p/L", "N", _plateau(run), collapse, 5e-4),
+        *(_coarse(perfect, points) for points in (3, 9)),
+        _permanent(run, perfect),
+    ]
+    return Finding(comparisons, [_panel(run, harder, perfect, hardening)])
+
+
+def _beam(isotropic: float) -> Beam:
+    beam = paper_impact().beam
+    return replace(beam, material=replace(beam.material, isotropic_hardening_modulus=isotropic))
+
+
+def _run(beam: Beam, rule: str, points: int) -> xr.Dataset:
+    impact = slow_impact(beam, mass=4e4, velocity=0.2, softness=20e-3)
+    grid = Discretisation(nodes=101, points=points, rule=rule)
+    return simulate(impact, grid, duration=_DURATION, samples=4001)
+
+
+def _on_loading(run: xr.Dataset) -> tuple[Floats, Floats]:
+    """(deflection, force) at mid-span until the deflection is largest."""
+    deflection, force = run["midspan_deflection"].values, run["contact_force"].values
+    until = int(np.argmax(deflection)) + 1
+    return deflection[:until], force[:until]
+
+
+def _static(beam: Beam, deflections: Floats) -> Floats:
+    return np.array([static_loading.load_at(beam, float(w)) for w in deflections])
+
+
+def _loading(run: xr.Dataset, beam: Beam, where: str, tolerance: float) -> Comparison:
+    deflection, force = _on_loading(run)
+    points = np.linspace(0.5e-3, _LARGEST, 100)
+    ours = np.interp(points, deflection, force)
+    return curve("load by deflection", where, "N", ours, _static(beam, points), tolerance)
+
+
+def _plateau(run: xr.Dataset) -> float:
+    """Mean load in N once the hinge has formed: what still swings averages out."""
+    deflection, force = _on_loading(run)
+    return float(force[deflection > _HINGE].mean())
+
+
+def _coarse(beam: Beam, points: int) -> Comparison:
+    """The plastic moment of a coarse rule is not that of the section."""
+    positions, weights = quadrature.rule("lobatto", points)
+    far = 1e3 * bending.yield_curvature(beam)
+    own = 4.0 / beam.span * float(bending.rule_moment(beam, far, positions, weights))
+    ours = _plateau(_run(beam, "lobatto", points))
+    where = f"{points} Lobatto points; 4/L times the rule's own plastic moment"
+    return relative("collapse load", where, "N", ours, own, 5e-4)
+
+
+def _permanent(run: xr.Dataset, beam: Beam) -> Comparison:
+    """The striker leaves as slowly as it came, and the beam springs back elastically."""
+    collapse = bending.collapse_load(beam)
+    left = float(run["midspan_deflection"].max()) - bending.static_deflection(beam, collapse)
+    ours = float(run["midspan_deflection"][-400:].mean())
+    where = "40 layers; largest deflection less P_c L^3/(48 EI)"
+    return relative("permanent deflection", where, "m", ours, left, 1e-3)
+
+
+def _panel(run: xr.Dataset, harder: xr.Dataset, perfect: Beam, hardening: Beam) -> Panel:
+    curves = []
+    for label, dataset, beam in (
+        ("perfectly plastic", run, perfect),
+        ("hardening 5 GPa", harder, hardening),
+    ):
+        deflection, force = dataset["midspan_deflection"].values, dataset["contact_force"].values
+        points = np.linspace(0.5e-3, _LARGEST, 60)
+        curves.append(Curve(label, deflection, force))
+        curves.append(Curve(f"{label}, static", points, _static(beam, points), independent=True))
+    axes = ("deflection at mid-span", "m"), ("load at mid-span", "N")
+    return Panel("Loading to collapse, and back", *axes, curves)

@@ -1,0 +1,110 @@
+"""Faults to seed into the kernels, each of a kind that has happened in such codes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Fault(NamedTuple):
+    """One fault: in `file` of impactlab/kernels, `old` (found there once) becomes `new`."""
+
+    name: str
+    file: str
+    old: str
+    new: str
+
+
+FAULTS = (
+    Fault(
+        "Hertz: 4/3 is 1.3",
+        "contact/hertz.py",
+        "K = 4.0 / 3.0 * E",
+        "K = 1.3 * E",
+    ),
+    Fault(
+        "Stronge: residual indentation without R_e/R*",
+        "contact/stronge.py",
+        "delta - delta_y * radius_ratio, 1.5",
+        "delta - delta_y, 1.5",
+    ),
+    Fault(
+        "unloading: sign of the residual indentation",
+        "contact/history.py",
+        "over = delta - contact.delta_r\n",
+        "over = delta + contact.delta_r\n",
+    ),
+    Fault(
+        "fibre: sign of the back stress",
+        "fibre.py",
+        "(strain - plastic_strain) - H_k * plastic_strain\n",
+        "(strain - plastic_strain) + H_k * plastic_strain\n",
+    ),
+    Fault(
+        "section: moment from the plastic strain before the step",
+        "section.py",
+        "        plastic_strain[i, j], peeq[i, j] = strain, slipped\n"
+        "        M_0 -= lever[j] * strain\n",
+        "        M_0 -= lever[j] * plastic_strain[i, j]\n"
+        "        plastic_strain[i, j], peeq[i, j] = strain, slipped\n",
+    ),
+    Fault(
+        "section: each fibre counted once",
+        "section.py",
+        "area[j] *= case.beam_depth * case.beam_width",
+        "area[j] *= 0.5 * case.beam_depth * case.beam_width",
+    ),
+    Fault(
+        "section: levers of the fibres in reverse order",
+        "section.py",
+        "M_0 -= lever[j] * strain",
+        "M_0 -= lever[z.size - 1 - j] * strain",
+    ),
+    Fault(
+        "section: the tangent leaves out kinematic hardening",
+        "section.py",
+        "z[j] * E / (E + H_i + H_k)",
+        "z[j] * E / (E + H_i)",
+    ),
+    Fault(
+        "beam: wrong mirror node at mid-span",
+        "beam.py",
+        "w[after, mid + 1] = w[after, mid - 1]",
+        "w[after, mid + 1] = w[after, mid - 2]",
+    ),
+    Fault(
+        "beam: half of the contact force",
+        "beam.py",
+        "dt**2 / (mu * dx))",
+        "0.5 * dt**2 / (mu * dx))",
+    ),
+    Fault(
+        "beam: the wave front lags a node behind",
+        "beam.py",
+        "max(first - 2, 2) if moved",
+        "max(first - 1, 2) if moved",
+    ),
+    Fault(
+        "leapfrog: the first kick is a whole one, not half",
+        "leapfrog.py",
+        "case.velocity - 0.5 * dt * case.gravity",
+        "case.velocity",
+    ),
+    Fault(
+        "time step: the paper's bar-wave limit",
+        "stability.py",
+        "omega_squared = 16.0 * bending_stiffness / (mu * dx**4)",
+        "omega_squared = 4.0 * case.beam_youngs_modulus / (case.beam_density * dx**2)",
+    ),
+    Fault(
+        "energy audit: kinetic energy of mid-span from one half step",
+        "energy.py",
+        "u[grid.mid] * u_mid",
+        "u[grid.mid] * u[grid.mid]",
+    ),
+    Fault(
+        "track: the end of contact is not interpolated",
+        "track.py",
+        "end = t - dt * gap / (gap - gap_before)",
+        "end = t",
+    ),
+)
