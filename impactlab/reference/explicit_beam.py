@@ -69,4 +69,3 @@ def march(beam: Beam, nodes: int, dt: float, steps: int) -> Floats:
 
 _OVERFLOW = 1e100
 """m; far beyond any meaning, far below where floating point ends."""
-

@@ -12,7 +12,7 @@ from impactlab.analysis.claims.claim import (
     Verdict,
     attempt,
 )
-from impactlab.analysis.claims.curves import against_velocity, laws
+from impactlab.analysis.claims.curves import Floats, against_velocity, laws
 from impactlab.analysis.claims.evidence import runs_of
 
 SAYS = "The model's contact duration lies above the spring-mass prediction."
@@ -34,9 +34,7 @@ def _judged(law: str, data: Data) -> Judgement:
     if "beam_model" not in runs_of(data, STUDY).dims:
         raise Unjudgeable(f"the study {STUDY} does not vary beam_model")
     ours = against_velocity(data, STUDY, "contact_duration", contact=law)
-    theirs = against_velocity(
-        data, STUDY, "contact_duration", contact=law, beam_model=SPRING_MASS
-    )
+    theirs = against_velocity(data, STUDY, "contact_duration", contact=law, beam_model=SPRING_MASS)
     above = ours.low > theirs.high
     ratio = ours.value / theirs.value
     width = ratio * (ours.uncertainty / ours.value + theirs.uncertainty / theirs.value)
@@ -44,10 +42,13 @@ def _judged(law: str, data: Data) -> Judgement:
         Number(f"{name} model over spring-mass", float(ratio[at]), "1", float(width[at]))
         for name, at in (("smallest", int(ratio.argmin())), ("largest", int(ratio.argmax())))
     )
-    where = ", ".join(f"{speed:g}" for speed in ours.velocity[above])
     if above.all():
-        return Judgement(f"{law} contact", numbers, Verdict.HOLDS, "At every velocity.")
+        return Judgement(f"{law} contact", numbers, Verdict.HOLDS, "It is above at every velocity.")
     if not above.any():
-        return Judgement(f"{law} contact", numbers, Verdict.FAILS, "At no velocity.")
-    why = f"Only at {where} m/s."
+        return Judgement(f"{law} contact", numbers, Verdict.FAILS, "It is above at no velocity.")
+    why = f"Above at {_listed(ours.velocity[above])} m/s, not at {_listed(ours.velocity[~above])}."
     return Judgement(f"{law} contact", numbers, Verdict.READING, why)
+
+
+def _listed(velocities: Floats) -> str:
+    return ", ".join(f"{velocity:g}" for velocity in velocities)

@@ -25,12 +25,16 @@ class Reading(NamedTuple):
 
 _LATE, _EARLY = "fig10_nodes", "fig10_first"
 AWAY = (
-    Reading("away from the impact, after all contacts (25 ms)", _LATE, "remote_plastic_strain", True),
+    Reading(
+        "away from the impact, after all contacts (25 ms)", _LATE, "remote_plastic_strain", True
+    ),
     Reading("away from the impact, after 1 ms", _EARLY, "remote_plastic_strain", False),
 )
 """Farther than one beam depth from the impact: the paper does not say how far, nor when."""
 ANYWHERE = (
-    Reading("anywhere in the beam, after all contacts (25 ms)", _LATE, "peak_plastic_strain", False),
+    Reading(
+        "anywhere in the beam, after all contacts (25 ms)", _LATE, "peak_plastic_strain", False
+    ),
     Reading("anywhere in the beam, after 1 ms", _EARLY, "peak_plastic_strain", False),
 )
 """Under the sphere, too."""

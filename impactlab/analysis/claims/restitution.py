@@ -11,7 +11,9 @@ from impactlab.model.paper import paper_impact
 from impactlab.reference.stronge import stronge_impact
 
 SAYS = "Unloading with force continuity (Eqs. 15 to 17) returns a part of the energy."
-TEST = "The coefficient of restitution of the contact alone is at most 1 for every 1 < δ_m/δ_y < 300."
+TEST = (
+    "The coefficient of restitution of the contact alone is at most 1 for every 1 < δ_m/δ_y < 300."
+)
 HOLDS = "above 1 over a range of small δ_m/δ_y: the law itself creates energy there"
 
 

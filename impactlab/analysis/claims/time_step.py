@@ -29,7 +29,10 @@ def judge(data: Data) -> Iterable[Judgement]:
     beam = paper_impact().beam
     for case, limit in (
         ("as printed", explicit_beam.bar_wave_step(beam, _NODES)),
-        ("the limit of bending instead, dt < (dx²/2) √(ρA/EI)", explicit_beam.bending_step(beam, _NODES)),
+        (
+            "the limit of bending instead, dt < (dx²/2) √(ρA/EI)",
+            explicit_beam.bending_step(beam, _NODES),
+        ),
     ):
         yield _judged(case, _SHARE * limit)
 
@@ -47,5 +50,7 @@ def _judged(case: str, dt: float) -> Judgement:
     stable = frequency * dt <= 2.0 and grown < _FACTOR
     if stable:
         return Judgement(case, numbers, holds(True), "The march stays bounded.")
-    why = "It is the limit of a bar wave; bending is stiffer on a fine grid, and the march diverges."
+    why = (
+        "It is the limit of a bar wave; bending is stiffer on a fine grid, and the march diverges."
+    )
     return Judgement(case, numbers, Verdict.FAILS, why)
