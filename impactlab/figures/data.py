@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 from impactlab.figures.files import replaced
 
 FORMATS = ("csv", "nc")
+Points = tuple[str, NDArray[np.float64], NDArray[np.float64]]
+"""Label, x and y."""
 _LABELS = ("panel", "curve", "x_label", "y_label")
 
 
@@ -92,7 +94,7 @@ def _write_csv(found: list[Drawn], path: Path) -> None:
             writer.writerows([*labels, f"{x:.9g}", f"{y:.9g}"] for x, y in points)
 
 
-def _lines(ax: Axes) -> Iterator[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:
+def _lines(ax: Axes) -> Iterator[Points]:
     for line in ax.lines:
         label = str(line.get_label())
         if label == "_only" or not label.startswith("_"):
@@ -100,20 +102,20 @@ def _lines(ax: Axes) -> Iterator[tuple[str, NDArray[np.float64], NDArray[np.floa
             yield label.removeprefix("_only"), x, y
 
 
-def _bars(ax: Axes) -> Iterator[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:
+def _bars(ax: Axes) -> Iterator[Points]:
     """Bars by their middles and their ends."""
     for bars in ax.containers:
-        if isinstance(bars, BarContainer):
-            middles = [
-                (box.get_x() + box.get_width() / 2, box.get_y() + box.get_height() / 2)
-                for box in bars
-            ]
-            x, y = np.array(middles, dtype=float).reshape(-1, 2).T
-            across = bars.orientation == "horizontal"
-            ends = [box.get_x() + box.get_width() if across else box.get_height() for box in bars]
-            label = str(bars.get_label())
-            pair = (np.array(ends), y) if across else (x, np.array(ends))
-            yield "" if label.startswith("_") else label, *(part.astype(float) for part in pair)
+        if not isinstance(bars, BarContainer):
+            continue
+        label = str(bars.get_label())
+        boxes = np.array([box.get_bbox().extents for box in bars], dtype=float).reshape(-1, 4)
+        left, bottom, right, top = boxes.T
+        if bars.orientation == "horizontal":
+            ends = np.where(left < 0.0, left, right)
+            x, y = ends, 0.5 * (bottom + top)
+        else:
+            x, y = 0.5 * (left + right), top
+        yield "" if label.startswith("_") else label, x, y
 
 
 def _has_ticks(ax: Axes) -> bool:

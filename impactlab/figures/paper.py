@@ -18,7 +18,7 @@ Stored = Mapping[str, tuple[xr.Dataset, xr.Dataset]]
 
 
 class Answer(NamedTuple):
-    """One figure: its number in the paper with a letter of ours, the study, the catalogue's name."""
+    """One figure: its number in the paper and a letter of ours, study, name in the catalogue."""
 
     number: str
     study: str

@@ -44,7 +44,7 @@ def section(claim: Claim) -> Section:
         ]
         for entry in claim.judgements
     ]
-    return Section(claim, Table(claim.says, head, rows))
+    return Section(claim, Table("Judged cases", head, rows))
 
 
 def overview(caption: str, claims: Sequence[Claim]) -> Table:
@@ -133,7 +133,7 @@ def _verdict(entry: Judgement) -> Cell:
 
 
 def _told(number: Number) -> str:
-    """ "peak force 12.3 ± 0.1 kN": the value to where its uncertainty begins."""
+    """Name, value and uncertainty: "peak force 12.34 ± 0.11 kN"."""
     unit = _unit(number)
     value, width = float(unit(number.value)), float(unit(number.uncertainty))
     text = words.number(value, _digits(value, width))
@@ -149,7 +149,7 @@ def _unit(number: Number) -> Display:
 
 
 def _digits(value: float, width: float) -> int:
-    """Significant digits down to the second of the uncertainty, 3 to 7."""
+    """Significant digits down to the second of the uncertainty, 3 to 5."""
     if not (value and width and np.isfinite(value) and np.isfinite(width)):
         return 5
-    return int(np.clip(np.floor(np.log10(abs(value / width))) + 2, 3, 7))
+    return int(np.clip(np.floor(np.log10(abs(value / width))) + 2, 3, 5))

@@ -8,11 +8,11 @@ from impactlab.analysis.claims.claim import (
     Data,
     Judgement,
     Number,
-    Unjudgeable,
+    UnjudgeableError,
     Verdict,
     attempt,
 )
-from impactlab.analysis.claims.curves import Floats, against_velocity, laws
+from impactlab.analysis.claims.curves import Floats, against_velocity, laws, named
 from impactlab.analysis.claims.evidence import runs_of
 
 SAYS = "The model's contact duration lies above the spring-mass prediction."
@@ -27,12 +27,12 @@ SPRING_MASS = "spring_mass"
 def judge(data: Data) -> Iterable[Judgement]:
     """A judgement for each contact law of the study."""
     for law in laws(data, STUDY):
-        yield attempt(f"{law} contact", lambda law=law: _judged(law, data))  # type: ignore[misc]
+        yield attempt(named(law), lambda law=law: _judged(law, data))  # type: ignore[misc]
 
 
 def _judged(law: str, data: Data) -> Judgement:
     if "beam_model" not in runs_of(data, STUDY).dims:
-        raise Unjudgeable(f"the study {STUDY} does not vary beam_model")
+        raise UnjudgeableError(f"the study {STUDY} does not vary beam_model")
     ours = against_velocity(data, STUDY, "contact_duration", contact=law)
     theirs = against_velocity(data, STUDY, "contact_duration", contact=law, beam_model=SPRING_MASS)
     above = ours.low > theirs.high
@@ -43,11 +43,11 @@ def _judged(law: str, data: Data) -> Judgement:
         for name, at in (("smallest", int(ratio.argmin())), ("largest", int(ratio.argmax())))
     )
     if above.all():
-        return Judgement(f"{law} contact", numbers, Verdict.HOLDS, "It is above at every velocity.")
+        return Judgement(named(law), numbers, Verdict.HOLDS, "It is above at every velocity.")
     if not above.any():
-        return Judgement(f"{law} contact", numbers, Verdict.FAILS, "It is above at no velocity.")
+        return Judgement(named(law), numbers, Verdict.FAILS, "It is above at no velocity.")
     why = f"Above at {_listed(ours.velocity[above])} m/s, not at {_listed(ours.velocity[~above])}."
-    return Judgement(f"{law} contact", numbers, Verdict.READING, why)
+    return Judgement(named(law), numbers, Verdict.READING, why)
 
 
 def _listed(velocities: Floats) -> str:

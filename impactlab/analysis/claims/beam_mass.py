@@ -25,5 +25,5 @@ def judge(data: Data) -> Iterable[Judgement]:
     )
     off = PRINTED / mass - 1.0
     stands = abs(off) <= _WITHIN
-    why = f"Printed and computed mass differ by {off:.1%} of the latter."
+    why = f"Printed and computed mass differ by {100 * off:.1f} % of the latter."
     return [Judgement("density 7800 kg/m³, 27.8 × 60 × 780 mm", numbers, holds(stands), why)]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.analysis.claims.claim import Data, Unjudgeable
+from impactlab.analysis.claims.claim import Data, UnjudgeableError
 from impactlab.analysis.claims.evidence import number, runs_of
 
 Floats = NDArray[np.float64]
@@ -42,10 +42,15 @@ def laws(data: Data, study: str) -> list[str]:
     return [str(law) for law in data[study]["contact"].values]
 
 
+def named(law: str) -> str:
+    """A case of a contact law, in words."""
+    return f"{law.replace('_', '-').title()} contact"
+
+
 def against_velocity(data: Data, study: str, response: str, **where: Any) -> Curve:
     """A response over the velocities of a study, on the paper's beam unless `where` says else.
 
-    Raises Unjudgeable where a run or an uncertainty is missing, naming the velocity.
+    Raises UnjudgeableError where a run or an uncertainty is missing, naming the velocity.
     """
     runs = runs_of(data, study)
     if "beam_model" in runs.dims:
@@ -59,8 +64,8 @@ def against_velocity(data: Data, study: str, response: str, **where: Any) -> Cur
 def _at(runs: Any, response: str, speed: float, where: dict[str, Any]) -> tuple[float, float]:
     try:
         entry = number(runs, response, velocity=speed, **where)
-    except Unjudgeable as reason:
-        raise Unjudgeable(f"at {speed:g} m/s {reason}") from None
+    except UnjudgeableError as reason:
+        raise UnjudgeableError(f"at {speed:g} m/s {reason}") from None
     if np.isnan(entry.uncertainty):
-        raise Unjudgeable(f"at {speed:g} m/s there are fewer than three grids")
+        raise UnjudgeableError(f"at {speed:g} m/s there are fewer than three grids")
     return entry.value, entry.uncertainty

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from impactlab.analysis.claims.claim import Data, Judgement, Number, Verdict, attempt
-from impactlab.analysis.claims.curves import Curve, against_velocity, laws
+from impactlab.analysis.claims.curves import Curve, against_velocity, laws, named
 
 SAYS = "The contact duration falls as the impact velocity rises."
 TEST = (
@@ -21,7 +21,7 @@ STUDY = "fig08"
 def judge(data: Data) -> Iterable[Judgement]:
     """A judgement for each contact law of the study."""
     for law in laws(data, STUDY):
-        yield attempt(f"{law} contact", lambda law=law: _judged(law, data))  # type: ignore[misc]
+        yield attempt(named(law), lambda law=law: _judged(law, data))  # type: ignore[misc]
 
 
 def _judged(law: str, data: Data) -> Judgement:
@@ -30,7 +30,7 @@ def _judged(law: str, data: Data) -> Judgement:
     count = falls.size if falls.all() else int(np.argmin(falls))
     numbers = _numbers(curve, count)
     first, last = curve.velocity[0], curve.velocity[-1]
-    case = f"{law} contact, {first:g} to {last:g} m/s"
+    case = f"{named(law)}, {first:g} to {last:g} m/s"
     if count == falls.size:
         why = f"It falls at every one of the {count} steps."
         return Judgement(case, numbers, Verdict.HOLDS, why)

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from impactlab.analysis.claims import plasticity
-from impactlab.analysis.claims.claim import Data, Judgement, Number, Unjudgeable, attempt, holds
+from impactlab.analysis.claims.claim import (
+    Data,
+    Judgement,
+    Number,
+    UnjudgeableError,
+    attempt,
+    holds,
+)
 from impactlab.analysis.claims.plasticity import Reading
 
 SAYS = "Up to 5 m/s there is no plastic strain away from the impact."
@@ -23,7 +30,7 @@ def _judged(reading: Reading, data: Data) -> Judgement:
     curve = plasticity.strains(data, reading)
     low = curve.velocity <= UP_TO
     if curve.velocity[low].max(initial=0.0) < UP_TO:
-        raise Unjudgeable(f"the study {reading.study} has no run at {UP_TO:g} m/s")
+        raise UnjudgeableError(f"the study {reading.study} has no run at {UP_TO:g} m/s")
     worst = int(curve.high[low].argmax())
     found = Number(
         f"largest PEEQ up to {UP_TO:g} m/s",

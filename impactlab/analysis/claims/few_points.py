@@ -13,8 +13,8 @@ from impactlab.reference import bending, quadrature
 
 SAYS = "Two integration points give the section (“P = 2 suffices”)."
 TEST = (
-    "The rule's elastic stiffness B Σ E w z² and its full plastic moment B Σ σ_y w |z| agree within "
-    "5 % with E B H³/12 and σ_y B H²/4."
+    "The rule's elastic stiffness B Σ E w z² and its full plastic moment B Σ σ_y w |z| agree "
+    "within 5 % with E B H³/12 and σ_y B H²/4."
 )
 HOLDS = "2 Lobatto points are 3 times too stiff; with 3 the section yields all at once"
 _WITHIN = 0.05

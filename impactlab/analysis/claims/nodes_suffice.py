@@ -14,7 +14,7 @@ from impactlab.analysis.verdicts import TOLERANCE
 
 SAYS = "N = 601 nodes are the least for convergence."
 TEST = (
-    f"Of each response f: |f(601) − f∞| + U ≤ {TOLERANCE:.0%} of f∞, and no smaller N of the study "
+    f"Of each response f: |f(601) − f∞| + U ≤ {100 * TOLERANCE:g} % of f∞, and no smaller N of the study "
     "does as well. f∞: Richardson's value, or where there is none that of the most nodes; U: its "
     "uncertainty (grid convergence index). PEEQ apart."
 )
@@ -37,7 +37,7 @@ def _judged(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> J
     least = max(needed)
     numbers = (*errors, Number("least nodes for all of them", least, "1"))
     if max(error.high for error in errors) > TOLERANCE:
-        why = f"With {PRINTED} nodes the {worst} is not known to {TOLERANCE:.0%}."
+        why = f"With {PRINTED} nodes the {worst} is not known to {100 * TOLERANCE:g} %."
         return Judgement(case, numbers, Verdict.FAILS, why)
     if least == PRINTED:
         return Judgement(case, numbers, Verdict.HOLDS, "Fewer nodes of the study fall short.")

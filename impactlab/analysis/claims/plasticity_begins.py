@@ -6,7 +6,14 @@ from collections.abc import Iterable
 from math import isnan
 
 from impactlab.analysis.claims import plasticity
-from impactlab.analysis.claims.claim import Data, Judgement, Number, Unjudgeable, attempt, holds
+from impactlab.analysis.claims.claim import (
+    Data,
+    Judgement,
+    Number,
+    UnjudgeableError,
+    attempt,
+    holds,
+)
 from impactlab.analysis.claims.plasticity import Reading
 
 SAYS = "Plasticity outside the contact begins between 5 and 10 m/s."
@@ -26,7 +33,7 @@ def judge(data: Data) -> Iterable[Judgement]:
 def _judged(reading: Reading, data: Data) -> Judgement:
     below, above = plasticity.beginning(plasticity.strains(data, reading))
     if isnan(below) or isnan(above):
-        raise Unjudgeable(f"the velocities of {reading.study} do not enclose the beginning")
+        raise UnjudgeableError(f"the velocities of {reading.study} do not enclose the beginning")
     found = Number("velocity at first yield", 0.5 * (below + above), "m s-1", 0.5 * (above - below))
     low, high = BETWEEN
     stands = low <= below and above <= high

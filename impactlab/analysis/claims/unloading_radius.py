@@ -9,7 +9,7 @@ from impactlab.analysis.claims.claim import (
     Data,
     Judgement,
     Number,
-    Unjudgeable,
+    UnjudgeableError,
     attempt,
     holds,
 )
@@ -19,9 +19,9 @@ from impactlab.reference.stronge import StrongeImpact, stronge_impact
 
 SAYS = "The unloading curve has the radius R_e of Eq. 17 (and of Table 1)."
 TEST = (
-    "With δ_r = δ_m − δ_y R_e/R* (Eq. 15), the unloading force (4/3) E* √R_e (δ_m − δ_r)^1.5 at the "
-    "deepest indentation equals the loading force F_m (Eq. 16) within 10⁻⁹, for δ_m/δ_y = 3, 30, "
-    "300; and R_e is a length."
+    "With δ_r = δ_m − δ_y R_e/R* (Eq. 15), the unloading force (4/3) E* √R_e (δ_m − δ_r)^1.5 at "
+    "the deepest indentation equals the loading force F_m (Eq. 16) within 10⁻⁹, for δ_m/δ_y = 3, "
+    "30, 300."
 )
 HOLDS = "R_e = √(3 F_m/(4 E*)) (R*/δ_y)^(3/4), that is R_e/R* = √(F_m/F_y)"
 DEPTHS = (3.0, 30.0, 300.0)
@@ -36,7 +36,7 @@ def judge(data: Data) -> Iterable[Judgement]:
 
 
 def _printed() -> Judgement:
-    raise Unjudgeable("The root in Eq. 17 is garbled: what it covers cannot be read.")
+    raise UnjudgeableError("The root in Eq. 17 is garbled: what it covers cannot be read.")
 
 
 def _judged(case: str, exponent: float) -> Judgement:
@@ -54,9 +54,10 @@ def _judged(case: str, exponent: float) -> Judgement:
 
 
 def _jump(law: StrongeImpact, deepest: float, exponent: float) -> float:
-    """(unloading force - F_m)/F_m at the deepest indentation (m)."""
-    F_m = law.loading_force(deepest)
+    """(unloading force - F_m)/F_m, with radius R_e, at the deepest indentation (m)."""
+    peak = law.loading_force(deepest)
     ratio = law.effective_radius / law.yield_indentation
-    R_e = math.sqrt(0.75 * F_m / law.effective_modulus) * ratio**exponent
-    recovered = law.yield_indentation * R_e / law.effective_radius
-    return hertz.stiffness(law.effective_modulus, R_e) * recovered**1.5 / F_m - 1.0
+    radius = math.sqrt(0.75 * peak / law.effective_modulus) * ratio**exponent
+    recovered = law.yield_indentation * radius / law.effective_radius
+    force = hertz.stiffness(law.effective_modulus, radius) * recovered**1.5
+    return float(force / peak - 1.0)
