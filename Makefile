@@ -1,4 +1,5 @@
 # make study   from the study files to results/index.html
+# make paper   the figures and statements of the paper, in results/paper
 # make test    the checks and the tests
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings: wants an idle machine
@@ -20,15 +21,20 @@ IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
 
-.PHONY: study test lint pytest bench mutants coverage constraints unlock clean
+.PHONY: study paper test lint pytest bench mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
+STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
+  echo 'What is done is kept: the same command goes on from there (`make unlock` first, if it says locked).'; \
+  exit 1
+
 study: $(MADE)-workflow
-	@$(SNAKEMAKE) --quiet host reason rules $(if $(STUDIES),--config studies='$(STUDIES)') || { \
-	  echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
-	  echo 'What is done is kept: `make study` goes on from there (`make unlock` first, if it says locked).'; \
-	  exit 1; }
+	@$(SNAKEMAKE) --quiet host reason rules $(if $(STUDIES),--config studies='$(STUDIES)') || { $(STOPPED); }
 	@echo; echo 'Done. Open results/index.html'
+
+paper: $(MADE)-workflow
+	@$(SNAKEMAKE) --quiet host reason rules -- paper || { $(STOPPED); }
+	@echo; echo 'Done. Open results/paper/claims.html'
 
 test: lint pytest
 

@@ -1,5 +1,7 @@
 # studies/NAME.yaml -> design.nc -> runs.nc -> analysis.nc -> figures/ -> report.html, and one index.
 # A study of checks: studies/NAME.yaml -> findings.nc -> figures/ -> report.html, then the verdict.
+# The studies of the paper's figures, fig*.yaml, also -> results/paper: figures and claims.
+# Only these: snakemake --cores all paper
 # All committed studies: snakemake --cores all. Some: snakemake --cores all --config studies=smoke,sobol
 import os
 import re
@@ -25,6 +27,11 @@ def stored(wildcards):
     return [f"results/{wildcards.study}/{name}" for name in names]
 
 
+def answers():
+    """The page on the paper, where all studies that it takes are asked for."""
+    return ["results/paper/claims.html"] if PAPER and set(PAPER) <= set(STUDIES) else []
+
+
 def code(*patterns):
     """Sources that a step depends on: when they change, the step is done again."""
     return sorted(str(path) for pattern in patterns for path in Path("impactlab").glob(pattern))
@@ -34,7 +41,9 @@ MODEL = ("dataset.py", "model/*.py")
 SOLVER = (*MODEL, "simulate.py", "kernels/**/*.py")
 CHECKING = ("study/checking.py", "study/declaration/*.py", "study/storage.py")
 FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcome", "stored"))
+REPORTING = ("report/**/*.py", "report/templates/*")
 STUDIES = asked_studies(config.get("studies"))
+PAPER = [path.stem for path in sorted(Path("studies").glob("fig*.yaml"))]
 VERIFICATIONS = [study for study in STUDIES if lists_checks(study)]
 
 
@@ -53,8 +62,9 @@ rule all:
 
 rule index:
     input:
-        code=code("report/**/*.py", "report/templates/*"),
+        code=code(*REPORTING),
         reports=expand("results/{study}/report.html", study=STUDIES),
+        paper=answers(),
     output:
         report("results/index.html", caption="workflow/captions/index.rst", category="Index"),
     log:
@@ -163,7 +173,7 @@ rule figures:
 
 rule report:
     input:
-        code=code("dataset.py", *FINDINGS, "report/**/*.py", "report/templates/*"),
+        code=code("dataset.py", *FINDINGS, *REPORTING),
         stored=stored,
         figures="results/{study}/figures",
     output:
@@ -182,6 +192,34 @@ rule report:
         "environment.yaml"
     shell:
         "impactlab --log {log} report {input.stored} --figures {input.figures} --output {output}"
+
+
+rule paper:
+    input:
+        code=code("dataset.py", "analysis/**/*.py", "figures/**/*.py", "reference/*.py", *REPORTING),
+        stored=expand("results/{study}/{name}", study=PAPER, name=["runs.nc", "analysis.nc"]),
+    output:
+        "results/paper/claims.csv",
+        "results/paper/numbers.csv",
+        report("results/paper/claims.html", caption="workflow/captions/claims.rst", category="Paper"),
+        report(
+            directory("results/paper/figures"),
+            patterns=["{figure}.svg"],
+            caption="workflow/captions/figures.rst",
+            category="Paper",
+            labels={"item": "{figure}"},
+        ),
+    log:
+        "results/paper/logs/paper.log",
+    benchmark:
+        "results/paper/benchmarks/paper.tsv"
+    params:
+        folders=expand("results/{study}", study=PAPER),
+    threads: 1
+    conda:
+        "environment.yaml"
+    shell:
+        "impactlab --log {log} paper {params.folders} --output results/paper"
 
 
 # After everything else, so that a failure hides no report.

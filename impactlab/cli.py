@@ -246,6 +246,23 @@ def report(
 
 
 @app.command()
+def paper(
+    folders: Annotated[
+        list[Path],
+        typer.Argument(metavar="RESULTS...", help="results/NAME of each study of the paper."),
+    ],
+    output: Annotated[Path, typer.Option(help="A folder.")] = RESULTS / "paper",
+) -> None:
+    """Answer the paper: its figures, and its statements put to the test on solved studies.
+
+    A study that is not there leaves its figures out, and its statements unjudged.
+    """
+    from impactlab.report.paper import read_solved, write_paper
+
+    write_paper(read_solved(folders), output)
+
+
+@app.command()
 def index(
     results: Annotated[Path, typer.Argument(help="Folder of results.")] = RESULTS,
     output: Annotated[Path | None, typer.Option(help="Default: index.html in it.")] = None,

@@ -9,6 +9,8 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import (
     contact_duration,
+    contact_laws,
+    displacement_history,
     first_contact,
     force_history,
     force_indentation,
@@ -44,7 +46,9 @@ class FigureFile(Protocol):
 _FILES: tuple[FigureFile, ...] = (
     first_contact,
     force_history,
+    displacement_history,
     force_indentation,
+    contact_laws,
     contact_duration,
     plastic_strain,
     plastic_strain_depth,

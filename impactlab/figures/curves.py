@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from impactlab.figures import style
 from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import usable
+from impactlab.figures.reading.contents import design_dims, usable
 from impactlab.figures.reading.plan import Choice, Plan, plan
 
 Points = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -22,8 +22,13 @@ Line = Callable[[xr.Dataset], Points]
 
 
 def chosen(runs: xr.Dataset, variable: str) -> Plan:
-    """A panel a contact law, a curve for each of some velocities (or what else is varied)."""
-    return plan(runs, variable, panel="contact")
+    """A panel a contact law, a curve for each of some velocities (or what else is varied).
+
+    Where nothing else is varied, the laws are the curves.
+    """
+    others = [dim for dim in design_dims(runs, runs[variable].dims) if dim != "contact"]
+    alone = all(runs.sizes[dim] == 1 for dim in others)
+    return plan(runs, variable, panel=None if alone else "contact")
 
 
 def look(curve: Choice) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import findings_curves, findings_overview, style
+from impactlab.figures import data, findings_curves, findings_overview, style
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.files import replaced
 from impactlab.verification.outcome import gravest_first
@@ -68,7 +68,7 @@ def draw_findings(findings: xr.Dataset, folder: Path) -> list[Path]:
 
 
 def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
-    """Write NAME.svg and NAME.png of each figure, and captions.json.
+    """Write NAME.svg, NAME.png, the data behind it (see data.py), and captions.json.
 
     captions.json: {NAME: {"title", "caption"}} in the order of the report. Files of figures that
     it named before and that are not drawn any more are removed. The same datasets give the same
@@ -80,7 +80,9 @@ def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
     captions: dict[str, dict[str, str]] = {}
     for drawing in drawings:
         try:
-            written += save(drawing.plot(), folder, drawing.name)
+            figure = drawing.plot()
+            written += save(figure, folder, drawing.name)
+            written += data.save(figure, folder, drawing.name)
             captions[drawing.name] = {"title": drawing.title, "caption": drawing.caption()}
         except Exception as error:
             error.add_note(f"while drawing the figure {drawing.name} of study {study}")
@@ -108,5 +110,5 @@ def _captions(path: Path) -> set[str]:
 
 
 def _remove(folder: Path, name: str) -> None:
-    for kind in FORMATS:
+    for kind in (*FORMATS, *data.FORMATS):
         (folder / f"{name}.{kind}").unlink(missing_ok=True)

@@ -15,6 +15,8 @@ from impactlab.figures.reading.units import display
 
 TITLE = "Contact force against time"
 _FORCE = "contact_force"
+_FEW, _MANY = 32.0, 21.0
+"""Height of a row of few or many, mm."""
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -36,7 +38,10 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """A panel a run, for sub-impacts of many runs would hide each other: a column a contact law."""
     selected, force = curves.chosen(runs, _FORCE), usable(runs, _FORCE)
     shown = [(panel, curve) for curve in selected.curves for panel in selected.panels]
-    figure, axes = style.panels(len(shown), columns=len(selected.panels), height=21, sharex=True)
+    height = _FEW if len(shown) <= 3 * len(selected.panels) else _MANY
+    figure, axes = style.panels(
+        len(shown), columns=len(selected.panels), height=height, sharex=True
+    )
     for ax, (panel, curve) in zip(axes, shown, strict=True):
         labels = (words.sentence(panel.label), curve.label)
         ax.set_title(", ".join(filter(None, labels)), loc="left")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from impactlab.figures import curves, scales, style
 from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.units import display
+from impactlab.figures.reading.units import Display, display
 
 TITLE = "Contact force against indentation"
 _FORCE, _INDENTATION = "contact_force", "indentation"
@@ -35,9 +35,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     force, depth = display(runs[_FORCE]), display(runs[_INDENTATION])
 
     def line(run: xr.Dataset) -> curves.Points:
-        values = run[_FORCE].values
-        apart = ~_touching(values)
-        return depth(run[_INDENTATION].where(~apart)), force(np.where(apart, np.nan, values))
+        return loop(run, depth, force)
 
     figure, axes = curves.draw(runs, _FORCE, line)
     curves.label(
@@ -48,6 +46,13 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.linear(ax, "y")
         ax.set(xlim=(0.0, None), ylim=(0.0, None))
     return curves.finish(figure, runs, _FORCE)
+
+
+def loop(run: xr.Dataset, depth: Display, force: Display) -> curves.Points:
+    """Indentation and force of one run in display units, NaN where the two are apart."""
+    values = run[_FORCE].values
+    apart = ~_touching(values)
+    return depth(run[_INDENTATION].where(~apart)), force(np.where(apart, np.nan, values))
 
 
 def _touching(force: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -8,13 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from impactlab.figures import curves, profiles, scales, style
-from impactlab.figures.profiles import PAPER_LIMIT, STRAIN
+from impactlab.figures.profiles import LOWEST, PAPER_LIMIT, STRAIN
 from impactlab.figures.reading import words
 from impactlab.figures.reading.units import display
 
 TITLE = "Equivalent plastic strain along the beam"
-_LOWEST = 1e-3
-"""Strains below this are not worth an axis, in %."""
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -56,8 +54,8 @@ def _finish(ax: Axes, marks: list[float]) -> None:
     scales.linear(ax, "x")
     if np.isfinite(values).any():
         top = 2 * max(float(np.nanmax(values)), PAPER_LIMIT)
-        scales.logarithmic(ax, "y", [_LOWEST, top])
-        ax.set_ylim(_LOWEST, top)
+        scales.logarithmic(ax, "y", [LOWEST, top])
+        ax.set_ylim(LOWEST, top)
     elif ax.lines:
         style.remark(ax, "no plastic strain")
     for mark in marks:

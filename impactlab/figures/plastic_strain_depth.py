@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from impactlab.figures import curves, profiles, scales, style
-from impactlab.figures.profiles import STRAIN
+from impactlab.figures.profiles import LOWEST, STRAIN
 from impactlab.figures.reading import words
 from impactlab.figures.reading.units import display
 
@@ -23,7 +23,8 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, held and missing."""
     return (
         "Equivalent plastic strain (PEEQ) over the depth in the section that it is largest in, at "
-        f"the end of the run; a marker is an integration point. {profiles.note(runs)}"
+        f"the end of the run; a marker is an integration point; "
+        f"zeros have no place on the logarithmic axis. {profiles.note(runs)}"
     )
 
 
@@ -35,7 +36,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
     def line(run: xr.Dataset) -> curves.Points:
         section = run[STRAIN].isel(x=int(np.argmax(run[STRAIN].max("z").fillna(-1.0).values)))
-        return strain(section), depth(section["z"])
+        return scales.positive(strain(section)), depth(section["z"])
 
     figure, axes = curves.draw(kept, STRAIN, line, markers=True)
     curves.label(
@@ -43,9 +44,12 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     )
     for ax in axes:
         values = [value for line in ax.lines for value in np.asarray(line.get_xdata())]
-        if ax.lines and not np.nanmax(values) > 0:
+        if np.isfinite(values).any():
+            limits = LOWEST, 2.0 * float(np.nanmax(values))
+            scales.logarithmic(ax, "x", limits)
+            ax.set_xlim(limits)
+        elif ax.lines:
             style.remark(ax, "no plastic strain")
-        scales.linear(ax, "x")
         scales.linear(ax, "y")
     axes[0].set_ylim(*sorted(axes[0].get_ylim(), reverse=True))
     return curves.finish(figure, kept, STRAIN)

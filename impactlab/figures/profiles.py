@@ -9,6 +9,8 @@ from impactlab.figures.reading import missing, words
 from impactlab.figures.reading.contents import design_dims, usable
 
 STRAIN = "equivalent_plastic_strain"
+LOWEST = 1e-3
+"""Strains below this are not worth an axis, in %."""
 PAPER_LIMIT = 0.2
 """The plastic strain that the paper compares with, in %."""
 

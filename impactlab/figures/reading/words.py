@@ -78,8 +78,8 @@ def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
 
 
 def _name(parameter: str, value: str) -> str:
-    """A word of a study file as papers spell it; contact laws are named for people."""
-    if parameter == "contact":
+    """A word of a study file as papers spell it; laws and beam models are named for people."""
+    if parameter in ("contact", "beam_model"):
         return "-".join(part.capitalize() for part in value.split("_"))
     return _RULES.get(value, value.replace("_", " "))
 
