@@ -1,7 +1,8 @@
 # make study   from the study files to results/index.html
 # make test    the checks and the tests
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
-#              its kernels, and what a second thread brings: wants an idle machine
+#              its kernels, and what a second thread brings; both schemes' cost and error:
+#              wants an idle machine
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
 PYTHON ?= python3
@@ -44,6 +45,7 @@ pytest: $(MADE)-dev
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
+	$(IN_VENV) python tests/benchmarks/schemes.py
 
 # Compiled kernels hide from coverage: here they run as plain Python, on the small cases only.
 coverage: $(MADE)-dev
