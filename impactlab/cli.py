@@ -80,6 +80,9 @@ def simulate(
     nodes: Annotated[int, typer.Option(help="Nodes along the span, odd.")] = 601,
     points: Annotated[int, typer.Option(help="Integration points over the depth.")] = 9,
     rule: Annotated[str, typer.Option(help="lobatto, legendre or layers.")] = "lobatto",
+    scheme: Annotated[
+        str, typer.Option(help="leapfrog or semi_implicit, which pays from about 601 nodes on.")
+    ] = "leapfrog",
     duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "1 ms",
     output: Annotated[
         Path | None, typer.Option(help="Keep histories and fields as netCDF.")
@@ -91,7 +94,7 @@ def simulate(
     from impactlab.report.console import print_responses
 
     impact = paper_impact(given("--velocity", velocity, "m s-1"), contact)
-    grid = Discretisation(nodes=nodes, points=points, rule=rule)
+    grid = Discretisation(nodes=nodes, points=points, rule=rule, scheme=scheme)
     seconds = given("--duration", duration, "s")
     if output is None:
         from impactlab.simulate import case_table, solve

@@ -46,7 +46,7 @@ FAILURES: dict[str, tuple[int, str]] = {
     ),
     "energy_out_of_balance": (
         status.ENERGY_OUT_OF_BALANCE,
-        "energy is out of balance by more than 5 %: take more nodes or a smaller courant number",
+        "energy is out of balance by more than 5 %: take more nodes or a smaller courant",
     ),
 }
 """Reasons for a missing response, by name: (bit in `status`, in words)."""

@@ -21,8 +21,9 @@ from impactlab.analysis.richardson import (
 from impactlab.analysis.verdicts import TOLERANCE, Verdict, verdict_variables
 
 COMMENT = (
-    "From the three finest grids, spacing = span/(nodes - 1). The time step follows the critical "
-    "one, hence the square of the spacing: the order is that of space and time together."
+    "From the three finest grids, spacing = span/(nodes - 1). The time step follows the scheme's "
+    "largest, hence the square of the spacing with leapfrog, the spacing with the semi-implicit "
+    "scheme: the order is that of space and time together."
 )
 
 VANISHING = 0.1

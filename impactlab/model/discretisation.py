@@ -50,8 +50,8 @@ class Discretisation:
         few = np.less(self.nodes, _LEAST_FILTERED)
         if anywhere(few & np.equal(self.scheme, "semi_implicit")):
             raise ValueError(
-                f"Discretisation.nodes = {self.nodes!r}: the semi_implicit scheme needs at least "
-                f"{_LEAST_FILTERED}"
+                f"Discretisation.nodes = {self.nodes!r}: must be at least {_LEAST_FILTERED} with "
+                "the semi_implicit scheme"
             )
         if anywhere(positive("Discretisation", "courant", self.courant) > 1):
             raise ValueError(

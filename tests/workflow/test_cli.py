@@ -80,6 +80,16 @@ def test_simulate_prints_and_keeps(tmp_path):
     assert one["peak_force"].attrs["units"] == "N"
 
 
+def test_simulate_takes_a_scheme(tmp_path):
+    leapfrog, semi_implicit = (
+        impactlab("simulate", "--nodes", 101, "--scheme", scheme, cwd=tmp_path).stdout
+        for scheme in ("leapfrog", "semi_implicit")
+    )
+    assert leapfrog != semi_implicit
+    assert "11748" in leapfrog
+    assert "11748" in semi_implicit
+
+
 def loaded(*args, cwd):
     """The packages that a command loads."""
     command = [sys.executable, "-X", "importtime", "-m", "impactlab", *args]
@@ -126,6 +136,7 @@ def test_help_is_not_cut_short(tmp_path):
     ("args", "words"),
     [
         (["simulate", "--nodes", "600"], ["nodes", "600", "odd"]),
+        (["simulate", "--scheme", "newmark"], ["scheme", "newmark", "leapfrog", "semi_implicit"]),
         (["simulate", "--contact", "glue"], ["contact", "glue", "hertz", "stronge"]),
         (["simulate", "--velocity", "3 kg"], ["velocity", "3 kg", "m/s"]),
         (["simulate", "--duration", "-1 ms"], ["duration", "-0.001"]),

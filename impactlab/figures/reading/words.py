@@ -12,10 +12,11 @@ from impactlab.figures.reading.units import display
 from impactlab.model.parameters import PARAMETERS
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_RULES = {
+_SPELLED = {
     "lobatto": "Gauss-Lobatto",
     "legendre": "Gauss-Legendre",
     "layers": "uniform layers",
+    "semi_implicit": "semi-implicit",
 }
 
 
@@ -81,7 +82,7 @@ def _name(parameter: str, value: str) -> str:
     """A word of a study file as papers spell it; laws and beam models are named for people."""
     if parameter in ("contact", "beam_model"):
         return "-".join(part.capitalize() for part in value.split("_"))
-    return _RULES.get(value, value.replace("_", " "))
+    return _SPELLED.get(value, value.replace("_", " "))
 
 
 def unit(coordinate: xr.DataArray) -> str:

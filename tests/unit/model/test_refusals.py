@@ -76,7 +76,9 @@ def test_the_edges_of_what_is_allowed(part, field, value):
 @pytest.mark.parametrize("nodes", [5, 15])
 def test_the_semi_implicit_scheme_needs_17_nodes(nodes):
     """Also where only one of the two is changed, or columns of them."""
-    message = rf"^Discretisation\.nodes = {nodes}: the semi_implicit scheme needs at least 17"
+    message = (
+        rf"^Discretisation\.nodes = {nodes}: must be at least 17 with the semi_implicit scheme"
+    )
     with pytest.raises(ValueError, match=message):
         il.Discretisation(nodes=nodes, scheme="semi_implicit")
     with pytest.raises(ValueError, match=message):
