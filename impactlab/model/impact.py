@@ -15,7 +15,7 @@ class Impact:
     """A sphere hits the middle of a beam at rest.
 
     velocity: the sphere's, downwards at first touch, in m/s. contact: the name of a contact law
-    ("hertz" or "stronge"). gravity: acts on the sphere alone, in m/s2.
+    (impactlab.kernels.contact.LAWS). gravity: acts on the sphere alone, in m/s2.
 
     Raises ValueError naming the field when a value is not physical or the law is unknown.
     """

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from impactlab.verification import (
+    contact_laws,
     half_space,
     infinite_beam,
     modal_series,
@@ -31,6 +32,7 @@ class CheckFile(Protocol):
 _FILES: tuple[CheckFile, ...] = (
     half_space,
     stronge_restitution,
+    contact_laws,
     modal_series,
     sub_impacts,
     infinite_beam,
