@@ -2,38 +2,42 @@
 
 The whole beam, every fibre through its return mapping at every step, the contact laws with
 unloading and reloading written out, the semi-implicit scheme's filter as a dense matrix, and the
-responses read off the full histories afterwards.
-From impactlab come only the case, the number of steps and scipy's integration rules.
+responses read off the full histories afterwards. From impactlab come only the case, the number of
+steps, and from its reference scipy's integration rules and the contact laws beyond the paper's.
 SI units; z and w point downwards.
 """
 
 from __future__ import annotations
 
 import math
+from types import FunctionType
 from typing import Any, NamedTuple
 
 import numba
 import numpy as np
 
 import impactlab as il
-from impactlab.reference import quadrature
+from impactlab.reference import contact_laws, quadrature
 
 Array = np.ndarray[Any, Any]
 
 HERTZ, STRONGE = 0, 1
-LAWS = {"hertz": HERTZ, "stronge": STRONGE}
+FURTHER = ("stronge_original", "jackson_green", "mjg", "thornton", "kogut_etsion", "brake")
+"""Laws that are written out in the reference."""
+LAWS = {name: number for number, name in enumerate(("hertz", "stronge", *FURTHER))}
 TH = 1.1
 PLASTIC_ZONE = 1e-5
 BETA = 0.5
 
 
 class Contact(NamedTuple):
-    """law: its number above. E (Pa) and R (m): effective; S_y (Pa): of the softer body."""
+    """law: its number above. E (Pa) and R (m): effective; S_y (Pa), nu: of the softer body."""
 
     law: int
     E: float
     R: float
     S_y: float
+    nu: float
 
 
 class Bar(NamedTuple):
@@ -73,12 +77,35 @@ class Run(NamedTuple):
     peeq: Array
 
 
+def _further(which):
+    """One function of the reference's (0: loading, 1: unloading) for all of FURTHER, by number."""
+    scope = dict(vars(contact_laws))  # so that they find each other compiled
+    for name, function in vars(contact_laws).items():
+        if isinstance(function, FunctionType):
+            scope[name] = numba.njit(FunctionType(function.__code__, scope, name))
+
+    def link(number, chosen, others):
+        return numba.njit(lambda law, *args: chosen(*args) if law == number else others(law, *args))
+
+    functions = {name: scope[contact_laws.LAWS[name][which].__name__] for name in FURTHER}
+    last = functions[FURTHER[0]]
+    chain = numba.njit(lambda law, *args: last(*args))
+    for name, function in functions.items():
+        chain = link(LAWS[name], function, chain)
+    return chain
+
+
+further_force, further_unloading = _further(0), _further(1)
+
+
 @numba.njit
 def loading_force(contact, d):
     """Force at an indentation d that is the largest so far."""
     hertz = 4.0 / 3.0 * contact.E * contact.R**0.5
     if d <= 0.0:
         return 0.0
+    if contact.law > STRONGE:
+        return further_force(contact.law, d, contact.E, contact.R, contact.S_y, contact.nu)
     if contact.law == HERTZ:
         return hertz * d**1.5
     d_y = (3.0 * math.pi * TH * contact.S_y / (4.0 * contact.E)) ** 2 * contact.R
@@ -94,13 +121,16 @@ def loading_force(contact, d):
 
 @numba.njit
 def unloading(contact, deepest):
-    """(dent, R_e): the unloading curve is Hertz's on the radius R_e, from the dent on."""
+    """(force at its start, dent, exponent) of the unloading curve."""
+    F_m = loading_force(contact, deepest)
+    if contact.law > STRONGE:
+        bodies = contact.E, contact.R, contact.S_y, contact.nu
+        return further_unloading(contact.law, deepest, F_m, *bodies)
     d_y = (3.0 * math.pi * TH * contact.S_y / (4.0 * contact.E)) ** 2 * contact.R
     if contact.law == HERTZ or deepest <= d_y:
-        return 0.0, contact.R
-    F_m = loading_force(contact, deepest)
+        return F_m, 0.0, 1.5
     R_e = math.sqrt(3.0 * F_m / (4.0 * contact.E)) * (contact.R / d_y) ** 0.75
-    return deepest - d_y * R_e / contact.R, R_e
+    return F_m, deepest - d_y * R_e / contact.R, 1.5
 
 
 @numba.njit
@@ -108,8 +138,8 @@ def contact_force(contact, d, deepest):
     """Force at d after a largest indentation `deepest`: unloading and reloading on one curve."""
     if d >= deepest:
         return loading_force(contact, d)
-    dent, R_e = unloading(contact, deepest)
-    return 4.0 / 3.0 * contact.E * R_e**0.5 * max(d - dent, 0.0) ** 1.5
+    start, dent, exponent = unloading(contact, deepest)
+    return start * (max(d - dent, 0.0) / (deepest - dent)) ** exponent
 
 
 @numba.njit
@@ -159,7 +189,7 @@ def march(bar, contact, v_0, g, m_s, dt, steps, filter, histories, w, plastic_st
         row = histories[:, step]
         row[0], row[1], row[3], row[4] = F, w[middle], w_s, d
         row[2] = (w[middle - 1] - 2.0 * w[middle] + w[middle + 1]) / bar.dx**2
-        row[5], row[6] = deepest, unloading(contact, deepest)[0]
+        row[5], row[6] = deepest, unloading(contact, deepest)[1]
         if step == steps:
             break
         kick = 0.5 * dt if step == 0 else dt
@@ -179,8 +209,14 @@ def make_contact(impact: il.Impact) -> Contact:
     sphere, beam = impact.sphere.material, impact.beam.material
     compliance = (1.0 - sphere.poissons_ratio**2) / sphere.youngs_modulus
     compliance += (1.0 - beam.poissons_ratio**2) / beam.youngs_modulus
-    softer = min(sphere.yield_stress, beam.yield_stress)
-    return Contact(LAWS[impact.contact], 1.0 / compliance, float(impact.sphere.radius), softer)
+    softer = beam if beam.yield_stress <= sphere.yield_stress else sphere
+    return Contact(
+        LAWS[impact.contact],
+        1.0 / compliance,
+        float(impact.sphere.radius),
+        float(softer.yield_stress),
+        float(softer.poissons_ratio),
+    )
 
 
 def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:

@@ -78,7 +78,8 @@ def _coloured(at: int) -> dict[str, Any]:
         "linestyle": style.LINES[at // count % len(style.LINES)],
         "linewidth": 1.6,
         "zorder": 3.0 - 0.01 * at,
-        "marker": style.MARKERS[at % len(style.MARKERS)],
+        # one further each time round, so that no colour has its marker twice
+        "marker": style.MARKERS[(at + at // count) % len(style.MARKERS)],
     }
 
 

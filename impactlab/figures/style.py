@@ -15,6 +15,7 @@ from typing import Any, ParamSpec, TypeVar
 import matplotlib.style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 SINGLE, DOUBLE = 89.0, 183.0
 """Widths of one and of two columns of a paper, mm."""
@@ -104,12 +105,16 @@ def panels(
 def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
     """One legend above the panels, of all labelled artists; the figure grows to hold it.
 
-    order: labels in the order wanted; without it, that in which they are drawn.
+    order: labels in the order wanted; without it, that in which they are drawn. A label that is a
+    line in one panel and markers in another is both in the legend.
     """
     found: dict[str, Any] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            found.setdefault(label, handle)
+            if label not in found:
+                found[label] = (handle,)
+            elif len(found[label]) == 1 and _is_marker(handle) != _is_marker(found[label][0]):
+                found[label] += (handle,)
     if len(found) < 2 and not title:
         return
     found = {label: found[label] for label in order if label in found} or found
@@ -119,6 +124,11 @@ def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
     figure.legend(
         found.values(), found.keys(), loc="outside upper center", ncols=columns, title=title or None
     )
+
+
+def _is_marker(artist: Any) -> bool:
+    """Whether an artist is a line drawn as markers alone."""
+    return isinstance(artist, Line2D) and artist.get_linestyle() in ("", "None")
 
 
 def panel_legends(figure: Figure) -> None:

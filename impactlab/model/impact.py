@@ -16,7 +16,7 @@ class Impact:
     """A sphere hits the middle of a beam at rest.
 
     velocity: the sphere's, downwards at first touch, in m/s. contact: the name of a contact law
-    ("hertz" or "stronge"). gravity: acts on the sphere alone, in m/s2. beam_model:
+    (impactlab.kernels.contact.LAWS). gravity: acts on the sphere alone, in m/s2. beam_model:
     "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
     "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one degree
     of freedom) or "rigid" (the beam does not move).

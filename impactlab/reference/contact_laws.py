@@ -220,7 +220,8 @@ class LawOnHalfSpace:
             positive("LawOnHalfSpace", field, getattr(self, field))
 
     @property
-    def _pair(self) -> tuple[float, float, float, float]:
+    def pair(self) -> tuple[float, float, float, float]:
+        """E, R, S, nu, as the functions above take them."""
         return (
             self.effective_modulus,
             self.effective_radius,
@@ -230,11 +231,11 @@ class LawOnHalfSpace:
 
     def loading_force(self, indentation: float) -> float:
         """F in N at a monotonically reached indentation (m)."""
-        return LAWS[self.law][0](indentation, *self._pair)
+        return LAWS[self.law][0](indentation, *self.pair)
 
     def unloading(self, indentation: float) -> tuple[float, float, float]:
         """(force at the start in N, residual indentation in m, exponent) after `indentation`."""
-        return LAWS[self.law][1](indentation, self.loading_force(indentation), *self._pair)
+        return LAWS[self.law][1](indentation, self.loading_force(indentation), *self.pair)
 
     def residual_indentation(self, indentation: float) -> float:
         """What is left of `indentation`, in m."""
@@ -242,7 +243,7 @@ class LawOnHalfSpace:
 
     def loading_work(self, indentation: float) -> float:
         """Integral of the force up to `indentation`, in J: adaptive quadrature between joints."""
-        inner = [d for d in joints(*self._pair) if d < indentation]
+        inner = [d for d in joints(*self.pair) if d < indentation]
         ends = [0.0, *inner, indentation]
         return sum(_quadrature(self, *piece) for piece in pairwise(ends))
 
@@ -255,7 +256,7 @@ class LawOnHalfSpace:
         """Where the loading work is the energy of `mass` (kg) at `velocity` (m/s), in m."""
         speed = positive("LawOnHalfSpace", "velocity", velocity)
         energy = 0.5 * positive("LawOnHalfSpace", "mass", mass) * speed**2
-        high = hertz_forms.maximum_indentation(mass, speed, *self._pair[:2])
+        high = hertz_forms.maximum_indentation(mass, speed, *self.pair[:2])
         while self.loading_work(high) < energy:
             high *= 2.0
         low = 0.5 * high
@@ -296,4 +297,4 @@ def thornton_restitution(velocity_ratio: float) -> float:
     slow = 1.0 / velocity_ratio
     cut = 1.0 - slow**2 / 6.0
     rest = slow / (slow + 2.0 * math.sqrt(1.2 - 0.2 * slow**2))
-    return math.sqrt(1.2 * math.sqrt(3.0) * cut) * float(rest**0.25)
+    return math.sqrt(1.2 * math.sqrt(3.0) * cut) * math.sqrt(math.sqrt(rest))

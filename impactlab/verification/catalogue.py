@@ -6,6 +6,7 @@ from typing import Protocol
 
 from impactlab.verification import (
     balances,
+    contact_laws,
     half_space,
     infinite_beam,
     modal_series,
@@ -41,6 +42,7 @@ class CheckFile(Protocol):
 _FILES: tuple[CheckFile, ...] = (
     half_space,
     stronge_restitution,
+    contact_laws,
     modal_series,
     sub_impacts,
     infinite_beam,

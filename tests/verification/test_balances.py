@@ -44,13 +44,15 @@ def test_energy_balance_while_the_beam_yields(rule, contact, isotropic, kinemati
     run = il.simulate(impact, il.Discretisation(nodes=101, points=9, rule=rule), duration=4e-3)
     start = 0.5 * run.sphere_mass.item() * 20.0**2
     assert run.plastic_dissipation.item() > 0.01 * start  # it does yield
-    assert run.energy_error.item() < 1e-3
+    # a jump of the force at each turn costs accuracy
+    assert run.energy_error.item() < (5e-3 if contact == "stronge_original" else 1e-3)
 
 
-def test_energy_error_falls_with_the_time_step():
-    """An energy term left out would stay."""
+@pytest.mark.parametrize("contact", sorted(set(LAWS) - {"kogut_etsion"}))
+def test_energy_error_falls_with_the_time_step(contact):
+    """An energy term left out would stay. kogut_etsion: its jumps fall somewhere in a step."""
     grids = [il.Discretisation(nodes=101, courant=courant) for courant in (0.8, 0.4, 0.2)]
-    impact = hardened(il.paper_impact(20.0), 2e9, 2e9)
+    impact = hardened(il.paper_impact(20.0, contact), 2e9, 2e9)
     runs = [il.simulate(impact, grid, duration=2e-3) for grid in grids]
     errors = np.array([run.energy_error.item() for run in runs])
     assert errors[2] < errors[0] / 4

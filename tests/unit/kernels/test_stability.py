@@ -7,11 +7,13 @@ import pytest
 
 import impactlab as il
 from impactlab.dataset import STATUS_FLAGS
+from impactlab.kernels.contact import LAWS
 from impactlab.kernels.contact.history import make_pair
 from impactlab.kernels.section import make_section
 from impactlab.kernels.stability import critical_time_step, stiffest_contact
 from impactlab.model.parameters import with_values
 from impactlab.reference import hertz
+from impactlab.reference.contact_laws import joints, law_on_half_space
 from impactlab.reference.stronge import StrongeImpact
 from impactlab.simulate import case_table, solve
 
@@ -90,6 +92,41 @@ def test_stiffest_stronge_contact(make_case, velocity):
     k_c = stiffest_contact(case, pair)
     assert 0.999 * stronge_stiffness(law, deepest) <= k_c
     assert k_c <= 1.01 * stronge_stiffness(law, 1.25 * deepest)
+
+
+def stiffness_of(law, deepest):
+    """Largest tangent stiffness of loading (jumps left out) and unloading up to `deepest`."""
+    depths = np.linspace(1e-3, 1, 4000) * deepest
+    forces = np.array([law.loading_force(depth) for depth in depths])
+    slopes = np.diff(forces) / np.diff(depths)
+    jumps = [np.searchsorted(depths, joint) - 1 for joint in joints(*law.pair) if joint < deepest]
+    slopes[jumps] = 0.0
+    start, end, exponent = np.array([law.unloading(depth) for depth in depths]).T
+    return max(slopes.max(), (exponent * start / (depths - end)).max())
+
+
+@pytest.mark.parametrize("contact", LAWS)
+@pytest.mark.parametrize("velocity", [0.012, 0.1, 0.99, 3.0, 20.0])
+def test_stiffest_contact_of_every_law(make_case, contact, velocity):
+    """Jumps of the force at the limits of regimes are no stiffness, wherever they fall."""
+    for factor in np.linspace(1.0, 1.25, 12):  # the indentations tried move along
+        speed = velocity * factor
+        case = make_case(velocity=speed, contact=contact, gravity=0.0)
+        law = law_on_half_space(il.paper_impact(speed, contact))
+        deepest = law.maximum_indentation(speed, case.sphere_mass)
+        k_c = stiffest_contact(case, make_pair(case))
+        assert 0.97 * stiffness_of(law, deepest) <= k_c
+        if contact != "stronge_original":
+            assert k_c <= 1.03 * stiffness_of(law, 1.25 * deepest)
+
+
+@pytest.mark.parametrize("nodes", [11, 21, 101])
+@pytest.mark.parametrize("velocity", [0.99, 20.0])
+def test_a_jump_at_the_turn_brings_little_energy(nodes, velocity):
+    """On coarse grids, too, where without more steps it would bring up to a quarter."""
+    grid = il.Discretisation(nodes=nodes, points=9)
+    run = il.simulate(il.paper_impact(velocity, "stronge_original"), grid, duration=4e-3)
+    assert run.energy_error.item() < 0.01
 
 
 def test_gravity_drives_the_contact_further(make_case):
