@@ -16,12 +16,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from impactlab.kernels import remarks, status
+from impactlab.kernels.contact.about import ABOUT
 from impactlab.model.parameters import PARAMETERS
 
 if TYPE_CHECKING:
     import xarray as xr
 
-STATUS_FLAGS: dict[str, tuple[int, str]] = {
+FAILURES: dict[str, tuple[int, str]] = {
     "diverged": (status.DIVERGED, "the run diverged; every response is missing"),
     "first_contact_unfinished": (
         status.FIRST_CONTACT_UNFINISHED,
@@ -49,6 +50,19 @@ STATUS_FLAGS: dict[str, tuple[int, str]] = {
     ),
 }
 """Reasons for a missing response, by name: (bit in `status`, in words)."""
+MARKS: dict[str, tuple[int, str]] = {
+    "outside_contact_law": (
+        status.OUTSIDE_CONTACT_LAW,
+        "the largest indentation is beyond the range of the contact law (which `contact` states): "
+        "the responses are there, but extrapolated",
+    ),
+}
+"""What else `status` says, by name: bits that leave every response as it is."""
+STATUS_FLAGS = FAILURES | MARKS
+"""All that `status` can say."""
+FAILED = sum(bit for bit, _ in FAILURES.values())
+"""The bits of a run that failed."""
+_MARKED = sum(bit for bit, _ in MARKS.values())
 
 REMARKS: dict[str, tuple[int, str]] = {
     "contact_created_energy": (
@@ -63,7 +77,7 @@ REMARKS: dict[str, tuple[int, str]] = {
 """What to know of responses that are there, by name: (bit in `remarks`, in words)."""
 
 FLAGS: dict[str, tuple[str, dict[str, tuple[int, str]]]] = {
-    "status": ("why responses are missing (0: none is)", STATUS_FLAGS),
+    "status": ("why responses are missing or to be taken with care (0: none is)", STATUS_FLAGS),
     "remarks": ("what to know of the responses that are there (0: nothing)", REMARKS),
 }
 """The variables made of bits: (long_name, flags)."""
@@ -220,11 +234,27 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
     for name, variable in dataset.variables.items():
         if name in known:
             variable.attrs = attributes(str(name)) | variable.attrs
+    if "contact" in dataset.variables:
+        laws = np.unique(dataset["contact"].values).tolist()
+        dataset["contact"].attrs |= contact_attributes(laws)
     return dataset
 
 
+def contact_attributes(laws: Iterable[str]) -> dict[str, str]:
+    """Attributes of `contact` on these laws, a line each: source, range, flaws and doubts."""
+    found = [(law, ABOUT[law]) for law in laws]
+    texts = {
+        "source": [(law, about.source) for law, about in found],
+        "holds_for": [(law, about.holds) for law, about in found],
+        "flaws": [(law, about.flaws) for law, about in found],
+        "unconfirmed": [(law, about.unconfirmed) for law, about in found],
+    }
+    lines = {key: [f"{law}: {text}" for law, text in entry if text] for key, entry in texts.items()}
+    return {key: "\n".join(entry) for key, entry in lines.items() if entry}
+
+
 def status_bits(responses: Iterable[str]) -> int:
-    """The status bits that matter to these responses: the whole run's, and each one's own."""
+    """The status bits that take these responses away: the whole run's, and each one's own."""
     bits = status.DIVERGED | status.ENERGY_OUT_OF_BALANCE
     for name in responses:
         if reason := RESPONSES[name].missing:
@@ -232,9 +262,19 @@ def status_bits(responses: Iterable[str]) -> int:
     return bits
 
 
+def kept_bits(responses: Iterable[str]) -> int:
+    """The status bits that matter to who asks for these responses: status_bits and the marks."""
+    return status_bits(responses) | _MARKED
+
+
 def reasons(bits: int) -> list[str]:
-    """The flags of a status in words, for a person."""
-    return [words for bit, words in STATUS_FLAGS.values() if bits & bit]
+    """The failures of a status in words, for a person."""
+    return [words for bit, words in FAILURES.values() if bits & bit]
+
+
+def marks(bits: int) -> list[str]:
+    """The marks of a status in words, for a person."""
+    return [words for bit, words in MARKS.values() if bits & bit]
 
 
 def remarked(bits: int) -> list[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
+from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
 from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
 from impactlab.kernels.case import CASE, REAL, WHOLE
 from impactlab.kernels.contact import LAWS
@@ -164,7 +164,7 @@ def answer_variables(
     `status` keeps the bits that matter to these responses; `remarks` are of the run as a whole.
     """
     lead = dims or ("run",)
-    bits = (answers.responses["status"] & status_bits(responses)).astype(np.int32)
+    bits = (answers.responses["status"] & kept_bits(responses)).astype(np.int32)
     scalars = {name: (lead, answers.responses[name].copy()) for name in responses}
     fields = {
         name: ((*lead, *(HISTORIES | PROFILES)[name].dims), values)

@@ -1,7 +1,8 @@
-"""The plain solver of physics.md, to hold the kernels against: the same scheme, without a trick.
+"""The plain solver of physics.md, to hold the kernels against: the same schemes, without a trick.
 
 The whole beam, every fibre through its return mapping at every step, the contact laws with
-unloading and reloading written out, and the responses read off the full histories afterwards.
+unloading and reloading written out, the semi-implicit scheme's filter as a dense matrix, and the
+responses read off the full histories afterwards.
 From impactlab come only the case, the number of steps and scipy's integration rules.
 SI units; z and w point downwards.
 """
@@ -23,6 +24,7 @@ HERTZ, STRONGE = 0, 1
 LAWS = {"hertz": HERTZ, "stronge": STRONGE}
 TH = 1.1
 PLASTIC_ZONE = 1e-5
+BETA = 0.5
 
 
 class Contact(NamedTuple):
@@ -135,11 +137,15 @@ def moment(bar, kappa, plastic_strain, peeq):
 
 
 @numba.njit
-def march(bar, contact, v_0, g, m_s, dt, steps, histories, w, plastic_strain, peeq):
-    """Leapfrog from the first touch; fills histories, shape (7, steps + 1) as in Run."""
+def march(bar, contact, v_0, g, m_s, dt, steps, filter, histories, w, plastic_strain, peeq):
+    """Central differences from the first touch; fills histories, shape (7, steps + 1) as in Run.
+
+    filter: what the inner nodes' accelerations are multiplied by, (nodes - 2, nodes - 2), or (0, 0)
+    for leapfrog.
+    """
     last = w.size - 1
     middle = last // 2
-    v, M, p = np.zeros(w.size), np.zeros(w.size), np.zeros(w.size)
+    v, M, p, a = np.zeros(w.size), np.zeros(w.size), np.zeros(w.size), np.zeros(w.size)
     w_s, v_s, deepest, before, here = 0.0, v_0, 0.0, 0.0, 0.0
     for step in range(steps + 1):
         d = w_s - w[middle]
@@ -161,7 +167,10 @@ def march(bar, contact, v_0, g, m_s, dt, steps, histories, w, plastic_strain, pe
         w_s += dt * v_s
         p[middle] = F / bar.dx
         for i in range(1, last):
-            v[i] += kick * ((M[i - 1] - 2.0 * M[i] + M[i + 1]) / bar.dx**2 + p[i]) / bar.mu
+            a[i] = ((M[i - 1] - 2.0 * M[i] + M[i + 1]) / bar.dx**2 + p[i]) / bar.mu
+        if filter.size > 0:
+            a[1:last] = filter @ a[1:last]
+        v += kick * a
         w += dt * v
         before, here = here, d
 
@@ -189,20 +198,32 @@ def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:
     )
 
 
+def make_filter(bar: Bar, grid: il.Discretisation, dt: float) -> Array:
+    """The inverse of I + BETA dt^2 (EI)_q/mu d^4/dx^4 between supports where w = w_xx = 0."""
+    if grid.scheme == "leapfrog":
+        return np.zeros((0, 0))
+    inner = np.eye(grid.nodes - 2)
+    bend = (np.eye(grid.nodes - 2, k=-1) - 2.0 * inner + np.eye(grid.nodes - 2, k=1)) / bar.dx**2
+    stiffness = bar.E * (bar.area @ bar.z**2)
+    return np.linalg.inv(inner + BETA * dt**2 * stiffness / bar.mu * bend @ bend)
+
+
 def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> Run:
     """`steps` steps of dt seconds."""
     histories = np.zeros((7, steps + 1))
+    bar = make_bar(impact, grid)
     w = np.zeros(grid.nodes)
     plastic_strain = np.zeros((grid.nodes, grid.points))
     peeq = np.zeros((grid.nodes, grid.points))
     march(
-        make_bar(impact, grid),
+        bar,
         make_contact(impact),
         float(impact.velocity),
         float(impact.gravity),
         impact.sphere.total_mass,
         dt,
         steps,
+        make_filter(bar, grid, dt),
         histories,
         w,
         plastic_strain,

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.responses import missing, relevant_bits
-from impactlab.dataset import STATUS_FLAGS
+from impactlab.dataset import FAILED, FAILURES
 
 UNEXPLAINED = ("unexplained", "a response is missing and the run's status does not say why")
 
@@ -25,8 +25,8 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     """
     gaps, status = missing(runs), runs["status"].compute()
     unexplained = _unexplained(gaps, status)
-    counts = [int(((status & bit) != 0).sum()) for bit, _ in STATUS_FLAGS.values()]
-    failed = (status != 0) | unexplained
+    counts = [int(((status & bit) != 0).sum()) for bit, _ in FAILURES.values()]
+    failed = ((status & FAILED) != 0) | unexplained
     rest = [dim for dim in gaps.dims if dim != "response"]
     dataset = xr.Dataset(
         {
@@ -34,7 +34,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
             "number_of_failed_runs": (
                 (),
                 int(failed.sum()),
-                _attrs("runs that miss a response or have a status"),
+                _attrs("runs that miss a response, or whose status says that they failed"),
             ),
             "failed_runs": (
                 "reason",
@@ -44,9 +44,9 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
             "missing_runs": gaps.sum(rest).assign_attrs(_attrs("runs without a usable value")),
         }
     )
-    words = [text for _, text in STATUS_FLAGS.values()]
+    words = [text for _, text in FAILURES.values()]
     return dataset.assign_coords(
-        reason=("reason", [*STATUS_FLAGS, UNEXPLAINED[0]], {"long_name": "reason of failure"}),
+        reason=("reason", [*FAILURES, UNEXPLAINED[0]], {"long_name": "reason of failure"}),
         reason_long_name=("reason", [*words, UNEXPLAINED[1]]),
     )
 

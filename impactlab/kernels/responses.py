@@ -9,6 +9,7 @@ import numpy as np
 
 from impactlab.kernels.beam import Grid
 from impactlab.kernels.contact.history import Pair, energies
+from impactlab.kernels.contact.switch import limit
 from impactlab.kernels.jit import compiled
 from impactlab.kernels.remarks import CONTACT_CREATED_ENERGY, CONTACT_LEFT_A_BULGE
 from impactlab.kernels.status import (
@@ -16,6 +17,7 @@ from impactlab.kernels.status import (
     FIRST_CONTACT_UNFINISHED,
     IN_CONTACT_AT_END,
     INDENTATION_STILL_GROWING,
+    OUTSIDE_CONTACT_LAW,
     SPHERE_NOT_LEAVING,
 )
 from impactlab.kernels.types import Array, Record
@@ -77,7 +79,9 @@ def clear(answer: Record, status: int) -> None:
 
 @compiled
 def read_contact(answer: Record, track: Record, contact: Record, pair: Pair) -> None:
-    """Force, indentation and contact times."""
+    """Force, indentation and contact times; marked where the contact law does not hold."""
+    if contact.delta_m > limit(pair.law, pair.E, pair.R, pair.S_y, pair.nu):
+        answer.status |= OUTSIDE_CONTACT_LAW
     if track.delta == contact.delta_m:
         answer.status |= INDENTATION_STILL_GROWING
     else:

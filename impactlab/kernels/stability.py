@@ -18,11 +18,17 @@ _GROWTH = 1.25
 
 @compiled
 def _stiffness(pair: Pair, delta: float) -> float:
-    """Largest tangent stiffness (N/m) of loading and of unloading at delta."""
+    """Largest tangent stiffness (N/m) of loading and of unloading at delta.
+
+    A jump of the force at the limit of a regime is no stiffness: it falls into the difference
+    to one side alone.
+    """
     F, K, delta_r, n = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
     small = 1e-4 * delta
-    F_next, _, _, _ = curve(pair.law, delta + small, pair.E, pair.R, pair.S_y, pair.nu)
-    return max((F_next - F) / small, n * K * max(delta - delta_r, 0.0) ** (n - 1.0))
+    after, _, _, _ = curve(pair.law, delta + small, pair.E, pair.R, pair.S_y, pair.nu)
+    before, _, _, _ = curve(pair.law, delta - small, pair.E, pair.R, pair.S_y, pair.nu)
+    loading = min(after - F, F - before) / small
+    return max(loading, n * K * max(delta - delta_r, 0.0) ** (n - 1.0))
 
 
 @compiled

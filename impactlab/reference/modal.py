@@ -26,9 +26,10 @@ Floats = NDArray[np.float64]
 class ModalSolution:
     """Histories of shape (time,) in SI units; displacements and forces positive downwards.
 
-    midspan_curvature: w_xx at mid-span in 1/m, negative while the beam sags. amplitudes, rates: of
-    each mode at mid-span, in m and m/s, shape (time, modes). contacts: start and end of each in s,
-    shape (contacts, 2), NaN where the duration ends first. The peak is taken between steps.
+    midspan_curvature: of bending at mid-span, w_xx or Timoshenko's psi_x, in 1/m, negative while
+    the beam sags. amplitudes, rates: of each mode at mid-span, in m and m/s, shape (time, modes).
+    contacts: start and end of each in s, shape (contacts, 2), NaN where the duration ends first.
+    The peak is taken between steps.
     """
 
     modes: BeamModes
@@ -85,11 +86,17 @@ def solve(
 
     Raises ValueError when the contact is not "hertz", or duration, step or modes is not positive.
     """
+    return solve_with(odd_modes(impact.beam, modes), impact, duration, step)
+
+
+def solve_with(
+    table: BeamModes, impact: Impact, duration: float, step: float | None
+) -> ModalSolution:
+    """The impact on the beam that has these modes; the rest as in solve."""
     if impact.contact != "hertz":
         raise ValueError(f"Impact.contact = {impact.contact!r}: the modal series needs 'hertz'")
     largest = _default_step(impact) if step is None else positive("modal", "step", step)
     steps = max(math.ceil(positive("modal", "duration", duration) / largest), 4)
-    table = odd_modes(impact.beam, modes)
     return _solution(table, march(impact, table, duration / steps, steps), duration, impact)
 
 
@@ -102,8 +109,7 @@ def _solution(modes: BeamModes, path: Path, duration: float, impact: Impact) -> 
         time=time,
         contact_force=path.force,
         midspan_deflection=path.y[:, 0] - path.indentation,
-        midspan_curvature=modes.residual_curvature * path.force
-        - amplitudes @ modes.wave_numbers**2,
+        midspan_curvature=modes.residual_curvature * path.force + amplitudes @ modes.curvatures,
         sphere_displacement=path.y[:, 0],
         sphere_velocity=path.v[:, 0],
         indentation=path.indentation,

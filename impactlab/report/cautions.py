@@ -8,9 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import REMARKS
+from impactlab.dataset import MARKS, REMARKS
 from impactlab.figures.reading import verdicts, words
 from impactlab.figures.reading.contents import count, responses, usable
+from impactlab.kernels.contact.about import ABOUT
 from impactlab.report.outcome import failed_runs
 
 _JUDGED = {
@@ -27,6 +28,7 @@ def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     found = (
         _stale(runs, analysis),
         _failures(runs),
+        _outside(runs),
         _verdicts(runs, analysis),
         _strain(runs, analysis),
         _values(runs),
@@ -50,6 +52,19 @@ def _failures(runs: xr.Dataset) -> Iterator[str]:
             f"{failed} of {count(runs)} runs failed: they miss at least one response, and are left "
             "out of figures and tables of what they miss. They are listed below with the reason."
         )
+
+
+def _outside(runs: xr.Dataset) -> Iterator[str]:
+    """One sentence for each contact law that was taken beyond its range."""
+    if "status" not in runs or "contact" not in runs.coords:
+        return
+    beyond = (runs["status"] & MARKS["outside_contact_law"][0]) != 0
+    for law in np.unique(runs["contact"].values).tolist():
+        if number := int((beyond & (runs["contact"] == law)).sum()):
+            yield (
+                f"{number} of {count(runs)} runs went beyond the range of the contact law “{law}”: "
+                f"it holds for {ABOUT[law].holds}. Their responses are kept, but extrapolated."
+            )
 
 
 def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:

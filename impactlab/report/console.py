@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from impactlab.dataset import RESPONSES, reasons, remarked
+from impactlab.dataset import RESPONSES, marks, reasons, remarked
 from impactlab.verification.outcome import Outcome, gravest_first
 
 
@@ -28,8 +28,8 @@ def print_responses(run: Any) -> None:
     console.print(table)
     for reason in reasons(run["status"].item()):
         console.print(f"missing because {reason}; a longer duration may help", markup=False)
-    for remark in remarked(run["remarks"].item()):
-        console.print(f"note: {remark}", markup=False)
+    for note in (*marks(run["status"].item()), *remarked(run["remarks"].item())):
+        console.print(f"note: {note}", markup=False)
 
 
 def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:

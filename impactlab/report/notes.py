@@ -8,6 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from impactlab.kernels.contact import LAWS
+from impactlab.kernels.contact.about import ABOUT
+
 
 class Note(NamedTuple):
     """A text, and whether it matters for the runs."""
@@ -35,6 +38,18 @@ def _about_the_end(runs: xr.Dataset) -> bool:
     return any(name in runs for name in _AT_THE_END)
 
 
+def _about(law: str) -> str:
+    """What a contact law does that it should not, and what of it is in doubt."""
+    about = ABOUT[law]
+    flaws = f" {about.flaws} This is the law, not the solver; the energy balance accounts for it."
+    doubts = f" Not confirmed: {about.unconfirmed}."
+    return (
+        f"Contact law “{law}” ({about.title})."
+        + flaws * bool(about.flaws)
+        + doubts * bool(about.unconfirmed)
+    )
+
+
 _AT_THE_END = ("rebound_velocity", "restitution", "impulse", "permanent_indentation")
 NOTES = (
     Note(
@@ -48,13 +63,10 @@ NOTES = (
         "Rebound velocity, restitution, impulse and permanent indentation hold for the last "
         "contact within the simulated time: a contact after its end is not in them.",
     ),
-    Note(
-        lambda runs: _holds(runs, "contact", "stronge"),
-        "Stronge's contact law, unloading with force continuity, creates energy where the largest "
-        "indentation lies between 1 and 2.673 times that of first yield: the coefficient of "
-        "restitution of the contact alone is above 1 there, and the contact dissipation below "
-        "zero. Up to 1.998 times it, the law even leaves a dent below zero. This is the law, not "
-        "the solver; the energy balance accounts for it.",
+    *(
+        Note(lambda runs, law=law: _holds(runs, "contact", law), _about(law))  # type: ignore[misc]
+        for law in LAWS
+        if ABOUT[law].flaws or ABOUT[law].unconfirmed
     ),
     Note(
         lambda runs: "peak_plastic_strain" in runs,

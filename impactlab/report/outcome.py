@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import xarray as xr
 
+from impactlab.dataset import FAILED
 from impactlab.figures.reading import missing, words
 from impactlab.figures.reading.contents import count, design_dims, responses, usable, varied
 from impactlab.report.table import Cell, Table
@@ -25,7 +26,7 @@ class Outcome:
 
 
 def outcome(runs: xr.Dataset) -> Outcome:
-    """A run failed when it has a status, or when one of its responses is missing."""
+    """A run failed when its status says so, or when one of its responses is missing."""
     failed = failed_runs(runs)
     found = missing.causes(runs, failed)
     rows = [[Cell(words.sentence(why)), Cell(str(n), "number")] for why, n in found.items()]
@@ -38,7 +39,7 @@ def failed_runs(runs: xr.Dataset) -> xr.DataArray:
     """True for each failed run, on the design dimensions."""
     marks = [missing.absent(usable(runs, name)) for name in responses(runs)]
     if "status" in runs:
-        marks.append(runs["status"] != 0)
+        marks.append((runs["status"] & FAILED) != 0)
     if not marks:
         return xr.DataArray(False)
     return xr.concat(marks, "mark", coords="minimal", compat="override").any("mark")

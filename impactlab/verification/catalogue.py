@@ -11,13 +11,18 @@ from impactlab.verification import (
     modal_series,
     moment_curvature,
     observed_order,
+    rigid_beam,
     rigid_plastic_mode,
+    schemes,
     similarity,
+    slender_limit,
+    spring_mass,
     static_collapse,
     static_deflection,
     stronge_restitution,
     sub_impacts,
     time_reversal,
+    timoshenko_beam,
 )
 from impactlab.verification.finding import Finding
 
@@ -40,12 +45,17 @@ _FILES: tuple[CheckFile, ...] = (
     sub_impacts,
     infinite_beam,
     observed_order,
+    schemes,
     time_reversal,
     similarity,
     moment_curvature,
     static_deflection,
     static_collapse,
     rigid_plastic_mode,
+    timoshenko_beam,
+    slender_limit,
+    spring_mass,
+    rigid_beam,
     balances,
 )
 CATALOGUE: dict[str, CheckFile] = {

@@ -75,8 +75,7 @@ def curve(
 
 def worst(entries: Sequence[Comparison]) -> Comparison:
     """The one nearest to failing, for a table that would else be long; a NaN comes first."""
-    shares = [abs(entry.error) / entry.tolerance for entry in entries]
-    entry = entries[int(np.argmax(np.nan_to_num(shares, nan=np.inf)))]
+    entry = max(entries, key=lambda entry: entry.ratio)
     return replace(entry, where=f"{entry.where} (the worst of {len(entries)})")
 
 

@@ -15,10 +15,19 @@ from impactlab.simulate import case_table, simulate
 
 
 def critical_time_step(impact: Impact, grid: Discretisation) -> float:
-    """The kernels' critical time step in s, from the number of steps that a second would take."""
-    case = case_table(impact, replace(grid, courant=1.0), duration=1.0)[0]
+    """The scheme's largest time step in s, from the number of steps that a second would take."""
+    return 1.0 / _steps(impact, replace(grid, courant=1.0), 1.0)
+
+
+def node_steps(impact: Impact, grid: Discretisation, duration: float) -> int:
+    """What a run costs, but for what a node costs a step: nodes of the half beam, times steps."""
+    return grid.nodes // 2 * _steps(impact, grid, duration)
+
+
+def _steps(impact: Impact, grid: Discretisation, duration: float) -> int:
+    case = case_table(impact, grid, duration=duration)[0]
     _, steps = discretise(case, make_pair(case), make_section(case))
-    return 1.0 / steps
+    return int(steps)
 
 
 def simulate_in_steps(

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.reference.modal import ModalSolution, solve
-from impactlab.reference.timoshenko import timoshenko_impact
+from impactlab.reference.timoshenko_1913 import timoshenko_impact
 from impactlab.simulate import simulate
 from impactlab.verification.cases import elastic
 from impactlab.verification.finding import (

@@ -84,6 +84,36 @@ FAULTS = (
         "max(first - 1, 2) if moved",
     ),
     Fault(
+        "Timoshenko beam: rotary inertia four times too large",
+        "timoshenko.py",
+        "case.beam_density * area * case.beam_depth**2 / 12.0",
+        "case.beam_density * area * case.beam_depth**2 / 3.0",
+    ),
+    Fault(
+        "Timoshenko beam: twice the shear modulus",
+        "timoshenko.py",
+        "G = 0.5 * case.beam_youngs_modulus / (1.0",
+        "G = case.beam_youngs_modulus / (1.0",
+    ),
+    Fault(
+        "Timoshenko beam: shear acts on mid-span from one side",
+        "timoshenko.py",
+        "push * (Q[mid] - Q[mid - 1] + F)",
+        "push * (F - Q[mid - 1])",
+    ),
+    Fault(
+        "spring-mass: half of the beam's mass",
+        "lumped.py",
+        "17.0 / 35.0 * beam,",
+        "0.5 * beam,",
+    ),
+    Fault(
+        "rigid beam: gives way as the spring-mass model",
+        "others.py",
+        "make_lumped(case, case.beam_model == RIGID,",
+        "make_lumped(case, False,",
+    ),
+    Fault(
         "leapfrog: the first kick is a whole one, not half",
         "leapfrog.py",
         "case.velocity - 0.5 * dt * case.gravity",

@@ -16,17 +16,24 @@ import impactlab as il
 from impactlab import dataset
 from impactlab.dataset import (
     COORDINATES,
+    FAILED,
+    FAILURES,
     HISTORIES,
+    MARKS,
     PROFILES,
     REMARKS,
     RESPONSES,
     STATUS_FLAGS,
     attributes,
+    contact_attributes,
     described,
+    kept_bits,
+    marks,
     provenance,
     reasons,
     status_bits,
 )
+from impactlab.kernels.contact.about import ABOUT
 from impactlab.model.parameters import PARAMETERS
 
 TABLE = RESPONSES | HISTORIES | PROFILES | COORDINATES | PARAMETERS
@@ -83,7 +90,9 @@ def test_status_bits_are_those_that_matter_to_the_asked_responses():
     assert status_bits([]) == whole
     assert status_bits(["energy_error"]) == whole
     assert status_bits(["contact_duration"]) == whole | BITS["first_contact_unfinished"]
-    assert status_bits(RESPONSES) == sum(BITS.values())
+    assert status_bits(RESPONSES) == FAILED == sum(bit for bit, _ in FAILURES.values())
+    assert kept_bits(RESPONSES) == sum(BITS.values())
+    assert kept_bits([]) == whole | BITS["outside_contact_law"]
 
 
 def test_status_of_a_run_is_zero_where_every_asked_response_is_there():
@@ -100,7 +109,34 @@ def test_status_of_a_run_is_zero_where_every_asked_response_is_there():
 def test_reasons_are_words():
     assert reasons(0) == []
     two = BITS["diverged"] | BITS["in_contact_at_end"]
-    assert reasons(two) == [STATUS_FLAGS["diverged"][1], STATUS_FLAGS["in_contact_at_end"][1]]
+    assert marks(two) == []
+    assert reasons(two | BITS["outside_contact_law"]) == [
+        STATUS_FLAGS["diverged"][1],
+        STATUS_FLAGS["in_contact_at_end"][1],
+    ]
+
+
+def test_failures_and_marks_are_told_apart():
+    assert not set(FAILURES) & set(MARKS)
+    assert marks(BITS["outside_contact_law"]) == [MARKS["outside_contact_law"][1]]
+    assert reasons(BITS["outside_contact_law"]) == []
+
+
+def test_contact_says_where_its_laws_come_from_and_what_is_in_doubt():
+    attrs = contact_attributes(["hertz", "mjg"])
+    assert attrs["source"].splitlines() == [
+        f"{law}: {ABOUT[law].source}" for law in ("hertz", "mjg")
+    ]
+    assert attrs["unconfirmed"] == f"mjg: {ABOUT['mjg'].unconfirmed}"
+    assert "flaws" not in contact_attributes(["hertz"])
+    many = il.simulate_many(
+        il.paper_impact(),
+        il.Discretisation(nodes=11, points=3),
+        duration=1e-5,
+        varied={"contact": ["mjg", "hertz", "mjg"]},
+    )
+    assert many.contact.attrs["long_name"] == "contact law"
+    assert attrs.items() <= many.contact.attrs.items()
 
 
 def test_a_run_survives_being_stored(tmp_path):

@@ -12,6 +12,7 @@ import xarray as xr
 import impactlab as il
 from impactlab.dataset import (
     COORDINATES,
+    FAILURES,
     FLAGS,
     HISTORIES,
     PROFILES,
@@ -20,7 +21,7 @@ from impactlab.dataset import (
     STATUS_FLAGS,
     remarked,
 )
-from impactlab.kernels import RULES
+from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
 from impactlab.kernels.contact import LAWS
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.simulate import case_table, solve
@@ -145,6 +146,7 @@ def test_many_runs_are_single_runs_bit_by_bit():
         "points": [2, 3, 4, 5],
         "rule": ["lobatto", "layers", "legendre", "lobatto"],
         "beam_isotropic_hardening_modulus": [0.0, 1e9, 0.0, 2e9],
+        "scheme": ["leapfrog", "semi_implicit", "semi_implicit", "leapfrog"],
         "sphere_radius": [0.03, 0.035, 0.02, 0.035],
     }
     many = il.simulate_many(IMPACT, GRID, duration=DURATION, varied=varied)
@@ -204,7 +206,7 @@ def test_a_response_is_missing_exactly_where_a_flag_says_so():
             for name, entry in RESPONSES.items():
                 missing = entry.missing in flags(run)
                 assert np.isnan(run[name].item()) == missing, (name, duration)
-    assert seen == {*STATUS_FLAGS, "none"} - {"diverged", "energy_out_of_balance"}
+    assert seen == {*FAILURES, "none"} - {"diverged", "energy_out_of_balance"}
 
 
 def test_flags_come_off_as_the_run_grows_longer():
@@ -213,7 +215,7 @@ def test_flags_come_off_as_the_run_grows_longer():
     assert flags(whole) == set()
     peak, end = whole.time_of_peak_force.item(), whole.contact_duration.item()
     loading = il.simulate(impact, grid, duration=0.7 * peak)
-    assert flags(loading) == set(STATUS_FLAGS) - {"diverged", "energy_out_of_balance"}
+    assert flags(loading) == set(FAILURES) - {"diverged", "energy_out_of_balance"}
     unloading = il.simulate(impact, grid, duration=0.5 * (peak + end))
     assert flags(loading) - flags(unloading) == {"indentation_still_growing"}
     assert unloading.peak_force.item() == pytest.approx(whole.peak_force.item(), rel=1e-2)
@@ -249,17 +251,21 @@ def test_a_wrong_run_is_named_with_its_field():
     refused({"beam_depth": [0.02, np.nan]}, r"^run 1: Beam\.depth = nan: must be a finite number")
     refused({"contact": ["hertz", "hooke"]}, r"^run 1: Impact\.contact = 'hooke': must be one of")
     refused({"weight": [1.0]}, r"^run 0: unknown parameter 'weight': choose from velocity")
+    filtered = {"scheme": ["leapfrog", "semi_implicit", "semi_implicit"], "nodes": [5, 17, 15]}
+    refused(filtered, r"^run 2: Discretisation\.nodes = 15: the semi_implicit scheme needs")
     refused({"velocity": [1.0, 2.0], "nodes": [11]}, r"one value a run.*\{1, 2\}")
 
 
 RUNS = 40
 RANDOM = np.random.default_rng(3)
-WORDS = {"contact": LAWS, "rule": RULES}
-COUNTS = {"nodes": (5, 7, 1201), "points": (2, 3, 64)}
+WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "rule": RULES, "scheme": SCHEMES}
+COUNTS = {"nodes": (17, 19, 1201), "points": (2, 3, 64)}
 
 
 def any_values(name):
     """Values that every run may have beside any of the others."""
+    if name == "shear_coefficient":
+        return RANDOM.uniform(0.7, 1.0, RUNS)
     if choices := WORDS.get(name) or COUNTS.get(name):
         return RANDOM.choice(choices, RUNS)
     value = flatten(IMPACT, GRID).get(name) or {"sphere_mass": 1.4}.get(name, 1e9)
@@ -302,7 +308,9 @@ WRONG = {
     "beam_depth": [0.78, 1.0],
     "gravity": [-1.0],
     "contact": ["hooke", "", 0, None],
+    "beam_model": ["Rigid", "spring-mass", 1],
     "rule": ["Lobatto"],
+    "scheme": ["semi-implicit", "Leapfrog", 1, None],
     "nodes": [3, 20, 21.5, np.nan, "21", None, True],
     "points": [1, 2.5],
     "courant": [0, 1.0001],
@@ -319,6 +327,27 @@ def test_a_refused_run_is_told_in_the_words_of_the_model(name, wrong):
     with pytest.raises(ValueError, match=r"^run 2: ") as among:
         case_table(IMPACT, GRID, duration=DURATION, varied={name: [right, right, wrong, right]})
     assert str(among.value) == f"run 2: {alone.value}"
+
+
+@pytest.mark.parametrize(
+    ("grid", "varied"),
+    [
+        ({"scheme": "semi_implicit"}, {"nodes": [17, 1201, 15]}),
+        ({"nodes": 15}, {"scheme": ["leapfrog", "leapfrog", "semi_implicit"]}),
+    ],
+    ids=["nodes", "scheme"],
+)
+def test_the_run_is_named_that_has_too_few_nodes_for_its_scheme(grid, varied):
+    with pytest.raises(ValueError, match=r"^run 2: Discretisation\.nodes = 15: the semi_implicit"):
+        case_table(IMPACT, il.Discretisation(**grid), duration=DURATION, varied=varied)
+
+
+@pytest.mark.parametrize("model", ["timoshenko", "spring_mass", "rigid"])
+def test_the_run_is_named_whose_beam_has_no_such_scheme(model):
+    varied = {"beam_model": ["elastic", model], "scheme": ["semi_implicit", "semi_implicit"]}
+    words = rf"^run 1: Discretisation\.scheme = 'semi_implicit': Impact\.beam_model = '{model}'"
+    with pytest.raises(ValueError, match=words):
+        case_table(IMPACT, GRID, duration=DURATION, varied=varied)
 
 
 def test_what_is_no_column_may_still_be_right(one_by_one):

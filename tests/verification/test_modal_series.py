@@ -5,17 +5,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from impactlab.reference.modal import solve
-from impactlab.verification.modal_series import CASES, FINEST, HISTORIES, MIDDLE
+from impactlab.reference import modal, timoshenko_modal
+from impactlab.verification import modal_series, timoshenko_beam
+from impactlab.verification.series import FINEST, HISTORIES, MIDDLE
+
+SERIES = {
+    (theory, beam): (case, file.solve, theory.solve)
+    for theory, file in ((modal, modal_series), (timoshenko_modal, timoshenko_beam))
+    for beam, case in file.CASES.items()
+}
 
 
 @pytest.mark.parametrize("name", HISTORIES)
-@pytest.mark.parametrize("beam", CASES)
-def test_series_is_converged(beam, name):
-    case = CASES[beam]
+@pytest.mark.parametrize(
+    ("case", "used", "solve"), SERIES.values(), ids=[f"{t.__name__}-{b}" for t, b in SERIES]
+)
+def test_series_is_converged(case, used, solve, name):
     impact = replace(case.impact, velocity=case.velocities[-1])  # the hardest one
-    series = solve(impact, case.duration)
-    fine = solve(impact, case.duration, modes=150, step=series.time[1] / 2)
+    series = used(impact, case.duration)
+    fine = solve(impact, case.duration, modes=200, step=series.time[1] / 2)
     tightest = HISTORIES[name][2] * (MIDDLE / FINEST) ** 2
     time = np.linspace(0, case.duration, 401)
     one, other = series.at(name, time), fine.at(name, time)

@@ -1,7 +1,6 @@
-"""Contact laws: one file a law, each a function `curve` (see hertz.py for its form)."""
+"""Contact laws: one file a law, with the functions `curve` and `limit` (see hertz.py)."""
 
-LAWS = (
-    "hertz",
-    "stronge",
-)
+from impactlab.kernels.contact.about import ABOUT
+
+LAWS = tuple(ABOUT)
 """Names of the laws, each that of its file; the index is the kernels' switch."""

@@ -2,10 +2,11 @@
 
 Source: Hertz 1881; Johnson, Contact Mechanics, eq. 4.23.
 
-Every law is one function of this form. In: indentation delta (m), effective modulus E (Pa),
+Every law is two functions of this form. In: indentation delta (m), effective modulus E (Pa),
 effective radius R (m), the softer body's yield stress S_y (Pa) and Poisson's ratio nu.
-Out: (F, K, delta_r, n), the loading force (N) at delta, and the curve on which the contact
-unloads from there, K (d - delta_r)^n.
+`curve` gives (F, K, delta_r, n), the loading force (N) at delta, and the curve on which the contact
+unloads from there, K (d - delta_r)^n. `limit` gives the indentation (m) up to which the law holds;
+why, and what of the law is not confirmed, is in about.py, which also names the law.
 """
 
 from __future__ import annotations
@@ -22,3 +23,9 @@ def curve(
     """Force and unloading curve of Hertz contact."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     return K * delta * math.sqrt(delta), K, 0.0, 1.5
+
+
+@compiled
+def limit(E: float, R: float, S_y: float, nu: float) -> float:
+    """Where a = sqrt(R delta) reaches R."""
+    return R

@@ -25,16 +25,33 @@ U_PLASTIC = math.exp(3.0 * (MEAN_PRESSURE - THETA))
 
 
 @compiled
+def yield_indentation(E: float, R: float, S_y: float) -> float:
+    """delta_y, m."""
+    return (0.75 * math.pi * THETA * S_y / E) ** 2 * R
+
+
+@compiled
+def force_ratio(u: float) -> float:
+    """F/F_y beyond yield."""
+    return u * (1.0 + math.log(u) / (3.0 * THETA)) if u <= U_PLASTIC else MEAN_PRESSURE * u / THETA
+
+
+@compiled
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
     """Force and unloading curve of Stronge's law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
-    delta_y = (0.75 * math.pi * THETA * S_y / E) ** 2 * R
+    delta_y = yield_indentation(E, R, S_y)
     if delta <= delta_y:
         return K * delta * math.sqrt(delta), K, 0.0, 1.5
-    u = 2.0 * delta / delta_y - 1.0
-    ratio = u * (1.0 + math.log(u) / (3.0 * THETA)) if u <= U_PLASTIC else MEAN_PRESSURE * u / THETA
+    ratio = force_ratio(2.0 * delta / delta_y - 1.0)
     F = ratio * K * delta_y * math.sqrt(delta_y)
     radius_ratio = math.sqrt(ratio)
     return F, K * math.sqrt(radius_ratio), delta - delta_y * radius_ratio, 1.5
+
+
+@compiled
+def limit(E: float, R: float, S_y: float, nu: float) -> float:
+    """Where a = sqrt(R (2 delta - delta_y)) reaches R."""
+    return 0.5 * (R + yield_indentation(E, R, S_y))

@@ -1,12 +1,14 @@
-"""From a law's number to its function.
+"""From a law's number to its functions.
 
-A chain of compiled functions, not one passed as an argument: that would compile anew in each
+Chains of compiled functions, not functions passed as arguments: that would compile anew in each
 process.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
+from types import ModuleType
 
 import numpy as np
 
@@ -14,15 +16,19 @@ from impactlab.kernels.contact import LAWS
 from impactlab.kernels.jit import compiled
 from impactlab.kernels.types import Curve
 
+Limit = Callable[..., float]
+
+_FILES: list[ModuleType] = [import_module(f"impactlab.kernels.contact.{name}") for name in LAWS]
+
 
 @compiled
-def _unknown(
+def _no_curve(
     law: int, delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
     return np.nan, np.nan, np.nan, 1.5
 
 
-def _link(number: int, chosen: Curve, others: Curve) -> Curve:
+def _link_curve(number: int, chosen: Curve, others: Curve) -> Curve:
     @compiled
     def curve(
         law: int, delta: float, E: float, R: float, S_y: float, nu: float
@@ -34,12 +40,25 @@ def _link(number: int, chosen: Curve, others: Curve) -> Curve:
     return curve
 
 
-def _chain() -> Curve:
-    curve = _unknown
-    for number, name in enumerate(LAWS):
-        curve = _link(number, import_module(f"impactlab.kernels.contact.{name}").curve, curve)
-    return curve
+@compiled
+def _no_limit(law: int, E: float, R: float, S_y: float, nu: float) -> float:
+    return np.nan
 
 
-curve = _chain()
-"""curve(law, delta, E, R, S_y, nu) -> (F, K, delta_r, n): that of law number `law`."""
+def _link_limit(number: int, chosen: Limit, others: Limit) -> Limit:
+    @compiled
+    def limit(law: int, E: float, R: float, S_y: float, nu: float) -> float:
+        if law == number:
+            return chosen(E, R, S_y, nu)
+        return others(law, E, R, S_y, nu)
+
+    return limit
+
+
+curve: Curve = _no_curve
+limit: Limit = _no_limit
+for _number, _file in enumerate(_FILES):
+    curve = _link_curve(_number, _file.curve, curve)
+    limit = _link_limit(_number, _file.limit, limit)
+"""curve(law, delta, E, R, S_y, nu) -> (F, K, delta_r, n); limit(law, E, R, S_y, nu) -> m: those of
+law number `law`, NaN for a number that no law has."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from impactlab.kernels import RULES
+from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
 from impactlab.kernels.case import CASE
 from impactlab.kernels.contact import LAWS
 from impactlab.model.parameters import PARAMETERS
@@ -15,7 +15,8 @@ def test_fields_are_the_parameters_and_the_duration():
 
 
 def test_a_record_has_every_value_in_its_place(make_case):
-    names = {"contact": "hertz", "rule": "layers"}
+    names = {"contact": "hertz", "beam_model": "elastic", "rule": "layers"}
+    names |= {"scheme": "semi_implicit"}
     numbers = {
         name: 0.5 + number / 100
         for number, (name, entry) in enumerate(PARAMETERS.items())
@@ -23,9 +24,14 @@ def test_a_record_has_every_value_in_its_place(make_case):
     }
     ratios = {"sphere_poissons_ratio": 0.1, "beam_poissons_ratio": 0.2}
     moduli = {"sphere_youngs_modulus": 1e9, "beam_youngs_modulus": 2e9, "beam_span": 9.0}
-    values = numbers | ratios | moduli | {"nodes": 7, "points": 3}
+    values = numbers | ratios | moduli | {"nodes": 19, "points": 3}
     case = make_case(duration=0.7, **values, **names)
-    numbers_of_names = {"contact": LAWS.index("hertz"), "rule": RULES.index("layers")}
+    numbers_of_names = {
+        "contact": LAWS.index("hertz"),
+        "beam_model": BEAM_MODELS.index("elastic"),
+        "rule": RULES.index("layers"),
+        "scheme": SCHEMES.index("semi_implicit"),
+    }
     expected = values | numbers_of_names | {"duration": 0.7}
     assert {name: case[name] for name in CASE.names} == expected
 

@@ -10,7 +10,12 @@ import impactlab as il
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 
 BASE = (il.paper_impact(), il.Discretisation())
-OTHER_NAMES = {"contact": "hertz", "rule": "layers", "scheme": "semi_implicit"}
+OTHER_NAMES = {
+    "contact": "hertz",
+    "beam_model": "elastic",
+    "rule": "layers",
+    "scheme": "semi_implicit",
+}
 OTHER_COUNTS = {"nodes": 55, "points": 6}
 HARDENING = {"beam_isotropic_hardening_modulus": 2e9, "beam_kinematic_hardening_modulus": 3e9}
 

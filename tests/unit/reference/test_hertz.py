@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from impactlab.model.paper import paper_impact
 from impactlab.reference import hertz
-from impactlab.reference.timoshenko import timoshenko_impact
+from impactlab.reference.timoshenko_1913 import timoshenko_impact
 
 MASS, VELOCITY, MODULUS, RADIUS = 1.4, 2.0, 1.15e11, 0.035
 

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from impactlab.model.paper import paper_impact
 from impactlab.reference import hertz
 from impactlab.reference.modal import solve
-from impactlab.reference.timoshenko import timoshenko_impact
+from impactlab.reference.timoshenko_1913 import timoshenko_impact
 
 PAPER, TIMOSHENKO = paper_impact(contact="hertz"), timoshenko_impact()
 CASES = pytest.mark.parametrize(

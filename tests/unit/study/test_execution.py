@@ -6,7 +6,12 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.dataset import RESPONSES
+from impactlab.kernels import SCHEMES
+from impactlab.kernels.contact.history import make_pair
+from impactlab.kernels.leapfrog import discretise
+from impactlab.kernels.section import make_section
 from impactlab.model.parameters import flatten
+from impactlab.simulate import case_table
 from impactlab.study import batches as batching
 from impactlab.study import execution
 from impactlab.study.batches import batches, node_steps
@@ -136,6 +141,15 @@ def test_batches_hold_every_run_once_and_split_by_cost():
     cost = [sum(node_steps(cases[run]) for run in part) for part in parts]
     assert len(parts) >= 4
     assert max(cost) <= sum(cost) / 8 + max(node_steps(case) for case in cases)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("nodes", [201, 601])
+def test_the_estimated_cost_is_that_of_the_kernels_steps(scheme, nodes):
+    grid = il.Discretisation(nodes=nodes, points=21, scheme=scheme)
+    case = case_table(il.paper_impact(), grid, duration=1e-3)[0]
+    _, steps = discretise(case, make_pair(case), make_section(case))
+    assert node_steps(case) == pytest.approx(0.5 * nodes * steps, rel=0.02)
 
 
 def test_workers_with_other_kernels_are_refused():

@@ -63,9 +63,11 @@ def test_reloading_retraces_unloading_and_then_loading_goes_on(law):
 
 @every_law
 def test_unloading_leaves_the_furthest_point_without_a_jump_and_never_pulls(law):
+    """But for stronge_original, whose jump test_laws.py measures."""
     contact, pair = untouched(), pair_of(law)
     top = force(contact, pair, DEEP)
-    assert force(contact, pair, DEEP * (1 - 1e-12)) == pytest.approx(top, rel=1e-9)
+    if law != "stronge_original":
+        assert force(contact, pair, DEEP * (1 - 1e-12)) == pytest.approx(top, rel=1e-9)
     forces = along(contact, pair, np.linspace(DEEP, -DEEP, 101))
     assert forces.min() == 0.0
     assert np.all(np.diff(forces) <= 0)

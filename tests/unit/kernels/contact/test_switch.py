@@ -20,8 +20,8 @@ def test_a_number_gives_the_law_of_that_name(law):
 
 
 def test_laws_differ():
-    forces = [curve(number, *ARGS)[0] for number in range(len(LAWS))]
-    assert len(set(forces)) == len(LAWS)
+    curves = [curve(number, *ARGS) for number in range(len(LAWS))]
+    assert len(set(curves)) == len(LAWS)
 
 
 @pytest.mark.parametrize("number", [-1, len(LAWS)])

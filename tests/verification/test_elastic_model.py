@@ -1,0 +1,29 @@
+"""The elastic model is the paper's beam with a yield stress out of reach, and no other."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab.dataset import HISTORIES, RESPONSES
+from impactlab.verification.cases import elastic
+
+GRID = il.Discretisation(nodes=51, points=9)
+
+
+@pytest.mark.parametrize("velocity", [0.99, 20.0])
+def test_elastic_model_is_a_beam_that_does_not_yield(velocity):
+    impact = il.paper_impact(velocity, "hertz")  # Stronge's law would know the yield stress
+    ours = il.simulate(replace(impact, beam_model="elastic"), GRID, duration=2e-3)
+    expected = il.simulate(elastic(impact), GRID, duration=2e-3)
+    for name in (*HISTORIES, *RESPONSES):
+        np.testing.assert_allclose(ours[name], expected[name], rtol=1e-12, err_msg=name)
+
+
+def test_it_makes_a_difference_where_the_beam_yields():
+    impact = il.paper_impact(20.0, "hertz")
+    yielding = il.simulate(impact, GRID, duration=2e-3)
+    ours = il.simulate(replace(impact, beam_model="elastic"), GRID, duration=2e-3)
+    assert yielding.plastic_dissipation.item() > 0
+    assert ours.plastic_dissipation.item() == 0
