@@ -12,6 +12,7 @@ from impactlab.analysis.claims.claim import Data, UnknownError
 from impactlab.analysis.claims.evidence import number, runs_of
 
 Floats = NDArray[np.float64]
+_ACRONYMS = {"mjg": "MJG"}
 BEAM = "euler_bernoulli"
 """The paper's beam, among `beam_model`."""
 
@@ -44,7 +45,7 @@ def laws(data: Data, study: str) -> list[str]:
 
 def named(law: str) -> str:
     """A case of a contact law, in words."""
-    return f"{law.replace('_', '-').title()} contact"
+    return f"{_ACRONYMS.get(law) or law.replace('_', '-').title()} contact"
 
 
 def against_velocity(data: Data, study: str, response: str, **where: Any) -> Curve:
