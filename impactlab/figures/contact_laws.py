@@ -40,7 +40,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     count = len(selected.panels)
     figure, axes = style.panels(count, columns=min(count, _COLUMNS), height=58)
     for ax, panel in zip(axes, selected.panels, strict=True):
-        ax.set_title(panel.label, loc="left")
+        ax.set_title(f"At {panel.label}", loc="left")
         for curve in selected.curves:
             run = valid.isel(selected.runs(panel, curve))
             x, y = force_indentation.loop(run, depth, force)

@@ -133,13 +133,13 @@ def _verdict(entry: Judgement) -> Cell:
 
 
 def _told(number: Number) -> str:
-    """Name, value and uncertainty: "peak force 12.34 ± 0.11 kN"."""
+    """Name, value and uncertainty: "peak force: 12.34 ± 0.11 kN"."""
     unit = _unit(number)
     value, width = float(unit(number.value)), float(unit(number.uncertainty))
     text = words.number(value, _digits(value, width))
     if width:
         text = f"{text} ± {words.number(width, 2) if np.isfinite(width) else 'unknown'}"
-    return f"{number.name} {text} {unit.symbol}".strip()
+    return f"{number.name}: {text} {unit.symbol}".strip()
 
 
 def _unit(number: Number) -> Display:
@@ -149,7 +149,8 @@ def _unit(number: Number) -> Display:
 
 
 def _digits(value: float, width: float) -> int:
-    """Significant digits down to the second of the uncertainty, 3 to 5."""
+    """Significant digits down to the second of the uncertainty, 2 to 5."""
     if not (value and width and np.isfinite(value) and np.isfinite(width)):
         return 5
-    return int(np.clip(np.floor(np.log10(abs(value / width))) + 2, 3, 5))
+    value_power, width_power = np.floor(np.log10([abs(value), width]))
+    return int(np.clip(value_power - width_power + 2, 2, 5))

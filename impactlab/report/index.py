@@ -36,12 +36,14 @@ class Entry:
 def write_index(results: Path, path: Path) -> None:
     """Write a page with a link to each report under `results` (results/NAME/report.html).
 
-    A report without the stored results that it was made from is left out. Raises OSError when
-    `path` cannot be written.
+    The page on the paper (results/paper) is linked where it is. A report without the stored
+    results that it was made from is left out. Raises OSError when `path` cannot be written.
     """
     folders = [report.parent for report in sorted(results.glob("*/report.html"))]
     entries = [_entry(folder, kind, path.parent) for folder in folders if (kind := kind_in(folder))]
-    write_page("index.html.j2", path, entries=entries)
+    claims = results / "paper" / "claims.html"
+    address = _address(claims, path.parent) if claims.exists() else ""
+    write_page("index.html.j2", path, entries=entries, paper=address)
 
 
 def _entry(folder: Path, kind: Kind, home: Path) -> Entry:

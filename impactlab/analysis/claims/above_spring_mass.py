@@ -8,7 +8,7 @@ from impactlab.analysis.claims.claim import (
     Data,
     Judgement,
     Number,
-    UnjudgeableError,
+    UnknownError,
     Verdict,
     attempt,
 )
@@ -32,7 +32,7 @@ def judge(data: Data) -> Iterable[Judgement]:
 
 def _judged(law: str, data: Data) -> Judgement:
     if "beam_model" not in runs_of(data, STUDY).dims:
-        raise UnjudgeableError(f"the study {STUDY} does not vary beam_model")
+        raise UnknownError(f"the study {STUDY} does not vary beam_model")
     ours = against_velocity(data, STUDY, "contact_duration", contact=law)
     theirs = against_velocity(data, STUDY, "contact_duration", contact=law, beam_model=SPRING_MASS)
     above = ours.low > theirs.high

@@ -23,7 +23,7 @@ class Verdict(StrEnum):
     UNKNOWN = "cannot be judged"
 
 
-class UnjudgeableError(Exception):
+class UnknownError(Exception):
     """The datasets do not hold what a test needs; the message says what is missing, and why."""
 
 
@@ -70,7 +70,7 @@ class ClaimFile(Protocol):
     TEST: str
 
     def judge(self, data: Data) -> Iterable[Judgement]:
-        """A judgement for each case; it does not raise UnjudgeableError but says so."""
+        """A judgement for each case; it does not raise UnknownError but says so."""
         ...
 
 
@@ -78,7 +78,7 @@ def attempt(case: str, judge: Callable[[], Judgement]) -> Judgement:
     """The judgement, or why there can be none."""
     try:
         return judge()
-    except UnjudgeableError as reason:
+    except UnknownError as reason:
         return Judgement(case, (), Verdict.UNKNOWN, str(reason))
 
 
@@ -90,6 +90,6 @@ def holds(stands: bool, *, as_read: bool = False) -> Verdict:
 
 
 def known(*numbers: Number) -> None:
-    """Raises UnjudgeableError naming the numbers whose value or uncertainty is missing."""
+    """Raises UnknownError naming the numbers whose value or uncertainty is missing."""
     if gaps := [n.name for n in numbers if math.isnan(n.value) or math.isnan(n.uncertainty)]:
-        raise UnjudgeableError(f"no number, or none with an uncertainty: {', '.join(gaps)}")
+        raise UnknownError(f"no number, or none with an uncertainty: {', '.join(gaps)}")

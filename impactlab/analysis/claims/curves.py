@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.analysis.claims.claim import Data, UnjudgeableError
+from impactlab.analysis.claims.claim import Data, UnknownError
 from impactlab.analysis.claims.evidence import number, runs_of
 
 Floats = NDArray[np.float64]
+_ACRONYMS = {"mjg": "MJG"}
 BEAM = "euler_bernoulli"
 """The paper's beam, among `beam_model`."""
 
@@ -44,13 +45,13 @@ def laws(data: Data, study: str) -> list[str]:
 
 def named(law: str) -> str:
     """A case of a contact law, in words."""
-    return f"{law.replace('_', '-').title()} contact"
+    return f"{_ACRONYMS.get(law) or law.replace('_', '-').title()} contact"
 
 
 def against_velocity(data: Data, study: str, response: str, **where: Any) -> Curve:
     """A response over the velocities of a study, on the paper's beam unless `where` says else.
 
-    Raises UnjudgeableError where a run or an uncertainty is missing, naming the velocity.
+    Raises UnknownError where a run or an uncertainty is missing, naming the velocity.
     """
     runs = runs_of(data, study)
     if "beam_model" in runs.dims:
@@ -64,8 +65,8 @@ def against_velocity(data: Data, study: str, response: str, **where: Any) -> Cur
 def _at(runs: Any, response: str, speed: float, where: dict[str, Any]) -> tuple[float, float]:
     try:
         entry = number(runs, response, velocity=speed, **where)
-    except UnjudgeableError as reason:
-        raise UnjudgeableError(f"at {speed:g} m/s {reason}") from None
+    except UnknownError as reason:
+        raise UnknownError(f"at {speed:g} m/s {reason}") from None
     if np.isnan(entry.uncertainty):
-        raise UnjudgeableError(f"at {speed:g} m/s there are fewer than three grids")
+        raise UnknownError(f"at {speed:g} m/s there are fewer than three grids")
     return entry.value, entry.uncertainty

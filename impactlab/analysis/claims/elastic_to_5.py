@@ -9,7 +9,7 @@ from impactlab.analysis.claims.claim import (
     Data,
     Judgement,
     Number,
-    UnjudgeableError,
+    UnknownError,
     attempt,
     holds,
 )
@@ -30,7 +30,7 @@ def _judged(reading: Reading, data: Data) -> Judgement:
     curve = plasticity.strains(data, reading)
     low = curve.velocity <= UP_TO
     if curve.velocity[low].max(initial=0.0) < UP_TO:
-        raise UnjudgeableError(f"the study {reading.study} has no run at {UP_TO:g} m/s")
+        raise UnknownError(f"the study {reading.study} has no run at {UP_TO:g} m/s")
     worst = int(curve.high[low].argmax())
     found = Number(
         f"largest PEEQ up to {UP_TO:g} m/s",

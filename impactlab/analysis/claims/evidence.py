@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from impactlab.analysis.claims.claim import Data, Number, UnjudgeableError
+from impactlab.analysis.claims.claim import Data, Number, UnknownError
 from impactlab.analysis.convergence_in_nodes import judge
 from impactlab.analysis.responses import relevant_bits
 from impactlab.analysis.richardson import SAFETY_DOUBTFUL
@@ -16,33 +16,36 @@ from impactlab.dataset import RESPONSES, reasons
 
 
 def runs_of(data: Data, study: str) -> xr.Dataset:
-    """The runs of a study. Raises UnjudgeableError where there are none."""
+    """The runs of a study. Raises UnknownError where there are none."""
     if study not in data:
-        raise UnjudgeableError(f"the study {study} has not been solved")
+        raise UnknownError(f"the study {study} has not been solved")
     return data[study]
 
 
 def answers(runs: xr.Dataset, response: str, **where: Any) -> xr.DataArray:
-    """A response at the labels `where`. Raises UnjudgeableError, saying why, where a run lacks it."""
+    """A response at the labels `where`. Raises UnknownError, saying why, where a run lacks it."""
     try:
         chosen = runs[[response, "status"]].sel(where)
     except KeyError as error:
         study = runs.attrs.get("study", "?")
-        raise UnjudgeableError(f"the study {study} does not have {error.args[0]!r}") from None
+        raise UnknownError(f"the study {study} does not have {error.args[0]!r}") from None
     bits = chosen["status"].values & relevant_bits(response)
     gaps = (bits != 0) | ~np.isfinite(chosen[response].values)
     if gaps.any():
         said = reasons(int(np.bitwise_or.reduce(np.ravel(bits)))) or ["no reason is recorded"]
-        raise UnjudgeableError(f"{int(gaps.sum())} of {gaps.size} runs lack it: {'; '.join(said)}")
+        raise UnknownError(f"{int(gaps.sum())} of {gaps.size} runs lack it: {'; '.join(said)}")
     return chosen[response]
 
 
 def number(runs: xr.Dataset, response: str, **where: Any) -> Number:
     """A response on the finest grid, with its uncertainty; see `uncertainty`.
 
-    where: a label for every varied parameter but `nodes`. Raises UnjudgeableError where a run of the
+    where: a label for every varied parameter but `nodes`. Raises UnknownError where a run of the
     grids is missing.
     """
+    if "nodes" not in runs.dims:
+        study = runs.attrs.get("study", "?")
+        raise UnknownError(f"the study {study} does not vary the nodes: no uncertainty is known")
     values = answers(runs, response, **where).sortby("nodes", ascending=False)
     found = values.values.astype(float)
     return Number(

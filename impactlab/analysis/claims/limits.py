@@ -1,4 +1,4 @@
-"""A number against a limit, its uncertainty counted."""
+"""A strain against a limit, its uncertainty counted."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ from impactlab.analysis.claims.claim import Number, Verdict, holds
 
 
 def against(found: Number, limit: float, *, below: bool, as_read: bool) -> tuple[Verdict, str]:
-    """Verdict and reason on "below the limit" or "above" it; open where the limit is within U."""
+    """Verdict and reason on a strain below the limit, or above it; open where U holds the limit.
+
+    as_read: the case is a reading that the paper does not state.
+    """
     under, over = found.high < limit, found.low > limit
     if not (under or over):
-        why = f"The limit lies within the uncertainty of the number ({found.uncertainty:.2g})."
+        why = f"The limit lies within the uncertainty, {100 * found.uncertainty:.2g} %."
         return Verdict.UNKNOWN, why
     side = "below" if under else "above"
-    sure = "by more than" if found.uncertainty else "with"
-    amount = "its uncertainty" if found.uncertainty else "nothing left to converge"
-    return holds(under is below, as_read=as_read), f"It lies {side} the limit {sure} {amount}."
+    sure = "by more than its uncertainty" if found.uncertainty else "on every grid"
+    return holds(under is below, as_read=as_read), f"It lies {side} the limit {sure}."

@@ -14,7 +14,7 @@ from impactlab.analysis.verdicts import TOLERANCE
 
 SAYS = "N = 601 nodes are the least for convergence."
 TEST = (
-    f"Of each response f: |f(601) − f∞| + U ≤ {100 * TOLERANCE:g} % of f∞, and no smaller N of the study "
+    "Of each response f: |f(601) − f∞| + U ≤ 1 % of f∞, and no smaller N of the study "
     "does as well. f∞: Richardson's value, or where there is none that of the most nodes; U: its "
     "uncertainty (grid convergence index). PEEQ apart."
 )

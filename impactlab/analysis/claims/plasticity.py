@@ -41,13 +41,13 @@ ANYWHERE = (
 
 
 def strain(data: Data, reading: Reading, velocity: float) -> Number:
-    """The largest PEEQ there at a velocity (m/s). Raises UnjudgeableError where a run is missing."""
+    """The largest PEEQ there at a velocity (m/s). Raises UnknownError where a run is missing."""
     found = number(runs_of(data, reading.study), reading.response, velocity=velocity)
     return Number(f"PEEQ at {velocity:g} m/s", found.value, "1", found.uncertainty)
 
 
 def strains(data: Data, reading: Reading) -> Curve:
-    """The largest PEEQ there against the velocity. Raises UnjudgeableError where a run is missing."""
+    """The largest PEEQ there against the velocity. Raises UnknownError where a run is missing."""
     return against_velocity(data, reading.study, reading.response)
 
 

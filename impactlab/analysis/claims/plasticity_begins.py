@@ -10,7 +10,7 @@ from impactlab.analysis.claims.claim import (
     Data,
     Judgement,
     Number,
-    UnjudgeableError,
+    UnknownError,
     attempt,
     holds,
 )
@@ -33,7 +33,7 @@ def judge(data: Data) -> Iterable[Judgement]:
 def _judged(reading: Reading, data: Data) -> Judgement:
     below, above = plasticity.beginning(plasticity.strains(data, reading))
     if isnan(below) or isnan(above):
-        raise UnjudgeableError(f"the velocities of {reading.study} do not enclose the beginning")
+        raise UnknownError(f"the velocities of {reading.study} do not enclose the beginning")
     found = Number("velocity at first yield", 0.5 * (below + above), "m s-1", 0.5 * (above - below))
     low, high = BETWEEN
     stands = low <= below and above <= high

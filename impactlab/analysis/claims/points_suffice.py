@@ -13,7 +13,7 @@ from impactlab.analysis.verdicts import TOLERANCE
 
 SAYS = "P = 2 integration points over the depth are the least for convergence."
 TEST = (
-    f"Of each response f: |f(P) − f(most)| + U ≤ {100 * TOLERANCE:g} % of f(most), at 601 nodes. U: what "
+    "Of each response f: |f(P) − f(most)| + U ≤ 1 % of f(most), at 601 nodes. U: what "
     "f changes between the most points and the next fewer. What “P” counts is open: each reading "
     "has a row."
 )
@@ -46,7 +46,9 @@ def _judged(
     worst = max(errors, key=lambda error: error.high)
     stands = worst.high <= TOLERANCE
     literal = case.startswith(READINGS[0][0])
-    why = f"The largest is the {worst.name}, {100 * worst.value:.2g} %."
+    why = f"The {worst.name} is {100 * worst.value:,.1f} %."
+    if stands:
+        why = "Every error is within 1 %."
     return Judgement(case, errors, holds(stands, as_read=not literal), why)
 
 

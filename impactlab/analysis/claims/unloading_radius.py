@@ -9,7 +9,7 @@ from impactlab.analysis.claims.claim import (
     Data,
     Judgement,
     Number,
-    UnjudgeableError,
+    UnknownError,
     attempt,
     holds,
 )
@@ -36,7 +36,7 @@ def judge(data: Data) -> Iterable[Judgement]:
 
 
 def _printed() -> Judgement:
-    raise UnjudgeableError("The root in Eq. 17 is garbled: what it covers cannot be read.")
+    raise UnknownError("The root in Eq. 17 is garbled: what it covers cannot be read.")
 
 
 def _judged(case: str, exponent: float) -> Judgement:

@@ -23,6 +23,8 @@ EXPECTED = {
         "first_contact",
         "force_history",
         "force_indentation",
+        "displacement_history",
+        "contact_laws",
         "contact_duration",
         "plastic_strain",
         "plastic_strain_depth",

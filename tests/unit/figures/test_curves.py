@@ -133,7 +133,7 @@ def test_plastic_strain_over_the_depth_is_in_the_worst_section(velocity_study: S
     figure = CATALOGUE["plastic_strain_depth"].plot(runs, NONE)
     strain, depth = _xy(_curves(figure, "Hertz")["20 m/s"])
     stored = runs["equivalent_plastic_strain"].sel(velocity=20.0, contact="hertz")
-    assert strain.max() == pytest.approx(100 * float(stored.max()))
+    assert np.nanmax(strain) == pytest.approx(100 * float(stored.max()))
     np.testing.assert_allclose(depth, 1e3 * runs["z"])
     low, high = figure.axes[0].get_ylim()
     assert low > high  # downwards

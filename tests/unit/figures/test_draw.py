@@ -28,7 +28,7 @@ def study(velocity_study: Study) -> Study:
 def test_writes_what_applies_with_captions(study: Study, tmp_path: Path) -> None:
     names = ["first_contact", "force_history", "contact_duration", "parameter_effects"]
     written = draw_all(*study, tmp_path / "new" / "figures")
-    expected = [f"{name}.{kind}" for name in names for kind in ("svg", "png")]
+    expected = [f"{name}.{kind}" for name in names for kind in ("svg", "png", "csv", "nc")]
     assert [path.name for path in written] == [*expected, "captions.json"]
     assert sorted(path.name for path in written[0].parent.iterdir()) == sorted(
         [*expected, "captions.json"]
@@ -117,5 +117,5 @@ def test_threads_draw_the_same_figures(study: Study, tmp_path: Path) -> None:
     for thread in threads:
         thread.join()
     one, two = (sorted(folder.iterdir()) for folder in folders)
-    assert len(one) == 9
+    assert len(one) == 17
     assert [path.read_bytes() for path in one] == [path.read_bytes() for path in two]

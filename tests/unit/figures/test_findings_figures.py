@@ -38,7 +38,9 @@ def test_files_are_the_overview_and_each_check_with_curves(
     findings: xr.Dataset, outcomes: Outcomes, tmp_path: Path
 ) -> None:
     written = [path.name for path in draw_findings(findings, tmp_path)]
-    assert written == ["overview.svg", "overview.png", "bad.svg", "bad.png", "captions.json"]
+    kinds = ("svg", "png", "csv", "nc")
+    files = [f"{name}.{kind}" for name in ("overview", "bad") for kind in kinds]
+    assert written == [*files, "captions.json"]
     captions = json.loads((tmp_path / "captions.json").read_text("utf-8"))
     assert captions["bad"]["title"] == "A bad check"
     assert "a series & more" in captions["bad"]["caption"]
