@@ -113,7 +113,7 @@ def simulate(
 def studies(
     folder: Annotated[Path, typer.Argument(help="Where the study files lie.")] = Path("studies"),
 ) -> None:
-    """List the studies of a folder with their titles and number of runs or checks."""
+    """List a folder's studies with their number of runs or checks."""
     from impactlab.report.console import print_studies
     from impactlab.study.declaration import read_any
 
@@ -191,9 +191,9 @@ def verify(
         typer.Option("--exit-zero", help="End with exit code 0 although a check fails."),
     ] = False,
 ) -> None:
-    """Hold the solver against independent solutions; exit code 1 where a check fails.
+    """Hold the solver against independent solutions.
 
-    What was found is written all the same. Of a findings.nc the verdict is told again.
+    Exit code 1 where a check fails; what was found is written all the same. Of a findings.nc the verdict is told again.
     """
     from impactlab.report.console import print_outcomes
     from impactlab.study.checking import check, failure
@@ -220,7 +220,7 @@ def figures(
         Path | None, typer.Option(help="Default: figures/ beside the first of them.")
     ] = None,
 ) -> None:
-    """Draw every figure that the stored answers of a study, or the findings of checks, allow."""
+    """Draw every figure that a study's answers, or findings, allow."""
     from impactlab.report.kinds import read_stored
 
     kind, datasets = read_stored(stored)
@@ -256,7 +256,7 @@ def paper(
     ],
     output: Annotated[Path, typer.Option(help="A folder.")] = RESULTS / "paper",
 ) -> None:
-    """Answer the paper: its figures, and its statements put to the test on solved studies.
+    """Answer the paper: its figures, its statements tested on solved studies.
 
     A study that is not there leaves its figures out, and its statements unjudged.
     """

@@ -1,7 +1,7 @@
-"""The critical time step of the explicit scheme.
+"""The largest time steps, of each model of the beam and scheme in time.
 
-omega^2 <= 16 (EI)_q/(rho A dx^4) + k_c (1/(rho A dx) + 1/m_s); dt_critical = 2/omega
-(physics.md, in the place of the paper's bar-wave limit).
+The paper's beam by leapfrog: omega^2 <= 16 (EI)_q/(rho A dx^4) + k_c (1/(rho A dx) + 1/m_s);
+dt_critical = 2/omega (physics.md, in the place of the paper's bar-wave limit).
 """
 
 from __future__ import annotations
