@@ -256,7 +256,7 @@ def paper(
     ],
     output: Annotated[Path, typer.Option(help="A folder.")] = RESULTS / "paper",
 ) -> None:
-    """Answer the paper: its figures, its statements tested on solved studies.
+    """Answer the paper: its figures, its statements tested.
 
     A study that is not there leaves its figures out, and its statements unjudged.
     """
