@@ -111,8 +111,7 @@ def _bars(ax: Axes) -> Iterator[Points]:
         boxes = np.array([box.get_bbox().extents for box in bars], dtype=float).reshape(-1, 4)
         left, bottom, right, top = boxes.T
         if bars.orientation == "horizontal":
-            ends = np.where(left < 0.0, left, right)
-            x, y = ends, 0.5 * (bottom + top)
+            x, y = right, 0.5 * (bottom + top)
         else:
             x, y = 0.5 * (left + right), top
         yield "" if label.startswith("_") else label, x, y
