@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import (
     contact_duration,
+    contact_laws,
     first_contact,
     force_history,
     force_indentation,
@@ -42,6 +43,7 @@ class FigureFile(Protocol):
 
 
 _FILES: tuple[FigureFile, ...] = (
+    contact_laws,
     first_contact,
     force_history,
     force_indentation,

@@ -15,6 +15,8 @@ from impactlab.figures.reading.units import display
 
 TITLE = "Contact force against time"
 _FORCE = "contact_force"
+_WIDE = 3
+"""Up to so many columns a panel's title has room on one line."""
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -37,9 +39,10 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     selected, force = curves.chosen(runs, _FORCE), usable(runs, _FORCE)
     shown = [(panel, curve) for curve in selected.curves for panel in selected.panels]
     figure, axes = style.panels(len(shown), columns=len(selected.panels), height=21, sharex=True)
+    between = ", " if len(selected.panels) <= _WIDE else "\n"
     for ax, (panel, curve) in zip(axes, shown, strict=True):
         labels = (words.sentence(panel.label), curve.label)
-        ax.set_title(", ".join(filter(None, labels)), loc="left")
+        ax.set_title(between.join(filter(None, labels)), loc="left")
         _draw(ax, force.isel(selected.runs(panel, curve)), runs, curve)
     units = display(runs[_FORCE]).symbol, display(runs["time"]).symbol
     figure.supylabel(words.axis("contact force", units[0]))

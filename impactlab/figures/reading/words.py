@@ -17,6 +17,7 @@ _RULES = {
     "legendre": "Gauss-Legendre",
     "layers": "uniform layers",
 }
+_CONTACT = {"mjg": "MJG", "stronge_original": "Stronge (original)"}
 
 
 def response(name: str) -> str:
@@ -80,7 +81,7 @@ def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
 def _name(parameter: str, value: str) -> str:
     """A word of a study file as papers spell it; contact laws are named for people."""
     if parameter == "contact":
-        return "-".join(part.capitalize() for part in value.split("_"))
+        return _CONTACT.get(value, "-".join(part.capitalize() for part in value.split("_")))
     return _RULES.get(value, value.replace("_", " "))
 
 
