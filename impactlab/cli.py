@@ -193,7 +193,8 @@ def verify(
 ) -> None:
     """Hold the solver against independent solutions.
 
-    Exit code 1 where a check fails; what was found is written all the same. Of a findings.nc the verdict is told again.
+    Exit code 1 where a check fails; what was found is written all the same. Of a findings.nc the
+    verdict is told again.
     """
     from impactlab.report.console import print_outcomes
     from impactlab.study.checking import check, failure

@@ -14,6 +14,7 @@ from impactlab.figures import (
     first_contact,
     force_history,
     force_indentation,
+    force_indentation_by_law,
     nodes_convergence,
     parameter_effects,
     plastic_strain,
@@ -44,11 +45,12 @@ class FigureFile(Protocol):
 
 
 _FILES: tuple[FigureFile, ...] = (
+    contact_laws,
     first_contact,
     force_history,
     displacement_history,
     force_indentation,
-    contact_laws,
+    force_indentation_by_law,
     contact_duration,
     plastic_strain,
     plastic_strain_depth,

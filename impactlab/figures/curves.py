@@ -37,16 +37,19 @@ def look(curve: Choice) -> dict[str, Any]:
     Later curves lie below, for they are the larger ones where the values rise.
     """
     colour, line = curve.place
+    again = colour // len(style.COLOURS)  # one further each time round
     return {
         "color": style.COLOURS[colour % len(style.COLOURS)],
-        "linestyle": style.LINES[line % len(style.LINES)],
+        "linestyle": style.LINES[(line + again) % len(style.LINES)],
         "zorder": 3.0 - 0.01 * colour - 0.001 * line,
     }
 
 
 def marked(curve: Choice) -> dict[str, Any]:
     """The look with markers, for few points."""
-    return look(curve) | {"marker": style.MARKERS[curve.place[1] % len(style.MARKERS)]}
+    colour, line = curve.place
+    again = colour // len(style.COLOURS)
+    return look(curve) | {"marker": style.MARKERS[(line + again) % len(style.MARKERS)]}
 
 
 def draw(

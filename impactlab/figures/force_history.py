@@ -17,6 +17,8 @@ TITLE = "Contact force against time"
 _FORCE = "contact_force"
 _FEW, _MANY = 32.0, 21.0
 """Height of a row of few or many, mm."""
+_WIDE = 3
+"""Up to so many columns a panel's title has room on one line."""
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -42,9 +44,10 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     figure, axes = style.panels(
         len(shown), columns=len(selected.panels), height=height, sharex=True
     )
+    between = ", " if len(selected.panels) <= _WIDE else "\n"
     for ax, (panel, curve) in zip(axes, shown, strict=True):
         labels = (words.sentence(panel.label), curve.label)
-        ax.set_title(", ".join(filter(None, labels)), loc="left")
+        ax.set_title(between.join(filter(None, labels)), loc="left")
         _draw(ax, force.isel(selected.runs(panel, curve)), runs, curve)
     units = display(runs[_FORCE]).symbol, display(runs["time"]).symbol
     figure.supylabel(words.axis("contact force", units[0]))

@@ -31,7 +31,7 @@ ANSWERS = (
     Answer("5c", "fig05", "displacement_history"),
     Answer("6a", "fig06_nodes", "nodes_convergence"),
     Answer("6b", "fig06_points", "points_convergence"),
-    Answer("7", "fig07", "contact_laws"),
+    Answer("7", "fig07", "force_indentation_by_law"),
     Answer("8", "fig08", "contact_duration"),
     Answer("10a", "fig10", "plastic_strain"),
     Answer("10b", "fig10", "plastic_strain_depth"),

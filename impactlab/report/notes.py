@@ -41,13 +41,12 @@ def _about_the_end(runs: xr.Dataset) -> bool:
 def _about(law: str) -> str:
     """What a contact law does that it should not, and what of it is in doubt."""
     about = ABOUT[law]
-    flaws = f" {about.flaws} This is the law, not the solver; the energy balance accounts for it."
-    doubts = f" Not confirmed: {about.unconfirmed}."
-    return (
-        f"Contact law “{law}” ({about.title})."
-        + flaws * bool(about.flaws)
-        + doubts * bool(about.unconfirmed)
-    )
+    parts = [f"Contact law “{law}” ({about.title}).", about.flaws]
+    if "energy" in about.flaws:
+        parts.append("This is the law, not the solver; the energy balance accounts for it.")
+    if about.unconfirmed:
+        parts.append(f"Not confirmed: {about.unconfirmed}.")
+    return " ".join(filter(None, parts))
 
 
 _AT_THE_END = ("rebound_velocity", "restitution", "impulse", "permanent_indentation")

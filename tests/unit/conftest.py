@@ -10,6 +10,8 @@ import pytest
 import xarray as xr
 
 from impactlab.dataset import RESPONSES, described
+from impactlab.kernels.contact import LAWS
+from impactlab.kernels.status import OUTSIDE_CONTACT_LAW
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import flatten
@@ -132,6 +134,16 @@ def velocity_study() -> Study:
     }
     design = _design(varied, study="velocity", method="grid", histories=1, profiles=1)
     runs = _with_histories(_with_answers(design))
+    return runs, xr.Dataset(attrs=runs.attrs)
+
+
+@pytest.fixture
+def laws_study() -> Study:
+    """Three velocities by eight contact laws, with histories; some runs beyond a law's range."""
+    varied = {"velocity": [0.1, 1.0, 10.0], "contact": list(LAWS)}
+    design = _design(varied, study="laws", method="grid", histories=1, profiles=0)
+    runs = _with_histories(_with_answers(design)).drop_vars("equivalent_plastic_strain")
+    runs["status"].loc[{"velocity": 10.0, "contact": "kogut_etsion"}] = OUTSIDE_CONTACT_LAW
     return runs, xr.Dataset(attrs=runs.attrs)
 
 

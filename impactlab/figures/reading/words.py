@@ -12,13 +12,13 @@ from impactlab.figures.reading.units import display
 from impactlab.model.parameters import PARAMETERS
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_ACRONYMS = {"mjg": "MJG"}
 _SPELLED = {
     "lobatto": "Gauss-Lobatto",
     "legendre": "Gauss-Legendre",
     "layers": "uniform layers",
     "semi_implicit": "semi-implicit",
 }
+_NAMES = {"mjg": "MJG", "stronge_original": "Stronge (original)"}
 
 
 def response(name: str) -> str:
@@ -82,7 +82,7 @@ def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
 def _name(parameter: str, value: str) -> str:
     """A word of a study file as papers spell it; laws and beam models are named for people."""
     if parameter in ("contact", "beam_model"):
-        return _ACRONYMS.get(value) or "-".join(part.capitalize() for part in value.split("_"))
+        return _NAMES.get(value) or "-".join(part.capitalize() for part in value.split("_"))
     return _SPELLED.get(value, value.replace("_", " "))
 
 

@@ -6,6 +6,8 @@ from typing import Any
 
 import xarray as xr
 
+from impactlab.kernels.contact import LAWS
+from impactlab.kernels.contact.about import ABOUT
 from impactlab.report.cautions import cautions
 from impactlab.report.notes import NOTES, notes
 
@@ -70,6 +72,17 @@ def test_notes_on_the_contact_law(velocity_study: Study) -> None:
     assert _said(notes(runs), words)
     assert not _said(notes(runs.sel(contact=["hertz"])), words)
     assert _said(notes(runs.sel(contact="stronge")), words)
+
+
+def test_notes_say_what_of_a_law_is_not_confirmed(laws_study: Study) -> None:
+    runs, _ = laws_study
+    doubted = [law for law in LAWS if ABOUT[law].unconfirmed]
+    assert len(doubted) == 6
+    for law in doubted:
+        said = [text for text in notes(runs.sel(contact=[law])) if f"“{law}”" in text]
+        assert len(said) == 1
+        assert f"Not confirmed: {ABOUT[law].unconfirmed}." in said[0]
+    assert not _said(notes(runs.sel(contact=["hertz", "stronge"])), "Not confirmed")
 
 
 def test_notes_on_responses(velocity_study: Study) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -90,6 +91,12 @@ def test_every_law_has_its_file_its_entry_and_its_reference():
         assert about.title
         assert about.source
         assert about.holds
+
+
+@every_law
+def test_the_page_has_every_law(law):
+    page = Path(__file__).parents[4] / "docs" / "contact_laws.md"
+    assert page.read_text(encoding="utf-8").count(f"`{law}`") >= 2
 
 
 @every_law
