@@ -19,10 +19,13 @@ _CURVES = {
     "indentation": "indentation",
 }
 
+_WIDE = 3
+
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Whether the study kept histories."""
-    return all(name in runs for name in _CURVES)
+    """Whether the study kept histories, of no more contact laws than panels fit side by side."""
+    kept = all(name in runs for name in _CURVES)
+    return kept and len(curves.chosen(runs, next(iter(_CURVES))).panels) <= _WIDE
 
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:

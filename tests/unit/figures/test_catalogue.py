@@ -32,7 +32,6 @@ EXPECTED = {
     },
     "laws_study": {
         "contact_laws",
-        "displacement_history",
         "force_indentation_by_law",
         "first_contact",
         "force_history",
