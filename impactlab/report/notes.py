@@ -34,6 +34,10 @@ def _few_lobatto_points(runs: xr.Dataset) -> bool:
     return few and _holds(runs, "rule", "lobatto")
 
 
+def _about_the_end(runs: xr.Dataset) -> bool:
+    return any(name in runs for name in _AT_THE_END)
+
+
 def _about(law: str) -> str:
     """What a contact law does that it should not, and what of it is in doubt."""
     about = ABOUT[law]
