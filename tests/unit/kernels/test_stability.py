@@ -10,7 +10,7 @@ from impactlab.dataset import STATUS_FLAGS
 from impactlab.kernels.contact import LAWS
 from impactlab.kernels.contact.history import make_pair
 from impactlab.kernels.section import make_section
-from impactlab.kernels.stability import critical_time_step, stiffest_contact
+from impactlab.kernels.stability import _stiffness, critical_time_step, stiffest_contact
 from impactlab.model.parameters import with_values
 from impactlab.reference import hertz
 from impactlab.reference.contact_laws import joints, law_on_half_space
@@ -118,6 +118,23 @@ def test_stiffest_contact_of_every_law(make_case, contact, velocity):
         assert 0.97 * stiffness_of(law, deepest) <= k_c
         if contact != "stronge_original":
             assert k_c <= 1.03 * stiffness_of(law, 1.25 * deepest)
+
+
+@pytest.mark.parametrize("contact", LAWS)
+def test_a_jump_within_the_difference_is_no_stiffness(make_case, contact):
+    """At the limits of regimes, where a difference over the jump would be hundreds of F/delta."""
+    pair = make_pair(make_case(contact=contact))
+    law = law_on_half_space(il.paper_impact(contact=contact))
+    for joint in joints(*law.pair):
+        for share in (-0.5e-4, 0.5e-4):
+            delta = joint * (1.0 + share)
+            start, end, n = law.unloading(delta)
+            F = law.loading_force(delta)
+            unloading = n * start / (delta - end)
+            turning = 1000.0 * (F - start) ** 2 / (F * delta)
+            assert _stiffness(pair, delta) < max(
+                3.0 * F / delta, 1.001 * unloading, 1.001 * turning
+            )
 
 
 @pytest.mark.parametrize("nodes", [11, 21, 101])
