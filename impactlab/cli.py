@@ -77,6 +77,9 @@ def simulate(
         str, typer.Option(help="Impact velocity, such as 0.99 or '99 cm/s'.")
     ] = "0.99",
     contact: Annotated[str, typer.Option(help="Contact law.")] = "stronge",
+    beam_model: Annotated[
+        str, typer.Option(help="euler_bernoulli, elastic, timoshenko, spring_mass or rigid.")
+    ] = "euler_bernoulli",
     nodes: Annotated[int, typer.Option(help="Nodes along the span, odd.")] = 601,
     points: Annotated[int, typer.Option(help="Integration points over the depth.")] = 9,
     rule: Annotated[str, typer.Option(help="lobatto, legendre or layers.")] = "lobatto",
@@ -89,11 +92,14 @@ def simulate(
     ] = None,
 ) -> None:
     """Solve one impact on the paper's beam and print its responses."""
+    from dataclasses import replace
+
     from impactlab.model.discretisation import Discretisation
     from impactlab.model.paper import paper_impact
     from impactlab.report.console import print_responses
 
     impact = paper_impact(given("--velocity", velocity, "m s-1"), contact)
+    impact = replace(impact, beam_model=beam_model)
     grid = Discretisation(nodes=nodes, points=points, rule=rule, scheme=scheme)
     seconds = given("--duration", duration, "s")
     if output is None:

@@ -137,6 +137,7 @@ def test_help_is_not_cut_short(tmp_path):
     [
         (["simulate", "--nodes", "600"], ["nodes", "600", "odd"]),
         (["simulate", "--scheme", "newmark"], ["scheme", "newmark", "leapfrog", "semi_implicit"]),
+        (["simulate", "--beam-model", "string"], ["beam_model", "string", "timoshenko", "rigid"]),
         (["simulate", "--contact", "glue"], ["contact", "glue", "hertz", "stronge"]),
         (["simulate", "--velocity", "3 kg"], ["velocity", "3 kg", "m/s"]),
         (["simulate", "--duration", "-1 ms"], ["duration", "-0.001"]),
