@@ -21,6 +21,7 @@ from impactlab.figures import (
     plastic_strain_depth,
     points_convergence,
     response_distributions,
+    shear,
     sobol_indices,
     sobol_second_order,
 )
@@ -54,6 +55,7 @@ _FILES: tuple[FigureFile, ...] = (
     contact_duration,
     plastic_strain,
     plastic_strain_depth,
+    shear,
     parameter_effects,
     nodes_convergence,
     points_convergence,

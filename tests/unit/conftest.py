@@ -148,6 +148,22 @@ def laws_study() -> Study:
 
 
 @pytest.fixture
+def shear_study() -> Study:
+    """Two velocities by four depths, with and without shear: changes of 0.3 to 19 %."""
+    varied = {
+        "velocity": [0.25, 5.0],
+        "beam_depth": [0.01, 0.02, 0.04, 0.08],
+        "beam_model": ["elastic", "timoshenko"],
+    }
+    design = _design(varied, study="shear", method="grid", histories=0, profiles=0)
+    runs = _with_answers(design)
+    part = xr.where(runs["beam_model"] == "timoshenko", 0.3 * runs["beam_depth"], 0.0)
+    runs["peak_force"] = runs["peak_force"] * (1.0 - part)
+    runs["contact_duration"] = runs["contact_duration"] * (1.0 + 8.0 * part)
+    return described(runs), xr.Dataset(attrs=runs.attrs)
+
+
+@pytest.fixture
 def material_study() -> Study:
     """Yield stress by hardening by Young's modulus, responses alone."""
     varied = {

@@ -40,6 +40,7 @@ EXPECTED = {
         "parameter_effects",
     },
     "material_study": {"parameter_effects"},
+    "shear_study": {"shear", "parameter_effects"},
     "discretisation_study": {"nodes_convergence", "points_convergence"},
     "sobol_study": {"response_distributions", "sobol_indices", "sobol_second_order"},
 }

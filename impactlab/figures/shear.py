@@ -1,0 +1,155 @@
+"""What shear and rotary inertia change, against depth over span and against the contact's share."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from impactlab.figures import curves, responses_grid, scales, style
+from impactlab.figures.reading import missing, words
+from impactlab.figures.reading.contents import is_sample, usable
+from impactlab.figures.reading.plan import Choice, Plan, plan
+from impactlab.model.beam import Beam
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.paper import paper_impact
+from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.reference.shear import impact_share
+
+TITLE = "When shear matters"
+THRESHOLD = 1.0
+"""Changes that matter, %."""
+_FEWEST = 3
+_WIDE = 10.0
+"""Largest change in % up to which an axis is linear."""
+_WITHOUT, _WITH = "elastic", "timoshenko"
+_PEAK, _DURATION = "peak_force", "contact_duration"
+_NAMES = (_PEAK, _DURATION)
+_BEAM = [name for name, entry in PARAMETERS.items() if entry.path[:2] == ("impact", "beam")]
+
+Array = NDArray[np.float64]
+
+
+def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Whether a grid has three depths or more, each with and without shear, neither yielding."""
+    if is_sample(runs) or not all(name in runs for name in _NAMES):
+        return False
+    models = runs["beam_model"].values.tolist() if "beam_model" in runs.sizes else []
+    return runs.sizes.get("beam_depth", 0) >= _FEWEST and {_WITHOUT, _WITH} <= set(models)
+
+
+def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    """What is shown, when it matters by the data, what is held and missing."""
+    found = " ".join(filter(None, (_finding(runs, name) for name in _NAMES)))
+    return (
+        "Relative change by shear and rotary inertia: a Timoshenko beam over an Euler-Bernoulli "
+        "one, neither yielding, minus one. Below, the same changes against how much shear and "
+        "rotary inertia slow the wave that turns by π during the contact, which goes with depth "
+        "over contact duration: if it decided alone, the curves would coincide. Grey: changes of "
+        f"{words.number(THRESHOLD)} %. {found} {_plan(runs).note(runs)} "
+        f"{missing.note(runs, _NAMES)}".strip()
+    )
+
+
+@style.paper
+def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """A column a response: against depth over span above, against the share below."""
+    selected = _plan(runs)
+    figure, axes = style.panels(4, columns=2, height=55)
+    for at, name in enumerate(_NAMES):
+        above, below = axes[at], axes[at + 2]
+        for curve in selected.curves:
+            slenderness, share, change = _curve(runs, name, selected.held | curve.where)
+            _draw(above, slenderness, change, curve)
+            _draw(below, share, change, curve)
+        for ax in (above, below):
+            ax.set_ylabel(words.axis(f"change of {words.response(name)}", "%"))
+            _finish(ax)
+        above.set_xlabel(words.axis("depth of the beam over its span", ""))
+        below.set_xlabel(words.axis("slowing of the wave of the contact", "%"))
+    style.legend(figure, selected.title(), selected.labels())
+    return figure
+
+
+def _plan(runs: xr.Dataset) -> Plan:
+    return plan(runs, _PEAK, along=["beam_depth", "beam_model"])
+
+
+def _curve(runs: xr.Dataset, name: str, where: dict[str, int]) -> tuple[Array, Array, Array]:
+    """Depth over span, the contact's share in % (NaN without a contact) and the change in %."""
+    run = runs.isel(where)
+    values, durations = usable(run, name), usable(run, _DURATION).sel(beam_model=_WITHOUT)
+    change = values.sel(beam_model=_WITH) / values.sel(beam_model=_WITHOUT) - 1.0
+    plain = run.sel(beam_model=_WITHOUT)
+    beams = [_beam(plain.isel(beam_depth=at)) for at in range(run.sizes["beam_depth"])]
+    share = [
+        100.0 * impact_share(beam, duration) if duration > 0 else np.nan
+        for beam, duration in zip(beams, durations.values.tolist(), strict=True)
+    ]
+    return (
+        np.array([beam.depth / beam.span for beam in beams]),
+        np.array(share),
+        100 * change.values,
+    )
+
+
+def _beam(run: xr.Dataset) -> Beam:
+    values = {name: float(run[name]) for name in _BEAM if name in run.coords}
+    return with_values(paper_impact(), Discretisation(), values)[0].beam
+
+
+def _draw(ax: Axes, x: Array, y: Array, curve: Choice) -> None:
+    """In the order of x: a contact of two pushes is long, so that the share need not rise."""
+    if np.isfinite(x + y).any():
+        ax.plot(x, y, label=curve.label or "_only", **curves.marked(curve))
+
+
+def _finish(ax: Axes) -> None:
+    """Scales for what is drawn, then the thresholds."""
+    if not ax.lines:
+        responses_grid.empty(ax, "no finite values")
+        return
+    scales.logarithmic(ax, "x", np.concatenate([np.asarray(line.get_xdata()) for line in ax.lines]))
+    drawn = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
+    if np.nanmax(abs(drawn)) > _WIDE:
+        ax.set_yscale("symlog", linthresh=THRESHOLD)
+        scales.at(ax, "y", _ticks(drawn))
+    else:
+        scales.linear(ax, "y")
+    low, high = min(0.0, np.nanmin(drawn)), max(0.0, np.nanmax(drawn))
+    ax.set_ylim(1.3 * low, 1.3 * high)  # from no change on
+    for sign in (-1.0, 1.0):
+        if (sign * drawn > 0).any():
+            ax.axhline(sign * THRESHOLD, label="_guide", linestyle=(0, (4, 2)), **style.GUIDE)
+
+
+def _ticks(drawn: Array) -> list[float]:
+    """Zero and powers of ten, with twice and five times of each, on the sides that are drawn."""
+    steps = [first * 10.0**power for power in range(4) for first in (1.0, 2.0, 5.0)]
+    low, high = min(0.0, np.nanmin(drawn)), max(0.0, np.nanmax(drawn))
+    both = [0.0, *steps, *(-step for step in steps)]
+    return [tick for tick in sorted(both) if low <= tick <= high]
+
+
+def _finding(runs: xr.Dataset, name: str) -> str:
+    """In numbers, of the drawn curves: the change, where it matters, and the share."""
+    selected = _plan(runs)
+    found = [_curve(runs, name, selected.held | curve.where) for curve in selected.curves]
+    slenderness, share, change = (np.concatenate(part) for part in zip(*found, strict=True))
+    known = np.isfinite(change + share)
+    if not known.any():
+        return ""
+    matters = known & (abs(change) >= THRESHOLD)
+    where = f" (depth over span {_range(slenderness[matters])})" if matters.any() else ""
+    return (
+        f"The {words.response(name)} changes by {_range(change[known])} %, by "
+        f"{words.number(THRESHOLD)} % or more in {matters.sum()} of {known.sum()} impacts{where}, "
+        f"while the slowing goes from {_range(share[known])} %."
+    )
+
+
+def _range(values: Array) -> str:
+    low, high = words.number(float(values.min()), 2), words.number(float(values.max()), 2)
+    return low if low == high else f"{low} to {high}"
