@@ -10,6 +10,7 @@ import numpy as np
 
 from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
 from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
+from impactlab.kernels.apart import compile_apart
 from impactlab.kernels.case import CASE, REAL, WHOLE
 from impactlab.kernels.contact import LAWS
 from impactlab.kernels.leapfrog import run_all
@@ -30,6 +31,11 @@ _NUMBERED = {
     "rule": RULES,
     "scheme": SCHEMES,
 }
+_COMPILE = """
+import impactlab as il
+from impactlab.simulate import case_table, solve
+solve(case_table(il.paper_impact(), il.Discretisation(nodes=5), duration=1e-6))
+"""
 
 
 @dataclass(frozen=True)
@@ -148,6 +154,7 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
     deflection = np.full((runs, half), np.nan)
     strains = np.full((2, runs, half, fibres), np.nan)
+    compile_apart("leapfrog.run_all", _COMPILE)
     run_all(cases, responses, histories, deflection, strains[0], strains[1])
     return Answers(
         responses,

@@ -27,16 +27,17 @@ SOURCES_HASH = sources_hash()
 """Hash of the kernels that this process runs: the same hash, the same numbers."""
 
 
-_CACHE = cache_folder(SOURCES_HASH)
+CACHE = cache_folder(SOURCES_HASH)
+"""The folder of this process's compiled kernels; None: they cannot be kept."""
 
 
 def _jit(function: Function, fastmath: Any) -> Function:
     config: Any = numba.config  # numba's types do not list its settings
     before = config.CACHE_DIR
-    config.CACHE_DIR = str(_CACHE or "")
+    config.CACHE_DIR = str(CACHE or "")
     try:
         jit: Any = numba.njit(
-            cache=_CACHE is not None, nogil=True, error_model="numpy", fastmath=fastmath
+            cache=CACHE is not None, nogil=True, error_model="numpy", fastmath=fastmath
         )
         return cast(Function, jit(function))
     finally:
