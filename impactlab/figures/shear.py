@@ -24,7 +24,7 @@ THRESHOLD = 1.0
 _FEWEST = 3
 _WIDE = 10.0
 """Largest change in % up to which an axis is linear."""
-_WITHOUT, _WITH = "elastic", "timoshenko"
+_WITHOUT, _WITH = "euler_bernoulli", "timoshenko"
 _PEAK, _DURATION = "peak_force", "contact_duration"
 _NAMES = (_PEAK, _DURATION)
 _BEAM = [name for name, entry in PARAMETERS.items() if entry.path[:2] == ("impact", "beam")]

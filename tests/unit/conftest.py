@@ -153,7 +153,7 @@ def shear_study() -> Study:
     varied = {
         "velocity": [0.25, 5.0],
         "beam_depth": [0.01, 0.02, 0.04, 0.08],
-        "beam_model": ["elastic", "timoshenko"],
+        "beam_model": ["euler_bernoulli", "timoshenko"],
     }
     design = _design(varied, study="shear", method="grid", histories=0, profiles=0)
     runs = _with_answers(design)

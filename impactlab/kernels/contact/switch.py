@@ -57,7 +57,8 @@ def _link_limit(number: int, chosen: Limit, others: Limit) -> Limit:
 
 curve: Curve = _no_curve
 limit: Limit = _no_limit
-for _number, _file in enumerate(_FILES):
+# the first laws are asked for first
+for _number, _file in reversed(list(enumerate(_FILES))):
     curve = _link_curve(_number, _file.curve, curve)
     limit = _link_limit(_number, _file.limit, limit)
 """curve(law, delta, E, R, S_y, nu) -> (F, K, delta_r, n); limit(law, E, R, S_y, nu) -> m: those of

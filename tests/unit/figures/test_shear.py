@@ -33,7 +33,7 @@ def test_changes_in_per_cent_against_depth_over_span(shear_study):
 def test_below_the_same_against_the_share_of_the_contact_without_shear(shear_study):
     runs, _ = shear_study
     x, y = _curve(FIGURE.plot(runs, NONE).axes[2], "0.25 m/s")
-    durations = runs["contact_duration"].sel(velocity=0.25, beam_model="elastic").values
+    durations = runs["contact_duration"].sel(velocity=0.25, beam_model="euler_bernoulli").values
     beams = [replace(paper_impact().beam, depth=depth) for depth in DEPTHS.tolist()]
     shares = [impact_share(beam, time) for beam, time in zip(beams, durations, strict=True)]
     assert x == pytest.approx(100.0 * np.array(shares))
