@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Whether a grid has three depths or more, each with and without shear, neither yielding."""
+    """Whether a grid has three depths or more, each with and without shear."""
     if is_sample(runs) or not all(name in runs for name in _NAMES):
         return False
     models = runs["beam_model"].values.tolist() if "beam_model" in runs.sizes else []
@@ -45,7 +45,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     found = " ".join(filter(None, (_finding(runs, name) for name in _NAMES)))
     return (
         "Relative change by shear and rotary inertia: a Timoshenko beam over an Euler-Bernoulli "
-        "one, neither yielding, minus one. Below, the same changes against how much shear and "
+        "one, minus one. Below, the same changes against how much shear and "
         "rotary inertia slow the wave that turns by π during the contact, which goes with depth "
         "over contact duration: if it decided alone, the curves would coincide. Grey: changes of "
         f"{words.number(THRESHOLD)} %. {found} {_plan(runs).note(runs)} "
