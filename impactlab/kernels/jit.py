@@ -31,13 +31,16 @@ CACHE = cache_folder(SOURCES_HASH)
 """The folder of this process's compiled kernels; None: they cannot be kept."""
 
 
-def _jit(function: Function, fastmath: Any) -> Function:
+def _jit(function: Function, fastmath: Any, kept: bool = True) -> Function:
     config: Any = numba.config  # numba's types do not list its settings
     before = config.CACHE_DIR
     config.CACHE_DIR = str(CACHE or "")
     try:
         jit: Any = numba.njit(
-            cache=CACHE is not None, nogil=True, error_model="numpy", fastmath=fastmath
+            cache=kept and CACHE is not None,
+            nogil=True,
+            error_model="numpy",
+            fastmath=fastmath,
         )
         return cast(Function, jit(function))
     finally:
@@ -57,3 +60,13 @@ def vectorised(function: Function) -> Function:
 def ordered(function: Function) -> Function:
     """Like `compiled`, free to fuse a product with a sum, but not to reorder sums."""
     return _jit(function, fastmath={"contract"})
+
+
+def linked(function: Function, number: int) -> Function:
+    """Like `compiled`, for a function made within another; `number` sets it apart from its like.
+
+    It is kept in its callers' code alone: numba tells functions apart by their names, both in its
+    cache and where it links code from there, and would take one for another.
+    """
+    function.__qualname__ = function.__name__ = f"{function.__name__}_{number}"
+    return _jit(function, False, kept=False)

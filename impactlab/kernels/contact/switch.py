@@ -13,7 +13,7 @@ from types import ModuleType
 import numpy as np
 
 from impactlab.kernels.contact import LAWS
-from impactlab.kernels.jit import compiled
+from impactlab.kernels.jit import compiled, linked
 from impactlab.kernels.types import Curve
 
 Limit = Callable[..., float]
@@ -29,7 +29,6 @@ def _no_curve(
 
 
 def _link_curve(number: int, chosen: Curve, others: Curve) -> Curve:
-    @compiled
     def curve(
         law: int, delta: float, E: float, R: float, S_y: float, nu: float
     ) -> tuple[float, float, float, float]:
@@ -37,7 +36,7 @@ def _link_curve(number: int, chosen: Curve, others: Curve) -> Curve:
             return chosen(delta, E, R, S_y, nu)
         return others(law, delta, E, R, S_y, nu)
 
-    return curve
+    return linked(curve, number)
 
 
 @compiled
@@ -46,13 +45,12 @@ def _no_limit(law: int, E: float, R: float, S_y: float, nu: float) -> float:
 
 
 def _link_limit(number: int, chosen: Limit, others: Limit) -> Limit:
-    @compiled
     def limit(law: int, E: float, R: float, S_y: float, nu: float) -> float:
         if law == number:
             return chosen(E, R, S_y, nu)
         return others(law, E, R, S_y, nu)
 
-    return limit
+    return linked(limit, number)
 
 
 curve: Curve = _no_curve
