@@ -7,12 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.dataset import HISTORIES, PROFILES, RESPONSES
-from impactlab.kernels import BEAM_MODELS, SCHEMES
-from impactlab.study.storage import Form
-
 _COST = 3e8
-"""Node-steps a batch, at most: about a second."""
+"""Of a batch, at most, in node-steps: about a second."""
 _VALUES = 20_000_000
 """Stored numbers a batch, at most: bounds the memory of a task."""
 _A_WORKER = 4
@@ -20,15 +16,17 @@ _A_WORKER = 4
 
 
 def batches(
-    cases: np.ndarray[Any, Any], runs: list[int], form: Form, workers: int
+    cost: np.ndarray[Any, Any], values: int, runs: list[int], workers: int
 ) -> Iterator[list[int]]:
-    """The numbers of `runs` in consecutive batches of about equal cost."""
-    cost = node_steps(cases[runs])
-    limit = min(_COST, cost.sum() / (_A_WORKER * workers))
-    most = max(1, _VALUES // _values_a_run(cases, form))
+    """The numbers of `runs` in consecutive batches of about equal cost.
+
+    cost: of each of all runs, in node-steps; values: stored numbers a run.
+    """
+    limit = min(_COST, cost[runs].sum() / (_A_WORKER * workers))
+    most = max(1, _VALUES // values)
     batch: list[int] = []
     spent = 0.0
-    for run, price in zip(runs, cost, strict=True):
+    for run, price in zip(runs, cost[runs].tolist(), strict=True):
         if batch and (spent + price > limit or len(batch) >= most):
             yield batch
             batch, spent = [], 0.0
@@ -36,23 +34,3 @@ def batches(
         spent += price
     if batch:
         yield batch
-
-
-def node_steps(cases: Any) -> Any:
-    """Estimated cost of a run, or of each: half the nodes times the time steps.
-
-    Their largest is that of bending for the paper's beam by leapfrog; half a bar wave's for the
-    semi-implicit scheme and, roughly, for the other models of the beam.
-    """
-    dx = cases["beam_span"] / (cases["nodes"] - 1)
-    wave = 0.5 * dx * np.sqrt(cases["beam_density"] / cases["beam_youngs_modulus"])
-    bending = wave * dx * np.sqrt(12.0) / cases["beam_depth"]
-    bends = cases["beam_model"] <= BEAM_MODELS.index("elastic")
-    bends = bends & (cases["scheme"] == SCHEMES.index("leapfrog"))
-    largest = np.where(bends, bending, wave)
-    return 0.5 * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
-
-
-def _values_a_run(cases: np.ndarray[Any, Any], form: Form) -> int:
-    profile = int(cases[0].nodes) * int(cases[0].points) if form.profiles else 0
-    return len(RESPONSES) + len(HISTORIES) * form.samples + len(PROFILES) * profile

@@ -13,12 +13,11 @@ import xarray as xr
 from distributed import as_completed
 
 from impactlab.dataset import status_bits
-from impactlab.kernels.jit import SOURCES_HASH
-from impactlab.simulate import Answers, solve
+from impactlab.simulate import Answers
 from impactlab.study.batches import batches
 from impactlab.study.engine import Engine
-from impactlab.study.labels import design_cases, labelled
 from impactlab.study.progress import Progress
+from impactlab.study.solvers import SOLVERS, solver_of
 from impactlab.study.storage import Form, Shards, run_keys
 
 log = logging.getLogger(__name__)
@@ -38,23 +37,25 @@ def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Datas
     Raises ValueError when the model refuses a run, OSError when the disk is full or when no
     scheduler answers.
     """
-    cases = design_cases(design)
+    name = solver_of(design)
+    solver = SOLVERS[name]
+    cases = solver.cases(design)
     samples = int(design.attrs["samples"]) if design.attrs["histories"] else 0
     form = Form(samples, bool(design.attrs["profiles"]))
-    keys = run_keys(cases, form)
-    shards = Shards(shards_folder, form)
+    keys = run_keys(cases, form, solver.VERSION)
+    shards = Shards(shards_folder, form, solver.RESPONSE, solver.VERSION)
     known, parts = _known(shards)
     first_of = {key: run for run, key in reversed(list(enumerate(keys)))}
     missing = sorted(run for key, run in first_of.items() if key not in known)
     log.info("%d runs, %d of them solved before", len(keys), len(keys) - len(missing))
-    for runs, answers in _solved(cases, missing, form, engine):
+    for runs, answers in _solved(name, cases, missing, form, engine):
         shards.write([keys[run] for run in runs], answers)
         known |= {keys[run]: (len(parts), row) for row, run in enumerate(runs)}
         parts.append(answers)
     answers = gather(parts, [known[key] for key in keys])
     if len(parts) > 1:
         shards.replace_all(list(known), gather(parts, list(known.values())))
-    return labelled(design, answers)
+    return solver.labelled(design, answers)
 
 
 def gather(parts: list[Answers], places: list[tuple[int, int]]) -> Answers:
@@ -73,13 +74,13 @@ def gather(parts: list[Answers], places: list[tuple[int, int]]) -> Answers:
     )
 
 
-def solve_batch(cases: Array, form: Form, sources_hash: str) -> Answers:
-    """The task that dask runs. Raises RuntimeError where the kernels are not the caller's."""
-    if sources_hash != SOURCES_HASH:
+def solve_batch(solver: str, cases: Array, form: Form, version: str) -> Answers:
+    """The task that dask runs. Raises RuntimeError where the solver is not the caller's."""
+    if version != SOLVERS[solver].VERSION:
         raise RuntimeError(
             "this dask worker has another version of impactlab: install the same one on all of them"
         )
-    return solve(cases, samples=form.samples, profiles=form.profiles)
+    return SOLVERS[solver].solve(cases, form)
 
 
 def _known(shards: Shards) -> tuple[dict[bytes, tuple[int, int]], list[Answers]]:
@@ -93,13 +94,16 @@ def _known(shards: Shards) -> tuple[dict[bytes, tuple[int, int]], list[Answers]]
 
 
 def _solved(
-    cases: Array, runs: list[int], form: Form, engine: Engine
+    name: str, cases: Array, runs: list[int], form: Form, engine: Engine
 ) -> Iterator[tuple[list[int], Answers]]:
     """Batches of runs with their answers, in the order in which they finish."""
     if not runs:
         return
-    solve(cases[:0], samples=form.samples)  # compiles once, before the workers ask for it
-    waiting = batches(cases, runs, form, engine.workers)
+    solver = SOLVERS[name]
+    solver.solve(
+        cases[:0], Form(form.samples, profiles=False)
+    )  # compiles before workers ask for it
+    waiting = batches(solver.cost(cases), solver.values(cases, form), runs, engine.workers)
     under_way: dict[Any, list[int]] = {}
     with (
         engine.client() as client,
@@ -107,7 +111,9 @@ def _solved(
     ):
 
         def submit(batch: list[int]) -> Any:
-            future = client.submit(solve_batch, cases[batch], form, SOURCES_HASH, pure=False)
+            future = client.submit(
+                solve_batch, name, cases[batch], form, solver.VERSION, pure=False
+            )
             under_way[future.key] = batch
             return future
 

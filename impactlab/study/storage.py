@@ -1,7 +1,7 @@
 """Finished batches on disk: checked, atomically renamed netCDF shards, found again by content.
 
-A run's key is a hash of its case and of the kernels that solved it, so a shard is never taken
-for another run's answer, and a changed study finds what still fits.
+A run's key is a hash of its case and of the version of its solver, so a shard is never taken for
+another run's answer, and a changed study finds what still fits.
 """
 
 from __future__ import annotations
@@ -17,9 +17,6 @@ import numpy as np
 import xarray as xr
 
 from impactlab.dataset import HISTORIES, PROFILES
-from impactlab.kernels.case import CASE
-from impactlab.kernels.jit import SOURCES_HASH
-from impactlab.kernels.responses import RESPONSE
 from impactlab.simulate import Answers
 from impactlab.study.netcdf import read_netcdf, write_netcdf
 
@@ -36,9 +33,9 @@ class Form:
     profiles: bool
 
 
-def run_keys(cases: Array, form: Form) -> list[bytes]:
-    """One key a case, 16 bytes: equal keys, equal answers."""
-    prefix = hashlib.sha256(f"{SOURCES_HASH} {form} {CASE.descr}".encode())
+def run_keys(cases: Array, form: Form, version: str) -> list[bytes]:
+    """One key a case, 16 bytes: equal keys, equal answers. version: of the solver."""
+    prefix = hashlib.sha256(f"{version} {form} {cases.dtype.descr}".encode())
     keys = []
     for case in cases:
         digest = prefix.copy()
@@ -48,19 +45,22 @@ def run_keys(cases: Array, form: Form) -> list[bytes]:
 
 
 class Shards:
-    """The shards of one study in one form, in one folder."""
+    """The shards of one study in one form, by one solver, in one folder."""
 
-    def __init__(self, folder: Path, form: Form) -> None:
-        """Look in `folder`/<hash of kernels and form>, made when first written to."""
-        name = hashlib.sha256(f"{SOURCES_HASH} {form}".encode()).hexdigest()[:16]
+    def __init__(self, folder: Path, form: Form, response: np.dtype[Any], version: str) -> None:
+        """Look in `folder`/<hash of solver and form>, made when first written to.
+
+        response: of the solver's record of responses; version: of the solver.
+        """
+        name = hashlib.sha256(f"{version} {form}".encode()).hexdigest()[:16]
         self.folder = folder / name
-        self.form = form
+        self.response = response
 
     def read(self) -> Iterator[tuple[list[bytes], Answers]]:
         """Keys and answers of every sound shard; a damaged one is named in the log."""
         for path in sorted(self.folder.glob("*.nc")):
             try:
-                yield _unpack(read_netcdf(path))
+                yield _unpack(read_netcdf(path), self.response)
             except (OSError, ValueError, KeyError, RuntimeError) as error:
                 log.warning("%s is damaged and will be solved again (%s)", path, error)
 
@@ -81,7 +81,7 @@ class Shards:
 def _pack(keys: list[bytes], answers: Answers) -> xr.Dataset:
     table = np.frombuffer(b"".join(keys), dtype=np.uint8).reshape(-1, _KEY_BYTES)
     variables: dict[str, Any] = {"key": (("run", "byte"), table)}
-    for name in RESPONSE.names or ():
+    for name in answers.responses.dtype.names or ():
         variables[name] = (("run",), np.ascontiguousarray(answers.responses[name]))
     for name, values in (answers.histories | answers.profiles).items():
         variables[name] = (("run", *(HISTORIES | PROFILES)[name].dims), values)
@@ -89,12 +89,12 @@ def _pack(keys: list[bytes], answers: Answers) -> xr.Dataset:
     return dataset.assign_attrs(checksum=_checksum(dataset))
 
 
-def _unpack(shard: xr.Dataset) -> tuple[list[bytes], Answers]:
+def _unpack(shard: xr.Dataset, response: np.dtype[Any]) -> tuple[list[bytes], Answers]:
     """Keys and answers of a shard. Raises ValueError when its checksum does not hold."""
     if _checksum(shard) != shard.attrs["checksum"]:
         raise ValueError("its checksum does not hold")
-    responses = np.zeros(shard.sizes["run"], dtype=RESPONSE)
-    for name in RESPONSE.names or ():
+    responses = np.zeros(shard.sizes["run"], dtype=response)
+    for name in response.names or ():
         responses[name] = shard[name].values
     keys = [row.tobytes() for row in shard["key"].values]
     histories = {name: shard[name].values for name in HISTORIES if name in shard}

@@ -27,6 +27,7 @@ from impactlab.kernels.responses import RESPONSE
 from impactlab.simulate import case_table
 from impactlab.study.batches import batches
 from impactlab.study.execution import solve_batch
+from impactlab.study.solvers import impact
 from impactlab.study.storage import Form, run_keys
 
 RUNS = 1000
@@ -71,8 +72,10 @@ def study(duration: float, threads: int) -> Callable[[], object]:
 
     def solved() -> object:
         cases = case_table(IMPACT, GRID, duration=duration, varied=VARIED)
-        run_keys(cases, FORM)
-        tasks = batches(cases, list(range(RUNS)), FORM, workers=2)
+        run_keys(cases, FORM, impact.VERSION)
+        tasks = batches(
+            impact.cost(cases), impact.values(cases, FORM), list(range(RUNS)), workers=2
+        )
         with ThreadPoolExecutor(threads) as pool:
             under_way = [
                 pool.submit(solve_batch, cases[runs], FORM, SOURCES_HASH) for runs in tasks

@@ -10,14 +10,15 @@ from impactlab.kernels import SCHEMES
 from impactlab.kernels.contact.history import make_pair
 from impactlab.kernels.leapfrog import discretise
 from impactlab.kernels.section import make_section
+from impactlab.model.cost import node_steps
 from impactlab.model.parameters import flatten
 from impactlab.simulate import case_table
 from impactlab.study import batches as batching
 from impactlab.study import execution
-from impactlab.study.batches import batches, node_steps
+from impactlab.study.batches import batches
 from impactlab.study.engine import Engine
 from impactlab.study.execution import execute
-from impactlab.study.labels import design_cases
+from impactlab.study.solvers.impact import cases as design_cases
 from impactlab.study.storage import Form
 
 RESPONSES_ASKED = ["peak_force", "contact_duration", "restitution"]
@@ -47,9 +48,9 @@ def solved(monkeypatch):
     counts = []
     original = execution._solved
 
-    def counted(cases, runs, *args):
+    def counted(name, cases, runs, *args):
         counts.append(len(runs))
-        return original(cases, runs, *args)
+        return original(name, cases, runs, *args)
 
     monkeypatch.setattr(execution, "_solved", counted)
     return counts
@@ -136,7 +137,7 @@ def test_status_keeps_only_the_reasons_of_the_asked_responses(tmp_path):
 
 def test_batches_hold_every_run_once_and_split_by_cost():
     cases = design_cases(design(velocities=np.linspace(1, 2, 50), nodes=(11, 201)))
-    parts = list(batches(cases, list(range(100)), Form(0, False), workers=2))
+    parts = list(batches(node_steps(cases), 17, list(range(100)), workers=2))
     assert sorted(run for part in parts for run in part) == list(range(100))
     cost = [sum(node_steps(cases[run]) for run in part) for part in parts]
     assert len(parts) >= 4
@@ -154,4 +155,4 @@ def test_the_estimated_cost_is_that_of_the_kernels_steps(scheme, nodes):
 
 def test_workers_with_other_kernels_are_refused():
     with pytest.raises(RuntimeError, match="another version"):
-        execution.solve_batch(design_cases(design()), Form(0, False), "other")
+        execution.solve_batch("impact", design_cases(design()), Form(0, False), "other")

@@ -7,6 +7,7 @@ import xarray as xr
 import impactlab as il
 from impactlab.simulate import case_table, solve
 from impactlab.study.netcdf import read_netcdf
+from impactlab.study.solvers import impact
 from impactlab.study.storage import Form, Shards, run_keys
 
 FORM = Form(samples=11, profiles=True)
@@ -19,12 +20,12 @@ def cases(*velocities, nodes=11):
 
 @pytest.fixture
 def shards(tmp_path):
-    return Shards(tmp_path, FORM)
+    return Shards(tmp_path, FORM, impact.RESPONSE, impact.VERSION)
 
 
 def written(shards, table):
     answers = solve(table, samples=FORM.samples, profiles=FORM.profiles)
-    keys = run_keys(table, FORM)
+    keys = run_keys(table, FORM, impact.VERSION)
     return keys, answers, shards.write(keys, answers)
 
 
@@ -43,13 +44,13 @@ def test_what_was_written_is_read_to_the_bit(shards):
 
 def test_keys_tell_apart_every_field_and_form():
     table = cases(0.5, 1.0)
-    keys = set(run_keys(table, FORM))
+    keys = set(run_keys(table, FORM, impact.VERSION))
     for name in table.dtype.names:
         other = table.copy()
         other[name] += 1
-        assert keys.isdisjoint(run_keys(other, FORM)), name
-    assert keys.isdisjoint(run_keys(table, Form(samples=12, profiles=True)))
-    assert keys.isdisjoint(run_keys(table, Form(samples=11, profiles=False)))
+        assert keys.isdisjoint(run_keys(other, FORM, impact.VERSION)), name
+    assert keys.isdisjoint(run_keys(table, Form(samples=12, profiles=True), impact.VERSION))
+    assert keys.isdisjoint(run_keys(table, Form(samples=11, profiles=False), impact.VERSION))
 
 
 @pytest.mark.parametrize("damage", ["truncated", "flipped", "foreign", "empty"])
@@ -69,13 +70,14 @@ def test_damaged_shards_are_passed_over_and_named(shards, damage, caplog):
         path.write_bytes(b"")
     found = list(shards.read())
     assert len(found) == 1
-    assert found[0][0] == run_keys(cases(0.5), FORM)
+    assert found[0][0] == run_keys(cases(0.5), FORM, impact.VERSION)
     assert str(path) in caplog.text
 
 
 def test_other_forms_are_not_seen(shards, tmp_path):
     written(shards, cases(0.5))
-    assert list(Shards(tmp_path, Form(samples=0, profiles=False)).read()) == []
+    other = Shards(tmp_path, Form(samples=0, profiles=False), impact.RESPONSE, impact.VERSION)
+    assert list(other.read()) == []
 
 
 def test_one_shard_takes_the_place_of_all(shards):

@@ -1,4 +1,4 @@
-"""From the labels of a design to the flat table of cases, and back to a labelled dataset."""
+"""Impacts, solved by the kernels."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import described, provenance
+from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance
+from impactlab.kernels.jit import SOURCES_HASH
+from impactlab.kernels.responses import RESPONSE
+from impactlab.model.cost import node_steps
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
@@ -19,38 +22,38 @@ from impactlab.simulate import (
     profile_coordinates,
     sample_coordinates,
 )
+from impactlab.simulate import solve as solve_cases
+from impactlab.study.design import flattened, run_shape, varied_names
+from impactlab.study.storage import Form
+
+__all__ = ["RESPONSE", "VERSION", "cases", "cost", "labelled", "solve", "values"]
+VERSION = SOURCES_HASH
+cost = node_steps
 
 
-def varied_names(design: xr.Dataset) -> tuple[str, ...]:
-    """The varied parameters, in the order of the study."""
-    return tuple(str(name) for name in np.atleast_1d(design.attrs["varied"]))
-
-
-def run_dims(design: xr.Dataset) -> tuple[str, ...]:
-    """The dimensions that number the runs; the last one varies fastest.
-
-    In the study's order: the order of a dataset's own dimensions is not kept by netCDF.
-    """
-    dims = (str(dim) for name in varied_names(design) for dim in design[name].dims)
-    return tuple(dict.fromkeys(dims))
-
-
-def design_cases(design: xr.Dataset) -> np.ndarray[Any, Any]:
+def cases(design: xr.Dataset) -> np.ndarray[Any, Any]:
     """The kernels' case table of a design, its dimensions flattened in C order.
 
     Raises ValueError naming the run when the model refuses a value.
     """
-    sizes = {dim: design.sizes[dim] for dim in run_dims(design)}
-    columns = {
-        name: design[name].variable.set_dims(sizes).values.ravel() for name in varied_names(design)
-    }
+    columns = {name: flattened(design, name) for name in varied_names(design)}
     return case_table(*_base(design), duration=design["duration"].item(), varied=columns)
+
+
+def values(cases: np.ndarray[Any, Any], form: Form) -> int:
+    """Responses, histories and profiles of a run; all have the first one's mesh."""
+    profile = int(cases[0].nodes) * int(cases[0].points) if form.profiles else 0
+    return len(RESPONSES) + len(HISTORIES) * form.samples + len(PROFILES) * profile
+
+
+def solve(cases: np.ndarray[Any, Any], form: Form) -> Answers:
+    """The kernels' answers."""
+    return solve_cases(cases, samples=form.samples, profiles=form.profiles)
 
 
 def labelled(design: xr.Dataset, answers: Answers) -> xr.Dataset:
     """The answers of a design's runs, in its order, under its labels and with provenance."""
-    dims = run_dims(design)
-    shape = tuple(design.sizes[dim] for dim in dims)
+    dims, shape = run_shape(design)
     responses = tuple(str(name) for name in np.atleast_1d(design.attrs["responses"]))
     flat = answer_variables(answers, responses, ("run",))
     variables = {

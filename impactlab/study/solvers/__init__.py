@@ -1,0 +1,52 @@
+"""What can solve a study's runs: one file a solver, behind one door, and a line in SOLVERS."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+import xarray as xr
+
+from impactlab.simulate import Answers
+from impactlab.study.solvers import function, impact
+from impactlab.study.storage import Form
+
+Array = np.ndarray[Any, Any]
+
+
+class Solver(Protocol):
+    """What the file of a solver offers. Cases and responses: structured arrays, a record a run."""
+
+    VERSION: str
+    """A hash that changes with the answers: answers of another version are not reused."""
+    RESPONSE: np.dtype[Any]
+    """Of the record of responses; its field `status` says why some are missing (0: none is)."""
+
+    def cases(self, design: xr.Dataset) -> Array:
+        """All that a run depends on, dimensions flattened. Raises ValueError naming a wrong run."""
+        ...
+
+    def cost(self, cases: Array) -> Array:
+        """Estimated cost of each run; about 3e8 make a second."""
+        ...
+
+    def values(self, cases: Array, form: Form) -> int:
+        """How many numbers are kept of a run."""
+        ...
+
+    def solve(self, cases: Array, form: Form) -> Answers:
+        """The answers, the same bits in any batch."""
+        ...
+
+    def labelled(self, design: xr.Dataset, answers: Answers) -> xr.Dataset:
+        """The answers in the design's order, under its labels and with provenance."""
+        ...
+
+
+SOLVERS: dict[str, Solver] = {"impact": impact, "function": function}
+"""By the name that designs hold in their attribute `solver`."""
+
+
+def solver_of(design: xr.Dataset) -> str:
+    """The name of a design's solver: without the attribute, that of impacts."""
+    return str(design.attrs.get("solver", "impact"))

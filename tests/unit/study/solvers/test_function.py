@@ -1,0 +1,36 @@
+"""A test function behind the door of the solver."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from impactlab.reference.functions import ishigami
+from impactlab.study.engine import Engine
+from impactlab.study.execution import execute
+from impactlab.study.solvers import function
+from impactlab.study.storage import Form
+
+
+def design(**coords):
+    attrs = {"solver": "function", "function": "ishigami", "varied": [*coords], "histories": 0}
+    given = {"x3": 0.5} | {name: ("run", values) for name, values in coords.items()}
+    return xr.Dataset(coords=given, attrs=attrs | {"profiles": 0, "samples": 10, "study": "f"})
+
+
+def test_values_are_the_functions_under_the_designs_labels(tmp_path):
+    x1, x2 = np.linspace(-3, 3, 40), np.cos(np.arange(40))
+    runs = execute(design(x2=x2, x1=x1), tmp_path, Engine(workers=2))
+    points = np.stack([x1, x2, np.full(40, 0.5)], axis=1)
+    np.testing.assert_array_equal(runs["value"], ishigami.value(points))
+    assert runs["value"].dims == ("run",)
+    assert (runs["status"] == 0).all()
+    assert "Ishigami" in runs["value"].attrs["long_name"]
+
+
+@pytest.mark.parametrize("size", [1, 3, 7])
+def test_the_same_bits_in_any_batch(size):
+    cases = function.cases(design(x1=np.linspace(-3, 3, 40), x2=np.linspace(1, 2, 40)))
+    form = Form(0, False)
+    whole = function.solve(cases, form).responses["value"]
+    parts = [function.solve(cases[at : at + size], form).responses for at in range(0, 40, size)]
+    assert whole.tobytes() == np.concatenate(parts)["value"].tobytes()
