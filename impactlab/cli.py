@@ -135,12 +135,57 @@ def design(
     study: StudyFile,
     output: Annotated[Path | None, typer.Option(help="Default: results/NAME/design.nc.")] = None,
 ) -> None:
-    """Sample a study into its runs."""
+    """Sample a study into its runs; `discretisation: auto` is found first."""
     from impactlab.study.declaration import read_study
     from impactlab.study.netcdf import write_netcdf
     from impactlab.study.sampling import design as sampled
 
-    write_netcdf(sampled(read_study(study)), output or RESULTS / study.stem / "design.nc")
+    path = output or RESULTS / study.stem / "design.nc"
+    declared = read_study(study)
+    if declared.auto:
+        declared = _found(declared, path.with_name("resolution.nc"))
+    write_netcdf(sampled(declared), path)
+
+
+@app.command()
+def recommend(
+    study: StudyFile,
+    tolerance: Annotated[
+        str, typer.Option(help="Numerical uncertainty that is good enough, such as '0.5 %'.")
+    ] = "1 %",
+    responses: Annotated[
+        str, typer.Option(help="Which it is asked of, such as peak_force,impulse. Default: all.")
+    ] = "",
+    output: Annotated[
+        Path | None, typer.Option(help="Default: results/NAME/resolution.nc.")
+    ] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
+) -> None:
+    """Find the cheapest nodes, points and courant that are fine enough.
+
+    The study's corner cases are solved with finer and finer discretisations; the file keeps the
+    evidence. A study with `discretisation: auto` has its own tolerance and responses.
+    """
+    from impactlab.report.recommendation import print_recommendation
+    from impactlab.steering.recommending import recommend as recommended
+    from impactlab.study.declaration import read_study
+    from impactlab.study.engine import Engine
+    from impactlab.study.netcdf import write_netcdf
+
+    declared = read_study(study)
+    path = output or RESULTS / study.stem / "resolution.nc"
+    signal.signal(signal.SIGINT, _stop_at_once)
+    if declared.auto:
+        _found(declared, path)
+        return
+    asked = _out_of(declared.responses, "--responses", responses)
+    limit = given("--tolerance", tolerance, "1")
+    if not 0 < limit < 1:
+        raise ValueError(f"--tolerance = {tolerance!r}: must lie between 0 and 100 %")
+    engine = Engine("threads", workers)
+    found = recommended(declared, limit, asked, path.with_name("trials"), engine)
+    write_netcdf(found, path)
+    print_recommendation(found)
 
 
 @app.command()

@@ -30,8 +30,12 @@ def design(study: Study) -> xr.Dataset:
     where it is stated). SI units. The attributes say what is asked of the runs, and hold the text
     of the study.
 
-    Raises StudyError, naming parameter and value, when a drawn run is physically impossible.
+    Raises StudyError, naming parameter and value, when a drawn run is physically impossible; and
+    for a study whose discretisation is still to be found (impactlab.steering.resolving).
     """
+    if study.auto is not None:
+        reason = "is auto: it has to be found before the runs are drawn (impactlab design)"
+        raise StudyError(Problem(str(study.path), "discretisation", reason))
     fixed = flatten(study.impact, study.discretisation) | {"duration": study.duration}
     if isinstance(study.sampling, Sobol):
         varied, attrs = _sample(study, study.sampling), _sobol_attributes(study, study.sampling)

@@ -74,10 +74,23 @@ def _runs_for_the_analyses(form: StudyForm) -> Findings:
             yield "analyses", f"{name} needs {ANALYSES[name]}: take it out, or change the sampling"
 
 
+def _nothing_to_find(form: StudyForm) -> Findings:
+    """What is varied is not sought; what the trials are judged by is there."""
+    auto = form.discretisation.auto
+    for name in ("nodes", "points", "courant") if auto else ():
+        if name in form.sampling.parameters:
+            reason = "cannot be varied beside discretisation: auto, which finds it"
+            yield f"sampling.parameters.{name}", reason
+    missing = set(auto.responses or () if auto else ()) - set(form.responses)
+    if missing:
+        reason = f"names {', '.join(sorted(missing))}, which `responses` of the study leaves out"
+        yield "discretisation.auto.responses", reason
+
+
 def _corners(form: StudyForm) -> Findings:
     """The model accepts all combinations of what is varied."""
     varied = form.sampling.bounds()
-    if found := refused_corner((form.impact, form.discretisation), varied):
+    if found := refused_corner((form.impact, form.discretisation.discretisation), varied):
         name = found.name if found.name in varied else next(iter(found.values))
         values = ", ".join(f"{key} = {value!r}" for key, value in found.values.items())
         yield f"sampling.parameters.{name}", f"{values}: {found.name} {found.reason}"
@@ -88,5 +101,6 @@ _CHECKS: tuple[tuple[Callable[[StudyForm], Findings], set[str]], ...] = (
     (_one_mesh_for_profiles, {"store", "sampling"}),
     (_analysis_of_a_sample, {"analysis", "sampling"}),
     (_runs_for_the_analyses, {"analyses", "sampling"}),
+    (_nothing_to_find, {"discretisation", "responses", "sampling"}),
     (_corners, {"impact", "discretisation", "sampling"}),
 )

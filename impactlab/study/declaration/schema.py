@@ -24,7 +24,7 @@ from impactlab.study.declaration.form import (
 )
 from impactlab.study.declaration.heading import Heading
 from impactlab.study.declaration.methods import Grid, Sobol, read_sampling
-from impactlab.study.declaration.sections import read_discretisation, read_impact
+from impactlab.study.declaration.sections import Chosen, read_discretisation, read_impact
 
 Fraction = Annotated[Number, between(0.5, 0.999)]
 
@@ -55,8 +55,8 @@ class StudyForm(Heading):
     """The file of a study of runs, read: SI numbers, objects of the model, a way of sampling."""
 
     impact: Annotated[Impact, PlainValidator(read_impact)]
-    discretisation: Annotated[Discretisation, PlainValidator(read_discretisation)] = Field(
-        default_factory=Discretisation
+    discretisation: Annotated[Chosen, PlainValidator(read_discretisation)] = Chosen(
+        Discretisation()
     )
     duration: Annotated[quantity("s"), AfterValidator(above_zero)]  # type: ignore[valid-type]
     sampling: Annotated[Grid | Sobol, PlainValidator(read_sampling)]

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, dataclass, fields
 from functools import reduce
 from typing import Annotated, Any
 
 from pydantic import ValidationInfo, WrapValidator, create_model
 
+from impactlab.dataset import RESPONSES
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS, Parameter, with_values
-from impactlab.study.declaration.form import Form, at_key, one_of
+from impactlab.study.declaration.form import Form, Number, at_key, between, names, one_of
 from impactlab.study.declaration.values import VALUES
 from impactlab.study.possible import Base, refusal
 
@@ -38,13 +39,36 @@ def read_impact(data: Any, info: ValidationInfo) -> Impact:
     return _changed((BASES[form.base or "paper"](), Discretisation()), stated)[0]
 
 
-def read_discretisation(data: Any, info: ValidationInfo) -> Discretisation:
+class Auto(Form):
+    """A discretisation that is to be found: by trials on the corner cases of the study.
+
+    tolerance: relative numerical uncertainty; responses: those that it is asked of.
+    """
+
+    tolerance: Annotated[Number, between(1e-4, 0.5)] = 0.01
+    responses: Annotated[tuple[str, ...], names("response", RESPONSES)] | None = None
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The section `discretisation`: what it states, and how the rest is found, if it is."""
+
+    discretisation: Discretisation
+    auto: Auto | None = None
+
+
+def read_discretisation(data: Any, info: ValidationInfo) -> Chosen:
     """The discretisation of the section; what it leaves out has the model's default.
 
     Raises ValueError (pydantic's ValidationError among them) that names the keys at fault.
     """
-    form = _DISCRETISATION.model_validate(data, context=info.context)
-    return _changed((paper_impact(), Discretisation()), _stated(form, "discretisation"))[1]
+    form: Any = _DISCRETISATION.model_validate(
+        {"auto": {}} if data == "auto" else data, context=info.context
+    )
+    stated = _stated(form, "discretisation")
+    for name in stated.keys() & {"nodes", "points", "courant"} if form.auto else ():
+        raise at_key(name, "cannot be stated beside auto, which finds it: take out one of the two")
+    return Chosen(_changed((paper_impact(), Discretisation()), stated)[1], form.auto)
 
 
 def _section(*path: str, **others: Any) -> type[Form]:
@@ -99,4 +123,4 @@ _DEFAULTS = {
     name: _default(entry) for name, entry in PARAMETERS.items() if entry.path[0] == "impact"
 }
 _IMPACT = _section("impact", base=(Annotated[str, one_of("base", BASES)], None))
-_DISCRETISATION = _section("discretisation")
+_DISCRETISATION = _section("discretisation", auto=(Auto | None, None))

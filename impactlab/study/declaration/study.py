@@ -15,6 +15,7 @@ from impactlab.study.declaration import checks, messages
 from impactlab.study.declaration.methods import Grid, Sobol
 from impactlab.study.declaration.reading import Source
 from impactlab.study.declaration.schema import Analysis, Store, StudyForm
+from impactlab.study.declaration.sections import Auto
 from impactlab.study.errors import Problem, StudyError
 
 
@@ -23,8 +24,9 @@ class Study:
     """What to run and why: everything that a study file says, in SI units.
 
     name: the file's, without the ending; path: as it was given. impact and discretisation: the
-    base of all runs. duration: simulated time in s. sampling: Grid or Sobol. responses: names out
-    of dataset.RESPONSES; analyses: out of dataset.ANALYSES. store: what else is kept of each run.
+    base of all runs. auto: how nodes, points and courant are to be found, where they are not
+    stated. duration: simulated time in s. sampling: Grid or Sobol. responses: names out of
+    dataset.RESPONSES; analyses: out of dataset.ANALYSES. store: what else is kept of each run.
     analysis: how intervals of sensitivity indices are made. text: the file as it was read.
     """
 
@@ -34,6 +36,7 @@ class Study:
     description: str
     impact: Impact
     discretisation: Discretisation
+    auto: Auto | None
     duration: float
     sampling: Grid | Sobol
     responses: tuple[str, ...]
@@ -72,7 +75,8 @@ def study(source: Source) -> Study:
         title=form.title,
         description=form.description,
         impact=form.impact,
-        discretisation=form.discretisation,
+        discretisation=form.discretisation.discretisation,
+        auto=form.discretisation.auto,
         duration=form.duration,
         sampling=form.sampling,
         responses=form.responses,

@@ -1,0 +1,59 @@
+"""The runs behind a recommendation: all corner cases along one axis of the discretisation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.responses import usable
+from impactlab.dataset import described
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.parameters import Value, flatten
+from impactlab.study.declaration import Study
+from impactlab.study.engine import Engine
+from impactlab.study.execution import execute
+
+Cases = Mapping[str, Sequence[Value]]
+
+
+class Trials:
+    """Solves the corner cases of a study with other discretisations; what is solved is kept."""
+
+    def __init__(self, study: Study, cases: Cases, folder: Path, engine: Engine) -> None:
+        """cases: values by parameter, one a case; folder: for the shards."""
+        self._study, self._cases, self._folder, self._engine = study, cases, folder, engine
+
+    def along(self, axis: str, rungs: Sequence[float], at: Discretisation) -> xr.DataArray:
+        """The responses on (response, case, axis), NaN where a run failed, in SI units.
+
+        rungs: values of nodes, points or courant; the other two are those of `at`. Raises
+        OSError when the disk is full or no scheduler answers.
+        """
+        runs = execute(self._design(axis, rungs, at), self._folder, self._engine)
+        values = usable(runs).transpose("response", "case", axis)
+        labels = [name for name in values.coords if name not in values.dims]
+        return values.drop_vars([name for name in labels if values[name].dims != ("response",)])
+
+    def _design(self, axis: str, rungs: Sequence[float], at: Discretisation) -> xr.Dataset:
+        study = replace(self._study, discretisation=at)
+        scalars = flatten(study.impact, study.discretisation) | {"duration": study.duration}
+        count = len(next(iter(self._cases.values()), [None]))
+        varied: dict[str, Any] = {
+            name: ("case", np.array(values)) for name, values in self._cases.items()
+        }
+        varied |= {"case": np.arange(count), axis: (axis, np.array(rungs))}
+        attrs = {
+            "study": study.name,
+            "varied": [*self._cases, axis],
+            "responses": list(study.responses),
+            "histories": 0,
+            "profiles": 0,
+            "samples": study.store.samples,
+        }
+        scalars_kept = {name: ((), value) for name, value in scalars.items() if name not in varied}
+        return described(xr.Dataset(coords=scalars_kept | varied, attrs=attrs))
