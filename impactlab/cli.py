@@ -158,6 +158,8 @@ def run(
 
     Finished batches are kept in results/NAME/shards: an interrupted study goes on from there.
     """
+    from functools import partial
+
     from impactlab.study.declaration import read_study
     from impactlab.study.engine import Engine
     from impactlab.study.execution import execute
@@ -171,7 +173,14 @@ def run(
     path = output or RESULTS / samples.attrs["study"] / "runs.nc"
     engine = Engine("processes" if processes else "threads", workers, scheduler)
     signal.signal(signal.SIGINT, _stop_at_once)
-    write_netcdf(execute(samples, path.parent / "shards", engine), path)
+    solve = partial(execute, shards_folder=path.parent / "shards", engine=engine)
+    if "until_interval" in samples.attrs:
+        from impactlab.analysis.analyse import analyse as analysed
+        from impactlab.steering.extending import extended
+
+        write_netcdf(extended(samples, solve, analysed), path)
+    else:
+        write_netcdf(solve(samples), path)
 
 
 @app.command()

@@ -1,0 +1,1 @@
+"""Decisions that are made from answers: what to solve next, and when it is enough."""
