@@ -15,10 +15,21 @@ def asked_studies(asked):
     return str(asked).replace(",", " ").split() if not isinstance(asked, list) else asked
 
 
-def lists_checks(study):
-    """Whether it is a verification; what is wrong with a file is told by the command that reads it."""
+def has_key(study, pattern):
+    """Whether a study has a key; what is wrong with a file is told by the command that reads it."""
     file = Path(f"studies/{study}.yaml")
-    return file.exists() and bool(re.search(r"^checks\s*:", file.read_text("utf-8", "replace"), re.MULTILINE))
+    return file.exists() and bool(re.search(pattern, file.read_text("utf-8", "replace"), re.MULTILINE))
+
+
+def lists_checks(study):
+    """Whether it is a verification."""
+    return has_key(study, r"^checks\s*:")
+
+
+def solving(wildcards):
+    """Sources of the runs; the analysis is one where it decides how many there are."""
+    deciding = ("analysis/**/*.py", "steering/*.py") if has_key(wildcards.study, r"\buntil\s*:") else ()
+    return code(*SOLVER, "study/**/*.py", *deciding)
 
 
 def stored(wildcards):
@@ -39,7 +50,7 @@ def code(*patterns):
 
 MODEL = ("dataset.py", "model/*.py")
 SOLVER = (*MODEL, "simulate.py", "kernels/**/*.py")
-CHECKING = ("study/checking.py", "study/declaration/*.py", "study/storage.py")
+CHECKING = ("study/checking.py", "study/declaration/**/*.py", "study/storage.py")
 FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcome", "stored"))
 REPORTING = ("report/**/*.py", "report/templates/*")
 STUDIES = asked_studies(config.get("studies"))
@@ -98,7 +109,7 @@ rule design:
 # Its shards live beside the output, not as one: Snakemake would remove them when a job fails.
 rule runs:
     input:
-        code=code(*SOLVER, "study/**/*.py"),
+        code=solving,
         design="results/{study}/design.nc",
     output:
         "results/{study}/runs.nc",

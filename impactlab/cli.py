@@ -7,10 +7,14 @@ import logging
 import os
 import signal
 import sys
+from collections.abc import Collection
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from impactlab.study.declaration import Study
 
 app = typer.Typer(
     name="impactlab",
@@ -141,20 +145,24 @@ def design(
     from impactlab.study.sampling import design as sampled
 
     path = output or RESULTS / study.stem / "design.nc"
-    declared = read_study(study)
-    if declared.auto:
-        declared = _found(declared, path.with_name("resolution.nc"))
-    write_netcdf(sampled(declared), path)
+    write_netcdf(sampled(_settled(read_study(study), path.with_name("resolution.nc"))), path)
 
 
 @app.command()
 def recommend(
     study: StudyFile,
     tolerance: Annotated[
-        str, typer.Option(help="Numerical uncertainty that is good enough, such as '0.5 %'.")
-    ] = "1 %",
+        str,
+        typer.Option(
+            help="Numerical uncertainty that is good enough, such as '0.5 %'. Default: the "
+            "study's, or 1 %."
+        ),
+    ] = "",
     responses: Annotated[
-        str, typer.Option(help="Which it is asked of, such as peak_force,impulse. Default: all.")
+        str,
+        typer.Option(
+            help="Which it is asked of, such as peak_force,impulse. Default: those of the study."
+        ),
     ] = "",
     output: Annotated[
         Path | None, typer.Option(help="Default: results/NAME/resolution.nc.")
@@ -164,26 +172,24 @@ def recommend(
     """Find the cheapest nodes, points and courant that are fine enough.
 
     The study's corner cases are solved with finer and finer discretisations; the file keeps the
-    evidence. A study with `discretisation: auto` has its own tolerance and responses.
+    evidence.
     """
     from impactlab.report.recommendation import print_recommendation
     from impactlab.steering.recommending import recommend as recommended
-    from impactlab.study.declaration import read_study
+    from impactlab.study.declaration import Auto, read_study
     from impactlab.study.engine import Engine
     from impactlab.study.netcdf import write_netcdf
 
     declared = read_study(study)
     path = output or RESULTS / study.stem / "resolution.nc"
     signal.signal(signal.SIGINT, _stop_at_once)
-    if declared.auto:
-        _found(declared, path)
-        return
-    asked = _out_of(declared.responses, "--responses", responses)
-    limit = given("--tolerance", tolerance, "1")
+    wanted = declared.auto or Auto()
+    limit = given("--tolerance", tolerance, "1") if tolerance else wanted.tolerance
     if not 0 < limit < 1:
         raise ValueError(f"--tolerance = {tolerance!r}: must lie between 0 and 100 %")
-    engine = Engine("threads", workers)
-    found = recommended(declared, limit, asked, path.with_name("trials"), engine)
+    asked = chosen("--responses", responses, declared.responses) or wanted.responses
+    engine, folder = Engine("threads", workers), path.with_name("trials")
+    found = recommended(declared, limit, asked or declared.responses, folder, engine)
     write_netcdf(found, path)
     print_recommendation(found)
 
@@ -203,6 +209,8 @@ def run(
 
     Finished batches are kept in results/NAME/shards: an interrupted study goes on from there.
     """
+    from functools import partial
+
     from impactlab.study.declaration import read_study
     from impactlab.study.engine import Engine
     from impactlab.study.execution import execute
@@ -212,23 +220,35 @@ def run(
     if design_file.suffix == ".nc":
         samples = read_netcdf(design_file)
     else:
-        samples = sampled(read_study(design_file))
+        evidence = (output or RESULTS / design_file.stem / "runs.nc").with_name("resolution.nc")
+        samples = sampled(_settled(read_study(design_file), evidence))
     path = output or RESULTS / samples.attrs["study"] / "runs.nc"
     engine = Engine("processes" if processes else "threads", workers, scheduler)
     signal.signal(signal.SIGINT, _stop_at_once)
-    write_netcdf(execute(samples, path.parent / "shards", engine), path)
+    solve = partial(execute, shards_folder=path.parent / "shards", engine=engine)
+    if "until_interval" in samples.attrs:
+        from impactlab.analysis.analyse import analyse as analysed
+        from impactlab.steering.extending import extended
+
+        write_netcdf(extended(samples, solve, analysed), path)
+    else:
+        write_netcdf(solve(samples), path)
 
 
 @app.command()
 def analyse(
     runs: RunsFile,
+    resolution: Annotated[
+        Path | None, typer.Option(help="What `recommend` found: numerical uncertainty.")
+    ] = None,
     output: Annotated[Path | None, typer.Option(help="Default: beside the runs.")] = None,
 ) -> None:
     """Convergence and sensitivity from solved runs."""
     from impactlab.analysis.analyse import analyse as analysed
     from impactlab.study.netcdf import read_netcdf, write_netcdf
 
-    write_netcdf(analysed(read_netcdf(runs)), output or runs.with_name("analysis.nc"))
+    found = read_netcdf(resolution) if resolution else None
+    write_netcdf(analysed(read_netcdf(runs), found), output or runs.with_name("analysis.nc"))
 
 
 @app.command()
@@ -326,6 +346,34 @@ def index(
     from impactlab.report.index import write_index
 
     write_index(results, output or results / "index.html")
+
+
+def _settled(study: Study, evidence: Path) -> Study:
+    """The study, its discretisation found by trials where it is auto; these are kept as a file."""
+    if study.auto is None:
+        return study
+    from impactlab.report.recommendation import print_recommendation
+    from impactlab.steering.resolving import resolved
+    from impactlab.study.engine import Engine
+    from impactlab.study.netcdf import write_netcdf
+
+    signal.signal(signal.SIGINT, _stop_at_once)
+    engine = Engine("threads", os.cpu_count() or 1)
+    study, found = resolved(study, evidence.with_name("trials"), engine)
+    write_netcdf(found, evidence)
+    print_recommendation(found)
+    return study
+
+
+def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
+    """The names of a list "a,b"; none of "". Raises ValueError naming the option."""
+    from impactlab.study.errors import unknown
+
+    found = tuple(filter(None, text.replace(",", " ").split()))
+    for name in found:
+        if name not in names:
+            raise ValueError(f"{option} = {text!r}: {unknown('response', name, names)}")
+    return found
 
 
 def given(option: str, text: str, units: str) -> float:

@@ -13,6 +13,7 @@ from impactlab.analysis import (
     failures,
     sensitivity,
 )
+from impactlab.analysis.numerical import numerical
 from impactlab.dataset import ANALYSES
 
 
@@ -35,11 +36,13 @@ _MODULES: tuple[Analysis, ...] = (
 """Every analysis there is; a new one is a module, a line here and a line in dataset.ANALYSES."""
 
 
-def analyse(runs: xr.Dataset) -> xr.Dataset:
+def analyse(runs: xr.Dataset, resolution: xr.Dataset | None = None) -> xr.Dataset:
     """Failures, convergence and sensitivity of a study, whichever apply, in one dataset.
 
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
-    attribute `analyses` says which are wanted (without it: all). Returns the variables that the
+    attribute `analyses` says which are wanted (without it: all). resolution: what
+    steering.recommending found for this study: adds the numerical uncertainty of sensitivity
+    indices (see `numerical`). Returns the variables that the
     applying modules document, on `response` and the dimensions that they leave, with the
     attributes of the runs. Raises ValueError when the runs are not what their attributes say.
     """
@@ -50,6 +53,8 @@ def analyse(runs: xr.Dataset) -> xr.Dataset:
         if module.applies(runs) and _name(module) not in ANALYSES.keys() - wanted
     ]
     merged = xr.merge(parts, join="exact", compat="equals", combine_attrs="override")
+    if resolution is not None:
+        merged = merged.merge(numerical(runs, merged, resolution), join="exact")
     return merged.assign_attrs(runs.attrs).drop_encoding()
 
 

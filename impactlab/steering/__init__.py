@@ -1,1 +1,1 @@
-"""Decisions made from answers: which discretisation is fine enough, how many samples suffice."""
+"""Decisions made from answers: what to solve next, and when it is enough."""

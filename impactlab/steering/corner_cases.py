@@ -30,7 +30,7 @@ NUMERICS = ("nodes", "points", "courant")
 def corner_cases(study: Study) -> dict[str, list[Value]]:
     """Values by parameter, one a case: numbers at their extremes and in the middle, each word.
 
-    Raises ValueError for a study whose parameters are not the impact's.
+    Where only the discretisation is varied, the study's own impact is the one case.
     """
     ends = {name: values for name, values in _extremes(study).items() if name not in NUMERICS}
     words = {name: values for name, values in ends.items() if isinstance(values[0], str)}
@@ -45,6 +45,8 @@ def corner_cases(study: Study) -> dict[str, list[Value]]:
         for row in signs.tolist()
     ]
     names = [*words, *numbers]
+    if not names:
+        return {"velocity": [study.impact.velocity]}
     return {name: [row[at] for row in rows] for at, name in enumerate(names)}
 
 
@@ -68,7 +70,7 @@ def _extremes(study: Study) -> Mapping[str, Sequence[Any]]:
         return {name: _of_values(values) for name, values in sampling.parameters.items()}
     chances = np.array([_TAIL, 0.5, 1.0 - _TAIL])
     found = {}
-    for name, given in sampling.parameters.items():
+    for name, given in sampling.varied.items():
         low, middle, high = given.quantile(chances).tolist()
         ends = given.bounds()
         found[name] = (ends.get("low", low), middle, ends.get("high", high))

@@ -17,6 +17,7 @@ import xarray as xr
 
 from impactlab.dataset import provenance
 from impactlab.model.discretisation import Discretisation
+from impactlab.model.parameters import with_values
 from impactlab.steering.axes import AXES, uncertainty
 from impactlab.steering.candidates import candidates, cheapest, relative
 from impactlab.steering.corner_cases import corner_cases
@@ -44,6 +45,8 @@ def recommend(
     recommended one where its own is to be found; attributes grid_nodes, grid_points and
     grid_courant name it. Raises OSError when the disk is full or no scheduler answers.
     """
+    impact, grid = with_values(study.impact, study.discretisation, study.sampling.fixed)
+    study = replace(study, impact=impact, discretisation=grid)
     cases = corner_cases(study)
     trials = Trials(study, cases, folder, engine)
     found = _tried(study, trials, ladders(study.discretisation), tolerance, responses)
@@ -53,9 +56,9 @@ def recommend(
         "study_sha256": study.sha256,
         "tolerance": tolerance,
     }
-    grid = recommended(found, study.discretisation) if study.auto else study.discretisation
-    found = found.assign(_of_the_study(found, grid))
-    attrs |= {f"grid_{axis}": getattr(grid, axis) for axis in AXES if grid}
+    chosen = recommended(found, grid) if study.auto else grid
+    found = found.assign(_of_the_study(found, chosen))
+    attrs |= {f"grid_{axis}": getattr(chosen, axis) for axis in AXES if chosen}
     return found.assign_coords(labels).assign_attrs(attrs | provenance())
 
 

@@ -53,7 +53,7 @@ class Trials:
             "responses": list(study.responses),
             "histories": 0,
             "profiles": 0,
-            "samples": study.store.samples,
+            "history_samples": study.store.samples,
         }
         scalars_kept = {name: ((), value) for name, value in scalars.items() if name not in varied}
         return described(xr.Dataset(coords=scalars_kept | varied, attrs=attrs))

@@ -40,7 +40,7 @@ def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Datas
     name = solver_of(design)
     solver = SOLVERS[name]
     cases = solver.cases(design)
-    samples = int(design.attrs["samples"]) if design.attrs["histories"] else 0
+    samples = int(design.attrs["history_samples"]) if design.attrs["histories"] else 0
     form = Form(samples, bool(design.attrs["profiles"]))
     keys = run_keys(cases, form, solver.VERSION)
     shards = Shards(shards_folder, form, solver.RESPONSE, solver.VERSION)

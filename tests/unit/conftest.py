@@ -41,7 +41,7 @@ def _fixed(varied: Mapping[str, Any]) -> dict[str, Any]:
 def _design(varied: Mapping[str, Any], **attrs: Any) -> xr.Dataset:
     """A dataset of coordinates with the contract's attributes."""
     names = [name for name in varied if name != "run"]
-    given = {"varied": names, "responses": list(RESPONSES), "samples": 400} | ATTRIBUTES
+    given = {"varied": names, "responses": list(RESPONSES), "history_samples": 400} | ATTRIBUTES
     title = f"The {attrs['study']} study"
     return xr.Dataset(coords={**varied, **_fixed(varied)}, attrs=given | {"title": title} | attrs)
 

@@ -8,9 +8,9 @@ from typing import Annotated, Any, Generic, TypeVar
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationInfo, field_validator
 
-from impactlab.model.parameters import Parameter, Value
+from impactlab.model.parameters import Value
 from impactlab.study.declaration.form import Form, Reader, Whole, between, one_of
-from impactlab.study.possible import check_alone
+from impactlab.study.declaration.values import Factor
 
 Q = TypeVar("Q", bound=float)
 MOST_VALUES = 10_000
@@ -49,33 +49,34 @@ class Range(Form, Generic[Q]):
         return [float(f"{value:.12g}") for value in space(self.start, self.stop, self.number)]
 
 
-def axis(parameter: Parameter, value_type: Any) -> Reader:
+def axis(factor: Factor) -> Reader:
     """Reads a parameter's entry in a grid, a list or a range, as a tuple of distinct values.
 
-    value_type: the type of one value. Words have no ranges.
+    Words have no ranges.
     """
+    value_type: Any = factor.type
     listed: TypeAdapter[list[Value]] = TypeAdapter(
         Annotated[list[value_type], Field(min_length=1, max_length=MOST_VALUES)]
     )
-    ranged = None if parameter.choices else Range[value_type]
+    ranged = None if factor.parameter.choices else Range[value_type]
 
     def read(data: Any, info: ValidationInfo) -> tuple[Value, ...]:
         if isinstance(data, list):
             return _distinct(listed.validate_python(data))
         if ranged is None or not isinstance(data, dict):
             raise ValueError(f"expected {_LIST}" + (f" or {_RANGE}" if ranged else ""))
-        return _distinct(_expanded(parameter, ranged.model_validate(data, context=info.context)))
+        return _distinct(_expanded(factor, ranged.model_validate(data, context=info.context)))
 
     return read
 
 
-def _expanded(parameter: Parameter, given: Range[Any]) -> list[Value]:
+def _expanded(factor: Factor, given: Range[Any]) -> list[Value]:
     values: list[Value] = list(given.values())
-    if not parameter.whole:
+    if not factor.parameter.whole:
         return values
     for value in values:
         try:
-            check_alone(parameter.name, value)
+            factor.check(value)
         except ValueError as error:
             raise ValueError(f"the range gives {value:g}: {error}; list the values") from None
     return [int(value) for value in values]

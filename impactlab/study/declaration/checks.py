@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from impactlab.dataset import ANALYSES
-from impactlab.study.declaration.methods import Grid, Sobol
+from impactlab.study.declaration.methods import Grid, Sample, Sobol
 from impactlab.study.declaration.schema import StudyForm
-from impactlab.study.errors import Problem
+from impactlab.study.errors import Problem, unknown
 from impactlab.study.possible import refused_corner
 
 _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
@@ -39,14 +39,14 @@ def _mass_and_density(form: StudyForm) -> Findings:
                 "is: set impact.sphere.mass: null to let it follow from density and radius",
             )
     if {"sphere_mass", "sphere_density"} <= varied.keys():
-        reason = "has no effect where sphere_mass is varied too: take out one of the two"
+        reason = "has no effect where sphere_mass is stated too: take out one of the two"
         yield "sampling.parameters.sphere_density", reason
 
 
 def _one_mesh_for_profiles(form: StudyForm) -> Findings:
     """Profiles of all runs share their x and z."""
     for name in _MESH:
-        if form.store.profiles and name in form.sampling.parameters:
+        if form.store.profiles and name in form.sampling.varied:
             yield (
                 f"sampling.parameters.{name}",
                 "cannot be varied with store.profiles: true, because the places x and z of the "
@@ -56,8 +56,8 @@ def _one_mesh_for_profiles(form: StudyForm) -> Findings:
 
 def _analysis_of_a_sample(form: StudyForm) -> Findings:
     """Nothing stated goes without effect."""
-    if form.analysis is not None and not isinstance(form.sampling, Sobol):
-        yield "analysis", "has no effect but with method: sobol: take it out"
+    if form.analysis is not None and not isinstance(form.sampling, Sample):
+        yield "analysis", "has no effect with method: grid: take it out"
 
 
 def _runs_for_the_analyses(form: StudyForm) -> Findings:
@@ -87,6 +87,18 @@ def _nothing_to_find(form: StudyForm) -> Findings:
         yield "discretisation.auto.responses", reason
 
 
+def _answers_to_grow_by(form: StudyForm) -> Findings:
+    """A sample that grows until its indices are good enough has these indices."""
+    until = form.sampling.until if isinstance(form.sampling, Sobol) else None
+    if until is None:
+        return
+    if "sensitivity" not in form.analyses:
+        yield "sampling.until", "needs the analysis sensitivity: list it in analyses"
+    for at, name in enumerate(until.responses or ()):
+        if name not in form.responses:
+            yield f"sampling.until.responses.{at}", unknown("response", name, form.responses)
+
+
 def _corners(form: StudyForm) -> Findings:
     """The model accepts all combinations of what is varied."""
     varied = form.sampling.bounds()
@@ -102,5 +114,6 @@ _CHECKS: tuple[tuple[Callable[[StudyForm], Findings], set[str]], ...] = (
     (_analysis_of_a_sample, {"analysis", "sampling"}),
     (_runs_for_the_analyses, {"analyses", "sampling"}),
     (_nothing_to_find, {"discretisation", "responses", "sampling"}),
+    (_answers_to_grow_by, {"analyses", "responses", "sampling"}),
     (_corners, {"impact", "discretisation", "sampling"}),
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from typing import Annotated, Any, Generic, Literal, TypeVar
 
@@ -18,8 +19,14 @@ Values = NDArray[np.float64]
 
 
 def _above_low(high: float, info: ValidationInfo) -> float:
-    if "low" in info.data and high <= info.data["low"]:
-        raise ValueError(f"must be above low ({info.data['low']!r})")
+    low = info.data.get("low", -math.inf)
+    if high == low:
+        raise ValueError(
+            f"must be above low ({low!r}); "
+            "what has one value is written {distribution: fixed, value: ...}"
+        )
+    if high < low:
+        raise ValueError(f"must be above low ({low!r})")
     return high
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from pathlib import Path
 
-from impactlab.study.declaration.reading import Source, read_source
+from impactlab.study.declaration.reading import Source, read_mapping, read_source
 from impactlab.study.declaration.study import Study, study
 from impactlab.study.declaration.verification import Verification, verification
 from impactlab.study.errors import Problem, StudyError
@@ -28,6 +28,15 @@ def read_study(path: str | Path) -> Study:
     if _lists_checks(source):
         raise _other(source, "lists checks and has no runs", "verify")
     return study(source)
+
+
+def study_of_text(name: str, text: str) -> Study:
+    """The study of runs that a file NAME.yaml of this text declares, as datasets keep both.
+
+    Raises StudyError as `read_any`.
+    """
+    path = Path(f"{name}.yaml")
+    return study(Source(name, path, text, read_mapping(text, str(path))))
 
 
 def read_verification(path: str | Path) -> Verification:

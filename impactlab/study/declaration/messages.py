@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -16,8 +17,20 @@ _WORDS = {
     "invalid_key": "a key must be a word",
     "model_type": "expected a mapping with keys of its own",
     "too_short": "is empty: list at least one value",
+    "tuple_type": "expected a list of names",
 }
 """What to say for pydantic's types of error; for any other its own message stands."""
+_NOT_HERE = {
+    r".*(correlat|covarian|copula).*": (
+        "parameters that vary together are not possible: the indices share out the variance of "
+        "independent parameters, and drawing these independently without a word would be wrong; "
+        "vary what they depend on in common, take one index for all (groups), or hold all but one "
+        "at a value ({distribution: fixed, value: ...})"
+    ),
+    "groups?": "groups are for the section sampling with method: sobol or morris",
+    "until": "is for the section sampling with method: sobol",
+}
+"""Keys that people look for, as patterns, and what to say where there is no such key."""
 
 
 def problems(
@@ -35,13 +48,18 @@ def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]])
     path = [*line["loc"], *context["key"].split(".")] if kind == "at_key" else [*line["loc"]]
     parent, present, value = _found(data, path)
     if kind == "extra_forbidden":
-        reason = unknown("key", path[-1], keys[id(parent)])
+        reason = _no_such_key(path[-1], keys[id(parent)])
     elif kind == "value_error":
         reason = str(context["error"])
     else:
         reason = _WORDS.get(kind, line["msg"])
     shown = {"value": value} if present and not isinstance(value, dict) else {}
     return Problem(file, dotted(path), reason, **shown)
+
+
+def _no_such_key(key: Any, allowed: Sequence[str]) -> str:
+    looked_for = (words for like, words in _NOT_HERE.items() if re.fullmatch(like, str(key)))
+    return next(looked_for, None) or unknown("key", key, allowed)
 
 
 def _found(data: Any, path: Sequence[Any]) -> tuple[Any, bool, Any]:

@@ -20,11 +20,13 @@ from impactlab.study.declaration.form import (
     above_zero,
     between,
     names,
+    one_of,
     quantity,
 )
 from impactlab.study.declaration.heading import Heading
-from impactlab.study.declaration.methods import Grid, Sobol, read_sampling
+from impactlab.study.declaration.methods import Grid, Sample, sampling_reader
 from impactlab.study.declaration.sections import Chosen, read_discretisation, read_impact
+from impactlab.study.declaration.values import FACTORS
 
 Fraction = Annotated[Number, between(0.5, 0.999)]
 
@@ -42,13 +44,16 @@ class Store(Form):
 
 
 class Analysis(Form):
-    """How intervals of sensitivity indices are made.
+    """How sensitivity indices and their intervals are made.
 
-    confidence: their level. resamples: bootstrap resamples each.
+    confidence: level of the intervals. resamples: bootstrap resamples each. failed_runs: what
+    becomes of a response that runs are missing of: no index is given, or a surrogate fitted on
+    the other runs supplies them.
     """
 
     confidence: Fraction = 0.95
     resamples: Annotated[Whole, between(10, 100_000)] = 200
+    failed_runs: Annotated[str, one_of("policy", ("fail", "impute"))] = "fail"
 
 
 class StudyForm(Heading):
@@ -59,7 +64,7 @@ class StudyForm(Heading):
         Discretisation()
     )
     duration: Annotated[quantity("s"), AfterValidator(above_zero)]  # type: ignore[valid-type]
-    sampling: Annotated[Grid | Sobol, PlainValidator(read_sampling)]
+    sampling: Annotated[Grid | Sample, PlainValidator(sampling_reader(FACTORS))]
     responses: Annotated[tuple[str, ...], names("response", RESPONSES)] = tuple(RESPONSES)
     analyses: Annotated[tuple[str, ...], names("analysis", ANALYSES)] = tuple(ANALYSES)
     store: Store = Field(default_factory=Store)

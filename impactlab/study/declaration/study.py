@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.study.declaration import checks, messages
-from impactlab.study.declaration.methods import Grid, Sobol
+from impactlab.study.declaration.methods import Grid, Sample, Sobol
 from impactlab.study.declaration.reading import Source
 from impactlab.study.declaration.schema import Analysis, Store, StudyForm
 from impactlab.study.declaration.sections import Auto
@@ -25,9 +25,9 @@ class Study:
 
     name: the file's, without the ending; path: as it was given. impact and discretisation: the
     base of all runs. auto: how nodes, points and courant are to be found, where they are not
-    stated. duration: simulated time in s. sampling: Grid or Sobol. responses: names out of
+    stated. duration: simulated time in s. sampling: Grid or Sample. responses: names out of
     dataset.RESPONSES; analyses: out of dataset.ANALYSES. store: what else is kept of each run.
-    analysis: how intervals of sensitivity indices are made. text: the file as it was read.
+    analysis: how sensitivity indices are made. text: the file as it was read.
     """
 
     name: str
@@ -38,7 +38,7 @@ class Study:
     discretisation: Discretisation
     auto: Auto | None
     duration: float
-    sampling: Grid | Sobol
+    sampling: Grid | Sample
     responses: tuple[str, ...]
     analyses: tuple[str, ...]
     store: Store
@@ -48,7 +48,8 @@ class Study:
     @property
     def size(self) -> str:
         """How much there is to do, in words."""
-        return f"{self.runs:,} runs"
+        until = self.sampling.until if isinstance(self.sampling, Sobol) else None
+        return f"{self.runs:,} runs" + (f", at most {until.runs:,}" if until else "")
 
     @property
     def runs(self) -> int:

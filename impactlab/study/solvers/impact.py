@@ -75,7 +75,9 @@ def _base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
 def _answer_coordinates(design: xr.Dataset, answers: Answers) -> dict[str, Any]:
     coordinates: dict[str, Any] = {}
     if answers.histories:
-        coordinates |= sample_coordinates(design["duration"].item(), design.attrs["samples"])
+        coordinates |= sample_coordinates(
+            design["duration"].item(), design.attrs["history_samples"]
+        )
     if answers.profiles:
         coordinates |= profile_coordinates(*_base(design))
     return coordinates

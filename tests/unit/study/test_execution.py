@@ -36,7 +36,7 @@ def design(velocities=(0.5, 1.0, 5.0), nodes=(11, 21), **attrs):
             "responses": RESPONSES_ASKED,
             "histories": 1,
             "profiles": 0,
-            "samples": 21,
+            "history_samples": 21,
         }
         | attrs,
     )

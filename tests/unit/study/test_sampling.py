@@ -109,7 +109,7 @@ def test_attributes_say_what_is_asked(designed):
         "analyses": ["convergence_in_nodes", "convergence_in_points", "sensitivity"],
         "histories": 1,
         "profiles": 0,
-        "samples": 7,
+        "history_samples": 7,
     }
 
 

@@ -48,7 +48,7 @@ WRONG_IN_GRID = [
     ("store.profile", True, "did you mean 'profiles'?"),
     ("store.histories", 1, "expected true or false"),
     ("store.samples", 1, "must lie from 2 to 100,000"),
-    ("analysis", {"confidence": 0.9}, "has no effect but with method: sobol"),
+    ("analysis", {"confidence": 0.9}, "has no effect with method: grid"),
 ]
 WRONG_IN_AXIS = [
     ("nodes", [11, 12], "nodes.1", "must be odd"),

@@ -14,7 +14,9 @@ from impactlab.study.storage import Form
 def design(**coords):
     attrs = {"solver": "function", "function": "ishigami", "varied": [*coords], "histories": 0}
     given = {"x3": 0.5} | {name: ("run", values) for name, values in coords.items()}
-    return xr.Dataset(coords=given, attrs=attrs | {"profiles": 0, "samples": 10, "study": "f"})
+    return xr.Dataset(
+        coords=given, attrs=attrs | {"profiles": 0, "history_samples": 10, "study": "f"}
+    )
 
 
 def test_values_are_the_functions_under_the_designs_labels(tmp_path):

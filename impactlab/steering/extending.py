@@ -1,0 +1,106 @@
+"""A Sobol sample that is doubled until its intervals are narrow enough.
+
+The sample is nested: the runs of N base samples are the first ones of 2 N, so that none is solved
+in vain.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.steering.widest import Widest, widest
+from impactlab.study.declaration import Sobol, Study, study_of_text
+from impactlab.study.sampling import design as sampled
+
+log = logging.getLogger(__name__)
+Step = Callable[[xr.Dataset], xr.Dataset]
+
+
+def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
+    """The runs of the smallest sample whose intervals are as narrow as asked.
+
+    design: of a Sobol study with `until`. solve: makes the runs of a design; analyse: makes
+    first_order_interval, total_order_interval (response, parameter) and sensitivity_verdict
+    (response) of runs.
+
+    Returns runs with the attributes until_reached (1: the intervals are as asked), until_reason
+    (why it stopped, in words), until_widest (the widest half-width) and of what it is,
+    until_widest_index, until_widest_response and until_widest_parameter, and until_left_out:
+    which responses had no say, and why, a line each. Raises ValueError when this version of
+    impactlab draws other runs than the design has.
+    """
+    study = _study(design)
+    while True:
+        runs = solve(design)
+        found = widest(analyse(runs.assign_attrs(analyses="sensitivity")), _asked(design))
+        reason = _enough(design, found)
+        log.info("%d runs: %s", runs.sizes["run"], reason or f"{found}: twice as many")
+        if reason:
+            return runs.assign_attrs(_said(design, found, reason))
+        study = replace(study, sampling=_sobol(study).doubled())
+        design = _nested(design, sampled(study))
+
+
+def _study(design: xr.Dataset) -> Study:
+    """The study as its text declares it, with the design's base samples and discretisation."""
+    study = study_of_text(str(design.attrs["study"]), str(design.attrs["study_text"]))
+    here = {"base_samples": int(design.attrs["base_samples"])}
+    sampling = _sobol(study).model_copy(update=here)
+    if study.auto is None:
+        return replace(study, sampling=sampling)
+    grid = {name: design[name].item() for name in ("nodes", "points", "courant")}
+    found = replace(study.discretisation, **grid)
+    return replace(study, sampling=sampling, discretisation=found, auto=None)
+
+
+def _sobol(study: Study) -> Sobol:
+    if not isinstance(study.sampling, Sobol):
+        raise ValueError(f"study {study.name!r}: only a sample of method sobol can be extended")
+    return study.sampling
+
+
+def _asked(design: xr.Dataset) -> list[str]:
+    names = design.attrs.get("until_responses", design.attrs["responses"])
+    return [str(name) for name in np.atleast_1d(names)]
+
+
+def _enough(design: xr.Dataset, found: Widest) -> str:
+    """Why not to go on; "" where the sample is to be doubled."""
+    interval, most = float(design.attrs["until_interval"]), int(design.attrs["until_runs"])
+    if not found.response:
+        return "no response has indices that more runs could narrow"
+    if found.half_width <= interval:
+        return f"{found}, within {interval:g}"
+    if 2 * design.sizes["run"] > most:
+        return f"{found}, above {interval:g}, but twice as many runs are more than {most:,}"
+    return ""
+
+
+def _nested(small: xr.Dataset, large: xr.Dataset) -> xr.Dataset:
+    """The larger design. Raises ValueError unless it begins with the smaller one, bit for bit."""
+    runs = small.sizes["run"]
+    for name in np.atleast_1d(small.attrs["varied"]):
+        if not np.array_equal(small[name].values, large[name].values[:runs]):
+            raise ValueError(
+                f"the design of study {small.attrs['study']!r} was drawn by another version of "
+                f"impactlab ({name} differs): draw it again with `impactlab design`"
+            )
+    return large
+
+
+def _said(design: xr.Dataset, found: Widest, reason: str) -> dict[str, Any]:
+    return {
+        "until_reached": int(found.half_width <= float(design.attrs["until_interval"])),
+        "until_reason": reason,
+        "until_widest": found.half_width,
+        "until_widest_index": found.index,
+        "until_widest_response": found.response,
+        "until_widest_parameter": found.parameter,
+        "until_left_out": "\n".join(found.left_out),
+    }

@@ -1,0 +1,22 @@
+"""When a growing sample is large enough."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, StrictStr
+
+from impactlab.study.declaration.form import Form, Number, Whole, between
+from impactlab.study.declaration.methods.sampling import MOST_RUNS
+
+
+class Until(Form):
+    """The sample is doubled until its intervals are narrow enough, within a number of runs.
+
+    interval: largest half-width of the interval of a first or total-order index. runs: the most
+    that may be made. responses: of which this is asked; none: of all.
+    """
+
+    interval: Annotated[Number, between(0.001, 0.5)]
+    runs: Annotated[Whole, between(1, MOST_RUNS)]
+    responses: Annotated[tuple[StrictStr, ...], Field(min_length=1)] | None = None
