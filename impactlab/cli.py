@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from impactlab.study.declaration import Study
+    from impactlab.study.declaration import FunctionStudy, Study
 
 app = typer.Typer(
     name="impactlab",
@@ -176,11 +176,11 @@ def recommend(
     """
     from impactlab.report.recommendation import print_recommendation
     from impactlab.steering.recommending import recommend as recommended
-    from impactlab.study.declaration import Auto, read_study
+    from impactlab.study.declaration import Auto, read_impacts
     from impactlab.study.engine import Engine
     from impactlab.study.netcdf import write_netcdf
 
-    declared = read_study(study)
+    declared = read_impacts(study)
     path = output or RESULTS / study.stem / "resolution.nc"
     signal.signal(signal.SIGINT, _stop_at_once)
     wanted = declared.auto or Auto()
@@ -348,9 +348,11 @@ def index(
     write_index(results, output or results / "index.html")
 
 
-def _settled(study: Study, evidence: Path) -> Study:
+def _settled(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy:
     """The study, its discretisation found by trials where it is auto; these are kept as a file."""
-    if study.auto is None:
+    from impactlab.study.declaration import FunctionStudy
+
+    if isinstance(study, FunctionStudy) or study.auto is None:
         return study
     from impactlab.report.recommendation import print_recommendation
     from impactlab.steering.resolving import resolved

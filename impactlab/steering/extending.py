@@ -15,11 +15,12 @@ import numpy as np
 import xarray as xr
 
 from impactlab.steering.widest import Widest, widest
-from impactlab.study.declaration import Sobol, Study, study_of_text
+from impactlab.study.declaration import FunctionStudy, Sobol, Study, study_of_text
 from impactlab.study.sampling import design as sampled
 
 log = logging.getLogger(__name__)
 Step = Callable[[xr.Dataset], xr.Dataset]
+Runs = Study | FunctionStudy
 
 
 def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
@@ -47,19 +48,18 @@ def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
         design = _nested(design, sampled(study))
 
 
-def _study(design: xr.Dataset) -> Study:
+def _study(design: xr.Dataset) -> Runs:
     """The study as its text declares it, with the design's base samples and discretisation."""
     study = study_of_text(str(design.attrs["study"]), str(design.attrs["study_text"]))
     here = {"base_samples": int(design.attrs["base_samples"])}
-    sampling = _sobol(study).model_copy(update=here)
-    if study.auto is None:
-        return replace(study, sampling=sampling)
+    study = replace(study, sampling=_sobol(study).model_copy(update=here))
+    if isinstance(study, FunctionStudy) or study.auto is None:
+        return study
     grid = {name: design[name].item() for name in ("nodes", "points", "courant")}
-    found = replace(study.discretisation, **grid)
-    return replace(study, sampling=sampling, discretisation=found, auto=None)
+    return replace(study, discretisation=replace(study.discretisation, **grid), auto=None)
 
 
-def _sobol(study: Study) -> Sobol:
+def _sobol(study: Runs) -> Sobol:
     if not isinstance(study.sampling, Sobol):
         raise ValueError(f"study {study.name!r}: only a sample of method sobol can be extended")
     return study.sampling

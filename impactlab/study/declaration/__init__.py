@@ -1,7 +1,10 @@
 """The study file: its forms, what may stand in it, and reading it with all errors at once."""
 
+from impactlab.study.declaration.declared import Declared
+from impactlab.study.declaration.function import FunctionStudy
 from impactlab.study.declaration.kinds import (
     read_any,
+    read_impacts,
     read_study,
     read_verification,
     study_of_text,
@@ -13,7 +16,9 @@ from impactlab.study.declaration.verification import Verification
 
 __all__ = [
     "Auto",
+    "Declared",
     "Fast",
+    "FunctionStudy",
     "Grid",
     "Grouped",
     "Latin",
@@ -23,6 +28,7 @@ __all__ = [
     "Study",
     "Verification",
     "read_any",
+    "read_impacts",
     "read_study",
     "read_verification",
     "study_of_text",

@@ -1,10 +1,8 @@
-"""A study of runs as its file declares it."""
+"""A study of impacts as its file declares it."""
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
@@ -12,7 +10,7 @@ from pydantic import ValidationError
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.study.declaration import checks, messages
-from impactlab.study.declaration.methods import Grid, Sample, Sobol
+from impactlab.study.declaration.declared import Declared
 from impactlab.study.declaration.reading import Source
 from impactlab.study.declaration.schema import Analysis, Store, StudyForm
 from impactlab.study.declaration.sections import Auto
@@ -20,46 +18,19 @@ from impactlab.study.errors import Problem, StudyError
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(Declared):
     """What to run and why: everything that a study file says, in SI units.
 
-    name: the file's, without the ending; path: as it was given. impact and discretisation: the
-    base of all runs. auto: how nodes, points and courant are to be found, where they are not
-    stated. duration: simulated time in s. sampling: Grid or Sample. responses: names out of
-    dataset.RESPONSES; analyses: out of dataset.ANALYSES. store: what else is kept of each run.
-    analysis: how sensitivity indices are made. text: the file as it was read.
+    impact and discretisation: the base of all runs. auto: how nodes, points and courant are to be
+    found, where they are not stated. duration: simulated time in s. responses: names out of
+    dataset.RESPONSES. store: what else is kept of each run.
     """
 
-    name: str
-    path: Path
-    title: str
-    description: str
     impact: Impact
     discretisation: Discretisation
     auto: Auto | None
     duration: float
-    sampling: Grid | Sample
-    responses: tuple[str, ...]
-    analyses: tuple[str, ...]
     store: Store
-    analysis: Analysis
-    text: str
-
-    @property
-    def size(self) -> str:
-        """How much there is to do, in words."""
-        until = self.sampling.until if isinstance(self.sampling, Sobol) else None
-        return f"{self.runs:,} runs" + (f", at most {until.runs:,}" if until else "")
-
-    @property
-    def runs(self) -> int:
-        """How many runs the study has."""
-        return self.sampling.runs
-
-    @property
-    def sha256(self) -> str:
-        """The SHA-256 of the text, in hexadecimal digits."""
-        return hashlib.sha256(self.text.encode()).hexdigest()
 
 
 def study(source: Source) -> Study:

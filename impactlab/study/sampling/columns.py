@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.study.declaration import Grouped, Sample, Sobol
+from impactlab.study.declaration import Declared, Grid, Grouped, Sample, Sobol
 from impactlab.study.sampling.cube import Draws, unit_draws
 
 
@@ -26,7 +26,30 @@ def coordinates(sampling: Sample, drawn: dict[str, Draws]) -> dict[str, Any]:
     }
 
 
-def attributes(sampling: Sample) -> dict[str, Any]:
+def grid(sampling: Grid) -> dict[str, Any]:
+    """The varied parameters, each a dimension of its own."""
+    return {name: (name, np.array(values)) for name, values in sampling.parameters.items()}
+
+
+def declared_attributes(study: Declared) -> dict[str, Any]:
+    """What the study is and asks for, whatever solves its runs."""
+    attrs = {
+        "study": study.name,
+        "title": study.title,
+        "description": study.description,
+        "study_text": study.text,
+        "study_sha256": study.sha256,
+        "method": study.sampling.method,
+        "varied": list(study.sampling.varied),
+        "responses": list(study.responses),
+        "analyses": list(study.analyses),
+    }
+    if isinstance(study.sampling, Grid):
+        return attrs
+    return attrs | study.analysis.model_dump() | _drawn(study.sampling)
+
+
+def _drawn(sampling: Sample) -> dict[str, Any]:
     """How the sample was drawn, and until when it is to grow."""
     attrs = dict(sampling.settings)
     if isinstance(sampling, Grouped) and sampling.groups:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from impactlab.dataset import described
@@ -13,11 +12,11 @@ from impactlab.model.parameters import flatten, with_values
 from impactlab.study.declaration import Grid, Sample, Study
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.possible import Base, Refusal, check_alone, refused_run
-from impactlab.study.sampling.columns import attributes, columns, coordinates
+from impactlab.study.sampling.columns import columns, coordinates, declared_attributes, grid
 from impactlab.study.sampling.cube import Draws
 
 
-def design(study: Study) -> xr.Dataset:
+def impact_design(study: Study) -> xr.Dataset:
     """The runs of a study, as a Dataset of coordinates alone.
 
     A grid has one dimension a varied parameter; a sample has the dimension `run` with the varied
@@ -35,15 +34,10 @@ def design(study: Study) -> xr.Dataset:
     fixed = flatten(*base) | {"duration": study.duration}
     scalars = {name: ((), value) for name, value in fixed.items()}
     if isinstance(study.sampling, Grid):
-        varied, attrs = _grid(study.sampling), {}
+        varied = grid(study.sampling)
     else:
         varied = _sample(study, study.sampling, base)
-        attrs = _analysis_attributes(study) | attributes(study.sampling)
-    return described(xr.Dataset(coords=scalars | varied, attrs=_attributes(study) | attrs))
-
-
-def _grid(sampling: Grid) -> dict[str, Any]:
-    return {name: (name, np.array(values)) for name, values in sampling.parameters.items()}
+    return described(xr.Dataset(coords=scalars | varied, attrs=_attributes(study)))
 
 
 def _sample(study: Study, sampling: Sample, base: Base) -> dict[str, Any]:
@@ -75,21 +69,9 @@ def _impossible(study: Study, found: Refusal) -> StudyError:
 
 
 def _attributes(study: Study) -> dict[str, Any]:
-    return {
-        "study": study.name,
-        "title": study.title,
-        "description": study.description,
-        "study_text": study.text,
-        "study_sha256": study.sha256,
-        "method": study.sampling.method,
-        "varied": list(study.sampling.varied),
-        "responses": list(study.responses),
-        "analyses": list(study.analyses),
+    return declared_attributes(study) | {
+        "solver": "impact",
         "histories": int(study.store.histories),
         "profiles": int(study.store.profiles),
         "history_samples": study.store.samples,
     }
-
-
-def _analysis_attributes(study: Study) -> dict[str, Any]:
-    return study.analysis.model_dump()
