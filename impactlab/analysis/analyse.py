@@ -7,12 +7,8 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis import (
-    convergence_in_nodes,
-    convergence_in_points,
-    failures,
-    sensitivity,
-)
+from impactlab.analysis import failures, sensitivity
+from impactlab.analysis.convergence import nodes, points, time_step
 from impactlab.analysis.numerical import numerical
 from impactlab.dataset import ANALYSES
 
@@ -27,12 +23,13 @@ class Analysis(Protocol):
         """Its variables, with `response` among their coordinates."""
 
 
-_MODULES: tuple[Analysis, ...] = (
-    failures,
-    convergence_in_nodes,
-    convergence_in_points,
-    sensitivity,
-)
+_MODULES: dict[str, Analysis] = {
+    "failures": failures,
+    "convergence_in_nodes": nodes,
+    "convergence_in_time_step": time_step,
+    "convergence_in_points": points,
+    "sensitivity": sensitivity,
+}
 """Every analysis there is; a new one is a module, a line here and a line in dataset.ANALYSES."""
 
 
@@ -49,14 +46,10 @@ def analyse(runs: xr.Dataset, resolution: xr.Dataset | None = None) -> xr.Datase
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
     parts = [
         module.analysis(runs)
-        for module in _MODULES
-        if module.applies(runs) and _name(module) not in ANALYSES.keys() - wanted
+        for name, module in _MODULES.items()
+        if module.applies(runs) and name not in ANALYSES.keys() - wanted
     ]
     merged = xr.merge(parts, join="exact", compat="equals", combine_attrs="override")
     if resolution is not None:
         merged = merged.merge(numerical(runs, merged, resolution), join="exact")
     return merged.assign_attrs(runs.attrs).drop_encoding()
-
-
-def _name(module: Analysis) -> str:
-    return str(vars(module)["__name__"]).rpartition(".")[2]

@@ -9,9 +9,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from impactlab.analysis.claims.claim import Data, Number, UnknownError
-from impactlab.analysis.convergence_in_nodes import judge
+from impactlab.analysis.convergence.axis import judge
+from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL
 from impactlab.analysis.responses import relevant_bits
-from impactlab.analysis.richardson import SAFETY_DOUBTFUL
 from impactlab.dataset import RESPONSES, reasons
 
 

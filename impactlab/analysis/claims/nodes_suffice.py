@@ -9,7 +9,7 @@ import numpy as np
 from impactlab.analysis.claims import responses_groups as groups
 from impactlab.analysis.claims.claim import Data, Judgement, Number, Verdict, attempt
 from impactlab.analysis.claims.evidence import answers, number, runs_of
-from impactlab.analysis.convergence_in_nodes import judge as converged
+from impactlab.analysis.convergence.axis import judge as converged
 from impactlab.analysis.verdicts import TOLERANCE
 
 SAYS = "N = 601 nodes are the least for convergence."

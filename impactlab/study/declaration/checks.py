@@ -66,6 +66,7 @@ def _runs_for_the_analyses(form: StudyForm) -> Findings:
     counts = {name: len(values) for name, values in grid.items()}
     possible = {
         "convergence_in_nodes": counts.get("nodes", 0) >= 3,
+        "convergence_in_time_step": counts.get("courant", 0) >= 3,
         "convergence_in_points": counts.get("points", 0) >= 2,
         "sensitivity": not grid,
     }

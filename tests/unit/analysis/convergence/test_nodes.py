@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis import convergence_in_nodes
-from impactlab.analysis.convergence_in_nodes import NodesVerdict, judge
+from impactlab.analysis.convergence import nodes as convergence_in_nodes
+from impactlab.analysis.convergence.axis import AxisVerdict, judge
 
 NODES = [51, 101, 201, 401, 801]
 SPACINGS = 1.0 / (np.array(NODES[::-1]) - 1.0)
@@ -24,31 +24,31 @@ def _h(nodes: Any) -> Any:
 @pytest.mark.parametrize(
     ("finest_first", "verdict", "safety"),
     [
-        (5 + 40 * SPACINGS**2, NodesVerdict.CONVERGED_SECOND_ORDER, 1.25),
-        (5 + 4 * SPACINGS, NodesVerdict.CONVERGED, 1.25),
-        (5 + 1e5 * SPACINGS**2, NodesVerdict.NOT_YET_CONVERGED, 1.25),
-        (5 + 4 * SPACINGS**0.3, NodesVerdict.NOT_YET_CONVERGED, 3.0),
+        (5 + 40 * SPACINGS**2, AxisVerdict.CONVERGED_SECOND_ORDER, 1.25),
+        (5 + 4 * SPACINGS, AxisVerdict.CONVERGED, 1.25),
+        (5 + 1e5 * SPACINGS**2, AxisVerdict.NOT_YET_CONVERGED, 1.25),
+        (5 + 4 * SPACINGS**0.3, AxisVerdict.NOT_YET_CONVERGED, 3.0),
         # a scatter of 1e-4, no trend
-        (5 + 5e-4 * np.array([0.0, 0.2, -0.8, 0.5, 0.0]), NodesVerdict.SETTLED, 3.0),
-        (5 + 5e-4 * np.array([1.0, 0.0, 0.2, 1.0, 0.0]), NodesVerdict.SETTLED, np.nan),
+        (5 + 5e-4 * np.array([0.0, 0.2, -0.8, 0.5, 0.0]), AxisVerdict.SETTLED, 3.0),
+        (5 + 5e-4 * np.array([1.0, 0.0, 0.2, 1.0, 0.0]), AxisVerdict.SETTLED, np.nan),
         # an order of 5 is chance: judged by the range of the values
-        (5 + 40 * SPACINGS**5, NodesVerdict.AT_ROUND_OFF, np.nan),
-        (5 + 1e6 * SPACINGS**5, NodesVerdict.SETTLED, 3.0),
-        (5 + 1e11 * SPACINGS**5, NodesVerdict.NOT_YET_CONVERGED, 3.0),
-        (40 * SPACINGS**2, NodesVerdict.TENDS_TO_ZERO, 1.25),
-        (1e-4 + 40 * SPACINGS**2, NodesVerdict.NOT_YET_CONVERGED, 1.25),
-        (np.array([5, 6, 4, 8, 0.0]), NodesVerdict.OSCILLATORY, 3.0),
-        (np.array([5, 1, 2, 1.5, 1.7]), NodesVerdict.DIVERGENT, np.nan),
-        (np.full(5, 3.0), NodesVerdict.AT_ROUND_OFF, np.nan),
-        (np.zeros(5), NodesVerdict.AT_ROUND_OFF, np.nan),
+        (5 + 40 * SPACINGS**5, AxisVerdict.AT_ROUND_OFF, np.nan),
+        (5 + 1e6 * SPACINGS**5, AxisVerdict.SETTLED, 3.0),
+        (5 + 1e11 * SPACINGS**5, AxisVerdict.NOT_YET_CONVERGED, 3.0),
+        (40 * SPACINGS**2, AxisVerdict.TENDS_TO_ZERO, 1.25),
+        (1e-4 + 40 * SPACINGS**2, AxisVerdict.NOT_YET_CONVERGED, 1.25),
+        (np.array([5, 6, 4, 8, 0.0]), AxisVerdict.OSCILLATORY, 3.0),
+        (np.array([5, 1, 2, 1.5, 1.7]), AxisVerdict.DIVERGENT, np.nan),
+        (np.full(5, 3.0), AxisVerdict.AT_ROUND_OFF, np.nan),
+        (np.zeros(5), AxisVerdict.AT_ROUND_OFF, np.nan),
         # counts
-        (np.array([4, 4, 4, 3, 3.0]), NodesVerdict.AT_ROUND_OFF, np.nan),
-        (np.array([4, 4, 3, 3, 3.0]), NodesVerdict.NOT_YET_CONVERGED, np.nan),
-        (np.array([4, 3, 3, 3, 3.0]), NodesVerdict.DIVERGENT, np.nan),
-        (np.array([5, np.nan, 5.2, 5.3, 5.4]), NodesVerdict.UNDETERMINED, np.nan),
+        (np.array([4, 4, 4, 3, 3.0]), AxisVerdict.AT_ROUND_OFF, np.nan),
+        (np.array([4, 4, 3, 3, 3.0]), AxisVerdict.NOT_YET_CONVERGED, np.nan),
+        (np.array([4, 3, 3, 3, 3.0]), AxisVerdict.DIVERGENT, np.nan),
+        (np.array([5, np.nan, 5.2, 5.3, 5.4]), AxisVerdict.UNDETERMINED, np.nan),
     ],
 )
-def test_every_verdict(finest_first: Any, verdict: NodesVerdict, safety: float) -> None:
+def test_every_verdict(finest_first: Any, verdict: AxisVerdict, safety: float) -> None:
     found = judge(finest_first, SPACINGS)
     assert found.verdict is verdict
     assert found.safety_factor == pytest.approx(safety, nan_ok=True)
@@ -68,7 +68,7 @@ def test_every_verdict(finest_first: Any, verdict: NodesVerdict, safety: float) 
 )
 def test_strain_that_grows_without_limit_is_divergent(finest_first: Any) -> None:
     found = judge(finest_first, SPACINGS)
-    assert found.verdict is NodesVerdict.DIVERGENT
+    assert found.verdict is AxisVerdict.DIVERGENT
     assert np.isnan([found.extrapolated, found.gci]).all()
 
 
@@ -76,7 +76,7 @@ def test_slow_growth_is_never_called_converged() -> None:
     # order 0.2: the limit is 14 % off although the last step is 2 %; ten times smaller as well
     for size in (1.0, 0.1, 0.01):
         found = judge(1.0 - size * SPACINGS**0.2, SPACINGS)
-        assert found.verdict is NodesVerdict.NOT_YET_CONVERGED
+        assert found.verdict is AxisVerdict.NOT_YET_CONVERGED
         assert np.isnan(found.extrapolated)
 
 
@@ -85,14 +85,14 @@ def test_a_coarse_grid_out_of_line_costs_the_safety_factor() -> None:
     for coarsest in (4.9, np.nan):
         bent = np.array([*smooth[:4], coarsest])
         found = judge(bent, SPACINGS)
-        assert found.verdict is NodesVerdict.CONVERGED
+        assert found.verdict is AxisVerdict.CONVERGED
         assert found.gci == pytest.approx(3.0 / 1.25 * judge(smooth, SPACINGS).gci)
         assert found.extrapolated == pytest.approx(5.0)
 
 
 def test_a_value_of_zero_on_the_finest_grid() -> None:
     found = judge(np.array([0.0, 1e-5, 3e-5, 7e-5, 15e-5]), SPACINGS)
-    assert found.verdict is NodesVerdict.NOT_YET_CONVERGED
+    assert found.verdict is AxisVerdict.NOT_YET_CONVERGED
     assert found.gci == np.inf
 
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from impactlab.analysis.richardson import (
+from impactlab.analysis.convergence.richardson import (
     SAFETY_CREDIBLE,
     SAFETY_DOUBTFUL,
     Behaviour,
@@ -69,9 +69,9 @@ def test_nasa_table() -> None:
         ([5.0, 1.0, 2.0], Behaviour.OSCILLATORY_DIVERGENT, -2.0),
         ([2.0, 1.0, 2.0], Behaviour.OSCILLATORY_DIVERGENT, 0.0),
         ([2.0, 1.0, 1.0], Behaviour.MONOTONE_DIVERGENT, math.nan),
-        ([2.0, 2.0, 2.0], Behaviour.CONSTANT, math.nan),
-        ([0.0, 0.0, 0.0], Behaviour.CONSTANT, math.nan),
-        ([2.0, 2.0 + 1e-9, 2.0 + 5e-10], Behaviour.CONSTANT, math.nan),
+        ([2.0, 2.0, 2.0], Behaviour.AT_ROUND_OFF, math.nan),
+        ([0.0, 0.0, 0.0], Behaviour.AT_ROUND_OFF, math.nan),
+        ([2.0, 2.0 + 1e-9, 2.0 + 5e-10], Behaviour.AT_ROUND_OFF, math.nan),
         ([2.0, 2.0, 2.1], Behaviour.STALLED, math.nan),
         ([1.0, math.nan, 1.2], Behaviour.UNDETERMINED, math.nan),
         ([1.0, 1.1, math.inf], Behaviour.UNDETERMINED, math.nan),

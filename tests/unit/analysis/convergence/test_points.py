@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis import convergence_in_points
+from impactlab.analysis.convergence import points as convergence_in_points
 
 POINTS = [2, 3, 5, 9, 17]
 Build = Callable[..., xr.Dataset]

@@ -12,14 +12,14 @@ e21 = f2 - f1, e32 = f3 - f2, p the observed order, s = sign(e32/e21).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum, auto
 
 import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from impactlab.analysis.verdicts import ROUND_OFF
+from impactlab.analysis.verdicts import ROUND_OFF, Verdict
 
 FORMAL_ORDER = 2.0
 """Order in dx of the central differences."""
@@ -30,38 +30,31 @@ CREDIBLE_ORDERS = (0.5, 3.0)
 SAFETY_CREDIBLE, SAFETY_DOUBTFUL = 1.25, 3.0
 
 
-class Behaviour(Enum):
+class Behaviour(Verdict):
     """How three values change as the grid is refined."""
 
-    MONOTONE = auto()
-    """e21, e32 of one sign, p > 0."""
-    OSCILLATORY = auto()
-    """e21, e32 of opposite sign, p > 0."""
-    MONOTONE_DIVERGENT = auto()
-    """One sign, p <= 0 (no order where the coarser difference alone is at round-off)."""
-    OSCILLATORY_DIVERGENT = auto()
-    """Opposite sign, p <= 0."""
-    CONSTANT = auto()
-    """Both differences at round-off."""
-    STALLED = auto()
-    """The finer difference alone at round-off: three grids do not show an order."""
-    UNDETERMINED = auto()
-    """A value is missing."""
+    MONOTONE = 0, True, "the differences shrink and keep their sign: a positive order"
+    OSCILLATORY = 1, True, "the differences shrink and change their sign"
+    AT_ROUND_OFF = 2, True, "the three finest grids agree to 1e-9"
+    STALLED = 3, False, "the two finest grids agree to 1e-9, the third does not: no order shows"
+    MONOTONE_DIVERGENT = 4, False, "the differences keep their sign and do not shrink"
+    OSCILLATORY_DIVERGENT = 5, False, "the differences change their sign and do not shrink"
+    NOT_CONVERGENT_BY_DESIGN = 6, False, "the model has no limit here: see the reason"
+    UNDETERMINED = 7, False, "a run on the three finest grids is missing"
 
 
 @dataclass(frozen=True)
 class Estimate:
     """What three grids show; in the unit of the values. NaN where it is not defined.
 
-    order: p, negative when divergent. extrapolated: Richardson's value at h = 0, monotone
-    convergence only: the limit of an alternating sequence lies elsewhere. fine, coarse: f1, f2;
-    ratio: r21.
+    values: f1, f2, f3; ratios: r21, r32. order: p, negative when divergent. extrapolated:
+    Richardson's value at h = 0, monotone convergence only: the limit of an alternating sequence
+    lies elsewhere.
     """
 
     behaviour: Behaviour
-    fine: float
-    coarse: float
-    ratio: float
+    values: tuple[float, float, float]
+    ratios: tuple[float, float]
     order: float = math.nan
     extrapolated: float = math.nan
 
@@ -76,6 +69,20 @@ class Estimate:
         """Whether the credible order is that of the scheme, give or take ASYMPTOTIC_BAND."""
         return self.credible and abs(self.order - FORMAL_ORDER) <= ASYMPTOTIC_BAND
 
+    @property
+    def asymptotic_ratio(self) -> float:
+        """GCI of f2 on f3 over r21^p times that of f1 on f2; credible orders only.
+
+        Near 1 in the asymptotic range. Up to the formal order it can differ from 1 by f1/f2 alone,
+        for p solves the same equation: look at the orders of other triples, too.
+        """
+        if not self.credible:
+            return math.nan
+        (f1, f2, f3), (r21, r32), p = self.values, self.ratios, self._order_used
+        fine = grid_convergence_index(f1, f2, r21, p)
+        coarse = grid_convergence_index(f2, f3, r32, p)
+        return coarse / (r21**p * fine) if 0 < fine < math.inf else math.nan
+
     def uncertainty(self, safety: float) -> float:
         """GCI of the finest grid times |f1|; NaN unless the sequence converges.
 
@@ -83,12 +90,15 @@ class Estimate:
         """
         if self.behaviour not in (Behaviour.MONOTONE, Behaviour.OSCILLATORY):
             return math.nan
-        order = min(self.order, FORMAL_ORDER)
-        return safety * _error(self.fine, self.coarse, self.ratio, order)
+        return safety * _error(*self.values[:2], self.ratios[0], self._order_used)
 
     def gci(self, safety: float) -> float:
         """Relative GCI of the finest grid; infinite where the finest value is zero."""
-        return _relative(self.uncertainty(safety), self.fine)
+        return _relative(self.uncertainty(safety), self.values[0])
+
+    @property
+    def _order_used(self) -> float:
+        return min(self.order, FORMAL_ORDER)
 
 
 def grid_convergence_index(
@@ -104,16 +114,22 @@ def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
     values: f1, f2, f3 in any unit; spacings: h1 < h2 < h3 in any unit, for only ratios count.
     Raises ValueError unless there are three of each and the spacings rise.
     """
-    (f1, f2, f3), (r21, r32) = _three(values), _ratios(spacings)
-    e21, e32 = f2 - f1, f3 - f2
+    (f1, f2, f3), ratios = (f := _three(values)), _ratios(spacings)
     if behaviour := _without_order(f1, f2, f3):
-        return Estimate(behaviour, f1, f2, r21)
-    order = observed_order(e32 / e21, r21, r32)
-    behaviour = _with_order(e32 / e21, order)
+        return Estimate(behaviour, f, ratios)
+    change = (f3 - f2) / (f2 - f1)
+    order = observed_order(change, *ratios)
+    behaviour = _with_order(change, order)
     if behaviour is not Behaviour.MONOTONE:
-        return Estimate(behaviour, f1, f2, r21, order)
-    limit = f1 - e21 / math.expm1(order * math.log(r21))
-    return Estimate(behaviour, f1, f2, r21, order, limit)
+        return Estimate(behaviour, f, ratios, order)
+    limit = f1 - (f2 - f1) / math.expm1(order * math.log(ratios[0]))
+    return Estimate(behaviour, f, ratios, order, limit)
+
+
+def safety(triples: Sequence[Estimate]) -> float:
+    """1.25 where every three successive grids show a credible order, and 3 otherwise."""
+    credible = all(triple.credible for triple in triples)
+    return SAFETY_CREDIBLE if credible else SAFETY_DOUBTFUL
 
 
 def observed_order(change: float, r21: float, r32: float) -> float:
@@ -152,7 +168,7 @@ def _without_order(f1: float, f2: float, f3: float) -> Behaviour | None:
     smallest = ROUND_OFF * max(abs(f1), abs(f2), abs(f3))
     fine_still, coarse_still = abs(f2 - f1) <= smallest, abs(f3 - f2) <= smallest
     if fine_still:
-        return Behaviour.CONSTANT if coarse_still else Behaviour.STALLED
+        return Behaviour.AT_ROUND_OFF if coarse_still else Behaviour.STALLED
     return Behaviour.MONOTONE_DIVERGENT if coarse_still else None
 
 

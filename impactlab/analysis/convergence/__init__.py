@@ -1,0 +1,1 @@
+"""Convergence along each axis of the discretisation: nodes, time step, integration points."""

@@ -1,0 +1,160 @@
+"""Error and uncertainty from a least-squares fit over four or more grids, for data that scatter.
+
+Source: Eca and Hoekstra (2014), J. Comput. Phys. 262, 104, sections 3 and 4.
+
+Symbols: f values, h spacings, n grids; f0 the limit, eps = |f - f0| of the fitted curve, sigma the
+standard deviation of the fit, delta the data range over n - 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import minimize_scalar
+
+from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL
+from impactlab.analysis.verdicts import Verdict
+
+FEWEST = 4
+"""Grids that a fit of three coefficients needs."""
+ORDERS = (0.5, 2.0)
+"""Fitted orders that are kept; outside, the powers are assumed to be 1, 2, or both."""
+_HIGHEST_RELIABLE = 2.1
+"""Fitted order from which on convergence is too fast to be more than chance."""
+_SEARCHED = np.linspace(-4.0, 8.0, 97)
+"""Orders between which the free one is looked for: far beyond any that is kept."""
+
+Array = npt.NDArray[np.float64]
+
+
+class Expansion(Verdict):
+    """The form of the error that describes the data best."""
+
+    FREE = 0, True, "a h^p, with the order p fitted (0.5 to 2)"
+    FIRST = 1, False, "a h: the fitted order is no credible one, the first is assumed"
+    SECOND = 2, False, "a h^2: the fitted order is no credible one, the second is assumed"
+    BOTH = 3, False, "a h + b h^2: the fitted order is below 0.5 or there is none"
+    NONE = 4, False, "no fit: it needs four grids that differ"
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted expansion; in the unit of the values.
+
+    order: p fitted, or the lowest power that is assumed. free_order: p fitted in any case.
+    extrapolated: f0. errors, residuals: eps and f - fit at each grid, (grids,). deviation: sigma.
+    """
+
+    expansion: Expansion
+    order: float
+    free_order: float
+    extrapolated: float
+    errors: Array
+    residuals: Array
+    deviation: float
+
+
+def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
+    """The expansion of least standard deviation among those that the fitted order leaves open.
+
+    values: f in any unit, spacings: h in any unit, both (grids,), four or more, all finite, in any
+    order. The order is fitted with weights 1/h and without. Where one of the two is within
+    ORDERS, the better such fit is taken; above, the better of the fixed orders 1 and 2; below, of
+    these and both together (weighted or not). Raises ValueError for fewer than four grids.
+    """
+    f, h = np.asarray(values, float), np.asarray(spacings, float)
+    if f.size < FEWEST:
+        raise ValueError(f"a fit with its own order needs four grids, not {f.size}")
+    h = h / h.min()
+    weights = (np.full(f.size, 1.0 / f.size), (1.0 / h) / np.sum(1.0 / h))
+    free = [_fit(f, h, w, (_free_order(f, h, w),)) for w in weights]
+    if credible := [found for found in free if ORDERS[0] <= found.order <= ORDERS[1]]:
+        return _best(credible)
+    order = _best(free).order
+    fixed = [(Expansion.FIRST, (1.0,)), (Expansion.SECOND, (2.0,)), (Expansion.BOTH, (1.0, 2.0))]
+    return _best(
+        _fit(f, h, w, powers, expansion, order)
+        for expansion, powers in (fixed if order < ORDERS[0] else fixed[:2])
+        for w in weights
+    )
+
+
+def uncertainty(found: Fit, values: npt.ArrayLike) -> Array:
+    """Half-width of the interval about each value that holds the limit in about 95 % of cases.
+
+    F eps + sigma + |residual| with F = 1.25 where the fitted order is reliable (0.5 to 2.1) and
+    the fit good (sigma < delta), F = 3 without a reliable order; 3 sigma/delta (eps + sigma +
+    |residual|) where the fit is poor. In the unit of the values, (grids,).
+    """
+    delta = float(np.ptp(values)) / (np.size(values) - 1)
+    if found.deviation > delta:
+        poor = SAFETY_DOUBTFUL * found.deviation / delta
+        return poor * (found.errors + found.deviation + abs(found.residuals))
+    reliable = ORDERS[0] <= found.free_order < _HIGHEST_RELIABLE
+    safety = SAFETY_CREDIBLE if reliable else SAFETY_DOUBTFUL
+    return safety * found.errors + found.deviation + abs(found.residuals)
+
+
+def _best(fits: Iterable[Fit]) -> Fit:
+    return min(fits, key=lambda found: found.deviation)
+
+
+def _fit(
+    f: Array,
+    h: Array,
+    weights: Array,
+    powers: tuple[float, ...],
+    expansion: Expansion = Expansion.FREE,
+    free_order: float | None = None,
+) -> Fit:
+    """f0 + sum a h^power with weights of sum 1; a free order costs a degree of freedom, too."""
+    terms = np.column_stack([h**power for power in powers])
+    coefficients, residuals = _solved(f, terms, weights)
+    parameters = 1 + len(powers) + (expansion is Expansion.FREE)
+    return Fit(
+        expansion,
+        min(powers),
+        powers[0] if free_order is None else free_order,
+        float(coefficients[0]),
+        abs(terms @ coefficients[1:]),
+        residuals,
+        float(np.sqrt(f.size * np.sum(weights * residuals**2) / (f.size - parameters))),
+    )
+
+
+def _solved(f: Array, terms: Array, weights: Array) -> tuple[Array, Array]:
+    """Coefficients of 1 and the terms, (1 + terms,), and residuals f - fit, (grids,)."""
+    design = np.column_stack([np.ones_like(f), terms])
+    root = np.sqrt(weights)
+    coefficients = np.linalg.lstsq(design * root[:, None], f * root, rcond=None)[0]
+    return coefficients, f - design @ coefficients
+
+
+def _free_order(f: Array, h: Array, weights: Array) -> float:
+    """The power of least weighted residual, looked for around the best of a few dozen."""
+
+    def misfit(orders: npt.ArrayLike) -> Array:
+        return _misfits(f, h, weights, np.atleast_1d(orders))
+
+    at = int(np.argmin(misfit(_SEARCHED)))
+    around = _SEARCHED[max(at - 1, 0)], _SEARCHED[min(at + 1, _SEARCHED.size - 1)]
+    found = minimize_scalar(
+        lambda order: misfit(order)[0], bounds=around, method="bounded", options={"xatol": 1e-10}
+    )
+    return float(found.x)
+
+
+def _misfits(f: Array, h: Array, weights: Array, orders: Array) -> Array:
+    """Weighted sum of squared residuals at the best f0 and a for each order, (orders,).
+
+    The curve is (h^p - 1)/p: with a constant the same as h^p, and ln h at p = 0.
+    """
+    p, logarithm = orders[:, None], np.log(h)
+    curves = np.where(p, np.expm1(p * logarithm) / np.where(p, p, 1.0), logarithm)
+    curves = curves - (curves @ weights)[:, None]
+    values = f - weights @ f
+    slopes = (curves * values) @ weights / (curves**2 @ weights)
+    return np.asarray((values - slopes[:, None] * curves) ** 2 @ weights)
