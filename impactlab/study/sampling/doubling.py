@@ -1,0 +1,38 @@
+"""The next larger sample of the same study."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from impactlab.study.declaration import Sobol, study_of_text
+from impactlab.study.sampling.design import design
+
+
+def doubled(small: xr.Dataset) -> xr.Dataset:
+    """The design with twice the base samples of a Sobol design; it begins with the same runs.
+
+    It is drawn by the text of the study that the design holds. Raises ValueError when it is of
+    another method, or when this version of impactlab draws other runs from that text.
+    """
+    name = str(small.attrs["study"])
+    study = study_of_text(name, str(small.attrs["study_text"]))
+    if not isinstance(study.sampling, Sobol):
+        raise ValueError(f"study {name!r}: only a sample of method sobol can be extended")
+    twice = {"base_samples": 2 * int(small.attrs["base_samples"])}
+    large = design(replace(study, sampling=study.sampling.model_copy(update=twice)))
+    _check_nested(small, large)
+    return large
+
+
+def _check_nested(small: xr.Dataset, large: xr.Dataset) -> None:
+    """Raises ValueError unless the runs of the small one come first, bit for bit."""
+    runs = small.sizes["run"]
+    for name in np.atleast_1d(small.attrs["varied"]):
+        if not np.array_equal(small[name].values, large[name].values[:runs]):
+            raise ValueError(
+                f"the design of study {small.attrs['study']!r} was drawn by another version of "
+                f"impactlab ({name} differs): draw it again with `impactlab design`"
+            )
