@@ -11,7 +11,6 @@ from impactlab.study.declaration.methods.grouped import Grouped
 from impactlab.study.declaration.methods.sampling import MOST_RUNS
 from impactlab.study.declaration.methods.until import Until
 
-
 _BASIS = 64
 """Base samples from which on the bootstrap's intervals may decide something."""
 
