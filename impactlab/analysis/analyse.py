@@ -39,9 +39,9 @@ def analyse(runs: xr.Dataset, resolution: xr.Dataset | None = None) -> xr.Datase
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
     attribute `analyses` says which are wanted (without it: all). resolution: what
     steering.recommending found for this study: adds the numerical uncertainty of sensitivity
-    indices (see `numerical`). Returns the variables that the
-    applying modules document, on `response` and the dimensions that they leave, with the
-    attributes of the runs. Raises ValueError when the runs are not what their attributes say.
+    indices (see `numerical`). Returns the variables that the applying modules document, on
+    `response` and the dimensions that they leave, with the attributes of the runs. Raises
+    ValueError when the runs are not what their attributes say.
     """
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
     parts = [

@@ -8,19 +8,16 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from impactlab.steering.widest import Widest, widest
-from impactlab.study.declaration import FunctionStudy, Sobol, Study, study_of_text
-from impactlab.study.sampling import design as sampled
+from impactlab.study.sampling.doubling import doubled
 
 log = logging.getLogger(__name__)
 Step = Callable[[xr.Dataset], xr.Dataset]
-Runs = Study | FunctionStudy
 
 
 def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
@@ -36,7 +33,6 @@ def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
     which responses had no say, and why, a line each. Raises ValueError when this version of
     impactlab draws other runs than the design has.
     """
-    study = _study(design)
     while True:
         runs = solve(design)
         found = widest(analyse(runs.assign_attrs(analyses="sensitivity")), _asked(design))
@@ -44,25 +40,7 @@ def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
         log.info("%d runs: %s", runs.sizes["run"], reason or f"{found}: twice as many")
         if reason:
             return runs.assign_attrs(_said(design, found, reason))
-        study = replace(study, sampling=_sobol(study).doubled())
-        design = _nested(design, sampled(study))
-
-
-def _study(design: xr.Dataset) -> Runs:
-    """The study as its text declares it, with the design's base samples and discretisation."""
-    study = study_of_text(str(design.attrs["study"]), str(design.attrs["study_text"]))
-    here = {"base_samples": int(design.attrs["base_samples"])}
-    study = replace(study, sampling=_sobol(study).model_copy(update=here))
-    if isinstance(study, FunctionStudy) or study.auto is None:
-        return study
-    grid = {name: design[name].item() for name in ("nodes", "points", "courant")}
-    return replace(study, discretisation=replace(study.discretisation, **grid), auto=None)
-
-
-def _sobol(study: Runs) -> Sobol:
-    if not isinstance(study.sampling, Sobol):
-        raise ValueError(f"study {study.name!r}: only a sample of method sobol can be extended")
-    return study.sampling
+        design = doubled(design)
 
 
 def _asked(design: xr.Dataset) -> list[str]:
@@ -80,18 +58,6 @@ def _enough(design: xr.Dataset, found: Widest) -> str:
     if 2 * design.sizes["run"] > most:
         return f"{found}, above {interval:g}, but twice as many runs are more than {most:,}"
     return ""
-
-
-def _nested(small: xr.Dataset, large: xr.Dataset) -> xr.Dataset:
-    """The larger design. Raises ValueError unless it begins with the smaller one, bit for bit."""
-    runs = small.sizes["run"]
-    for name in np.atleast_1d(small.attrs["varied"]):
-        if not np.array_equal(small[name].values, large[name].values[:runs]):
-            raise ValueError(
-                f"the design of study {small.attrs['study']!r} was drawn by another version of "
-                f"impactlab ({name} differs): draw it again with `impactlab design`"
-            )
-    return large
 
 
 def _said(design: xr.Dataset, found: Widest, reason: str) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     PlainValidator,
+    StrictStr,
     TypeAdapter,
     ValidationInfo,
     model_validator,
@@ -114,6 +115,14 @@ def between(least: float, most: float) -> AfterValidator:
     return AfterValidator(check)
 
 
+def _some(found: tuple[str, ...]) -> tuple[str, ...]:
+    if not found:
+        raise ValueError("is empty: list at least one name")
+    return found
+
+
+Names = Annotated[tuple[StrictStr, ...], AfterValidator(_some)]
+"""A list of words, at least one."""
 Number = Annotated[float, BeforeValidator(partial(si, units="1"))]
 """A pure number."""
 Whole = Annotated[int, BeforeValidator(whole)]

@@ -70,5 +70,5 @@ def _found(data: Any, path: Sequence[Any]) -> tuple[Any, bool, Any]:
         known = step in parent if isinstance(parent, dict) else isinstance(parent, list)
         if not known:
             return parent, False, None
-        data = parent[step]
+        data = parent[int(step)] if isinstance(parent, list) else parent[step]
     return parent, True, data

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, StrictStr, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from impactlab.study.declaration.form import at_key
+from impactlab.study.declaration.form import Names, at_key
 from impactlab.study.declaration.methods.sample import Sample
 from impactlab.study.errors import unknown
 
@@ -23,8 +23,7 @@ def _named(data: Any) -> Any:
     return data
 
 
-Members = Annotated[tuple[StrictStr, ...], Field(min_length=1)]
-Groups = Annotated[Mapping[str, Members], BeforeValidator(_named)]
+Groups = Annotated[Mapping[str, Names], BeforeValidator(_named)]
 
 
 class Grouped(Sample):

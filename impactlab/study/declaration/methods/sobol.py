@@ -11,6 +11,9 @@ from impactlab.study.declaration.methods.grouped import Grouped
 from impactlab.study.declaration.methods.sampling import MOST_RUNS
 from impactlab.study.declaration.methods.until import Until
 
+_BASIS = 64
+"""Base samples from which on the bootstrap's intervals may decide something."""
+
 
 def _power_of_two(value: int) -> int:
     if value & (value - 1):
@@ -26,7 +29,8 @@ class Sobol(Grouped):
     take N (2 G + 2) runs of G parameters or groups instead of N (G + 2). until: how far the
     sample is doubled; none: it is not.
 
-    Raises ValueError when `until` allows fewer runs than the first sample has.
+    Raises ValueError when `until` allows fewer runs than the first sample has, or is to be
+    decided by the intervals of a very small one.
     """
 
     method: Literal["sobol"]
@@ -39,12 +43,13 @@ class Sobol(Grouped):
         """Saltelli's number of runs."""
         return self.base_samples * ((2 if self.second_order else 1) * self.group_count + 2)
 
-    def doubled(self) -> Self:
-        """The sample of twice as many base samples, which begins with this one."""
-        return self.model_copy(update={"base_samples": 2 * self.base_samples})
-
     @model_validator(mode="after")
     def _room_to_grow(self) -> Self:
+        if self.until and self.base_samples < _BASIS:
+            raise at_key(
+                "base_samples",
+                f"must be at least {_BASIS} with until: the intervals of fewer cannot be trusted",
+            )
         if self.until and self.until.runs < self.runs:
             raise at_key("until.runs", f"must be at least the first sample's {self.runs:,} runs")
         return self

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, StrictStr
-
-from impactlab.study.declaration.form import Form, Number, Whole, between
+from impactlab.study.declaration.form import Form, Names, Number, Whole, between
 from impactlab.study.declaration.methods.sampling import MOST_RUNS
 
 
@@ -19,4 +17,4 @@ class Until(Form):
 
     interval: Annotated[Number, between(0.001, 0.5)]
     runs: Annotated[Whole, between(1, MOST_RUNS)]
-    responses: Annotated[tuple[StrictStr, ...], Field(min_length=1)] | None = None
+    responses: Names | None = None

@@ -57,6 +57,22 @@ def sample():
 
 
 @pytest.fixture
+def sampled():
+    """Makes the text of a study with this section `sampling`, of three bounded parameters."""
+    names = {"velocity": (1, 2), "beam_depth": (0.02, 0.03), "gravity": (0, 10)}
+    given = {
+        name: {"distribution": "uniform", "low": low, "high": high}
+        for name, (low, high) in names.items()
+    }
+
+    def text(method, parameters=None, **others):
+        section = {"method": method, "parameters": given | (parameters or {})} | others
+        return changed(SAMPLE, {"sampling": section})
+
+    return text
+
+
+@pytest.fixture
 def read(tmp_path):
     """Reads a study from its text."""
 

@@ -8,9 +8,7 @@ from SALib.analyze import sobol as sobol_analysis
 from impactlab.dataset import RESPONSES
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS
-from impactlab.study.declaration import read_study
 from impactlab.study.errors import StudyError
-from impactlab.study.sampling import design
 
 GRID = """
 title: A grid
@@ -42,17 +40,6 @@ sampling:
     beam_depth: {{distribution: uniform, low: 20 mm, high: 30 mm}}
 analysis: {{confidence: 0.9, resamples: 50}}
 """
-
-
-@pytest.fixture
-def designed(tmp_path):
-    """The design of a study's text."""
-
-    def make(text):
-        (tmp_path / "some.yaml").write_text(text)
-        return design(read_study(tmp_path / "some.yaml"))
-
-    return make
 
 
 @pytest.fixture
@@ -133,6 +120,7 @@ def test_a_sample_says_how_it_was_drawn(drawn):
         "seed": 5,
         "confidence": 0.9,
         "resamples": 50,
+        "failed_runs": "fail",
     }
     assert expected.items() <= sample.attrs.items()
     for name, (low, high) in BOX.items():
