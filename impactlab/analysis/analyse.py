@@ -12,6 +12,7 @@ from impactlab.analysis import (
     convergence_in_points,
     failures,
     sensitivity,
+    surrogate,
 )
 from impactlab.dataset import ANALYSES
 
@@ -31,6 +32,7 @@ _MODULES: tuple[Analysis, ...] = (
     convergence_in_nodes,
     convergence_in_points,
     sensitivity,
+    surrogate,
 )
 """Every analysis there is; a new one is a module, a line here and a line in dataset.ANALYSES."""
 

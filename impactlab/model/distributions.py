@@ -82,7 +82,7 @@ def quantile(attributes: Arguments, probability: ArrayLike) -> Values:
     """
     given = arguments(attributes)
     values = _frozen(given).ppf(probability)
-    return np.clip(values, given.get("low", -np.inf), given.get("high", np.inf))
+    return np.asarray(np.clip(values, given.get("low", -np.inf), given.get("high", np.inf)))
 
 
 def cumulative(attributes: Arguments, values: ArrayLike) -> Values:
