@@ -1,3 +1,4 @@
+from .analysis.surrogate import load_surrogate as load_surrogate
 from .model.beam import Beam as Beam
 from .model.discretisation import Discretisation as Discretisation
 from .model.impact import Impact as Impact

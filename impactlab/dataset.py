@@ -192,6 +192,7 @@ ANALYSES: dict[str, str] = {
     "convergence_in_time_step": "a grid that varies `courant` over at least 3 values",
     "convergence_in_points": "a grid that varies `points` over at least 2 values",
     "sensitivity": "a sample (any method but grid)",
+    "surrogate": "a sample (any method but grid)",
 }
 """Names of the analyses (modules of impactlab.analysis), and what runs each one needs."""
 

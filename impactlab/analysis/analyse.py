@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis import failures, sensitivity
+from impactlab.analysis import failures, sensitivity, surrogate
 from impactlab.analysis.convergence import nodes, points, time_step
 from impactlab.analysis.numerical import numerical
 from impactlab.dataset import ANALYSES
@@ -29,6 +29,7 @@ _MODULES: dict[str, Analysis] = {
     "convergence_in_time_step": time_step,
     "convergence_in_points": points,
     "sensitivity": sensitivity,
+    "surrogate": surrogate,
 }
 """Every analysis there is; a new one is a module, a line here and a line in dataset.ANALYSES."""
 

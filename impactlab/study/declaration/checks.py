@@ -69,6 +69,7 @@ def _runs_for_the_analyses(form: StudyForm) -> Findings:
         "convergence_in_time_step": counts.get("courant", 0) >= 3,
         "convergence_in_points": counts.get("points", 0) >= 2,
         "sensitivity": not grid,
+        "surrogate": not grid,
     }
     for name in form.analyses if form.analyses != tuple(ANALYSES) else ():
         if not possible[name]:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
 from typing import Annotated, Any, Generic, Literal, TypeVar
 
 import numpy as np
-import scipy  # its stats are loaded when first used
 from numpy.typing import NDArray
 from pydantic import AfterValidator, ValidationInfo, field_validator, model_validator
 
+from impactlab.model.distributions import quantile
 from impactlab.study.declaration.form import Form, Number, above_zero
 
 Q = TypeVar("Q", bound=float)
@@ -35,9 +34,9 @@ class Distribution(Form):
 
     distribution: str
 
-    @abstractmethod
     def quantile(self, probability: Values) -> Values:
         """The values (same shape) below which a draw lies with these probabilities in (0, 1)."""
+        return quantile(self.arguments(), probability)
 
     def arguments(self) -> dict[str, Any]:
         """Name and arguments as in the study file, in SI units."""
@@ -62,10 +61,6 @@ class Uniform(Bounded[Q], Generic[Q]):
 
     distribution: Literal["uniform"]
 
-    def quantile(self, probability: Values) -> Values:
-        """Linear in the probability."""
-        return self.low + probability * (self.high - self.low)
-
 
 class LogUniform(Bounded[Q], Generic[Q]):
     """The logarithm uniform between those of low and high; low above zero."""
@@ -74,10 +69,6 @@ class LogUniform(Bounded[Q], Generic[Q]):
 
     _positive = field_validator("low")(above_zero)
 
-    def quantile(self, probability: Values) -> Values:
-        """Linear in the logarithm."""
-        return np.asarray(scipy.stats.loguniform.ppf(probability, self.low, self.high))
-
 
 class Normal(Distribution, Generic[Q]):
     """Gaussian, unbounded: for what must stay positive, truncated_normal is safe."""
@@ -85,10 +76,6 @@ class Normal(Distribution, Generic[Q]):
     distribution: Literal["normal"]
     mean: Q
     standard_deviation: Annotated[Q, AfterValidator(above_zero)]
-
-    def quantile(self, probability: Values) -> Values:
-        """Of the Gaussian."""
-        return np.asarray(scipy.stats.norm.ppf(probability, self.mean, self.standard_deviation))
 
 
 class TruncatedNormal(Bounded[Q], Generic[Q]):
@@ -106,12 +93,6 @@ class TruncatedNormal(Bounded[Q], Generic[Q]):
         if near > 8 or far < -8:
             raise ValueError("low to high lies more than 8 standard deviations from the mean")
         return self
-
-    def quantile(self, probability: Values) -> Values:
-        """Of the Gaussian between its cuts (scipy counts these in deviations from the mean)."""
-        cuts = [(at - self.mean) / self.standard_deviation for at in (self.low, self.high)]
-        values = scipy.stats.truncnorm.ppf(probability, *cuts, self.mean, self.standard_deviation)
-        return np.asarray(np.clip(values, self.low, self.high))
 
 
 class LogNormal(Distribution, Generic[Q]):
@@ -131,11 +112,6 @@ class LogNormal(Distribution, Generic[Q]):
             raise ValueError("must be above 1 (1.1: most draws within 10 % of the median)")
         return value
 
-    def quantile(self, probability: Values) -> Values:
-        """Of the Gaussian of the logarithm, raised."""
-        spread = np.log(self.geometric_standard_deviation)
-        return np.asarray(scipy.stats.lognorm.ppf(probability, spread, scale=self.median))
-
 
 class Triangular(Bounded[Q], Generic[Q]):
     """Most likely at mode, falling linearly to nothing at low and high."""
@@ -150,12 +126,6 @@ class Triangular(Bounded[Q], Generic[Q]):
         if not low <= value <= high:
             raise ValueError(f"must lie from low to high ({low!r} to {high!r})")
         return value
-
-    def quantile(self, probability: Values) -> Values:
-        """Of the triangle (scipy counts its mode in parts of the base)."""
-        width = self.high - self.low
-        shape = (self.mode - self.low) / width
-        return np.asarray(scipy.stats.triang.ppf(probability, shape, self.low, width))
 
 
 DISTRIBUTIONS: dict[str, Any] = {

@@ -46,7 +46,7 @@ def function_study(source: Source) -> FunctionStudy:
         description=form.description,
         sampling=form.sampling,
         responses=RESPONSES,
-        analyses=("sensitivity",),
+        analyses=("sensitivity", "surrogate"),
         analysis=form.analysis,
         text=source.text,
         function=name,

@@ -1,0 +1,95 @@
+"""A sparse polynomial chaos from runs: least angle regression picks the terms, least squares fits.
+
+Hybrid least angle regression: Blatman and Sudret (2011), J. Comput. Phys. 230, 2345, section 4.3.
+Least angle regression itself is scikit-learn's.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from impactlab.analysis.surrogate.chaos import Array, Chaos, basis
+from impactlab.analysis.surrogate.terms import candidates
+
+MOST_RUNS = 20_000
+"""Runs that a fit uses; of more, it draws as many."""
+_MOST_CANDIDATES = 400
+_MOST_TERMS = 200
+_HIGHEST_DEGREE = 20
+_SMALLEST = 1e-12
+"""A term whose correlation with the residual falls below this part of the first one's is noise."""
+
+
+def fewest_runs(parameters: int) -> int:
+    """How many runs a fit needs: four for each term of the linear model."""
+    return 4 * (parameters + 1)
+
+
+def drawn(runs: int, seed: int) -> NDArray[np.int64]:
+    """Positions of the runs that a fit uses, rising: all, or a draw of MOST_RUNS."""
+    return np.sort(np.random.default_rng(seed).permutation(runs)[:MOST_RUNS])
+
+
+def fit(unit: Array, values: Array, seed: int) -> Chaos:
+    """A chaos that predicts `values` from points of the unit cube.
+
+    unit: (runs, parameters), the probabilities of the parameters' values; values: (runs,), finite.
+    seed: which runs are used where there are more than MOST_RUNS. Raises ValueError when there
+    are fewer than `fewest_runs`.
+    """
+    if len(values) < fewest_runs(unit.shape[1]):
+        raise ValueError(
+            f"{len(values)} runs are too few for a surrogate in {unit.shape[1]} parameters: "
+            f"it needs {fewest_runs(unit.shape[1])}"
+        )
+    rows = drawn(len(values), seed)
+    unit, values = unit[rows], values[rows]
+    degrees = candidates(
+        unit.shape[1], min(_MOST_CANDIDATES, len(values) // 2), _highest_degree(unit)
+    )
+    columns = basis(unit, degrees)
+    order = _order(columns, values)
+    count, coefficients = _least_squares(columns[order], values)
+    return Chaos(degrees[order[:count]], coefficients)
+
+
+def _highest_degree(unit: Array) -> int:
+    """What the parameter with the fewest levels can tell apart."""
+    levels = min(np.unique(np.round(column, 9)).size for column in unit.T)
+    return min(_HIGHEST_DEGREE, levels - 1)
+
+
+def _order(columns: Array, values: Array) -> list[int]:
+    """The terms in the order in which least angle regression takes them, the constant first."""
+    from sklearn.linear_model import lars_path_gram  # takes a second
+
+    centred = columns[1:] - columns[1:].mean(axis=1, keepdims=True)
+    centred /= np.sqrt((centred**2).mean(axis=1, keepdims=True))
+    covariance = centred @ (values - values.mean())
+    _, active, _ = lars_path_gram(
+        covariance,
+        centred @ centred.T,
+        n_samples=len(values),
+        max_iter=min(_MOST_TERMS, len(values) // 4),
+        alpha_min=_SMALLEST * np.abs(covariance).max() / len(values),
+    )
+    return [0, *(int(term) + 1 for term in active)]
+
+
+def _least_squares(columns: Array, values: Array) -> tuple[int, Array]:
+    """How many of the terms, from the first, predict best, and their coefficients.
+
+    Best: the least leave-one-out error, which one QR decomposition gives for all counts at once,
+    corrected for the number of terms k of n runs by (n + k)/(n - k): Blatman and Sudret (2011),
+    eqs. 17 to 20, with a basis as good as orthonormal.
+    """
+    runs, count = columns.shape[1], np.arange(1, len(columns) + 1)
+    q, r = scipy.linalg.qr(columns.T, mode="economic")
+    projected = q.T @ values
+    residual = values[:, np.newaxis] - np.cumsum(q * projected, axis=1)
+    free = np.maximum(1 - np.cumsum(q**2, axis=1), _SMALLEST)
+    error = ((residual / free) ** 2).mean(axis=0) * (runs + count) / (runs - count)
+    best = int(np.argmin(error)) + 1
+    return best, scipy.linalg.solve_triangular(r[:best, :best], projected[:best])
