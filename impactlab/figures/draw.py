@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from impactlab.figures import data, findings_curves, findings_overview, style
-from impactlab.figures.catalogue import CATALOGUE
+from impactlab.figures.catalogue import applicable
 from impactlab.figures.files import replaced
 from impactlab.verification.outcome import gravest_first
 from impactlab.verification.stored import unpacked
@@ -37,8 +37,7 @@ def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]
     pair = runs, analysis
     drawings = [
         Drawing(name, file.TITLE, partial(file.plot, *pair), partial(file.caption, *pair))
-        for name, file in CATALOGUE.items()
-        if file.applies(*pair)
+        for name, file in applicable(*pair).items()
     ]
     return draw(drawings, folder, study=str(runs.attrs.get("study")))
 
@@ -101,6 +100,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
         with style.applied(), replaced(path) as temporary:
             figure.savefig(temporary, format=path.suffix[1:], metadata=metadata)
+        figure.set_layout_engine("none")  # laid out once: that takes most of the time
     return paths
 
 

@@ -9,10 +9,9 @@ import numpy as np
 import xarray as xr
 
 from impactlab.dataset import MARKS, REMARKS
-from impactlab.figures.reading import verdicts, words
+from impactlab.figures.reading import missing, verdicts, words
 from impactlab.figures.reading.contents import count, responses, usable
 from impactlab.kernels.contact.about import ABOUT
-from impactlab.report.outcome import failed_runs
 
 _JUDGED = {
     "nodes_summary": "Not converged in nodes somewhere in the grid",
@@ -47,7 +46,7 @@ def _stale(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
 
 
 def _failures(runs: xr.Dataset) -> Iterator[str]:
-    if failed := int(failed_runs(runs).sum()):
+    if failed := int(missing.failed(runs).sum()):
         yield (
             f"{failed} of {count(runs)} runs failed: they miss at least one response, and are left "
             "out of figures and tables of what they miss. They are listed below with the reason."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -39,6 +40,11 @@ def sentence(text: str) -> str:
 def axis(text: str, symbol: str) -> str:
     """An axis label with its unit: "Peak force (kN)"; a pure number has the unit "–"."""
     return f"{sentence(text)} ({symbol or '–'})"
+
+
+def wrapped_axis(text: str, symbol: str, width: int = 30) -> str:
+    """An axis label in lines of about so many letters, for panels side by side."""
+    return textwrap.fill(axis(text, symbol), width, break_long_words=False)
 
 
 def number(value: float, digits: int = 4, plain: tuple[float, float] = (1e-4, 1e5)) -> str:
