@@ -160,7 +160,8 @@ def _label(figure: Figure, ax: Axes, axis: str) -> str:
     own = str(getattr(ax, f"get_{axis}label")())
     whole = str(getattr(figure, f"get_sup{axis}label")())
     others = (str(getattr(other, f"get_{axis}label")()) for other in figure.axes)
-    return own or whole or next(filter(None, others), "")
+    found = own or whole or next(filter(None, others), "")
+    return " ".join(found.split())
 
 
 def _legend_title(ax: Axes) -> str:

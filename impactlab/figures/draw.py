@@ -12,6 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from impactlab.figures import data, findings_curves, findings_overview, style
+from impactlab.figures.alt import alt
 from impactlab.figures.catalogue import applicable
 from impactlab.figures.files import replaced
 from impactlab.verification.outcome import gravest_first
@@ -69,9 +70,9 @@ def draw_findings(findings: xr.Dataset, folder: Path) -> list[Path]:
 def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
     """Write NAME.svg, NAME.png, the data behind it (see data.py), and captions.json.
 
-    captions.json: {NAME: {"title", "caption"}} in the order of the report. Files of figures that
-    it named before and that are not drawn any more are removed. The same datasets give the same
-    bytes. Returns the paths written. Raises what drawing raises, with the figure's name added.
+    captions.json: {NAME: {"title", "caption", "alt"}} in the order of the report. Files of figures
+    that it named before and that are not drawn any more are removed. The same datasets give the
+    same bytes. Returns the paths written. Raises what drawing raises, with the figure's name added.
     """
     folder.mkdir(parents=True, exist_ok=True)
     before = _captions(folder / CAPTIONS)
@@ -82,7 +83,11 @@ def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
             figure = drawing.plot()
             written += save(figure, folder, drawing.name)
             written += data.save(figure, folder, drawing.name)
-            captions[drawing.name] = {"title": drawing.title, "caption": drawing.caption()}
+            captions[drawing.name] = {
+                "title": drawing.title,
+                "caption": drawing.caption(),
+                "alt": alt(figure),
+            }
         except Exception as error:
             error.add_note(f"while drawing the figure {drawing.name} of study {study}")
             raise

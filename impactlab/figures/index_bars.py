@@ -53,12 +53,12 @@ class IndexBars:
     @style.paper
     def plot(self, runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         """A panel a response; bars within the noise are pale."""
-        rows, bars = analysis.sizes["parameter"], len(self.family.measures)
+        rows, bars = analysis.sizes["parameter"], len(self.family.measures_in(analysis))
         height = 10 + max(4.2, 1.4 * bars) * rows
         figure, axes = responses_grid.panels(asked(runs, analysis), height=height)
         for at, (name, ax) in enumerate(axes.items()):
             _bars(ax, analysis, self.family, name)
-            undefined(ax, analysis, name, self.family.measures[0].name)
+            undefined(ax, analysis, name, self.family.measures_in(analysis)[0].name)
             _rows(ax, measures.parameters(analysis), named=at % responses_grid.COLUMNS == 0)
             _reach(ax, shares=self.family.shares)
         figure.supxlabel(self.family.axis)
@@ -76,7 +76,7 @@ def undefined(ax: Axes, analysis: xr.Dataset, response: str, measure: str) -> No
 
 
 def _estimator(analysis: xr.Dataset, family: Family) -> str:
-    found = analysis[family.measures[0].name].attrs.get("estimator")
+    found = analysis[family.measures_in(analysis)[0].name].attrs.get("estimator")
     return f"Estimator: {found}." if found else ""
 
 
@@ -90,8 +90,9 @@ def _floor_words(analysis: xr.Dataset, family: Family) -> str:
 
 
 def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
-    rows, count = np.arange(analysis.sizes["parameter"]), len(family.measures)
-    for at, (measure, colour) in enumerate(zip(family.measures, _colours(count), strict=True)):
+    shown = family.measures_in(analysis)
+    rows, count = np.arange(analysis.sizes["parameter"]), len(shown)
+    for at, (measure, colour) in enumerate(zip(shown, _colours(count), strict=True)):
         found = measures.index(analysis, measure.name, response)
         finite = np.isfinite(found.margins)
         bars = ax.barh(
@@ -105,7 +106,7 @@ def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None
         )
         for bar, stands in zip(bars.patches, found.significant | ~finite, strict=True):
             bar.set_alpha(None if stands else _PALE)
-        if np.isfinite(found.floor):
+        if found.floor:
             ends = [found.floor] if family.shares else [-found.floor, found.floor]
             ax.vlines(ends, *_span(len(rows)), color=colour, linestyle=(0, (3, 1.5)), linewidth=0.9)
     ax.axvline(0.0, color="0.15", linewidth=0.6)

@@ -41,7 +41,7 @@ class Kind:
 
 
 def _runs(runs: xr.Dataset) -> tuple[str, str]:
-    method = "Sobol sample" if runs.attrs.get("method") == "sobol" else "grid"
+    method = words.method(str(runs.attrs.get("method", "grid")))
     failed = int(missing.failed(runs).sum())
     return f"{count(runs)} runs ({method})", f"{failed} failed" if failed else ""
 

@@ -15,10 +15,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Measure:
-    """A variable of the analysis on (response, parameter), and its name in words."""
+    """A variable of the analysis on (response, parameter), and its name in words.
+
+    optional: shown where it is given.
+    """
 
     name: str
     words: str
+    optional: bool = False
 
 
 @dataclass(frozen=True)
@@ -36,28 +40,47 @@ class Family:
     shares: bool = True
 
     def given(self, analysis: xr.Dataset) -> bool:
-        """Whether the analysis has every measure."""
-        return all(measure.name in analysis for measure in self.measures)
+        """Whether the analysis has every measure that is not optional."""
+        return all(one.name in analysis for one in self.measures if not one.optional)
+
+    def measures_in(self, analysis: xr.Dataset) -> list[Measure]:
+        """The measures that the analysis has."""
+        return [one for one in self.measures if one.name in analysis]
 
 
 @dataclass(frozen=True)
 class Index:
     """One measure of one response.
 
-    values, margins: on (parameter,), the index and the half-width of its interval (infinite where
-    none is given). floor: the upper end of a dummy parameter's interval, which is noise; NaN where
-    no dummy was sampled.
+    values, margins, numerical: on (parameter,), the index, the half-width of its interval (infinite
+    where none is given), and what the numerical error of the runs could change it by (0 where that
+    is not known). floor: the upper end of a dummy parameter's interval, which is noise; 0 where no
+    dummy was sampled.
     """
 
     values: Array
     margins: Array
+    numerical: Array
     floor: float
 
     @property
     def significant(self) -> NDArray[np.bool_]:
-        """Where the whole interval of the magnitude lies above zero and above the dummy's."""
-        floor = max(self.floor, 0.0) if np.isfinite(self.floor) else 0.0
-        return np.asarray(np.abs(self.values) - self.margins > floor)
+        """Where the whole interval lies beyond the dummy, and the index beyond numerical error."""
+        size = np.abs(self.values)
+        return np.asarray((size - self.margins > self.floor) & (size > self.numerical))
+
+    @property
+    def numerically_lost(self) -> NDArray[np.bool_]:
+        """Where the numerical error alone could make an index as large as this."""
+        return np.asarray((self.numerical > 0) & (np.abs(self.values) <= self.numerical))
+
+    @property
+    def ranks(self) -> list[tuple[int, int]]:
+        """The best and the worst rank of each magnitude that the intervals leave open, from 1."""
+        low, high = np.abs(self.values) - self.margins, np.abs(self.values) + self.margins
+        best = 1 + (low[None, :] > high[:, None]).sum(1)
+        worst = low.size - (high[None, :] < low[:, None]).sum(1)
+        return list(zip(best.tolist(), worst.tolist(), strict=True))
 
 
 SOBOL = Family(
@@ -70,9 +93,9 @@ SOBOL = Family(
 SURROGATE = Family(
     "Indices of the surrogate beside the sampled ones",
     (
-        Measure("first_order", "first order, sampled"),
+        Measure("first_order", "first order, sampled", optional=True),
         Measure("surrogate_first_order", "first order, surrogate"),
-        Measure("total_order", "total order, sampled"),
+        Measure("total_order", "total order, sampled", optional=True),
         Measure("surrogate_total_order", "total order, surrogate"),
     ),
     "Share of the variance (–)",
@@ -81,21 +104,21 @@ SURROGATE = Family(
 )
 DELTA = Family(
     "Delta indices",
-    (Measure("delta", "delta"), Measure("delta_first_order", "first order")),
+    (Measure("delta", "delta"), Measure("delta_first_order", "first order", optional=True)),
     "Index (–)",
     "Delta: half the area by which the density of a response changes, on average, once the "
     "parameter is known (Borgonovo); beside it the first-order index from the same runs.",
 )
 PAWN = Family(
     "PAWN indices",
-    (Measure("pawn", "median"), Measure("pawn_maximum", "largest")),
+    (Measure("pawn", "median"), Measure("pawn_maximum", "largest", optional=True)),
     "Kolmogorov-Smirnov distance (–)",
     "Distance between the distribution of a response and the same with the parameter held in one "
     "part of its range: median and largest over the parts (Pianosi and Wagener).",
 )
 REGRESSION = Family(
     "Regression coefficients",
-    (Measure("regression", "of values"), Measure("rank_regression", "of ranks")),
+    (Measure("regression", "of values"), Measure("rank_regression", "of ranks", optional=True)),
     "Standardised coefficient (–)",
     "Standard deviations by which a response rises with one standard deviation of the parameter, "
     "in a linear fit of values and of ranks. They tell no more than the fit does: see R².",
@@ -131,18 +154,20 @@ def parameters(analysis: xr.Dataset) -> list[str]:
 def index(analysis: xr.Dataset, measure: str, response: str) -> Index:
     """One measure of one response."""
     values = analysis[measure].sel(response=response).values
-    interval = analysis.get(f"{measure}_interval")
-    margins = np.full_like(values, np.inf)
-    if interval is not None:
-        margins = np.nan_to_num(interval.sel(response=response).values, nan=np.inf)
-    return Index(values, margins, _floor(analysis, measure, response))
+    return Index(
+        values,
+        _beside(analysis, f"{measure}_interval", response, values, gap=np.inf),
+        _beside(analysis, f"{measure}_numerical", response, values, gap=0.0),
+        _floor(analysis, f"dummy_{measure}", response),
+    )
 
 
-def _floor(analysis: xr.Dataset, measure: str, response: str) -> float:
-    dummy = f"dummy_{measure}"
-    if dummy not in analysis:
-        return float("nan")
-    value = abs(float(analysis[dummy].sel(response=response)))
-    interval = analysis.get(f"{dummy}_interval")
-    margin = 0.0 if interval is None else float(interval.sel(response=response))
-    return value + (margin if np.isfinite(margin) else 0.0)
+def _beside(analysis: xr.Dataset, name: str, response: str, values: Array, *, gap: float) -> Array:
+    if name not in analysis:
+        return np.full_like(values, gap)
+    return np.asarray(np.nan_to_num(analysis[name].sel(response=response).values, nan=gap))
+
+
+def _floor(analysis: xr.Dataset, dummy: str, response: str) -> float:
+    ends = [analysis[name] for name in (dummy, f"{dummy}_interval") if name in analysis]
+    return float(sum(np.nan_to_num(abs(end.sel(response=response).item())) for end in ends))

@@ -19,6 +19,14 @@ _SPELLED = {
     "layers": "uniform layers",
     "semi_implicit": "semi-implicit",
 }
+_METHODS = {
+    "sobol": "Sobol sample",
+    "morris": "Morris trajectories",
+    "fast": "extended FAST curves",
+    "delta": "Latin hypercube for delta indices",
+    "pawn": "Latin hypercube for PAWN indices",
+    "regression": "Latin hypercube for regression",
+}
 _NAMES = {"mjg": "MJG", "stronge_original": "Stronge (original)"}
 
 
@@ -30,6 +38,11 @@ def response(name: str) -> str:
 def parameter(name: str) -> str:
     """A parameter's meaning: "yield stress of the beam"."""
     return PARAMETERS[name].long_name if name in PARAMETERS else name.replace("_", " ")
+
+
+def method(name: str) -> str:
+    """How the runs were chosen: "grid", "Sobol sample"."""
+    return _METHODS.get(name, name)
 
 
 def sentence(text: str) -> str:
