@@ -11,10 +11,13 @@ from impactlab.figures import (
     contact_duration,
     contact_laws,
     displacement_history,
+    failure_map,
+    failure_shares,
     first_contact,
     force_history,
     force_indentation,
     force_indentation_by_law,
+    morris_plane,
     nodes_convergence,
     parameter_effects,
     plastic_strain,
@@ -22,15 +25,21 @@ from impactlab.figures import (
     points_convergence,
     response_distributions,
     shear,
-    sobol_indices,
     sobol_second_order,
 )
+from impactlab.figures.index_bars import IndexBars
+from impactlab.figures.index_convergence import IndexConvergence
+from impactlab.figures.reading import measures
+from impactlab.figures.scatter import scatters
 
 
 class FigureFile(Protocol):
     """What a figure's file offers. runs: runs.nc; analysis: analysis.nc; neither is changed."""
 
-    TITLE: str
+    @property
+    def TITLE(self) -> str:  # noqa: N802
+        """Heads the figure."""
+        ...
 
     def applies(self, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
         """Whether the datasets hold what the figure needs."""
@@ -45,7 +54,11 @@ class FigureFile(Protocol):
         ...
 
 
-_FILES: tuple[FigureFile, ...] = (
+def _named(*files: FigureFile) -> dict[str, FigureFile]:
+    return {str(vars(file)["__name__"]).rpartition(".")[2]: file for file in files}
+
+
+_ANSWERS: dict[str, FigureFile] = _named(
     contact_laws,
     first_contact,
     force_history,
@@ -60,10 +73,26 @@ _FILES: tuple[FigureFile, ...] = (
     nodes_convergence,
     points_convergence,
     response_distributions,
-    sobol_indices,
-    sobol_second_order,
 )
-CATALOGUE: dict[str, FigureFile] = {
-    str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
+_INDICES: dict[str, FigureFile] = {
+    "sobol_indices": IndexBars(measures.SOBOL),
+    **_named(sobol_second_order),
+    **{
+        f"{measure.name}_convergence": IndexConvergence(measure)
+        for measure in measures.SOBOL.measures
+    },
+    **_named(morris_plane),
+    "delta_indices": IndexBars(measures.DELTA),
+    "pawn_indices": IndexBars(measures.PAWN),
+    "regression_indices": IndexBars(measures.REGRESSION),
+    "surrogate_indices": IndexBars(measures.SURROGATE),
+    **_named(failure_shares, failure_map),
 }
-"""Every figure by name, in the order of the report."""
+CATALOGUE = _ANSWERS | _INDICES
+"""Every figure by name, in the order of the report, but for those of one response each."""
+
+
+def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, FigureFile]:
+    """The figures that apply to a study, by name, in the order of the report."""
+    everything = _ANSWERS | scatters(runs) | _INDICES
+    return {name: file for name, file in everything.items() if file.applies(runs, analysis)}

@@ -1,21 +1,22 @@
 """The data behind a figure, as drawn: every curve and every row of bars, in the axes' units.
 
-NAME.csv has a row a point; NAME.nc the same as CF's contiguous ragged arrays. A map of colours has
-no curves: its numbers are in analysis.nc.
+NAME.csv has a row a point; NAME.nc the same as CF's contiguous ragged arrays. Bars of named things
+have the name in `category`. A map of colours has no curves: its numbers are in analysis.nc.
 """
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.container import BarContainer
+from matplotlib.container import BarContainer, ErrorbarContainer
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedFormatter
 from numpy.typing import NDArray
 
 from impactlab.figures.files import replaced
@@ -28,7 +29,10 @@ _LABELS = ("panel", "curve", "x_label", "y_label")
 
 @dataclass(frozen=True)
 class Drawn:
-    """One curve: where it is, what it is called, and its points x, y of shape (points,)."""
+    """One curve: where it is, what it is called, and its points x, y of shape (points,).
+
+    category: what each point is of, where the axis has names in place of numbers; else "".
+    """
 
     panel: str
     curve: str
@@ -36,6 +40,12 @@ class Drawn:
     y_label: str
     x: NDArray[np.float64]
     y: NDArray[np.float64]
+    category: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        """Points of no category."""
+        if not self.category:
+            object.__setattr__(self, "category", [""] * self.x.size)
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:
@@ -60,10 +70,10 @@ def drawn(figure: Figure) -> Iterator[Drawn]:
             continue
         labels = _label(figure, ax, "x"), _label(figure, ax, "y")
         panel = ax.get_title(loc="left") or _legend_title(ax) or f"panel {number}"
-        for curve, x, y in (*_lines(ax), *_bars(ax)):
+        for curve, x, y in (*_lines(ax), *_marked(ax), *_bars(ax)):
             kept = np.isfinite(x) & np.isfinite(y)
             if kept.any():
-                yield Drawn(panel, curve, *labels, x[kept], y[kept])
+                yield Drawn(panel, curve, *labels, x[kept], y[kept], _categories(ax, y[kept]))
 
 
 def dataset(found: list[Drawn]) -> xr.Dataset:
@@ -81,17 +91,18 @@ def dataset(found: list[Drawn]) -> xr.Dataset:
         )
         for axis in ("x", "y")
     }
-    return xr.Dataset({**columns, "points": counts, **points})
+    category = ("point", [name for one in found for name in one.category])
+    return xr.Dataset({**columns, "points": counts, **points, "category": category})
 
 
 def _write_csv(found: list[Drawn], path: Path) -> None:
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*_LABELS, "x", "y"])
+        writer.writerow([*_LABELS, "category", "x", "y"])
         for one in found:
             labels = [getattr(one, name) for name in _LABELS]
-            points = zip(one.x.tolist(), one.y.tolist(), strict=True)
-            writer.writerows([*labels, f"{x:.9g}", f"{y:.9g}"] for x, y in points)
+            points = zip(one.category, one.x.tolist(), one.y.tolist(), strict=True)
+            writer.writerows([*labels, name, f"{x:.9g}", f"{y:.9g}"] for name, x, y in points)
 
 
 def _lines(ax: Axes) -> Iterator[Points]:
@@ -100,6 +111,14 @@ def _lines(ax: Axes) -> Iterator[Points]:
         if label == "_only" or not label.startswith("_"):
             x, y = (np.asarray(values, dtype=float) for values in line.get_data())
             yield label.removeprefix("_only"), x, y
+
+
+def _marked(ax: Axes) -> Iterator[Points]:
+    """Points with lines for their intervals."""
+    for marks in ax.containers:
+        if isinstance(marks, ErrorbarContainer) and marks.lines[0] is not None:
+            x, y = (np.asarray(values, dtype=float) for values in marks.lines[0].get_data())
+            yield _own(str(marks.get_label())), x, y
 
 
 def _bars(ax: Axes) -> Iterator[Points]:
@@ -114,7 +133,21 @@ def _bars(ax: Axes) -> Iterator[Points]:
             x, y = right, 0.5 * (bottom + top)
         else:
             x, y = 0.5 * (left + right), top
-        yield "" if label.startswith("_") else label, x, y
+        yield _own(label), x, y
+
+
+def _own(label: str) -> str:
+    """Without matplotlib's own names of what has none."""
+    return "" if label.startswith("_") else label
+
+
+def _categories(ax: Axes, y: NDArray[np.float64]) -> list[str]:
+    """The names on the vertical axis that are nearest to y; none where it has numbers."""
+    formatter = ax.yaxis.get_major_formatter()
+    if not isinstance(formatter, FixedFormatter):
+        return []
+    names = [str(name) for name in formatter.seq]
+    return [names[int(at)] for at in np.clip(np.rint(y), 0, len(names) - 1)]
 
 
 def _has_ticks(ax: Axes) -> bool:
@@ -127,7 +160,8 @@ def _label(figure: Figure, ax: Axes, axis: str) -> str:
     own = str(getattr(ax, f"get_{axis}label")())
     whole = str(getattr(figure, f"get_sup{axis}label")())
     others = (str(getattr(other, f"get_{axis}label")()) for other in figure.axes)
-    return own or whole or next(filter(None, others), "")
+    found = own or whole or next(filter(None, others), "")
+    return " ".join(found.split())
 
 
 def _legend_title(ax: Axes) -> str:

@@ -12,7 +12,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from impactlab.figures import data, findings_curves, findings_overview, style
-from impactlab.figures.catalogue import CATALOGUE
+from impactlab.figures.alt import alt
+from impactlab.figures.catalogue import applicable
 from impactlab.figures.files import replaced
 from impactlab.verification.outcome import gravest_first
 from impactlab.verification.stored import unpacked
@@ -37,8 +38,7 @@ def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]
     pair = runs, analysis
     drawings = [
         Drawing(name, file.TITLE, partial(file.plot, *pair), partial(file.caption, *pair))
-        for name, file in CATALOGUE.items()
-        if file.applies(*pair)
+        for name, file in applicable(*pair).items()
     ]
     return draw(drawings, folder, study=str(runs.attrs.get("study")))
 
@@ -70,9 +70,9 @@ def draw_findings(findings: xr.Dataset, folder: Path) -> list[Path]:
 def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
     """Write NAME.svg, NAME.png, the data behind it (see data.py), and captions.json.
 
-    captions.json: {NAME: {"title", "caption"}} in the order of the report. Files of figures that
-    it named before and that are not drawn any more are removed. The same datasets give the same
-    bytes. Returns the paths written. Raises what drawing raises, with the figure's name added.
+    captions.json: {NAME: {"title", "caption", "alt"}} in the order of the report. Files of figures
+    that it named before and that are not drawn any more are removed. The same datasets give the
+    same bytes. Returns the paths written. Raises what drawing raises, with the figure's name added.
     """
     folder.mkdir(parents=True, exist_ok=True)
     before = _captions(folder / CAPTIONS)
@@ -83,7 +83,11 @@ def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
             figure = drawing.plot()
             written += save(figure, folder, drawing.name)
             written += data.save(figure, folder, drawing.name)
-            captions[drawing.name] = {"title": drawing.title, "caption": drawing.caption()}
+            captions[drawing.name] = {
+                "title": drawing.title,
+                "caption": drawing.caption(),
+                "alt": alt(figure),
+            }
         except Exception as error:
             error.add_note(f"while drawing the figure {drawing.name} of study {study}")
             raise
@@ -101,6 +105,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
         with style.applied(), replaced(path) as temporary:
             figure.savefig(temporary, format=path.suffix[1:], metadata=metadata)
+        figure.set_layout_engine("none")  # laid out once: that takes most of the time
     return paths
 
 

@@ -57,6 +57,13 @@ def write_verdict(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> N
     )
 
 
+def warn(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> None:
+    """The response's verdict under the panel's title, where it is a warning."""
+    found = verdicts.verdict(analysis, variable, name)
+    if found and not found.sound:
+        write_verdict(ax, analysis, variable, name)
+
+
 def empty(ax: Axes, text: str) -> None:
     """Words in the place of curves, without ticks that would mean nothing."""
     style.remark(ax, text)

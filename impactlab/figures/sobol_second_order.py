@@ -10,8 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
-from impactlab.figures import responses_grid, sobol_indices, style
+from impactlab.figures import responses_grid, style
+from impactlab.figures.index_bars import undefined
 from impactlab.figures.reading import missing, verdicts, words
+from impactlab.figures.reading.measures import asked, parameters
 
 TITLE = "Sobol indices of second order"
 _INDEX = "second_order"
@@ -23,7 +25,7 @@ def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     return (
         _INDEX in analysis
         and analysis.sizes["parameter"] >= _FEWEST
-        and sobol_indices.applies(runs, analysis)
+        and bool(asked(runs, analysis))
     )
 
 
@@ -33,23 +35,23 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         "Share of the variance that comes from the interaction of two parameters; columns are "
         f"numbered as the rows. Grey: zero lies within the {verdicts.confidence(analysis)} "
         "interval. "
-        f"{missing.note(runs, sobol_indices.names(runs, analysis))}".strip()
+        f"{missing.note(runs, asked(runs, analysis))}".strip()
     )
 
 
 @style.paper
 def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """A panel a response, a cell a pair, all in one scale of colours."""
-    shown = sobol_indices.names(runs, analysis)
-    parameters = [str(name) for name in analysis["parameter"].values]
-    figure, axes = responses_grid.panels(shown, height=12 + 4.6 * len(parameters))
+    shown = asked(runs, analysis)
+    listed = parameters(analysis)
+    figure, axes = responses_grid.panels(shown, height=12 + 4.6 * len(listed))
     values = {name: pairs(analysis[_INDEX].sel(response=name)) for name in shown}
     margin = {name: _margins(analysis, name) for name in shown}
     colours = Normalize(0.0, max([_top(values[n], margin[n]) for n in shown], default=0.1))
     for at, (name, ax) in enumerate(axes.items()):
         image = _map(ax, values[name], np.abs(values[name]) > margin[name], colours)
-        sobol_indices.undefined(ax, analysis, name)
-        _label(ax, parameters, named=at % responses_grid.COLUMNS == 0)
+        undefined(ax, analysis, name, _INDEX)
+        _label(ax, listed, named=at % responses_grid.COLUMNS == 0)
     bar = figure.colorbar(
         image, ax=list(axes.values()), location="bottom", fraction=0.02, aspect=40, shrink=0.6
     )
@@ -98,10 +100,10 @@ def _short(value: float) -> str:
     return ".00" if text == "−.00" else text
 
 
-def _label(ax: Axes, parameters: list[str], *, named: bool) -> None:
-    count = len(parameters)
+def _label(ax: Axes, listed: list[str], *, named: bool) -> None:
+    count = len(listed)
     numbers = [str(at) for at in range(1, count + 1)]
-    rows = [f"{words.parameter(name)} {at}" for name, at in zip(parameters, numbers, strict=True)]
+    rows = [f"{words.parameter(name)} {at}" for name, at in zip(listed, numbers, strict=True)]
     ax.set_yticks(range(count), rows if named else numbers)
     ax.set_xticks(range(count), numbers)
     ax.set(xlim=(-0.5, count - 0.5), ylim=(count - 0.5, -0.5), aspect="auto")

@@ -167,6 +167,15 @@ def _columns(width: float, labels: list[str], letter: float = 1.6) -> int:
     return max(1, min(fit, len(labels)))
 
 
+def told_apart(at: int) -> dict[str, Any]:
+    """Colour, line and marker of the curve number `at`, alike in all panels."""
+    return {
+        "color": COLOURS[at % len(COLOURS)],
+        "linestyle": LINES[at // len(COLOURS) % len(LINES)],
+        "marker": MARKERS[at // len(COLOURS) % len(MARKERS)],
+    }
+
+
 def remark(axes: Axes, text: str) -> None:
     """Words in the place of data, in the middle of empty axes."""
     axes.grid(visible=False)

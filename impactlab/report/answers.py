@@ -7,7 +7,6 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import RESPONSES
 from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import count, design_dims, is_sample, responses, usable
 from impactlab.figures.reading.units import Display, display
@@ -47,7 +46,7 @@ def _range(runs: xr.Dataset, name: str, sample: bool) -> list[Cell]:
     finite = np.isfinite(array.values)
     gaps = int(array.size - finite.sum())
     head = [
-        Cell(words.sentence(words.response(name)), detail=RESPONSES[name].long_name),
+        Cell(words.sentence(words.response(name)), detail=runs[name].attrs.get("long_name", "")),
         Cell(unit.symbol or "–"),
     ]
     last = Cell(str(gaps), "warning" if gaps else "number")

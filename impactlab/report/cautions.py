@@ -9,15 +9,15 @@ import numpy as np
 import xarray as xr
 
 from impactlab.dataset import MARKS, REMARKS
-from impactlab.figures.reading import verdicts, words
+from impactlab.figures.reading import missing, verdicts, words
 from impactlab.figures.reading.contents import count, responses, usable
 from impactlab.kernels.contact.about import ABOUT
-from impactlab.report.outcome import failed_runs
+from impactlab.report import numerical
 
 _JUDGED = {
     "nodes_summary": "Not converged in nodes somewhere in the grid",
     "points_summary": "Not converged in integration points somewhere in the grid",
-    "sensitivity_verdict": "Sobol indices not usable as they stand",
+    "sensitivity_verdict": "Sensitivity indices not usable as they stand",
 }
 ENERGY_LIMIT = 1e-3
 """Energy imbalance, relative to the initial kinetic energy, from which on a run is suspicious."""
@@ -30,6 +30,8 @@ def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
         _failures(runs),
         _outside(runs),
         _verdicts(runs, analysis),
+        _imputed(runs, analysis),
+        _numerical(runs, analysis),
         _strain(runs, analysis),
         _values(runs),
         _remarks(runs),
@@ -47,7 +49,7 @@ def _stale(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
 
 
 def _failures(runs: xr.Dataset) -> Iterator[str]:
-    if failed := int(failed_runs(runs).sum()):
+    if failed := int(missing.failed(runs).sum()):
         yield (
             f"{failed} of {count(runs)} runs failed: they miss at least one response, and are left "
             "out of figures and tables of what they miss. They are listed below with the reason."
@@ -78,6 +80,25 @@ def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
                 flags[f"{verdict.words}{meaning}"].append(words.response(name))
         for flag, names in flags.items():
             yield f"{text} — {words.listing(names)} ({flag})."
+
+
+def _imputed(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+    """A surrogate in the place of failed runs."""
+    if "imputed_share" in analysis and bool((analysis["imputed_share"] > 0).any()):
+        worst = words.number(100 * float(analysis["imputed_share"].max()), 2)
+        yield (
+            f"Values of failed runs, up to {worst} % of the runs of a response, come from a "
+            "surrogate fitted to the good ones: the indices rest on it there."
+        )
+
+
+def _numerical(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+    """Indices that the discretisation could have made."""
+    if number := len(numerical.warnings(runs, analysis)):
+        yield (
+            "Some indices are below what the numerical error could change, see “Numerical "
+            f"uncertainty” ({words.counted(number, 'warning')} there)."
+        )
 
 
 def _strain(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:

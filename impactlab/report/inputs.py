@@ -7,7 +7,7 @@ import xarray as xr
 
 from impactlab.dataset import attributes
 from impactlab.figures.reading import words
-from impactlab.figures.reading.contents import varied
+from impactlab.figures.reading.contents import names, varied
 from impactlab.figures.reading.units import display
 from impactlab.model.parameters import PARAMETERS
 from impactlab.report.table import Cell, Table
@@ -17,16 +17,19 @@ _LISTED = 12
 
 
 def varied_parameters(runs: xr.Dataset) -> Table:
-    """A row a varied parameter: its values on a grid, or its distribution in a sample."""
+    """A row a varied parameter: its values on a grid, or its distribution and group in a sample."""
+    groups = dict(zip(names(runs, "varied"), names(runs, "groups"), strict=False))
     rows = [
         [
             Cell(words.sentence(words.parameter(name))),
             *_values(_described(runs, name)),
+            *([Cell(groups[name].replace("_", " "))] if groups else []),
             Cell(name, "muted"),
         ]
         for name in varied(runs)
     ]
-    return Table("Varied parameters", ["Parameter", "Values", "Number", "Key"], rows)
+    head = ["Parameter", "Values", "Number", *["Group"] * bool(groups), "Key"]
+    return Table("Varied parameters", head, rows)
 
 
 def fixed_parameters(runs: xr.Dataset) -> Table:

@@ -9,9 +9,8 @@ from pathlib import Path
 import xarray as xr
 
 from impactlab.figures.draw import draw_all, draw_findings
-from impactlab.figures.reading import words
+from impactlab.figures.reading import missing, words
 from impactlab.figures.reading.contents import count
-from impactlab.report.outcome import failed_runs
 from impactlab.report.report import write_report
 from impactlab.report.verification import tally, write_verification
 from impactlab.study.netcdf import read_netcdf
@@ -42,8 +41,8 @@ class Kind:
 
 
 def _runs(runs: xr.Dataset) -> tuple[str, str]:
-    method = "Sobol sample" if runs.attrs.get("method") == "sobol" else "grid"
-    failed = int(failed_runs(runs).sum())
+    method = words.method(str(runs.attrs.get("method", "grid")))
+    failed = int(missing.failed(runs).sum())
     return f"{count(runs)} runs ({method})", f"{failed} failed" if failed else ""
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from impactlab.dataset import FAILED
 from impactlab.figures.reading import missing, words
 from impactlab.figures.reading.contents import count, design_dims, responses, usable, varied
 from impactlab.report.table import Cell, Table
@@ -27,22 +26,12 @@ class Outcome:
 
 def outcome(runs: xr.Dataset) -> Outcome:
     """A run failed when its status says so, or when one of its responses is missing."""
-    failed = failed_runs(runs)
+    failed = missing.failed(runs)
     found = missing.causes(runs, failed)
     rows = [[Cell(words.sentence(why)), Cell(str(n), "number")] for why, n in found.items()]
     reasons = Table("Why", ["Reason", "Runs"], rows)
     number = int(failed.sum())
     return Outcome(count(runs), number, reasons, _listed(runs, failed, number))
-
-
-def failed_runs(runs: xr.Dataset) -> xr.DataArray:
-    """True for each failed run, on the design dimensions."""
-    marks = [missing.absent(usable(runs, name)) for name in responses(runs)]
-    if "status" in runs:
-        marks.append((runs["status"] & FAILED) != 0)
-    if not marks:
-        return xr.DataArray(False)
-    return xr.concat(marks, "mark", coords="minimal", compat="override").any("mark")
 
 
 def place(runs: xr.Dataset, where: dict[str, int]) -> str:

@@ -9,21 +9,31 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from impactlab.figures.draw import CAPTIONS
+from impactlab.report.drawn_data import drawn_data
+from impactlab.report.table import Table
 
 _SCREEN = 1.3
 """Figures are 8 pt at the width of a paper; on a screen that is small."""
+_FILES = {".csv": "CSV", ".nc": "netCDF", ".svg": "SVG", ".png": "PNG"}
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A numbered figure; uri: the whole SVG as a data URI; width: on a screen, in CSS pixels."""
+    """A numbered figure.
+
+    alt: what it shows, in words. uri: the whole SVG as a data URI. width: on a screen, in CSS
+    pixels. data: its numbers, thinned; None for maps. files: (kind, name) of those in its folder.
+    """
 
     number: int
     name: str
     title: str
     caption: str
+    alt: str
     uri: str
     width: int
+    data: Table | None
+    files: list[tuple[str, str]]
 
 
 def pictures(folder: Path) -> list[Picture]:
@@ -40,9 +50,18 @@ def pictures(folder: Path) -> list[Picture]:
 
 def _picture(number: int, path: Path, entry: dict[str, str]) -> Picture:
     """An image of its own keeps the names inside one SVG from meeting those of another."""
-    svg = _read(path)
-    uri = f"data:image/svg+xml;base64,{base64.b64encode(svg).decode('ascii')}"
-    return Picture(number, path.stem, entry["title"], entry["caption"], uri, _width(svg))
+    svg, numbers = _read(path), path.with_suffix(".csv")
+    return Picture(
+        number,
+        path.stem,
+        entry["title"],
+        entry["caption"],
+        f"{entry['title']}. {entry['alt']}".strip(),
+        f"data:image/svg+xml;base64,{base64.b64encode(svg).decode('ascii')}",
+        _width(svg),
+        drawn_data(numbers) if numbers.exists() else None,
+        [(kind, f"{path.stem}{suffix}") for suffix, kind in _FILES.items()],
+    )
 
 
 def _width(svg: bytes) -> int:

@@ -17,6 +17,11 @@ _ATTRIBUTES = {
     "study_sha256": "SHA-256 of the study file",
     "seed": "Seed of the sample",
     "base_samples": "Base samples",
+    "trajectories": "Trajectories",
+    "levels": "Levels",
+    "harmonics": "Harmonics",
+    "resamples": "Bootstrap resamples",
+    "failed_runs": "Policy for failed runs",
 }
 
 
@@ -37,6 +42,7 @@ def commands(
     name = runs.attrs.get("study", "NAME")
     return [
         (f"impactlab {command} studies/{name}.yaml", purpose),
+        (f"make study STUDIES={name}", "makes its results, figures and this report again"),
         ("make study", "makes all results, figures and reports"),
     ]
 

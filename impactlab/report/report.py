@@ -2,70 +2,83 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
-from impactlab.figures.reading import verdicts
+from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import count
-from impactlab.report import (
-    answers,
-    cautions,
-    convergence,
-    inputs,
-    notes,
-    outcome,
-    provenance,
-    sensitivity,
-)
+from impactlab.report import cautions, convergence, inputs, notes, outcome, provenance, sections
 from impactlab.report.page import write_page
-from impactlab.report.pictures import pictures
+from impactlab.report.pictures import Picture, pictures
+from impactlab.report.section import Section
+from impactlab.report.tidy import write_indices
 
 
 def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, path: Path) -> None:
     """Write the report of a study from its stored datasets and figures.
 
-    runs: runs.nc; analysis: analysis.nc; figures_folder: what draw_all wrote. Raises
-    FileNotFoundError when a figure is missing, OSError when `path` cannot be written.
+    runs: runs.nc; analysis: analysis.nc; figures_folder: what draw_all wrote. Beside the report of
+    a sample: indices.csv, see tidy.py. Raises FileNotFoundError when a figure is missing, OSError
+    when `path` cannot be written.
     """
-    context = _about(runs) | _results(runs, analysis)
-    write_page("report.html.j2", path, pictures=pictures(figures_folder), **context)
+    table = write_indices(analysis, path.with_name("indices.csv"))
+    first, then = sections.sections(runs, analysis, table.name if table else "")
+    ordered = _numbered(pictures(figures_folder), [*first, *then])
+    rest = [name for name in ordered if not _placed(name, [*first, *then])]
+    if rest or not ordered:
+        then = [*then, sections.figures(rest)]
+    write_page(
+        "report.html.j2",
+        path,
+        pictures=ordered,
+        files=os.path.relpath(figures_folder, path.parent),
+        first=first,
+        then=then,
+        **_about(runs, analysis),
+    )
 
 
-def _about(runs: xr.Dataset) -> dict[str, Any]:
-    """What the study is, what went into it and where it comes from."""
+def _placed(name: str, found: Sequence[Section]) -> bool:
+    return any(name in section.figures for section in found)
+
+
+def _numbered(drawn: list[Picture], found: Sequence[Section]) -> dict[str, Picture]:
+    """The figures by name, numbered as they stand on the page: those of no section come last."""
+    order = {name: at for at, name in enumerate(n for section in found for n in section.figures)}
+    ranked = sorted(drawn, key=lambda picture: order.get(picture.name, len(order)))
+    return {picture.name: replace(picture, number=at) for at, picture in enumerate(ranked, 1)}
+
+
+def _about(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Any]:
+    """What the study is, what to be wary of, and where it comes from."""
     name = str(runs.attrs.get("study", "study"))
     return {
         "study": name,
         "title": str(runs.attrs.get("title") or name),
         "description": str(runs.attrs.get("description", "")),
-        "method": str(runs.attrs.get("method", "grid")),
+        "method": words.method(str(runs.attrs.get("method", "grid"))),
         "runs": count(runs),
         "varied": inputs.varied_parameters(runs),
-        "fixed": inputs.fixed_parameters(runs),
+        "failed": outcome.outcome(runs).failed,
+        "cautions": cautions.cautions(runs, analysis),
+        "notes": notes.notes(runs),
+        "convergence": _convergence(runs, analysis),
         "provenance": provenance.provenance(runs),
         "commands": provenance.commands(runs),
         "study_text": str(runs.attrs.get("study_text", "")),
     }
 
 
-def _results(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Any]:
-    """What came out, and how far to trust it."""
+def _convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Any]:
     axes = ("nodes", "points")
     judged = [convergence.nodes(runs, analysis), convergence.points(runs, analysis)]
-    return {
-        "outcome": outcome.outcome(runs),
-        "cautions": cautions.cautions(runs, analysis),
-        "notes": notes.notes(runs),
-        "ranges": answers.ranges(runs),
-        "values": answers.values(runs),
-        "convergence": [
-            (table, convergence.meanings(analysis, axis))
-            for axis, table in zip(axes, judged, strict=True)
-            if table
-        ],
-        "indices": sensitivity.tables(runs, analysis),
-        "confidence": verdicts.confidence(analysis),
-        "sentences": sensitivity.sentences(runs, analysis),
-    }
+    return [
+        (table, convergence.meanings(analysis, axis))
+        for axis, table in zip(axes, judged, strict=True)
+        if table
+    ]

@@ -1,120 +1,120 @@
-"""Sobol indices in tables and in sentences."""
+"""The sections on sensitivity, in the order of sensobol (Puy et al. 2022, J. Stat. Softw. 102)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading import verdicts, words
-from impactlab.figures.reading.contents import known, responses
-from impactlab.report.table import Cell, Table
+from impactlab.figures.reading import verdicts
+from impactlab.figures.reading.measures import (
+    DELTA,
+    MORRIS,
+    PAWN,
+    RANKED,
+    REGRESSION,
+    SOBOL,
+    Family,
+    asked,
+)
+from impactlab.report import indices, numerical, ranking, surrogate
+from impactlab.report.section import Section
 
-_ORDERS = {"first_order": "First-order Sobol indices", "total_order": "Total-order Sobol indices"}
-_COARSE = 0.02
-"""Half-width from which on shares are told in whole per cent."""
-_NAMED = 3
-"""At most so many parameters are named in a sentence."""
+_FIGURES = {
+    MORRIS.title: ("morris", "morris_plane"),
+    DELTA.title: ("delta", "delta_indices"),
+    PAWN.title: ("pawn", "pawn_indices"),
+    REGRESSION.title: ("regression", "regression_indices"),
+}
+"""Anchor and figure of the families beside Sobol's."""
 
 
-def tables(runs: xr.Dataset, analysis: xr.Dataset) -> list[Table]:
-    """A table an order: responses by parameters, index ± half-width of its interval."""
-    if not all(order in analysis for order in _ORDERS):
+def sections(runs: xr.Dataset, analysis: xr.Dataset, file: str = "") -> list[Section]:
+    """Indices, second order, convergence, ranking, other methods, surrogate; what there is.
+
+    file: name of the file of all indices beside the page, "" for none.
+    """
+    if not asked(runs, analysis):
         return []
-    parameters = [str(name) for name in analysis["parameter"].values]
-    head = ["Response", *(words.sentence(words.parameter(name)) for name in parameters)]
+    found = [family for family in RANKED if family.given(analysis)]
+    others = [family for family in found if family is not SOBOL]
     return [
-        Table(
-            f"{caption}, with half-widths of the {verdicts.confidence(analysis)} intervals",
-            head,
-            [_row(analysis, order, name) for name in responses(runs) if known(analysis, name)],
-        )
-        for order, caption in _ORDERS.items()
+        *([_sobol(runs, analysis)] if SOBOL in found else []),
+        *([_second(runs, analysis)] if "second_order" in analysis else []),
+        *([_convergence()] if "total_order_by_samples" in analysis else []),
+        *([_ranking(runs, analysis, found[0], file)] if found else []),
+        *(_other(runs, analysis, family) for family in others),
+        *([surrogate.section(runs, analysis)] if surrogate.given(analysis) else []),
     ]
 
 
-def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    """A sentence a response, on significant indices alone; none without the analysis."""
-    if not all(order in analysis for order in _ORDERS):
-        return []
-    return [_sentence(analysis, name) for name in responses(runs) if known(analysis, name)]
+def last(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
+    """What follows the failures: the numerical uncertainty, where it is known."""
+    return [numerical.section(runs, analysis)] if numerical.given(analysis) else []
 
 
-def _row(analysis: xr.Dataset, order: str, name: str) -> list[Cell]:
-    values, margins = _index(analysis, order, name)
-    cells = [_cell(value, margin) for value, margin in zip(values, margins, strict=True)]
-    return [Cell(words.sentence(words.response(name))), *cells]
+def _sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
+    lead = (
+        "A first-order index is the share of the variance that comes from a parameter "
+        "alone; a total-order index adds all its interactions. Grey: not told from zero, or from "
+        "the dummy parameter where one was sampled."
+    )
+    return Section(
+        "sensitivity",
+        "First and total order",
+        lead,
+        tables=indices.tables(runs, analysis, SOBOL),
+        figures=["sobol_indices"],
+    )
 
 
-def _cell(value: float, margin: float) -> Cell:
-    if not np.isfinite(value):
-        return Cell("undefined", "muted")
-    text = f"{round(value, 2) + 0.0:.2f}".replace("-", "−")
-    if np.isfinite(margin):
-        text += f" ± {margin:.2f}"
-    return Cell(text, "number" if abs(value) > margin else "muted")
+def _second(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
+    return Section(
+        "second-order",
+        "Second order",
+        "The share of the variance that comes from two parameters together, beyond what each "
+        "brings alone.",
+        figures=["sobol_second_order"],
+        folded=[indices.second_order(runs, analysis)],
+    )
 
 
-def _sentence(analysis: xr.Dataset, name: str) -> str:
-    response = words.response(name)
-    verdict = verdicts.verdict(analysis, "sensitivity_verdict", name)
-    values, _ = _index(analysis, "first_order", name)
-    if not np.isfinite(values).any():
-        why = f": {verdict.meaning or verdict.words}" if verdict else ""
-        return f"The indices of the {response} are undefined{why}."
-    parts = [*_first(analysis, name), *_interactions(analysis, name)]
-    text = " ".join(parts)
-    if verdict and not verdict.sound:
-        text += f" To be taken with care: {verdict.meaning or verdict.words}."
-    return text
+def _convergence() -> Section:
+    return Section(
+        "index-convergence",
+        "Convergence of the indices",
+        "The indices from the first part of the sample alone, with nothing solved anew. An index "
+        "that has not settled at the right end is not known better than its drift.",
+        figures=[f"{measure.name}_convergence" for measure in SOBOL.measures],
+    )
 
 
-def _first(analysis: xr.Dataset, name: str) -> Iterator[str]:
-    """What comes from single parameters, the largest share first."""
-    response = words.response(name)
-    shares = [
-        f"{_share(value, margin)} from the {words.parameter(parameter)}"
-        for parameter, value, margin in _significant(analysis, "first_order", name)
-    ]
-    if not shares:
-        yield f"No parameter alone has a significant share in the variance of the {response}."
-        return
-    head, *rest = shares[:_NAMED]
-    first = head.replace(" from the ", f" of the variance of the {response} comes from the ", 1)
-    yield f"At these ranges {words.listing([f'{first} alone', *rest])}."
+def _ranking(runs: xr.Dataset, analysis: xr.Dataset, first: Family, file: str) -> Section:
+    lead = (
+        "Sentences name significant parameters only, with the half-width of the "
+        f"{verdicts.confidence(analysis)} interval. Ranks are a range where intervals overlap."
+    )
+    return Section(
+        "ranking",
+        "Ranking",
+        lead,
+        ranking.sentences(runs, analysis, first),
+        [ranking.table(runs, analysis, first)],
+        files=[file] if file else [],
+    )
 
 
-def _interactions(analysis: xr.Dataset, name: str) -> Iterator[str]:
-    """The parameter whose total index lies above its first-order index beyond both intervals."""
-    first, first_margin = _index(analysis, "first_order", name)
-    total, total_margin = _index(analysis, "total_order", name)
-    surplus = total - first
-    beyond = np.where(surplus > first_margin + total_margin, surplus, -np.inf)
-    if beyond.size and np.isfinite(beyond.max()):
-        at = int(np.argmax(beyond))
-        parameter = words.parameter(str(analysis["parameter"].values[at]))
-        share = _share(total[at], total_margin[at])
-        yield f"With all its interactions the {parameter} takes part in {share}."
+def _other(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Section:
+    name, figure = _FIGURES[family.title]
+    return Section(
+        name,
+        family.title,
+        family.says,
+        _told(runs, analysis, family),
+        figures=[figure],
+        folded=indices.tables(runs, analysis, family),
+    )
 
 
-def _significant(analysis: xr.Dataset, order: str, name: str) -> list[tuple[str, float, float]]:
-    """(parameter, index, half-width) where zero lies outside the interval, the largest first."""
-    values, margins = _index(analysis, order, name)
-    named = zip(analysis["parameter"].values, values, margins, strict=True)
-    found = [(str(key), float(v), float(m)) for key, v, m in named if v > m]
-    return sorted(found, key=lambda entry: -entry[1])
-
-
-def _index(analysis: xr.Dataset, order: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Index and half-width on (parameter,); infinite half-widths where none is given."""
-    values = analysis[order].sel(response=name).values
-    interval = analysis.get(f"{order}_interval")
-    if interval is None:
-        return values, np.full_like(values, np.inf)
-    return values, np.nan_to_num(interval.sel(response=name).values, nan=np.inf)
-
-
-def _share(value: float, margin: float) -> str:
-    decimals = 0 if margin >= _COARSE else 1
-    return f"{100 * value:.{decimals}f} % (± {100 * margin:.{decimals}f})"
+def _told(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[str]:
+    """Its sentences, unless the ranking has told them."""
+    main = next(one for one in RANKED if one.given(analysis))
+    return [] if family is main else ranking.sentences(runs, analysis, family)

@@ -25,8 +25,12 @@ def varied(runs: xr.Dataset) -> list[str]:
 
 
 def responses(runs: xr.Dataset) -> list[str]:
-    """Names of the responses that are stored, in the order of the table of variables."""
-    return [name for name in RESPONSES if name in runs.data_vars]
+    """Names of the responses that are stored: in the order of the table of variables, then others.
+
+    Others, which the study asks for and the table does not know, are those of another solver.
+    """
+    others = [name for name in names(runs, "responses") if name not in RESPONSES]
+    return [name for name in [*RESPONSES, *others] if name in runs.data_vars]
 
 
 def known(analysis: xr.Dataset, response: str) -> bool:

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import reasons
+from impactlab.dataset import FAILED, reasons
 from impactlab.figures.reading import words
-from impactlab.figures.reading.contents import SAMPLED, count, usable
+from impactlab.figures.reading.contents import SAMPLED, count, responses, usable
 
 UNEXPLAINED = "no reason is recorded"
 
@@ -20,6 +20,19 @@ def absent(array: xr.DataArray) -> xr.DataArray:
     within = [dim for dim in array.dims if dim in SAMPLED]
     present = xr.apply_ufunc(np.isfinite, array)
     return xr.DataArray(~present.any(within))
+
+
+def failed(runs: xr.Dataset) -> xr.DataArray:
+    """True for each run whose status says that it failed, or that misses a response.
+
+    Returns bool on the design dimensions.
+    """
+    marks = [absent(usable(runs, name)) for name in responses(runs)]
+    if "status" in runs:
+        marks.append((runs["status"] & FAILED) != 0)
+    if not marks:
+        return xr.DataArray(False)
+    return xr.concat(marks, "mark", coords="minimal", compat="override").any("mark")
 
 
 def causes(runs: xr.Dataset, mask: xr.DataArray) -> Counter[str]:

@@ -40,10 +40,14 @@ def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | Non
 
 
 def confidence(analysis: xr.Dataset) -> str:
-    """Of the intervals of the Sobol indices, as text: "95 %"."""
-    interval = analysis.get("first_order_interval")
-    level = 0.95 if interval is None else float(interval.attrs.get("confidence", 0.95))
-    return f"{100 * level:.4g} %"
+    """Of the intervals of the indices, as text: "95 %"."""
+    found = (
+        array.attrs["confidence"]
+        for name, array in analysis.data_vars.items()
+        if str(name).endswith("_interval") and "confidence" in array.attrs
+    )
+    level = next(found, analysis.attrs.get("confidence", 0.95))
+    return f"{100 * float(level):.4g} %"
 
 
 def _integers(array: xr.DataArray) -> list[int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -18,6 +19,14 @@ _SPELLED = {
     "layers": "uniform layers",
     "semi_implicit": "semi-implicit",
 }
+_METHODS = {
+    "sobol": "Sobol sample",
+    "morris": "Morris trajectories",
+    "fast": "extended FAST curves",
+    "delta": "Latin hypercube for delta indices",
+    "pawn": "Latin hypercube for PAWN indices",
+    "regression": "Latin hypercube for regression",
+}
 _NAMES = {"mjg": "MJG", "stronge_original": "Stronge (original)"}
 
 
@@ -31,6 +40,11 @@ def parameter(name: str) -> str:
     return PARAMETERS[name].long_name if name in PARAMETERS else name.replace("_", " ")
 
 
+def method(name: str) -> str:
+    """How the runs were chosen: "grid", "Sobol sample"."""
+    return _METHODS.get(name, name)
+
+
 def sentence(text: str) -> str:
     """The text with its first letter raised."""
     return text[:1].upper() + text[1:]
@@ -39,6 +53,11 @@ def sentence(text: str) -> str:
 def axis(text: str, symbol: str) -> str:
     """An axis label with its unit: "Peak force (kN)"; a pure number has the unit "–"."""
     return f"{sentence(text)} ({symbol or '–'})"
+
+
+def wrapped_axis(text: str, symbol: str, width: int = 30) -> str:
+    """An axis label in lines of about so many letters, for panels side by side."""
+    return textwrap.fill(axis(text, symbol), width, break_long_words=False)
 
 
 def number(value: float, digits: int = 4, plain: tuple[float, float] = (1e-4, 1e5)) -> str:

@@ -1,0 +1,86 @@
+"""What a figure shows, for who cannot see it: a few sentences from the data as drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from impactlab.figures import data
+from impactlab.figures.data import Drawn
+from impactlab.figures.reading import words
+
+_PANELS, _CURVES = 5, 3
+"""At most so many panels, and curves of a panel, are told one by one; else the highest curve."""
+
+
+def alt(figure: Figure) -> str:
+    """Each panel in a sentence: where its bars are longest, or the ranges of its curves."""
+    told = [*_drawn(figure), *_maps(figure), *_remarks(figure)]
+    shown = " ".join(told[:_PANELS])
+    more = len(told) - _PANELS
+    return f"{shown} And {words.counted(more, 'more panel')}." if more > 0 else shown
+
+
+def _drawn(figure: Figure) -> Iterator[str]:
+    for panel, curves in groupby(data.drawn(figure), key=lambda curve: curve.panel):
+        found = list(curves)
+        name = panel if not panel.startswith("panel ") else _axes(found[0])
+        yield f"{name}: {_curves(found)}."
+
+
+def _axes(curve: Drawn) -> str:
+    return f"{curve.y_label} against {curve.x_label}"
+
+
+def _curves(found: list[Drawn]) -> str:
+    if len(found) <= _CURVES or any(found[0].category):
+        return "; ".join(map(_curve, found))
+    highest = max(found, key=lambda curve: float(curve.y.max()))
+    return f"highest of {len(found)}: {_curve(highest)}"
+
+
+def _curve(curve: Drawn) -> str:
+    label = f"{curve.curve}: " if curve.curve else ""
+    if any(curve.category):
+        at = int(np.argmax(np.abs(curve.x)))
+        return f"{label}largest for {curve.category[at]} ({_number(curve.x[at])})"
+    if curve.x.size == 1:
+        return f"{label}{_number(curve.x[0])}, {_number(curve.y[0])}"
+    return f"{label}{_range(curve.y)} over {_range(curve.x)}"
+
+
+def _maps(figure: Figure) -> Iterator[str]:
+    for ax in figure.axes:
+        if not ax.images:
+            continue
+        cells: np.ndarray = np.ma.filled(
+            np.ma.masked_invalid(np.ma.asarray(ax.images[-1].get_array())), -np.inf
+        )
+        row, column = np.unravel_index(int(cells.argmax()), cells.shape)
+        if np.isfinite(cells[row, column]):
+            where = f"row {row + 1}, column {column + 1}"
+            yield f"{_title(ax)}: largest in {where} ({_number(float(cells[row, column]))})."
+
+
+def _remarks(figure: Figure) -> Iterator[str]:
+    """Panels with words in place of data."""
+    for ax in figure.axes:
+        if ax.texts and not (ax.lines or ax.containers or ax.images):
+            yield f"{_title(ax)}: {' '.join(ax.texts[0].get_text().split())}."
+
+
+def _title(ax: Axes) -> str:
+    return ax.get_title(loc="left") or "Panel"
+
+
+def _range(values: np.ndarray) -> str:
+    low, high = _number(float(values.min())), _number(float(values.max()))
+    return low if low == high else f"{low} to {high}"
+
+
+def _number(value: float) -> str:
+    return words.number(value, digits=3)

@@ -1,0 +1,173 @@
+"""What the analyses of a sample give: the indices of every method, their intervals and floors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from impactlab.figures.reading.contents import known, responses
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A variable of the analysis on (response, parameter), and its name in words.
+
+    optional: shown where it is given.
+    """
+
+    name: str
+    words: str
+    optional: bool = False
+
+
+@dataclass(frozen=True)
+class Family:
+    """Measures of one method that are shown side by side.
+
+    title: heads the figure and the tables. axis: what the numbers are, with the unit. says: what
+    they mean, a sentence or two. shares: whether 1 is all there is.
+    """
+
+    title: str
+    measures: tuple[Measure, ...]
+    axis: str
+    says: str
+    shares: bool = True
+
+    def given(self, analysis: xr.Dataset) -> bool:
+        """Whether the analysis has every measure that is not optional."""
+        return all(one.name in analysis for one in self.measures if not one.optional)
+
+    def measures_in(self, analysis: xr.Dataset) -> list[Measure]:
+        """The measures that the analysis has."""
+        return [one for one in self.measures if one.name in analysis]
+
+
+@dataclass(frozen=True)
+class Index:
+    """One measure of one response.
+
+    values, margins, numerical: on (parameter,), the index, the half-width of its interval (infinite
+    where none is given), and what the numerical error of the runs could change it by (0 where that
+    is not known). floor: the upper end of a dummy parameter's interval, which is noise; 0 where no
+    dummy was sampled.
+    """
+
+    values: Array
+    margins: Array
+    numerical: Array
+    floor: float
+
+    @property
+    def significant(self) -> NDArray[np.bool_]:
+        """Where the whole interval lies beyond the dummy, and the index beyond numerical error."""
+        size = np.abs(self.values)
+        return np.asarray((size - self.margins > self.floor) & (size > self.numerical))
+
+    @property
+    def numerically_lost(self) -> NDArray[np.bool_]:
+        """Where the numerical error alone could make an index as large as this."""
+        return np.asarray((self.numerical > 0) & (np.abs(self.values) <= self.numerical))
+
+    @property
+    def ranks(self) -> list[tuple[int, int]]:
+        """The best and the worst rank of each magnitude that the intervals leave open, from 1."""
+        low, high = np.abs(self.values) - self.margins, np.abs(self.values) + self.margins
+        best = 1 + (low[None, :] > high[:, None]).sum(1)
+        worst = low.size - (high[None, :] < low[:, None]).sum(1)
+        return list(zip(best.tolist(), worst.tolist(), strict=True))
+
+
+SOBOL = Family(
+    "Sobol indices",
+    (Measure("first_order", "first order"), Measure("total_order", "total order")),
+    "Share of the variance (–)",
+    "Share of the variance of each response that comes from a parameter alone (first order) and "
+    "with all its interactions (total order), over the ranges of this study.",
+)
+SURROGATE = Family(
+    "Indices of the surrogate beside the sampled ones",
+    (
+        Measure("first_order", "first order, sampled", optional=True),
+        Measure("surrogate_first_order", "first order, surrogate"),
+        Measure("total_order", "total order, sampled", optional=True),
+        Measure("surrogate_total_order", "total order, surrogate"),
+    ),
+    "Share of the variance (–)",
+    "The same shares of the variance from the runs themselves and from a surrogate fitted to them: "
+    "where they differ by more than their intervals, trust neither.",
+)
+DELTA = Family(
+    "Delta indices",
+    (Measure("delta", "delta"), Measure("delta_first_order", "first order", optional=True)),
+    "Index (–)",
+    "Delta: half the area by which the density of a response changes, on average, once the "
+    "parameter is known (Borgonovo); beside it the first-order index from the same runs.",
+)
+PAWN = Family(
+    "PAWN indices",
+    (Measure("pawn", "median"), Measure("pawn_maximum", "largest", optional=True)),
+    "Kolmogorov-Smirnov distance (–)",
+    "Distance between the distribution of a response and the same with the parameter held in one "
+    "part of its range: median and largest over the parts (Pianosi and Wagener).",
+)
+REGRESSION = Family(
+    "Regression coefficients",
+    (Measure("regression", "of values"), Measure("rank_regression", "of ranks", optional=True)),
+    "Standardised coefficient (–)",
+    "Standard deviations by which a response rises with one standard deviation of the parameter, "
+    "in a linear fit of values and of ranks. They tell no more than the fit does: see R².",
+    shares=False,
+)
+MORRIS = Family(
+    "Elementary effects (Morris)",
+    (Measure("morris_mu_star", "mean of magnitudes"),),
+    "Mean of magnitudes µ*",
+    "How far a response moves, on average, when one parameter goes through its whole range (µ*), "
+    "and how much this depends on where the others are (σ).",
+    shares=False,
+)
+RANKED = (SOBOL, MORRIS, DELTA, PAWN, REGRESSION)
+"""Families that rank the parameters, each by one measure of theirs (`ranking`)."""
+
+
+def ranking(family: Family) -> Measure:
+    """The measure that parameters are ranked by: the total order of Sobol, else the first."""
+    return family.measures[1] if family is SOBOL else family.measures[0]
+
+
+def asked(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    """The responses of the runs that the sensitivity analysis knows."""
+    return [name for name in responses(runs) if known(analysis, name)]
+
+
+def parameters(analysis: xr.Dataset) -> list[str]:
+    """Names of the varied parameters, or of their groups."""
+    return [str(name) for name in analysis["parameter"].values]
+
+
+def index(analysis: xr.Dataset, measure: str, response: str) -> Index:
+    """One measure of one response."""
+    values = analysis[measure].sel(response=response).values
+    return Index(
+        values,
+        _beside(analysis, f"{measure}_interval", response, values, gap=np.inf),
+        _beside(analysis, f"{measure}_numerical", response, values, gap=0.0),
+        _floor(analysis, f"dummy_{measure}", response),
+    )
+
+
+def _beside(analysis: xr.Dataset, name: str, response: str, values: Array, *, gap: float) -> Array:
+    if name not in analysis:
+        return np.full_like(values, gap)
+    return np.asarray(np.nan_to_num(analysis[name].sel(response=response).values, nan=gap))
+
+
+def _floor(analysis: xr.Dataset, dummy: str, response: str) -> float:
+    ends = [analysis[name] for name in (dummy, f"{dummy}_interval") if name in analysis]
+    return float(sum(np.nan_to_num(abs(end.sel(response=response).item())) for end in ends))

@@ -1,0 +1,193 @@
+"""Which parameters matter most: ranks and plain sentences that claim no more than is known.
+
+A parameter is named where its whole interval lies above zero and above the dummy parameter's, and
+its index above what the numerical error could make of it. One comes before another only where
+their intervals do not overlap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import xarray as xr
+
+from impactlab.figures.reading import measures, verdicts, words
+from impactlab.figures.reading.measures import (
+    DELTA,
+    MORRIS,
+    PAWN,
+    REGRESSION,
+    SOBOL,
+    Family,
+    Index,
+    asked,
+)
+from impactlab.report.indices import in_units, named, told
+from impactlab.report.table import Cell, Table
+
+_COARSE = 0.02
+"""Half-width from which on shares are told in whole per cent."""
+_NAMED = 3
+"""At most so many parameters are named in a sentence."""
+POOR_FIT = 0.7
+"""Share of the variance below which a linear fit says little (Saltelli et al. 2008, chapter 1)."""
+Named = list[tuple[str, float, float]]
+"""(parameter in words, index, half-width), the largest magnitude first."""
+
+
+def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
+    """A row a response: the rank of each parameter, a range where intervals overlap."""
+    measure = measures.ranking(family)
+    names = measures.parameters(analysis)
+    head = ["Response", *(words.sentence(words.parameter(name)) for name in names)]
+    rows = [
+        [named(analysis, name), *_ranks(measures.index(analysis, measure.name, name))]
+        for name in asked(runs, analysis)
+    ]
+    title = f"Ranks of the parameters by {family.title}, {measure.words}"
+    return Table(f"{title} (noise: not told from zero or the dummy)", head, rows)
+
+
+def sentences(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[str]:
+    """A sentence or two a response, on significant indices alone."""
+    return [_sentence(runs, analysis, family, name) for name in asked(runs, analysis)]
+
+
+def _ranks(index: Index) -> list[Cell]:
+    cells = []
+    for (best, worst), stands, value in zip(
+        index.ranks, index.significant, index.values, strict=True
+    ):
+        if not np.isfinite(value):
+            cells.append(Cell("undefined", "muted"))
+        elif stands:
+            cells.append(Cell(str(best) if best == worst else f"{best}–{worst}", "number"))
+        else:
+            cells.append(Cell("noise", "muted"))
+    return cells
+
+
+def _sentence(runs: xr.Dataset, analysis: xr.Dataset, family: Family, name: str) -> str:
+    response = words.response(name)
+    verdict = verdicts.verdict(analysis, "sensitivity_verdict", name)
+    values = analysis[measures.ranking(family).name].sel(response=name).values
+    if not np.isfinite(values).any():
+        why = f": {verdict.meaning or verdict.words}" if verdict else ""
+        return f"The indices of the {response} are undefined{why}."
+    text = " ".join(_TELLERS[family.title](runs, analysis, name))
+    if verdict and not verdict.sound:
+        text += f" To be taken with care: {verdict.meaning or verdict.words}."
+    return text
+
+
+def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
+    """What comes from single parameters, the largest share first; then interactions."""
+    response = words.response(name)
+    found = _significant(analysis, "first_order", name)
+    if not found:
+        yield f"No parameter alone has a significant share in the variance of the {response}."
+    else:
+        (first, value, margin), *rest = found[:_NAMED]
+        head = f"{_share(value, margin)} of the variance of the {response} comes from the {first}"
+        others = [f"{_share(value, margin)} from the {key}" for key, value, margin in rest]
+        yield f"At these ranges {words.listing([f'{head} alone', *others])}."
+    yield from _interactions(analysis, name)
+
+
+def _interactions(analysis: xr.Dataset, name: str) -> Iterator[str]:
+    """The parameter whose total index lies above its first-order index beyond both intervals."""
+    first = measures.index(analysis, "first_order", name)
+    total = measures.index(analysis, "total_order", name)
+    surplus = total.values - first.values
+    beyond = total.significant & (surplus > first.margins + total.margins)
+    if beyond.any():
+        at = int(np.argmax(np.where(beyond, surplus, -np.inf)))
+        parameter = words.parameter(measures.parameters(analysis)[at])
+        share = _share(total.values[at], total.margins[at])
+        yield f"With all its interactions the {parameter} takes part in {share}."
+
+
+def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
+    """How far the response moves, and whose effects are uneven."""
+    response, found = words.response(name), _significant(analysis, "morris_mu_star", name)
+    if not found:
+        yield f"No parameter moves the {response} significantly."
+        return
+    (first, value, margin), *rest = found[:_NAMED]
+    moved = [f"the {first} moves the {response} by {in_units(runs[name], value, margin)}"]
+    moved += [f"the {key} by {in_units(runs[name], v, m)}" for key, v, m in rest]
+    yield f"Going through its whole range, {words.listing(moved)} on average."
+    spread = analysis["morris_sigma"].sel(response=name).values
+    sizes = dict(zip(measures.parameters(analysis), spread, strict=True))
+    keys = {words.parameter(key): float(value) for key, value in sizes.items()}
+    if uneven := [f"the {key}" for key, value, _ in found if keys[key] > value]:
+        yield (
+            f"The effect of {words.listing(uneven)} changes with the others or along the range by "
+            "more than its mean (σ above µ*)."
+        )
+
+
+def _dependence(measure: str, label: str) -> Callable[..., Iterator[str]]:
+    """A teller of indices that say how much a response depends on a parameter, and no more."""
+
+    def tell(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
+        found = _significant(analysis, measure, name)
+        if not found:
+            yield f"No dependence of the {words.response(name)} stands out of the noise."
+            return
+        most = " most" * _leads(measures.index(analysis, measure, name))
+        listed = [f"the {key} ({label} {told(v, m)})" for key, v, m in found[:_NAMED]]
+        yield f"The {words.response(name)} depends{most} on {_then(listed, bool(most))}."
+
+    return tell
+
+
+def _regression(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
+    """With which parameters the response rises or falls, and whether a line tells it at all."""
+    found = _significant(analysis, "regression", name)
+    told_ = [
+        f"{'rises' if value > 0 else 'falls'} with the {key} ({told(value, margin)})"
+        for key, value, margin in found[:_NAMED]
+    ]
+    if told_:
+        yield f"The {words.response(name)} {words.listing(told_)}."
+    else:
+        yield f"The {words.response(name)} rises or falls with no parameter significantly."
+    if "regression_r_squared" in analysis:
+        share = float(analysis["regression_r_squared"].sel(response=name))
+        little = ": the coefficients do not tell what it depends on" * (share < POOR_FIT)
+        yield f"The linear fit explains {100 * share:.0f} % of its variance{little}."
+
+
+_TELLERS: dict[str, Callable[[xr.Dataset, xr.Dataset, str], Iterator[str]]] = {
+    SOBOL.title: _sobol,
+    MORRIS.title: _morris,
+    DELTA.title: _dependence("delta", "delta"),
+    PAWN.title: _dependence("pawn", "median distance"),
+    REGRESSION.title: _regression,
+}
+
+
+def _then(listed: list[str], ordered: bool) -> str:
+    """The first before the others where it leads."""
+    first, *rest = listed
+    return f"{first}, then on {words.listing(rest)}" if ordered and rest else words.listing(listed)
+
+
+def _leads(index: Index) -> bool:
+    """Whether one parameter comes first beyond doubt."""
+    return (1, 1) in index.ranks
+
+
+def _significant(analysis: xr.Dataset, measure: str, name: str) -> Named:
+    index = measures.index(analysis, measure, name)
+    keys = [words.parameter(key) for key in measures.parameters(analysis)]
+    rows = zip(keys, index.values, index.margins, index.significant, strict=True)
+    found = [(key, float(v), float(m)) for key, v, m, stands in rows if stands]
+    return sorted(found, key=lambda entry: -abs(entry[1]))
+
+
+def _share(value: float, margin: float) -> str:
+    decimals = 0 if margin >= _COARSE else 1
+    return f"{100 * value:.{decimals}f} % (± {100 * margin:.{decimals}f})"
