@@ -26,6 +26,21 @@ def lists_checks(study):
     return has_key(study, r"^checks\s*:")
 
 
+def is_auto(study):
+    """Whether its discretisation is to be found."""
+    return has_key(study, r"\bauto\b")
+
+
+def is_sample(study):
+    """Whether its runs are impacts drawn at random: sensitivity has a numerical uncertainty."""
+    return has_key(study, r"\bmethod\s*:\s*(?!grid)\w") and not has_key(study, r"^function\s*:")
+
+
+def resolution(wildcards, needed):
+    """What was found out about discretisations, where it is needed."""
+    return [f"results/{wildcards.study}/resolution.nc"] if needed(wildcards.study) else []
+
+
 def solving(wildcards):
     """Sources of the runs; the analysis is one where it decides how many there are."""
     deciding = ("analysis/**/*.py", "steering/*.py") if has_key(wildcards.study, r"\buntil\s*:") else ()
@@ -89,10 +104,29 @@ rule index:
         "impactlab --log {log} index results --output {output}"
 
 
+rule resolution:
+    input:
+        code=code(*SOLVER, "study/**/*.py", "analysis/convergence/*.py", "steering/*.py"),
+        study="studies/{study}.yaml",
+    output:
+        "results/{study}/resolution.nc",
+    log:
+        "results/{study}/logs/resolution.log",
+    benchmark:
+        "results/{study}/benchmarks/resolution.tsv"
+    threads: os.cpu_count()  # scaled down to --cores
+    conda:
+        "environment.yaml"
+    shell:
+        "impactlab --log {log} recommend {input.study} --output {output} --workers {threads}"
+
+
+# An auto discretisation is read from the resolution, which lies beside the output.
 rule design:
     input:
         code=code(*MODEL, "study/**/*.py"),
         study="studies/{study}.yaml",
+        resolution=lambda wildcards: resolution(wildcards, is_auto),
     output:
         "results/{study}/design.nc",
     log:
@@ -128,17 +162,20 @@ rule analysis:
     input:
         code=code("dataset.py", "analysis/**/*.py"),
         runs="results/{study}/runs.nc",
+        resolution=lambda wildcards: resolution(wildcards, is_sample),
     output:
         "results/{study}/analysis.nc",
     log:
         "results/{study}/logs/analysis.log",
     benchmark:
         "results/{study}/benchmarks/analysis.tsv"
+    params:
+        resolution=lambda wildcards, input: f"--resolution {input.resolution}" if input.resolution else "",
     threads: 1
     conda:
         "environment.yaml"
     shell:
-        "impactlab --log {log} analyse {input.runs} --output {output}"
+        "impactlab --log {log} analyse {input.runs} {params.resolution} --output {output}"
 
 
 # Checks that fail are findings like others: the report comes first, the verdict last.

@@ -183,13 +183,16 @@ def recommend(
     declared = read_impacts(study)
     path = output or RESULTS / study.stem / "resolution.nc"
     signal.signal(signal.SIGINT, _stop_at_once)
-    wanted = declared.auto or Auto()
-    limit = given("--tolerance", tolerance, "1") if tolerance else wanted.tolerance
-    if not 0 < limit < 1:
-        raise ValueError(f"--tolerance = {tolerance!r}: must lie between 0 and 100 %")
-    asked = chosen("--responses", responses, declared.responses) or wanted.responses
-    engine, folder = Engine("threads", workers), path.with_name("trials")
-    found = recommended(declared, limit, asked or declared.responses, folder, engine)
+    wishes = declared.auto or Auto()
+    if tolerance:
+        limit = given("--tolerance", tolerance, "1")
+        wishes = wishes.model_copy(update={"tolerance": limit})
+        if not 0 < limit < 1:
+            raise ValueError(f"--tolerance = {tolerance!r}: must lie between 0 and 100 %")
+    if asked := chosen("--responses", responses, declared.responses):
+        wishes = wishes.model_copy(update={"responses": asked})
+    engine = Engine("threads", workers)
+    found = recommended(declared, path.with_name("trials"), engine, wishes)
     write_netcdf(found, path)
     print_recommendation(found)
 
@@ -349,22 +352,25 @@ def index(
 
 
 def _settled(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy:
-    """The study, its discretisation found by trials where it is auto; these are kept as a file."""
+    """The study, its discretisation found by trials where it is auto; a file keeps these."""
     from impactlab.study.declaration import FunctionStudy
 
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
     from impactlab.report.recommendation import print_recommendation
-    from impactlab.steering.resolving import resolved
+    from impactlab.steering.recommending import recommend
+    from impactlab.steering.resolving import fits, resolved
     from impactlab.study.engine import Engine
-    from impactlab.study.netcdf import write_netcdf
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
 
-    signal.signal(signal.SIGINT, _stop_at_once)
-    engine = Engine("threads", os.cpu_count() or 1)
-    study, found = resolved(study, evidence.with_name("trials"), engine)
-    write_netcdf(found, evidence)
+    found = read_netcdf(evidence) if evidence.exists() else None
+    if found is None or not fits(found, study):
+        signal.signal(signal.SIGINT, _stop_at_once)
+        engine = Engine("threads", os.cpu_count() or 1)
+        found = recommend(study, evidence.with_name("trials"), engine)
+        write_netcdf(found, evidence)
     print_recommendation(found)
-    return study
+    return resolved(study, found)
 
 
 def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:

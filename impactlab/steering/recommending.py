@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.dataset import provenance
+from impactlab.kernels.jit import SOURCES_HASH
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import with_values
 from impactlab.steering.axes import AXES, uncertainty
@@ -23,17 +24,15 @@ from impactlab.steering.candidates import candidates, cheapest, relative
 from impactlab.steering.corner_cases import corner_cases
 from impactlab.steering.ladders import Ladders, ladders
 from impactlab.steering.trials import Trials
-from impactlab.study.declaration import Study
+from impactlab.study.declaration import Auto, Study
 from impactlab.study.engine import Engine
 
 
-def recommend(
-    study: Study, tolerance: float, responses: Collection[str], folder: Path, engine: Engine
-) -> xr.Dataset:
+def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
     """Try discretisations on the corner cases: which is fine enough for these responses?
 
-    tolerance: relative numerical uncertainty, above 0. responses: out of the study's. folder: for
-    the shards of the trials.
+    folder: for the shards of the trials. wishes: tolerance, and the responses that it is asked
+    of; without it the study's own, or else 1 % of all.
 
     Returns, for each axis (nodes, points, courant), <axis>_value and <axis>_uncertainty on
     (response, case, axis) in the unit of the response, infinite where nothing can be said; what
@@ -45,16 +44,19 @@ def recommend(
     recommended one where its own is to be found; attributes grid_nodes, grid_points and
     grid_courant name it. Raises OSError when the disk is full or no scheduler answers.
     """
+    wishes = wishes or study.auto or Auto()
     impact, grid = with_values(study.impact, study.discretisation, study.sampling.fixed)
     study = replace(study, impact=impact, discretisation=grid)
     cases = corner_cases(study)
     trials = Trials(study, cases, folder, engine)
-    found = _tried(study, trials, ladders(study.discretisation), tolerance, responses)
+    asked = wishes.responses or study.responses
+    found = _tried(study, trials, ladders(study.discretisation), wishes.tolerance, asked)
     labels = {name: ("case", np.array(values)) for name, values in cases.items()}
     attrs: dict[str, Any] = {
         "study": study.name,
         "study_sha256": study.sha256,
-        "tolerance": tolerance,
+        "kernels_sha256": SOURCES_HASH,
+        "tolerance": wishes.tolerance,
     }
     chosen = recommended(found, grid) if study.auto else grid
     found = found.assign(_of_the_study(found, chosen))

@@ -3,39 +3,41 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from impactlab.steering.recommending import recommend, recommended
+from impactlab.kernels.jit import SOURCES_HASH
+from impactlab.steering.recommending import recommended
 from impactlab.study.declaration import Study
-from impactlab.study.engine import Engine
 from impactlab.study.errors import Problem, StudyError
 
 
-def resolved(study: Study, folder: Path, engine: Engine) -> tuple[Study, xr.Dataset]:
-    """The study with the discretisation found by trials, and the evidence (see `recommend`).
+def fits(found: xr.Dataset, study: Study) -> bool:
+    """Whether trials were made for this very study, by these kernels."""
+    same = found.attrs.get("study_sha256") == study.sha256
+    return same and found.attrs.get("kernels_sha256") == SOURCES_HASH
 
-    folder: for the shards of the trials. Raises StudyError where no discretisation meets the
-    tolerance for an asked response, naming what comes nearest; ValueError where the study asks
-    for none.
+
+def resolved(study: Study, found: xr.Dataset) -> Study:
+    """The study with the discretisation that its trials recommend (see `recommend`).
+
+    Raises StudyError where no discretisation meets the tolerance for an asked response, naming
+    what comes nearest; ValueError where the study asks for none.
     """
     auto = study.auto
     if auto is None:
         raise ValueError(f"{study.path}: its discretisation is stated: there is none to find")
-    asked = auto.responses or study.responses
-    found = recommend(study, auto.tolerance, asked, folder, engine)
     if missed := _unreached(found):
+        most, told = int(found["nodes"].max()), ", ".join(missed)
         reason = (
-            f"no discretisation up to {int(found['nodes'].max())} nodes meets "
-            f"{100 * auto.tolerance:g} % for {'; '.join(missed)}: raise tolerance, or list other "
-            "responses under discretisation.auto.responses"
+            f"no discretisation up to {most} nodes meets {100 * auto.tolerance:g} % for {told}: "
+            "raise tolerance, or list other responses under discretisation.auto.responses"
         )
         raise StudyError(Problem(str(study.path), "discretisation.auto", reason))
     grid = recommended(found, study.discretisation)
     assert grid is not None  # something is asked, and all of it is reached
-    return replace(study, discretisation=grid, auto=None), found
+    return replace(study, discretisation=grid, auto=None)
 
 
 def _unreached(found: xr.Dataset) -> list[str]:

@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from impactlab.study.solvers.impact import cases as design_cases
 
 from impactlab.study.sampling.doubling import doubled
+from impactlab.study.solvers.impact import cases as design_cases
 from impactlab.study.storage import Form, run_keys
 
 
