@@ -30,6 +30,21 @@ sampling:
     nodes: [11, 21, 41]
 responses: [peak_force, contact_duration]
 """
+GROWING = """
+title: Growing
+impact: {base: paper, beam_model: rigid}
+duration: 1 ms
+sampling:
+  method: sobol
+  base_samples: 64
+  second_order: false
+  seed: 0
+  until: {interval: 0.001, runs: 600}
+  parameters:
+    velocity: {distribution: uniform, low: 1 m/s, high: 2 m/s}
+    sphere_density: {distribution: uniform, low: 7000, high: 8000}
+responses: [peak_force]
+"""
 CHECKS = """
 title: Checks
 checks: [half_space]
@@ -60,6 +75,23 @@ def test_every_step_without_snakemake(folder):
     impactlab("index", cwd=folder)
     assert "small/report.html" in (folder / "results" / "index.html").read_text()
     assert xr.load_dataset(results / "runs.nc")["peak_force"].sel(velocity=2, nodes=41) > 1e4
+
+
+def test_a_sample_grows_and_solves_nothing_twice(folder):
+    """First in two steps, then from a design in a file: the answers are in the shards by then."""
+    (folder / "studies" / "growing.yaml").write_text(GROWING)
+    grown = impactlab("run", "studies/growing.yaml", cwd=folder).stderr
+    counts = [int(count) for count in re.findall(r"(\d+) runs, \d+ of them solved before", grown)]
+    before = [int(count) for count in re.findall(r"(\d+) of them solved before", grown)]
+    assert counts == [256, 512]
+    assert before == [0, 256]
+    assert "more than 600" in grown
+    impactlab("design", "studies/growing.yaml", cwd=folder)
+    again = impactlab("run", "results/growing/design.nc", cwd=folder).stderr
+    assert "512 runs, 512 of them solved before" in again
+    attrs = xr.load_dataset(folder / "results" / "growing" / "runs.nc").attrs
+    assert attrs["base_samples"] == 128
+    assert attrs["until_reached"] == 0
 
 
 def test_studies_are_listed(folder):
