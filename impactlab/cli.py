@@ -246,12 +246,45 @@ def analyse(
     ] = None,
     output: Annotated[Path | None, typer.Option(help="Default: beside the runs.")] = None,
 ) -> None:
-    """Convergence and sensitivity from solved runs."""
+    """Convergence and sensitivity from solved runs, and surrogate.nc of a sample.
+
+    surrogate.nc lies beside the analysis; `impactlab predict` reads it.
+    """
     from impactlab.analysis.analyse import analyse as analysed
+    from impactlab.analysis.surrogate import stored
     from impactlab.study.netcdf import read_netcdf, write_netcdf
 
-    found = read_netcdf(resolution) if resolution else None
-    write_netcdf(analysed(read_netcdf(runs), found), output or runs.with_name("analysis.nc"))
+    solved, path = read_netcdf(runs), output or runs.with_name("analysis.nc")
+    found = analysed(solved, read_netcdf(resolution) if resolution else None)
+    write_netcdf(found, path)
+    if surrogates := stored(solved, found):
+        write_netcdf(surrogates, path.with_name("surrogate.nc"))
+    else:
+        path.with_name("surrogate.nc").unlink(missing_ok=True)
+
+
+@app.command()
+def predict(
+    surrogate: Annotated[
+        Path, typer.Argument(metavar="SURROGATE", help="results/NAME/surrogate.nc.")
+    ],
+    values: Annotated[
+        list[str],
+        typer.Argument(metavar="NAME=VALUE...", help="Such as velocity=2 beam_depth='27 mm'."),
+    ],
+) -> None:
+    """Predict the responses of one run without solving it.
+
+    All parameters that the study varied have to be given. Beside each response stands the
+    surrogate's error on runs that it was not fitted to.
+    """
+    from impactlab.analysis.surrogate import load_surrogate
+    from impactlab.report.console import print_predictions
+
+    model = load_surrogate(surrogate)
+    texts = assigned(values)
+    numbers = {name: given(name, text, model.units(name)) for name, text in texts.items()}
+    print_predictions(model.predict(**numbers))
 
 
 @app.command()
@@ -392,6 +425,19 @@ def given(option: str, text: str, units: str) -> float:
         return si(text, units)
     except ValueError as error:
         raise ValueError(f"{option} = {text!r}: {error}") from None
+
+
+def assigned(arguments: list[str]) -> dict[str, str]:
+    """Arguments NAME=VALUE by name; raises ValueError for any other, and for a name given twice."""
+    found: dict[str, str] = {}
+    for argument in arguments:
+        name, sign, text = argument.partition("=")
+        if not sign or not text:
+            raise ValueError(f"{argument!r}: expected NAME=VALUE, such as velocity=2")
+        if name in found:
+            raise ValueError(f"{name}: is given twice, as {found[name]!r} and as {text!r}")
+        found[name] = text
+    return found
 
 
 def _stop_at_once(number: int, frame: object) -> None:

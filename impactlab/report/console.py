@@ -32,6 +32,26 @@ def print_responses(run: Any) -> None:
         console.print(f"note: {note}", markup=False)
 
 
+def print_predictions(predicted: Any) -> None:
+    """One line a response: its prediction, and what the surrogate is worth on runs held out.
+
+    predicted: a dataset of Surrogate.predict at one point.
+    """
+    table = Table("response", "prediction", "unit", "rms error", "Q2", "verdict")
+    for name, found in predicted.data_vars.items():
+        value, attrs = found.item(), found.attrs
+        gap = value != value
+        table.add_row(
+            str(name),
+            "none" if gap else f"{value:.6g}",
+            attrs["units"],
+            "–" if gap else f"{attrs['rmse']:.2g}",
+            "–" if gap else f"{attrs['q2']:.4f}",
+            attrs["verdict"].replace("_", " "),
+        )
+    Console().print(table)
+
+
 def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
     """One line a study: name, number of runs or checks, title."""
     table = Table("study", "size", "title")

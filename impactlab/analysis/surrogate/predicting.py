@@ -61,7 +61,7 @@ class Surrogate:
         for name in values:
             self._check_known(name)
         if absent := [name for name in self.parameters if name not in values]:
-            raise ValueError(f"{', '.join(absent)}: no value is given: {self._hint()}")
+            raise ValueError(f"{', '.join(absent)}: no value is given; {self._hint()}")
         arrays = [_array(name, values[name]) for name in self.parameters]
         for name, array in zip(self.parameters, arrays, strict=True):
             self._check_range(name, array)
@@ -88,10 +88,9 @@ class Surrogate:
     def _check_known(self, name: str) -> None:
         if name in self.parameters:
             return
-        held = f"it is {self.dataset[name].item()!r} in all of its runs; " * (
-            name in self.dataset.coords and self.dataset[name].ndim == 0
-        )
-        raise ValueError(f"{name}: was not varied in study {self._study()}; {held}{self._hint()}")
+        held = self.dataset.coords.get(name)
+        words = "" if held is None else f" (it is {held.item()!r} in all of its runs)"
+        raise ValueError(f"{name}: was not varied in study {self._study()}{words}; {self._hint()}")
 
     def _check_range(self, name: str, array: xr.DataArray) -> None:
         entry = self.dataset.sel(parameter=name)
@@ -106,7 +105,7 @@ class Surrogate:
             )
 
     def _hint(self) -> str:
-        return f"it takes {', '.join(self.parameters)}"
+        return f"the surrogate takes {', '.join(self.parameters)}"
 
     def _study(self) -> str:
         return repr(self.dataset.attrs.get("study", "?"))

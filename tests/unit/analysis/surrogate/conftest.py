@@ -1,0 +1,62 @@
+"""Samples drawn from distributions, and answered by closed forms in place of the solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from SALib.sample import sobol as sampler
+
+from impactlab.dataset import described
+from impactlab.model.distributions import quantile
+
+RANGES: dict[str, dict[str, Any]] = {
+    "velocity": {"distribution": "uniform", "low": 5.0, "high": 15.0},
+    "beam_depth": {"distribution": "triangular", "low": 0.026, "mode": 0.027, "high": 0.029},
+    "beam_yield_stress": {"distribution": "normal", "mean": 345e6, "standard_deviation": 25e6},
+}
+Answer = Callable[[Any], Any]
+
+
+def ishigami(unit: Any) -> Any:
+    """Ishigami and Homma (1990), a = 7, b = 0.1, on the unit cube."""
+    x = np.pi * (2 * unit - 1)
+    return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+
+
+@pytest.fixture
+def drawn_runs() -> Callable[..., xr.Dataset]:
+    """Build Saltelli's runs of three parameters; answers: functions of the unit cube."""
+
+    def build(
+        base_samples: int = 128,
+        seed: int = 0,
+        attrs: Mapping[str, Any] | None = None,
+        **answers: Answer,
+    ) -> xr.Dataset:
+        problem = {"num_vars": 3, "names": list(RANGES), "bounds": [[0, 1]] * 3}
+        unit = sampler.sample(problem, base_samples, calc_second_order=True, seed=7)
+        unit = np.clip(unit, 2.0**-31, 1 - 2.0**-31)
+        run = xr.Dataset(coords={"run": np.arange(len(unit)), "gravity": 9.81})
+        variables: dict[str, Any] = {name: ("run", f(unit)) for name, f in answers.items()}
+        variables["status"] = ("run", np.zeros(len(unit), np.int32))
+        coords = {
+            name: ("run", quantile(given, unit[:, at]), given)
+            for at, (name, given) in enumerate(RANGES.items())
+        }
+        own = {
+            "study": "synthetic",
+            "method": "sobol",
+            "varied": list(RANGES),
+            "responses": list(answers),
+            "base_samples": base_samples,
+            "seed": seed,
+            "confidence": 0.95,
+        }
+        attributes = own | dict(attrs or {})
+        return described(run.assign(variables).assign_coords(coords).assign_attrs(attributes))
+
+    return build

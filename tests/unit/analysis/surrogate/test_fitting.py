@@ -1,0 +1,78 @@
+"""Fits: exact for polynomials, those of scikit-learn on the same terms, sparse, repeatable."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from sklearn.linear_model import LinearRegression
+
+from impactlab.analysis.surrogate import fit
+from impactlab.analysis.surrogate.chaos import basis
+from impactlab.analysis.surrogate.fitting import MOST_RUNS, drawn
+
+
+@pytest.fixture
+def random() -> np.random.Generator:
+    return np.random.default_rng(3)
+
+
+def bent(unit: Any) -> Any:
+    return np.exp(unit[:, 0]) * np.maximum(unit[:, 1], 0.4) + 0.3 * unit[:, 2]
+
+
+def test_polynomials_are_met_exactly(random: np.random.Generator) -> None:
+    def polynomial(x: Any) -> Any:
+        return 2e5 * (x[:, 0] + x[:, 1] + x[:, 0] * x[:, 1] - 4 * x[:, 2] ** 3 + 7)
+
+    unit, other = random.random((200, 3)), random.random((100, 3))
+    np.testing.assert_allclose(fit(unit, polynomial(unit), 0)(other), polynomial(other), rtol=1e-10)
+
+
+def test_predictions_are_those_of_scikit_learn_on_the_same_terms(
+    random: np.random.Generator,
+) -> None:
+    unit, other = random.random((500, 3)), random.random((100, 3))
+    chaos = fit(unit, bent(unit), 0)
+    columns, others = basis(unit, chaos.degrees).T, basis(other, chaos.degrees).T
+    model = LinearRegression(fit_intercept=False).fit(columns, bent(unit))
+    np.testing.assert_allclose(chaos(other), model.predict(others), rtol=1e-10)
+
+
+def test_terms_that_do_not_help_are_left_out(random: np.random.Generator) -> None:
+    unit = random.random((400, 3))
+    noisy = unit[:, 0] + 0.05 * random.standard_normal(400)
+    chaos = fit(unit, noisy, 0)
+    assert len(chaos.degrees) < 12
+    assert [1, 0, 0] in chaos.degrees.tolist()
+
+
+def test_few_levels_bound_the_degree(random: np.random.Generator) -> None:
+    """Four levels, as of Morris: a fourth degree would be one of the lower ones again."""
+    unit = random.integers(0, 4, (300, 2)) / 3
+    chaos = fit(unit, np.sin(5 * unit[:, 0]) + unit[:, 1], 0)
+    assert chaos.degrees.max() <= 3
+    np.testing.assert_allclose(chaos(unit), np.sin(5 * unit[:, 0]) + unit[:, 1], atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", [0, 5])
+def test_of_many_runs_the_seed_chooses(seed: int) -> None:
+    rows = drawn(3 * MOST_RUNS, seed)
+    assert rows.size == MOST_RUNS == np.unique(rows).size
+    assert np.array_equal(rows, drawn(3 * MOST_RUNS, seed))
+    assert not np.array_equal(rows, drawn(3 * MOST_RUNS, seed + 1))
+    assert np.array_equal(drawn(10, seed), np.arange(10))
+
+
+def test_the_same_runs_give_the_same_bits(random: np.random.Generator) -> None:
+    unit = random.random((300, 3))
+    one, other = fit(unit, bent(unit), 1), fit(unit, bent(unit), 1)
+    assert one.coefficients.tobytes() == other.coefficients.tobytes()
+    assert one.degrees.tobytes() == other.degrees.tobytes()
+
+
+def test_too_few_runs_are_refused(random: np.random.Generator) -> None:
+    unit = random.random((15, 3))
+    with pytest.raises(ValueError, match="15 runs are too few .* 3 parameters: it needs 16"):
+        fit(unit, unit[:, 0], 0)
