@@ -179,11 +179,19 @@ def analyse(
     runs: RunsFile,
     output: Annotated[Path | None, typer.Option(help="Default: beside the runs.")] = None,
 ) -> None:
-    """Convergence and sensitivity from solved runs."""
+    """Convergence and sensitivity from solved runs.
+
+    Of a sample also indices.csv and indices.nc, beside the output: every index with its interval.
+    """
     from impactlab.analysis.analyse import analyse as analysed
+    from impactlab.analysis.sensitivity import table
     from impactlab.study.netcdf import read_netcdf, write_netcdf
 
-    write_netcdf(analysed(read_netcdf(runs)), output or runs.with_name("analysis.nc"))
+    found, path = analysed(read_netcdf(runs)), output or runs.with_name("analysis.nc")
+    if indices := table.indices(found):
+        table.write_csv(found, path.with_name("indices.csv"))
+        write_netcdf(indices, path.with_name("indices.nc"))
+    write_netcdf(found, path)
 
 
 @app.command()

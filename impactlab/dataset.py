@@ -190,7 +190,7 @@ _FIELDS = (
 ANALYSES: dict[str, str] = {
     "convergence_in_nodes": "a grid that varies `nodes` over at least 3 values",
     "convergence_in_points": "a grid that varies `points` over at least 2 values",
-    "sensitivity": "a sample (method: sobol)",
+    "sensitivity": "a sample (any method but grid)",
 }
 """Names of the analyses (modules of impactlab.analysis), and what runs each one needs."""
 

@@ -17,7 +17,7 @@ from SALib.analyze import sobol as salib
 
 from impactlab.analysis import sensitivity
 
-SMALL = (1, 4, 1024, 100)
+SMALL = (1, 8, 2048, 200)
 FULL = (10, 10, 8192, 1000)
 """Responses, parameters, base samples, resamples."""
 
