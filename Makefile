@@ -3,7 +3,7 @@
 # make test    the checks and the tests
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings; both schemes' cost and error:
-#              wants an idle machine
+#              wants an idle machine; and the bootstrap of Sobol indices
 # make mutants the tests' own test: faults seeded into the kernels, and what catches each
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
@@ -53,6 +53,7 @@ bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
 	$(IN_VENV) python tests/benchmarks/schemes.py
+	$(IN_VENV) python tests/benchmarks/bootstrap.py
 
 mutants: $(MADE)-dev
 	$(BIN)/python tests/mutations/run.py

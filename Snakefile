@@ -158,6 +158,7 @@ rule runs:
         "impactlab --log {log} run {input.design} --output {output} --workers {threads}"
 
 
+# The indices.csv and indices.nc of a sample come with it: no outputs, since a grid has none.
 rule analysis:
     input:
         code=code("dataset.py", "analysis/**/*.py"),

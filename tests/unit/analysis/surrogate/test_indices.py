@@ -14,7 +14,9 @@ from impactlab.analysis.surrogate.indices import Fitted, Indices, indices
 Z95 = 1.959964
 
 
-def _indices(unit: Any, values: Any, groups: str, block: Any = None, missed: float = 0.0) -> Indices:
+def _indices(
+    unit: Any, values: Any, groups: str, block: Any = None, missed: float = 0.0
+) -> Indices:
     fitted = Fitted(unit, values, np.arange(len(unit)) if block is None else block)
     return indices(fit(unit, values, 0), list(groups), fitted, missed, 0.95)
 

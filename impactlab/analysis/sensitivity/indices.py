@@ -1,0 +1,106 @@
+"""From the runs of a sample study to its indices, with a verdict on each response."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.responses import usable
+from impactlab.analysis.sensitivity import imputation, sobol, verdict
+from impactlab.analysis.sensitivity.imputation import Fit
+from impactlab.analysis.sensitivity.index import BY_SAMPLES, PAIR, Index, stored
+from impactlab.analysis.sensitivity.methods import METHODS, Method
+from impactlab.analysis.sensitivity.sample import Array, Sample
+from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
+from impactlab.analysis.verdicts import flagged
+
+Answer = tuple[SensitivityVerdict, float, dict[str, Array]]
+"""Verdict on a response, share of its runs that a surrogate supplied, and indices if any."""
+
+
+def applies(runs: xr.Dataset) -> bool:
+    """Whether the runs are a sample of one of the methods."""
+    return runs.attrs.get("method") in METHODS
+
+
+def analysis(runs: xr.Dataset, fit: Fit | None = None) -> xr.Dataset:
+    """Sensitivity indices of every response, by the method that the sample was drawn for.
+
+    fit: makes the surrogate that supplies failed runs where the study asks for it
+    (`failed_runs: impute`).
+
+    Returns what the method's module lists, on (response, *dims), with <name>_interval, the
+    half-width of the bootstrap interval; sensitivity_verdict and imputed_share (response).
+    `parameter` holds the varied parameters, or their groups. Indices are NaN where the verdict
+    gives none. Raises ValueError when the runs are not the sample that their attributes tell of.
+    """
+    sample, method = Sample.of(runs), METHODS[str(runs.attrs["method"])]
+    method.check(sample)
+    values = usable(runs).sortby("run").transpose("response", "run")
+    names = [str(name) for name in values["response"].values]
+    answers = [
+        _answer(name, row, sample, method, fit)
+        for name, row in zip(names, values.values, strict=True)
+    ]
+    verdicts, shares, rows = zip(*answers, strict=True)
+    wanted = method.indices(sample)
+    coordinates = _coordinates(values, sample, wanted)
+    sizes = {name: len(entry[1]) for name, entry in coordinates.items()}
+    codes = xr.DataArray([int(judgement) for judgement in verdicts], dims="response")
+    return xr.Dataset(stored(rows, wanted, sample, sizes), coords=coordinates).assign(
+        sensitivity_verdict=flagged(
+            codes, SensitivityVerdict, "verdict on the sensitivity indices"
+        ),
+        imputed_share=("response", np.array(shares), _IMPUTED),
+    )
+
+
+_IMPUTED = {"long_name": "share of runs whose value a surrogate supplied", "units": "1"}
+
+
+def _answer(
+    response: str, outputs: Array, sample: Sample, method: Method, fit: Fit | None
+) -> Answer:
+    """Of one response; outputs: (runs,), NaN where a run failed."""
+    gaps, share = np.isnan(outputs), 0.0
+    if gaps.any() and sample.policy == "impute":
+        if not imputation.possible(outputs, sample):
+            return SensitivityVerdict.TOO_FEW_RUNS, share, {}
+        outputs = imputation.completed(outputs, sample, _given(fit, sample), response)
+        share = float(gaps.mean())
+    judgement = verdict.of_outputs(outputs, method.varying(outputs, sample), share)
+    if judgement in (SensitivityVerdict.CONSTANT, SensitivityVerdict.FAILED_RUNS):
+        return judgement, share, {}
+    found = method.estimate(outputs, sample, response)
+    return max(judgement, verdict.of_indices(found)), share, found
+
+
+def _given(fit: Fit | None, sample: Sample) -> Fit:
+    if fit is None:
+        raise ValueError(
+            f"{sample.study} asks for failed_runs: impute, but no surrogate is at hand: set "
+            "failed_runs: fail"
+        )
+    return fit
+
+
+def _coordinates(
+    values: xr.DataArray, sample: Sample, wanted: dict[str, Index]
+) -> dict[str, tuple[Any, ...]]:
+    factors = list(sample.factors)
+    what = "group of varied parameters" if sample.groups else "varied parameter"
+    coordinates: dict[str, tuple[Any, ...]] = {
+        str(name): ("response", array.values, array.attrs)
+        for name, array in values.coords.items()
+        if array.dims == ("response",)
+    }
+    coordinates["parameter"] = ("parameter", factors, {"long_name": what})
+    dims = {index.dims for index in wanted.values()}
+    if PAIR in dims:
+        coordinates[PAIR[1]] = (PAIR[1], factors, {"long_name": f"the other {what}"})
+    if BY_SAMPLES in dims:
+        attrs = {"long_name": "base samples used, the first of the sample", "units": "1"}
+        coordinates[BY_SAMPLES[0]] = (BY_SAMPLES[0], sobol.base_samples(sample), attrs)
+    return coordinates

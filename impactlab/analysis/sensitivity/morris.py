@@ -1,0 +1,105 @@
+"""Morris' elementary effects, by SALib: a screening, cheap but without shares of the variance."""
+
+from __future__ import annotations
+
+import numpy as np
+from SALib.analyze import morris
+
+from impactlab.analysis.sensitivity.index import Index
+from impactlab.analysis.sensitivity.sample import Array, Sample
+
+SAME = 1e-13
+"""Difference, relative to the largest value, up to which two values are one level."""
+_1991 = "Morris (1991), Technometrics 33, 161"
+_2007 = "Campolongo et al. (2007), Environ. Model. Softw. 22, 1509, eq. 2"
+_UNIT = (
+    "in the unit of the response: its change over the change in probability of the parameter, "
+    "that is over the whole range of a uniform one"
+)
+_INDICES = {
+    "morris_mu": Index(
+        "mean elementary effect",
+        _1991,
+        units=None,
+        interval=False,
+        comment=f"{_UNIT}; not given for a group of several parameters, whose signs differ",
+    ),
+    "morris_mu_star": Index("mean absolute elementary effect", _2007, units=None, comment=_UNIT),
+    "morris_sigma": Index(
+        "standard deviation of the elementary effects",
+        _1991,
+        units=None,
+        interval=False,
+        comment=f"{_UNIT}; not given for a group of several parameters",
+    ),
+}
+
+
+def indices(sample: Sample) -> dict[str, Index]:
+    """What is estimated, by variable name."""
+    return _INDICES
+
+
+def check(sample: Sample) -> None:
+    """Raises ValueError when the runs are not trajectories of single steps."""
+    trajectories, factors = sample.number("trajectories"), len(sample.factors)
+    trajectories = sample.number("optimal_trajectories") or trajectories
+    sample.expect(trajectories * (factors + 1), f"{trajectories} trajectories of {factors} steps")
+    path = levels(sample.inputs).reshape(trajectories, factors + 1, -1)
+    moved = np.diff(path, axis=1) != 0
+    members = np.array(sample.factors)[:, None] == np.array(sample.groups or sample.parameters)
+    steps = (moved[:, :, None, :] == members).all(axis=-1)
+    if not (steps.sum(axis=1) == 1).all():
+        raise ValueError(
+            f"the runs of {sample.study} are not Morris' trajectories, each step of which moves "
+            "one parameter or group: solve the study again"
+        )
+
+
+def varying(outputs: Array, sample: Sample) -> list[Array]:
+    """The outputs that have to vary."""
+    return [outputs]
+
+
+def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+    """Elementary effects of one response, by variable name.
+
+    outputs: (runs,), trajectory by trajectory, finite and varying.
+    """
+    problem = {
+        "num_vars": len(sample.parameters),
+        "names": list(sample.parameters),
+        "groups": list(sample.groups or sample.parameters),
+    }
+    found = morris.analyze(
+        problem,
+        levels(sample.inputs),
+        outputs,
+        num_resamples=sample.resamples,
+        conf_level=sample.confidence,
+        num_levels=sample.number("levels"),
+        seed=sample.rng(response),
+    )
+    groups = sample.groups or sample.parameters
+    alone = np.array([groups.count(name) == 1 for name in sample.factors])
+    return {
+        "morris_mu": np.where(alone, np.asarray(found["mu"], float), np.nan),
+        "morris_mu_star": np.asarray(found["mu_star"], float),
+        "morris_mu_star_interval": np.asarray(found["mu_star_conf"], float),
+        "morris_sigma": np.asarray(found["sigma"], float),
+    }
+
+
+def levels(inputs: Array) -> Array:
+    """The number of the level of each value, (runs, parameter), from 0 on.
+
+    SALib sees a step in every change; the same level may come out of a quantile with another last
+    digit.
+    """
+    return np.stack([_levels(column) for column in inputs.T], axis=1)
+
+
+def _levels(column: Array) -> Array:
+    values, places = np.unique(column, return_inverse=True)
+    apart = np.diff(values) > SAME * np.abs(values).max()
+    return np.concatenate([[0.0], np.cumsum(apart)])[places]

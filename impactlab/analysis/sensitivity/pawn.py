@@ -1,0 +1,115 @@
+"""PAWN: how far the distribution of a response moves when a parameter is held, by SALib.
+
+The distance is that of Kolmogorov and Smirnov between the runs of a slide, a tenth of the values of
+the parameter, and all runs. It needs no density and no variance, so that jumps and skewed responses
+are no trouble; it is never zero in a finite sample, which is what the dummy shows.
+"""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import numpy.typing as npt
+from SALib.analyze import pawn
+
+from impactlab.analysis.sensitivity import dummy
+from impactlab.analysis.sensitivity.bootstrap import counts
+from impactlab.analysis.sensitivity.index import Index
+from impactlab.analysis.sensitivity.sample import Array, Sample
+
+SLIDES = 10
+"""Classes of a parameter's values, as in SALib."""
+FEWEST = 10
+"""Runs that a slide needs on average."""
+_2018 = "Pianosi and Wagener (2018), Environ. Model. Softw. 108, 197"
+_INDICES = {
+    "pawn": Index("PAWN index, median over the slides", f"{_2018}, eqs. 2 and 3"),
+    "pawn_maximum": Index(
+        "PAWN index, maximum over the slides", f"{_2018}, eqs. 2 and 3", interval=False
+    ),
+    "dummy_pawn": Index(
+        "PAWN index of a dummy",
+        f"{_2018}, section 2.3",
+        (),
+        comment="of a random column that the model never saw",
+    ),
+}
+
+
+def indices(sample: Sample) -> dict[str, Index]:
+    """What is estimated, by variable name."""
+    return _INDICES
+
+
+def check(sample: Sample) -> None:
+    """Raises ValueError where groups are stated, or the slides would be all but empty."""
+    sample.ungrouped()
+    if (runs := len(sample.inputs)) < SLIDES * FEWEST:
+        raise ValueError(
+            f"{sample.study}: {runs} runs are too few for PAWN: take {SLIDES * FEWEST} or more"
+        )
+
+
+def varying(outputs: Array, sample: Sample) -> list[Array]:
+    """The outputs that have to vary."""
+    return [outputs]
+
+
+def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+    """Indices of one response and half-widths of their intervals, by variable name.
+
+    outputs: (runs,), finite and varying.
+    """
+    column = dummy.column(len(outputs), sample.rng("dummy"))
+    inputs = np.column_stack([sample.inputs, column])
+    names = [*sample.parameters, "dummy"]
+    with warnings.catch_warnings():
+        # of the significance of a distance, which is not asked for
+        warnings.filterwarnings("ignore", "ks_2samp", RuntimeWarning)
+        found = pawn.analyze({"num_vars": len(names), "names": names}, inputs, outputs, S=SLIDES)
+    spread = _half_widths(inputs, outputs, sample, sample.rng(response))
+    return {
+        "pawn": found["median"][:-1],
+        "pawn_interval": spread[:-1],
+        "pawn_maximum": found["maximum"][:-1],
+        "dummy_pawn": found["median"][-1],
+        "dummy_pawn_interval": spread[-1],
+    }
+
+
+def _half_widths(inputs: Array, outputs: Array, sample: Sample, rng: np.random.Generator) -> Array:
+    """Of the medians, (parameter,): runs are drawn anew, the limits of the slides stay."""
+    order = np.argsort(outputs, kind="stable")
+    last = np.flatnonzero(np.diff(outputs[order], append=np.inf))
+    members = [slides(column)[order] for column in inputs.T]
+    replicates = [
+        [_median(distances(row[order], member, last)) for member in members]
+        for tally in counts(len(outputs), sample.resamples, rng)
+        for row in tally
+    ]
+    return sample.half_width(np.array(replicates))
+
+
+def slides(column: Array) -> npt.NDArray[np.bool_]:
+    """Which runs lie in which slide, bool (runs, slides); SALib leaves out the largest value."""
+    limits = np.quantile(column, np.linspace(0, 1, SLIDES + 1))
+    return (column[:, None] >= limits[:-1]) & (column[:, None] < limits[1:])
+
+
+def distances(weights: Array, members: npt.NDArray[np.bool_], last: npt.NDArray[np.intp]) -> Array:
+    """Kolmogorov-Smirnov distance of each slide from all runs, (slides,).
+
+    weights: (runs,), how often each run counts, by rising output; members: bool (runs, slides) in
+    the same order; last: the place of the last of each run of equal outputs. NaN where empty.
+    """
+    whole = np.cumsum(weights)
+    parts = np.cumsum(weights[:, None] * members, axis=0)
+    with np.errstate(invalid="ignore"):
+        apart = parts[last] / parts[-1] - (whole[last] / whole[-1])[:, None]
+    return np.asarray(np.abs(apart).max(axis=0))
+
+
+def _median(values: Array) -> float:
+    """Of the slides that are not empty, as in SALib."""
+    return float(np.nanmedian(values))

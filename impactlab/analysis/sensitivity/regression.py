@@ -1,0 +1,100 @@
+"""Standardised regression coefficients, on values and on ranks: signed, but linear or monotone."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import rankdata
+
+from impactlab.analysis.sensitivity import dummy
+from impactlab.analysis.sensitivity.bootstrap import half_widths
+from impactlab.analysis.sensitivity.index import Index
+from impactlab.analysis.sensitivity.sample import Array, Sample
+
+_2008 = "Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5"
+_1979 = "Iman and Conover (1979), Technometrics 21, 499"
+_DUMMY = "of a random column that the model never saw"
+_INDICES = {
+    "regression": Index("standardised regression coefficient", _2008),
+    "regression_r_squared": Index(
+        "share of the variance that linear regression explains", _2008, ()
+    ),
+    "dummy_regression": Index(
+        "standardised regression coefficient of a dummy", _2008, (), comment=_DUMMY
+    ),
+    "rank_regression": Index("standardised rank regression coefficient", _1979),
+    "rank_regression_r_squared": Index(
+        "share of the variance of the ranks that linear regression explains", _1979, ()
+    ),
+    "dummy_rank_regression": Index(
+        "standardised rank regression coefficient of a dummy", _1979, (), comment=_DUMMY
+    ),
+}
+
+
+def indices(sample: Sample) -> dict[str, Index]:
+    """What is estimated, by variable name."""
+    return _INDICES
+
+
+def check(sample: Sample) -> None:
+    """Raises ValueError where groups are stated, or the runs do not determine a regression."""
+    sample.ungrouped()
+    runs, needed = sample.inputs.shape[0], 2 * (sample.inputs.shape[1] + 2)
+    if runs < needed:
+        raise ValueError(
+            f"{sample.study}: {runs} runs are too few for a regression on "
+            f"{len(sample.parameters)} parameters: take {needed} or more"
+        )
+
+
+def varying(outputs: Array, sample: Sample) -> list[Array]:
+    """The outputs that have to vary."""
+    return [outputs]
+
+
+def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+    """Coefficients of one response and half-widths of their intervals, by variable name.
+
+    outputs: (runs,), finite and varying. The ranks are those among all runs, in resamples, too.
+    """
+    column = dummy.column(len(outputs), sample.rng("dummy"))
+    table = np.column_stack([sample.inputs, column, outputs])
+    found: dict[str, Array] = {}
+    for name, values in (("regression", table), ("rank_regression", rankdata(table, axis=0))):
+        found |= _regression(name, values, sample, sample.rng(response))
+    return found
+
+
+def _regression(
+    name: str, table: Array, sample: Sample, rng: np.random.Generator
+) -> dict[str, Array]:
+    """Of the last column on the others, of which the last is the dummy."""
+    standard = (table - table.mean(axis=0)) / table.std(axis=0)
+    products = (standard[:, :, None] * standard[:, None, :]).reshape(len(table), -1)
+    columns = np.column_stack([standard, products])
+
+    def estimator(means: Array) -> dict[str, Array]:
+        correlation = correlations(means, table.shape[1])
+        with_dummy, _ = coefficients(correlation)
+        without = np.delete(np.delete(correlation, -2, axis=-1), -2, axis=-2)
+        values, share = coefficients(without)
+        return {name: values, f"dummy_{name}": with_dummy[..., -1], f"{name}_r_squared": share}
+
+    return estimator(columns.mean(axis=0)) | half_widths(columns, estimator, sample, rng)
+
+
+def correlations(means: Array, size: int) -> Array:
+    """Matrix (..., size, size) from means of the columns and of their products (..., columns)."""
+    centre = means[..., :size]
+    second = means[..., size:].reshape(*means.shape[:-1], size, size)
+    covariance = second - centre[..., :, None] * centre[..., None, :]
+    deviation = np.sqrt(np.diagonal(covariance, axis1=-2, axis2=-1))
+    deviation = np.where(deviation > 0, deviation, np.nan)
+    return np.asarray(covariance / deviation[..., :, None] / deviation[..., None, :])
+
+
+def coefficients(correlation: Array) -> tuple[Array, Array]:
+    """Standardised coefficients (..., regressors) of the last variable, and their R^2 (...)."""
+    inner, outer = correlation[..., :-1, :-1], correlation[..., :-1, -1]
+    found = np.asarray(np.linalg.solve(inner, outer[..., None])[..., 0], float)
+    return found, np.asarray((found * outer).sum(axis=-1))

@@ -1,0 +1,138 @@
+"""Sobol indices with bootstrap intervals, by SALib's estimators.
+
+SALib answers a NaN or a constant output with indices of zero, takes seed 0 as no seed, and needs a
+minute an output for its intervals: it gets complete and varying outputs alone, and gives the
+indices; the intervals are those of its bootstrap, made by `bootstrap` from the same estimators.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from SALib.analyze import sobol
+
+from impactlab.analysis.sensitivity.bootstrap import half_widths
+from impactlab.analysis.sensitivity.index import BY_SAMPLES, PAIR, Index
+from impactlab.analysis.sensitivity.saltelli import Outputs, estimates, step
+from impactlab.analysis.sensitivity.sample import Array, Sample
+from impactlab.analysis.sensitivity.verdict import still
+
+HALVINGS = 5
+"""How often the sample is halved to show how its indices settle: from N/32 on."""
+FEWEST = 8
+"""Base samples below which halves are not shown."""
+_2010 = "Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2"
+_2002 = "Saltelli (2002), Comput. Phys. Commun. 145, 280, Theorem 2"
+_DUMMY = (
+    "Khorashadi Zadeh et al. (2017), Environ. Model. Softw. 91, 210: the index of a parameter "
+    "that the model never sees, with the mean of both base samples for f0"
+)
+_NESTED = "from the first base samples alone, which are a smaller sample of the same kind"
+_INDICES = {
+    "first_order": Index("first-order Sobol index", f"{_2010} (b)"),
+    "total_order": Index("total-order Sobol index", f"{_2010} (f)"),
+    "second_order": Index("second-order Sobol index", _2002, PAIR),
+    "dummy_first_order": Index("first-order Sobol index of a dummy", _DUMMY, ()),
+    "dummy_total_order": Index("total-order Sobol index of a dummy", _DUMMY, ()),
+    "first_order_by_samples": Index(
+        "first-order Sobol index by base samples", f"{_2010} (b)", BY_SAMPLES, comment=_NESTED
+    ),
+    "total_order_by_samples": Index(
+        "total-order Sobol index by base samples", f"{_2010} (f)", BY_SAMPLES, comment=_NESTED
+    ),
+}
+
+
+def indices(sample: Sample) -> dict[str, Index]:
+    """What is estimated, by variable name."""
+    second = _second_order(sample)
+    return {name: index for name, index in _INDICES.items() if second or index.dims != PAIR}
+
+
+def check(sample: Sample) -> None:
+    """Raises ValueError when the number of runs does not fit the sample."""
+    base, factors = sample.number("base_samples"), len(sample.factors)
+    words = f"{base} base samples of {factors} {'groups' if sample.groups else 'parameters'}"
+    sample.expect(base * step(factors, _second_order(sample)), words)
+
+
+def base_samples(sample: Sample) -> list[int]:
+    """The sizes of the nested samples, up to the whole one."""
+    whole = sample.number("base_samples")
+    sizes = [whole >> halving for halving in range(HALVINGS, 0, -1)]
+    return [size for size in sizes if size >= FEWEST] + [whole]
+
+
+def varying(outputs: Array, sample: Sample) -> list[Array]:
+    """The outputs that have to vary: the variance comes from the two base samples."""
+    size = step(len(sample.factors), _second_order(sample))
+    return [np.concatenate([outputs[::size], outputs[size - 1 :: size]])]
+
+
+def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+    """Indices of one response and half-widths of their intervals, by variable name.
+
+    outputs: (runs,) in SALib's order, finite and varying.
+    """
+    factors, second = len(sample.factors), _second_order(sample)
+    found = _indices(Outputs.of(outputs, factors, second), sample, response)
+    nested = [
+        _nested(outputs[: size * step(factors, second)], sample, response)
+        for size in base_samples(sample)[:-1]
+    ]
+    for name in ("first_order", "total_order"):
+        for ending in ("", "_interval"):
+            series = [part[f"{name}{ending}"] for part in nested] + [found[f"{name}{ending}"]]
+            found[f"{name}_by_samples{ending}"] = np.stack(series)
+    return found
+
+
+def points(outputs: Outputs) -> dict[str, Array]:
+    """SALib's indices: first_order, total_order (factor) and second_order, symmetric."""
+    a, b, ab, ba = outputs.a, outputs.b, outputs.ab, outputs.ba
+    found = {
+        "first_order": np.array([sobol.first_order(a, column, b) for column in ab.T]),
+        "total_order": np.array([sobol.total_order(a, column, b) for column in ab.T]),
+    }
+    if ba is not None:
+        joint = [sobol.second_order(a, ab[:, i], ab[:, j], ba[:, i], b) for i, j in outputs.pairs]
+        found["second_order"] = _matrix(np.array(joint, float), ab.shape[1])
+    return found
+
+
+def _indices(outputs: Outputs, sample: Sample, response: str) -> dict[str, Array]:
+    """Everything on the whole sample."""
+    factors, statistics = len(sample.factors), outputs.statistics()
+    floor = estimates(statistics.mean(axis=0), factors)
+    spread = half_widths(
+        statistics, lambda means: estimates(means, factors), sample, sample.rng(response)
+    )
+    if "second_order_interval" in spread:
+        spread["second_order_interval"] = _matrix(spread["second_order_interval"], factors)
+    dummies = {name: value for name, value in floor.items() if name.startswith("dummy")}
+    return points(outputs) | dummies | spread
+
+
+def _nested(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+    """First and total order of a part of the sample; NaN where that does not vary."""
+    factors = len(sample.factors)
+    gap = np.full(factors, np.nan)
+    if still(outputs, varying(outputs, sample)):
+        names = ("first_order", "total_order")
+        return {f"{name}{ending}": gap for name in names for ending in ("", "_interval")}
+    parts = Outputs.of(outputs, factors, _second_order(sample))
+    rng = sample.rng(response, str(len(parts.a)))
+    statistics = parts.statistics(interactions=False)
+    return points(parts) | half_widths(
+        statistics, lambda means: estimates(means, factors), sample, rng
+    )
+
+
+def _matrix(values: Array, factors: int) -> Array:
+    """Values of pairs as a symmetric matrix, NaN on its diagonal."""
+    matrix = np.full((factors, factors), np.nan)
+    matrix[np.triu_indices(factors, 1)] = values
+    return np.where(np.isnan(matrix), matrix.T, matrix)
+
+
+def _second_order(sample: Sample) -> bool:
+    return bool(sample.number("second_order"))

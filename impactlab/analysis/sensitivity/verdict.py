@@ -1,0 +1,143 @@
+"""Whether the indices of a response may be used, as a sceptical reader would judge it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from impactlab.analysis.sensitivity.sample import Array
+from impactlab.analysis.verdicts import ROUND_OFF, Verdict
+
+MOSTLY = 0.9
+"""Share of runs with one and the same value from which on a response is mostly constant."""
+FEW_VALUES = 10
+"""Distinct values up to which a response moves in jumps."""
+TAIL, TAIL_SHARE = 0.01, 0.5
+"""The share of runs that may not carry more than this share of the variance."""
+WIDE = 0.1
+"""Half-width from which on an interval is wide: of an index that is a share, or, of a mean
+elementary effect, relative to the largest one."""
+LINEAR = 0.7
+"""Share of the variance from which on a regression describes a response (Saltelli et al. 2008,
+Global Sensitivity Analysis, section 1.2.5)."""
+
+_JUDGED = ("first_order", "total_order", "delta", "pawn", "regression", "rank_regression")
+
+
+class SensitivityVerdict(Verdict):
+    """Whether the indices of a response may be used; where several hold, the worst is told."""
+
+    USABLE = 0, True, "every run answered and the response varies"
+    JUMPS = 1, False, "the response takes ten values or fewer: its indices are those of jumps"
+    FEW_RUNS_CARRY_IT = 2, False, "one run in a hundred carries more than half of the variance"
+    WIDE_INTERVALS = (
+        3,
+        False,
+        "the sample is small: an interval is wider than 0.1 to either side, or cannot be given",
+    )
+    NOT_LINEAR = (
+        4,
+        False,
+        "linear regression explains less than 70 % of the variance, on values and on ranks",
+    )
+    INCONSISTENT = (
+        5,
+        False,
+        "the sample is too small: by more than their intervals, first-order indices add up to "
+        "more than 1, are below zero, or exceed their total",
+    )
+    IMPUTED = 6, False, "runs failed, and a surrogate supplied their values (see imputed_share)"
+    MOSTLY_CONSTANT = (
+        7,
+        False,
+        "nine runs in ten share one value: the indices hang on the others",
+    )
+    NO_DENSITY = (
+        8,
+        False,
+        "a class of a parameter's values holds one value of the response alone: it has no density, "
+        "and no delta is given (use pawn)",
+    )
+    CONSTANT = 9, False, "the response does not vary: indices are undefined"
+    FAILED_RUNS = 10, False, "runs are missing (see missing_runs): no index is given"
+    TOO_FEW_RUNS = (
+        11,
+        False,
+        "too many runs are missing for a surrogate to supply their values: no index is given",
+    )
+
+
+def of_outputs(outputs: Array, varying: Sequence[Array], imputed: float) -> SensitivityVerdict:
+    """What may be made of one response before its indices are known.
+
+    outputs: (runs,); varying: parts of them, each of which has to vary; imputed: share of runs
+    whose value a surrogate supplied.
+    """
+    if not np.isfinite(outputs).all():
+        return SensitivityVerdict.FAILED_RUNS
+    if still(outputs, varying):
+        return SensitivityVerdict.CONSTANT
+    values, counts = np.unique(outputs, return_counts=True)
+    if counts.max() >= MOSTLY * outputs.size:
+        return SensitivityVerdict.MOSTLY_CONSTANT
+    if imputed:
+        return SensitivityVerdict.IMPUTED
+    if _tail(outputs) > TAIL_SHARE:
+        return SensitivityVerdict.FEW_RUNS_CARRY_IT
+    jumps = values.size <= min(FEW_VALUES, outputs.size // 2)
+    return SensitivityVerdict.JUMPS if jumps else SensitivityVerdict.USABLE
+
+
+def still(outputs: Array, varying: Sequence[Array]) -> bool:
+    """Whether one of the parts does not vary, for its size or beside the variance of the whole."""
+    smallest, least = ROUND_OFF * np.abs(outputs).max(), ROUND_OFF * np.var(outputs)
+    return any(np.ptp(part) <= smallest or np.var(part) <= least for part in varying)
+
+
+def of_indices(found: Mapping[str, Array]) -> SensitivityVerdict:
+    """What is to be said of the indices of one response, by variable name."""
+    return max(_remarks(found), default=SensitivityVerdict.USABLE)
+
+
+def _remarks(found: Mapping[str, Array]) -> Iterator[SensitivityVerdict]:
+    if _wide(found):
+        yield SensitivityVerdict.WIDE_INTERVALS
+    if "rank_regression" in found and _best_fit(found) < LINEAR:
+        yield SensitivityVerdict.NOT_LINEAR
+    if "total_order" in found and _inconsistent(found):
+        yield SensitivityVerdict.INCONSISTENT
+    if "delta" in found and np.isnan(found["delta"]).any():
+        yield SensitivityVerdict.NO_DENSITY
+
+
+def _wide(found: Mapping[str, Array]) -> bool:
+    margins = [found[f"{name}_interval"] for name in _JUDGED if name in found]
+    if "morris_mu_star" in found:
+        margins.append(found["morris_mu_star_interval"] / found["morris_mu_star"].max())
+    return not all((margin <= WIDE).all() for margin in margins)
+
+
+def _best_fit(found: Mapping[str, Array]) -> float:
+    """Share of the variance that the better regression explains."""
+    return max(float(found[f"{kind}_r_squared"]) for kind in ("regression", "rank_regression"))
+
+
+def _inconsistent(found: Mapping[str, Array]) -> bool:
+    """Whether the shares contradict that they are shares, by more than their intervals.
+
+    Below zero by twice the interval: of many indices that are zero, some lie outside of it once.
+    """
+    first, first_margin = found["first_order"], found["first_order_interval"]
+    total, total_margin = found["total_order"], found["total_order_interval"]
+    return bool(
+        first.sum() - 1 > first_margin.sum()
+        or (first < -2 * first_margin).any()
+        or (first - total > first_margin + total_margin).any()
+    )
+
+
+def _tail(outputs: Array) -> float:
+    """Share of the variance that comes from the runs farthest from the mean."""
+    squares = np.sort((outputs - outputs.mean()) ** 2)
+    return float(squares[-max(1, round(TAIL * squares.size)) :].sum() / squares.sum())
