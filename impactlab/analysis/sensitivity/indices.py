@@ -14,6 +14,7 @@ from impactlab.analysis.sensitivity.index import BY_SAMPLES, PAIR, Index, stored
 from impactlab.analysis.sensitivity.methods import METHODS, Method
 from impactlab.analysis.sensitivity.sample import Array, Sample
 from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
+from impactlab.analysis.surrogate import fit
 from impactlab.analysis.verdicts import flagged
 
 Answer = tuple[SensitivityVerdict, float, dict[str, Array]]
@@ -25,7 +26,7 @@ def applies(runs: xr.Dataset) -> bool:
     return runs.attrs.get("method") in METHODS
 
 
-def analysis(runs: xr.Dataset, fit: Fit | None = None) -> xr.Dataset:
+def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
     """Sensitivity indices of every response, by the method that the sample was drawn for.
 
     fit: makes the surrogate that supplies failed runs where the study asks for it
@@ -61,29 +62,20 @@ _IMPUTED = {"long_name": "share of runs whose value a surrogate supplied", "unit
 
 
 def _answer(
-    response: str, outputs: Array, sample: Sample, method: Method, fit: Fit | None
+    response: str, outputs: Array, sample: Sample, method: Method, fit: Fit
 ) -> Answer:
     """Of one response; outputs: (runs,), NaN where a run failed."""
     gaps, share = np.isnan(outputs), 0.0
     if gaps.any() and sample.policy == "impute":
         if not imputation.possible(outputs, sample):
             return SensitivityVerdict.TOO_FEW_RUNS, share, {}
-        outputs = imputation.completed(outputs, sample, _given(fit, sample), response)
+        outputs = imputation.completed(outputs, sample, fit, response)
         share = float(gaps.mean())
     judgement = verdict.of_outputs(outputs, method.varying(outputs, sample), share)
     if judgement in (SensitivityVerdict.CONSTANT, SensitivityVerdict.FAILED_RUNS):
         return judgement, share, {}
     found = method.estimate(outputs, sample, response)
     return max(judgement, verdict.of_indices(found)), share, found
-
-
-def _given(fit: Fit | None, sample: Sample) -> Fit:
-    if fit is None:
-        raise ValueError(
-            f"{sample.study} asks for failed_runs: impute, but no surrogate is at hand: set "
-            "failed_runs: fail"
-        )
-    return fit
 
 
 def _coordinates(
