@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from impactlab.figures import (
     contact_duration,
     contact_laws,
+    convergence_cost,
     displacement_history,
     first_contact,
     force_history,
@@ -24,6 +25,7 @@ from impactlab.figures import (
     shear,
     sobol_indices,
     sobol_second_order,
+    time_step_convergence,
 )
 
 
@@ -58,7 +60,9 @@ _FILES: tuple[FigureFile, ...] = (
     shear,
     parameter_effects,
     nodes_convergence,
+    time_step_convergence,
     points_convergence,
+    convergence_cost,
     response_distributions,
     sobol_indices,
     sobol_second_order,

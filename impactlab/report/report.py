@@ -52,19 +52,13 @@ def _about(runs: xr.Dataset) -> dict[str, Any]:
 
 def _results(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Any]:
     """What came out, and how far to trust it."""
-    axes = ("nodes", "points")
-    judged = [convergence.nodes(runs, analysis), convergence.points(runs, analysis)]
     return {
         "outcome": outcome.outcome(runs),
         "cautions": cautions.cautions(runs, analysis),
         "notes": notes.notes(runs),
         "ranges": answers.ranges(runs),
         "values": answers.values(runs),
-        "convergence": [
-            (table, convergence.meanings(analysis, axis))
-            for axis, table in zip(axes, judged, strict=True)
-            if table
-        ],
+        "convergence": convergence.judged(runs, analysis),
         "indices": sensitivity.tables(runs, analysis),
         "confidence": verdicts.confidence(analysis),
         "sentences": sensitivity.sentences(runs, analysis),

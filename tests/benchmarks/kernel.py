@@ -22,8 +22,8 @@ from rich.console import Console
 from rich.table import Table
 
 import impactlab as il
+from impactlab.model.cost import node_steps
 from impactlab.simulate import case_table, solve
-from impactlab.study.batches import node_steps
 
 DURATION = 1e-3
 NODE_STEPS = 1e7

@@ -22,9 +22,9 @@ from rich.table import Table
 
 import impactlab as il
 from impactlab.kernels import SCHEMES
+from impactlab.model.cost import node_steps
 from impactlab.reference import modal
 from impactlab.simulate import case_table, solve
-from impactlab.study.batches import node_steps
 from impactlab.verification.cases import elastic
 
 DURATION = 1e-3

@@ -10,11 +10,12 @@ from impactlab.kernels import SCHEMES
 from impactlab.kernels.contact.history import make_pair
 from impactlab.kernels.leapfrog import discretise
 from impactlab.kernels.section import make_section
+from impactlab.model.cost import node_steps
 from impactlab.model.parameters import flatten
 from impactlab.simulate import case_table
 from impactlab.study import batches as batching
 from impactlab.study import execution
-from impactlab.study.batches import batches, node_steps
+from impactlab.study.batches import batches
 from impactlab.study.engine import Engine
 from impactlab.study.execution import execute
 from impactlab.study.labels import design_cases
