@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from impactlab.figures import (
     contact_duration,
     contact_laws,
+    convergence_cost,
     displacement_history,
     failure_map,
     failure_shares,
@@ -26,6 +27,7 @@ from impactlab.figures import (
     response_distributions,
     shear,
     sobol_second_order,
+    time_step_convergence,
 )
 from impactlab.figures.index_bars import IndexBars
 from impactlab.figures.index_convergence import IndexConvergence
@@ -71,7 +73,9 @@ _ANSWERS: dict[str, FigureFile] = _named(
     shear,
     parameter_effects,
     nodes_convergence,
+    time_step_convergence,
     points_convergence,
+    convergence_cost,
     response_distributions,
 )
 _INDICES: dict[str, FigureFile] = {

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 import xarray as xr
 
@@ -10,45 +13,110 @@ from impactlab.figures.reading.contents import known, responses
 from impactlab.report.table import Cell, Table
 
 
-def nodes(runs: xr.Dataset, analysis: xr.Dataset) -> Table | None:
-    """Verdict, observed order and grid convergence index in nodes; None without the analysis."""
-    if "nodes_summary" not in analysis:
-        return None
-    head = ["Response", "Worst verdict", "Verdicts over the grid", "Observed order", "Largest GCI"]
+@dataclass(frozen=True)
+class Judged:
+    """One axis: its table, what to know of it, and the verdicts and behaviours with meanings."""
+
+    table: Table
+    remarks: list[str]
+    meanings: list[tuple[str, str]]
+
+
+def judged(runs: xr.Dataset, analysis: xr.Dataset) -> list[Judged]:
+    """The axes that the analysis has, in the order space, time, depth."""
+    return [
+        Judged(
+            table(runs, analysis, axis, caption), remarks(analysis, axis), meanings(analysis, axis)
+        )
+        for axis, (caption, table) in _AXES.items()
+        if f"{axis}_summary" in analysis
+    ]
+
+
+def meanings(analysis: xr.Dataset, axis: str) -> list[tuple[str, str]]:
+    """Each behaviour and verdict that occurs, in words, with what it means."""
+    found: dict[str, str] = {}
+    for kind in ("behaviour", "summary", "verdict"):
+        if f"{axis}_{kind}" in analysis:
+            flags = verdicts.occurring(analysis[f"{axis}_{kind}"])
+            found |= {flag.words: flag.meaning for flag in flags if flag.meaning}
+    return sorted(found.items())
+
+
+def remarks(analysis: xr.Dataset, axis: str) -> list[str]:
+    """What is refined along with the axis, and what has no limit by design."""
+    summary = analysis[f"{axis}_summary"]
+    without = [line.partition(": ") for line in summary.attrs.get("without_limit", "").splitlines()]
+    reasons = [
+        f"The {words.response(name)} is not convergent by design: {reason}."
+        for name, _, reason in without
+        if _counts(analysis, f"{axis}_behaviour", name).get("not convergent by design")
+    ]
+    return [*filter(None, [str(summary.attrs.get("comment", ""))]), *reasons]
+
+
+def _refined(runs: xr.Dataset, analysis: xr.Dataset, axis: str, caption: str) -> Table:
+    """An axis that has an order: nodes, time step."""
+    head = [
+        "Response",
+        "Worst verdict",
+        "Verdicts over the grid",
+        "Behaviours",
+        "Observed order",
+        "Order of the fit",
+        "Largest GCI",
+        "GCI ratio over r^p",
+        "Uncertainty of the fit",
+        "Numerical uncertainty",
+    ]
     rows = [
         [
-            *_verdicts(analysis, "nodes", name),
-            Cell(_spread(analysis, "nodes_observed_order", name), "number"),
-            Cell(_percent(_largest(analysis, "nodes_gci", name)), "number"),
+            *_verdicts(analysis, axis, name),
+            Cell(_listed(_counts(analysis, f"{axis}_behaviour", name))),
+            Cell(_spread(analysis, f"{axis}_observed_order", name), "number"),
+            Cell(_spread(analysis, f"{axis}_fit_order", name), "number"),
+            Cell(_percent(_largest(analysis, f"{axis}_gci", name)), "number"),
+            Cell(_spread(analysis, f"{axis}_asymptotic_ratio", name), "number"),
+            Cell(_percent(_largest(analysis, f"{axis}_fit_uncertainty", name)), "number"),
+            Cell(_percent(_largest(analysis, f"{axis}_uncertainty", name)), "number"),
         ]
         for name in responses(runs)
         if known(analysis, name)
     ]
-    return Table("Convergence in nodes along the span", head, rows)
+    return Table(caption, head, rows)
 
 
-def points(runs: xr.Dataset, analysis: xr.Dataset) -> Table | None:
-    """Verdict and points needed for 1 % in integration points; None without the analysis."""
-    if "points_summary" not in analysis:
-        return None
-    head = ["Response", "Worst verdict", "Verdicts over the grid", "Points needed for 1 %"]
+def _points(runs: xr.Dataset, analysis: xr.Dataset, axis: str, caption: str) -> Table:
+    """Integration points: how many are needed, by each rule."""
+    rules = _rules(analysis)
+    head = ["Response", "Worst verdict", "Verdicts over the grid"]
+    head += [f"Points needed for 1 %{f', {rule}' if rule else ''}" for rule in rules]
     rows = [
-        [*_verdicts(analysis, "points", name), _needed(analysis, name)]
+        [
+            *_verdicts(analysis, axis, name),
+            *(_needed(analysis, name, where) for where in rules.values()),
+            Cell(_percent(_largest(analysis, "points_uncertainty", name)), "number"),
+        ]
         for name in responses(runs)
         if known(analysis, name)
     ]
-    return Table("Convergence in integration points over the depth", head, rows)
+    return Table(caption, [*head, "Numerical uncertainty with the most points"], rows)
 
 
-def meanings(analysis: xr.Dataset, axis: str) -> list[tuple[str, str]]:
-    """Each verdict that occurs, in words, with what it means; axis: "nodes" or "points"."""
-    found: dict[str, str] = {}
-    if f"{axis}_summary" in analysis:
-        for name in analysis["response"].values:
-            verdict = verdicts.verdict(analysis, f"{axis}_summary", str(name))
-            if verdict and verdict.meaning:
-                found[verdict.words] = verdict.meaning
-    return sorted(found.items())
+def _rules(analysis: xr.Dataset) -> dict[str, dict[str, int]]:
+    """Each integration rule in words, with where it is; all at once where none is varied."""
+    if "points_needed" not in analysis or "rule" not in analysis["points_needed"].dims:
+        return {"": {}}
+    names = words.values(analysis["rule"], range(analysis.sizes["rule"]))
+    return {name: {"rule": at} for at, name in enumerate(names)}
+
+
+_AXES: dict[str, tuple[str, Callable[[xr.Dataset, xr.Dataset, str, str], Table]]] = {
+    "nodes": ("Convergence in nodes along the span", _refined),
+    "time_step": ("Convergence in the time step at fixed nodes", _refined),
+    "points": ("Convergence in integration points over the depth", _points),
+}
+"""Caption and table of each axis."""
 
 
 def _verdicts(analysis: xr.Dataset, axis: str, name: str) -> list[Cell]:
@@ -69,14 +137,27 @@ def _tally(analysis: xr.Dataset, axis: str, name: str) -> str:
     tally = analysis[f"{axis}_tally"].sel(response=name)
     outcomes = tally[f"{axis}_outcome"].values
     pairs = zip(outcomes, tally.values, strict=True)
-    return ", ".join(f"{str(flag).replace('_', ' ')} {int(n)}" for flag, n in pairs if n)
+    return _listed({str(flag).replace("_", " "): int(n) for flag, n in pairs if n})
 
 
-def _needed(analysis: xr.Dataset, name: str) -> Cell:
+def _counts(analysis: xr.Dataset, variable: str, name: str) -> dict[str, int]:
+    """How often each flag occurs over the rest of the grid, in words."""
+    if variable not in analysis:
+        return {}
+    flags = analysis[variable].sel(response=name)
+    found = verdicts.occurring(flags)
+    return {flag.words: int((flags == flag.value).sum()) for flag in found}
+
+
+def _listed(counts: dict[str, int]) -> str:
+    return ", ".join(f"{flag} {number}" for flag, number in counts.items()) or "–"
+
+
+def _needed(analysis: xr.Dataset, name: str, where: dict[str, int]) -> Cell:
     """The range over the grid; says where not even the second most points stay within 1 %."""
     if "points_needed" not in analysis:
         return Cell("–", "number")
-    needed = analysis["points_needed"].sel(response=name).values
+    needed = analysis["points_needed"].sel(response=name).isel(where).values
     if np.isnan(needed).all():
         return Cell("none below the most", "warning")
     text = f"{np.nanmin(needed):.0f}"

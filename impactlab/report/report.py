@@ -67,18 +67,8 @@ def _about(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Any]:
         "failed": outcome.outcome(runs).failed,
         "cautions": cautions.cautions(runs, analysis),
         "notes": notes.notes(runs),
-        "convergence": _convergence(runs, analysis),
+        "convergence": convergence.judged(runs, analysis),
         "provenance": provenance.provenance(runs),
         "commands": provenance.commands(runs),
         "study_text": str(runs.attrs.get("study_text", "")),
     }
-
-
-def _convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Any]:
-    axes = ("nodes", "points")
-    judged = [convergence.nodes(runs, analysis), convergence.points(runs, analysis)]
-    return [
-        (table, convergence.meanings(analysis, axis))
-        for axis, table in zip(axes, judged, strict=True)
-        if table
-    ]

@@ -1,23 +1,31 @@
 """Convergence with the integration points over the depth: error against the most points.
 
 The error of a rule need not follow a power of the points once fibres yield, so that no order is
-fitted.
+fitted. A rule is judged by its own most points; other rules are other points of the grid.
 """
 
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from impactlab.analysis.responses import usable
 from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict, verdict_variables
 
+SAFETY = 3.0
+"""Uncertainty over difference to the most points: holds where these halve the error at least."""
 _COMMENT = "The most points are the reference: their own error is not known."
 _ATTRS = {
     "points_error": {
         "long_name": "relative difference to the most integration points",
         "units": "1",
         "comment": _COMMENT,
+    },
+    "points_uncertainty": {
+        "long_name": "numerical uncertainty with the most integration points",
+        "units": "1",
+        "comment": f"{SAFETY:g} times the difference to the next fewer, relative to the value.",
     },
     "points_needed": {
         "long_name": "fewest integration points from which on the error stays in tolerance",
@@ -47,9 +55,9 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 
     Returns points_error on (response, *grid dims): |value - reference|/|reference|, NaN where
     either is missing, infinite where only the reference is zero. On (response, *other dims):
-    points_needed, the fewest points from which on the error stays within 1 % (NaN where none
-    below the most do), and points_verdict; beside them points_summary (response) and
-    points_tally (response, points_outcome).
+    points_uncertainty, see `numerical_uncertainty`; points_needed, the fewest points from which
+    on the error stays within 1 % (NaN where none below the most do), and points_verdict; beside
+    them points_summary (response) and points_tally (response, points_outcome).
     """
     values = usable(runs).sortby("points")
     error = relative_error(values)
@@ -60,12 +68,27 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         "points_error": error.sel(points=runs["points"]).transpose(
             "response", *runs["status"].dims
         ),
+        "points_uncertainty": SAFETY * error.isel(points=-2, drop=True),
         "points_needed": points_needed(error),
     }
     dataset = xr.Dataset({key: found[key].assign_attrs(_ATTRS[key]) for key in found} | verdicts)
     for name in ("points_verdict", "points_summary"):
         dataset[name].attrs |= {"tolerance": TOLERANCE, "comment": _COMMENT}
     return dataset
+
+
+def numerical_uncertainty(values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """How far the value of each number of points may lie from the limit of many points.
+
+    values: in any unit, NaN where a run is missing, (numbers,), most points first. SAFETY times the
+    larger of its own difference to the most points and that of the next fewer; infinite for a
+    missing run, and for all where one of these two is missing. In the unit of the values.
+    """
+    found = np.asarray(values, float)
+    if found.size < 2 or not np.isfinite(found[:2]).all():
+        return np.full(found.shape, np.inf)
+    amounts = SAFETY * np.maximum(abs(found - found[0]), abs(found[1] - found[0]))
+    return np.where(np.isfinite(found), amounts, np.inf)
 
 
 def relative_error(values: xr.DataArray) -> xr.DataArray:

@@ -61,9 +61,7 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
 _IMPUTED = {"long_name": "share of runs whose value a surrogate supplied", "units": "1"}
 
 
-def _answer(
-    response: str, outputs: Array, sample: Sample, method: Method, fit: Fit
-) -> Answer:
+def _answer(response: str, outputs: Array, sample: Sample, method: Method, fit: Fit) -> Answer:
     """Of one response; outputs: (runs,), NaN where a run failed."""
     gaps, share = np.isnan(outputs), 0.0
     if gaps.any() and sample.policy == "impute":

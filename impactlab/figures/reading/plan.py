@@ -115,6 +115,8 @@ def _rank(dim: str, prefer: Sequence[str]) -> int:
 
 def _held(coordinate: xr.DataArray) -> int:
     """The finest numerics; the middle of other numbers; the first of names."""
+    if coordinate.name == "courant":
+        return int(np.argmin(coordinate.values))
     if coordinate.name in _FINEST:
         return int(np.argmax(coordinate.values))
     return coordinate.size // 2 if coordinate.dtype.kind in "if" else 0

@@ -12,11 +12,15 @@ from impactlab.figures.reading.contents import known
 
 @dataclass(frozen=True)
 class Verdict:
-    """One flag. words: its name in words; sound: it needs no warning; meaning: a sentence or ""."""
+    """One flag. words: its name in words; sound: it needs no warning; meaning: a sentence or "".
+
+    value: the number that stands for it.
+    """
 
     flag: str
     sound: bool
     meaning: str = ""
+    value: int = -1
 
     @property
     def words(self) -> str:
@@ -32,11 +36,19 @@ def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | Non
     """
     if variable not in analysis or not known(analysis, response):
         return None
-    array = analysis[variable]
+    return _read(analysis[variable], int(analysis[variable].sel(response=response)))
+
+
+def occurring(flags: xr.DataArray) -> list[Verdict]:
+    """Every flag that occurs in a variable of CF flags, by rising value."""
+    return [_read(flags, int(value)) for value in np.unique(flags.values)]
+
+
+def _read(array: xr.DataArray, value: int) -> Verdict:
     names = dict(zip(_integers(array), str(array.attrs["flag_meanings"]).split(), strict=True))
-    flag = names.get(int(array.sel(response=response)), "unknown")
+    flag = names.get(value, "unknown")
     sound = str(array.attrs.get("sound_flags", "converged usable")).split()
-    return Verdict(flag, flag in sound, _descriptions(array).get(flag, ""))
+    return Verdict(flag, flag in sound, _descriptions(array).get(flag, ""), value)
 
 
 def confidence(analysis: xr.Dataset) -> str:

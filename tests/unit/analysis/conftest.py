@@ -19,6 +19,7 @@ def _finished(
     variables: Mapping[str, Any], status: xr.DataArray, attrs: Mapping[str, Any]
 ) -> xr.Dataset:
     fixed = {"gravity": 9.81, "beam_span": 0.78, "duration": 1e-3, "contact": "stronge"}
+    fixed |= {"scheme": "leapfrog", "beam_model": "euler_bernoulli"}
     common = {"study": "synthetic", "responses": list(variables), "history_samples": 0}
     dataset = xr.Dataset({**variables, "status": status.astype(np.int32)})
     scalars = {name: value for name, value in fixed.items() if name not in dataset.coords}

@@ -1,0 +1,92 @@
+"""What accuracy costs: error in space and time against the work of a run."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from impactlab.figures import curves, refinement, responses_grid, scales, style
+from impactlab.figures.reading import missing
+from impactlab.kernels import BEAM_MODELS, SCHEMES
+from impactlab.model.cost import node_steps
+
+TITLE = "Cost against error"
+_AXIS = refinement.Refined("nodes", "nodes", ("scheme", "courant", "velocity"), most=6)
+_INPUTS = (
+    "beam_span",
+    "beam_depth",
+    "beam_density",
+    "beam_youngs_modulus",
+    "beam_model",
+    "scheme",
+    "nodes",
+    "courant",
+    "duration",
+)
+_TOLERANCE = 0.01
+
+
+def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Whether the nodes are refined and the runs say what their cost follows from."""
+    return _AXIS.applies(runs) and all(name in runs.coords for name in _INPUTS)
+
+
+def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    """What is shown, held and missing."""
+    return (
+        "Difference to the limit at zero spacing (Richardson's value, that of the least-squares "
+        "fit, or else the finest value) against the estimated work of a run: half its nodes times "
+        "its time steps. What a step costs grows with the integration points, and is larger with "
+        f"the semi-implicit scheme. Grey: {100 * _TOLERANCE:g} %. "
+        f"{_AXIS.plan(runs).note(runs)} {missing.note(runs, _AXIS.names(runs))}".strip()
+    )
+
+
+@style.paper
+def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """A panel a response, a curve for each of a few other settings."""
+    selected, work = _AXIS.plan(runs), cost(runs)
+    figure, axes = responses_grid.panels(_AXIS.names(runs), height=40)
+    for name, ax in axes.items():
+        difference = refinement.relative_difference(runs, analysis, _AXIS, name)
+        for curve, errors in refinement.drawn(difference, selected):
+            where = {d: at for d, at in (selected.held | curve.where).items() if d in work.dims}
+            ax.plot(
+                work.isel(where).values,
+                errors,
+                label=curve.label or "_only",
+                **curves.marked(curve),
+            )
+        _finish(ax)
+    figure.supxlabel("Work (node-steps)")
+    figure.supylabel("Relative difference (–)")
+    style.legend(figure, selected.title(), selected.labels())
+    return figure
+
+
+def cost(runs: xr.Dataset) -> xr.DataArray:
+    """Node-steps of every run, on the dimensions that they depend on."""
+    inputs = xr.broadcast(*(_coded(runs[name]) for name in _INPUTS))
+    steps = node_steps({name: field.values for name, field in zip(_INPUTS, inputs, strict=True)})
+    return xr.DataArray(steps, dims=inputs[0].dims)
+
+
+def _coded(parameter: xr.DataArray) -> xr.DataArray:
+    """Words as the kernels' switches."""
+    words = {"beam_model": BEAM_MODELS, "scheme": SCHEMES}.get(str(parameter.name))
+    if words is None:
+        return parameter.reset_coords(drop=True)
+    codes = np.array([words.index(str(word)) for word in np.ravel(parameter.values)])
+    return xr.DataArray(codes.reshape(parameter.shape), dims=parameter.dims)
+
+
+def _finish(ax: Axes) -> None:
+    if not ax.lines:
+        responses_grid.empty(ax, "no error to show")
+        return
+    for which, other in (("x", "get_xdata"), ("y", "get_ydata")):
+        shown = [np.asarray(getattr(line, other)(), dtype=float) for line in ax.lines]
+        scales.logarithmic(ax, which, np.concatenate(shown))  # type: ignore[arg-type]
+    ax.axhline(_TOLERANCE, label="_guide", linestyle="--", **style.GUIDE)
