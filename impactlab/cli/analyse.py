@@ -1,0 +1,39 @@
+"""From solved runs to their analysis."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from impactlab.cli.options import RunsFile
+
+
+def analyse(
+    runs: RunsFile,
+    resolution: Annotated[
+        Path | None, typer.Option(help="What `recommend` found: numerical uncertainty.")
+    ] = None,
+    output: Annotated[Path | None, typer.Option(help="Default: beside the runs.")] = None,
+) -> None:
+    """Convergence and sensitivity from solved runs.
+
+    Of a sample also, beside the output: every index with its interval (indices.csv, indices.nc),
+    and surrogate.nc for `impactlab predict`.
+    """
+    from impactlab.analysis.analyse import analyse as analysed
+    from impactlab.analysis.sensitivity import table
+    from impactlab.analysis.surrogate import stored
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
+
+    solved, path = read_netcdf(runs), output or runs.with_name("analysis.nc")
+    found = analysed(solved, read_netcdf(resolution) if resolution else None)
+    if indices := table.indices(found):
+        table.write_csv(found, path.with_name("indices.csv"))
+        write_netcdf(indices, path.with_name("indices.nc"))
+    write_netcdf(found, path)
+    if surrogates := stored(solved, found):
+        write_netcdf(surrogates, path.with_name("surrogate.nc"))
+    else:
+        path.with_name("surrogate.nc").unlink(missing_ok=True)

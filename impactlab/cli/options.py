@@ -1,0 +1,58 @@
+"""Arguments that commands share, and how their texts are read."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+StudyFile = Annotated[
+    Path, typer.Argument(metavar="STUDY", help="A study file, studies/NAME.yaml.")
+]
+RunsFile = Annotated[
+    Path, typer.Argument(metavar="RUNS", help="Solved runs, results/NAME/runs.nc.")
+]
+StoredFiles = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="STORED...",
+        help="Of a study: runs.nc and analysis.nc. Of a verification: findings.nc.",
+    ),
+]
+RESULTS = Path("results")
+
+
+def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
+    """The names of a list "a,b"; none of "". Raises ValueError naming the option."""
+    from impactlab.study.errors import unknown
+
+    found = tuple(filter(None, text.replace(",", " ").split()))
+    for name in found:
+        if name not in names:
+            raise ValueError(f"{option} = {text!r}: {unknown('response', name, names)}")
+    return found
+
+
+def given(option: str, text: str, units: str) -> float:
+    """An option's quantity in SI; raises ValueError naming the option."""
+    from impactlab.study.quantities import si
+
+    try:
+        return si(text, units)
+    except ValueError as error:
+        raise ValueError(f"{option} = {text!r}: {error}") from None
+
+
+def assigned(arguments: list[str]) -> dict[str, str]:
+    """Arguments NAME=VALUE by name; raises ValueError for any other, and for a name given twice."""
+    found: dict[str, str] = {}
+    for argument in arguments:
+        name, sign, text = argument.partition("=")
+        if not sign or not text:
+            raise ValueError(f"{argument!r}: expected NAME=VALUE, such as velocity=2")
+        if name in found:
+            raise ValueError(f"{name}: is given twice, as {found[name]!r} and as {text!r}")
+        found[name] = text
+    return found
