@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import attributes
+from impactlab.dataset import VARIABLES, attributes
 from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import names, varied
 from impactlab.figures.reading.units import display
@@ -45,7 +45,8 @@ def fixed_parameters(runs: xr.Dataset) -> Table:
 
 
 def _described(runs: xr.Dataset, name: str) -> xr.DataArray:
-    return runs[name].assign_attrs(attributes(name) | runs[name].attrs)
+    told = attributes(name) if name in PARAMETERS or name in VARIABLES else {}
+    return runs[name].assign_attrs(told | runs[name].attrs)
 
 
 def _values(coordinate: xr.DataArray) -> list[Cell]:

@@ -53,8 +53,13 @@ def physical(runs: xr.Dataset) -> list[str]:
     return [
         name
         for name in varied(runs)
-        if PARAMETERS[name].path[0] == "impact" and runs[name].dtype.kind in "if"
+        if _physical(name) and runs[name].dtype.kind in "if"
     ]
+
+
+def _physical(name: str) -> bool:
+    """Whether it is no parameter of the discretisation; those of functions are none."""
+    return name not in PARAMETERS or PARAMETERS[name].path[0] == "impact"
 
 
 def count(runs: xr.Dataset) -> int:
