@@ -74,5 +74,5 @@ def test_the_same_runs_give_the_same_bits(random: np.random.Generator) -> None:
 
 def test_too_few_runs_are_refused(random: np.random.Generator) -> None:
     unit = random.random((15, 3))
-    with pytest.raises(ValueError, match="15 runs are too few .* 3 parameters: it needs 16"):
+    with pytest.raises(ValueError, match=r"15 runs are too few .* 3 parameters: it needs 16"):
         fit(unit, unit[:, 0], 0)
