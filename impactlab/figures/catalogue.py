@@ -24,6 +24,7 @@ from impactlab.figures import (
     shear,
     sobol_indices,
     sobol_second_order,
+    surrogate_validation,
 )
 
 
@@ -62,6 +63,7 @@ _FILES: tuple[FigureFile, ...] = (
     response_distributions,
     sobol_indices,
     sobol_second_order,
+    surrogate_validation,
 )
 CATALOGUE: dict[str, FigureFile] = {
     str(vars(file)["__name__"]).rpartition(".")[2]: file for file in _FILES
