@@ -113,9 +113,10 @@ rule runs:
         "impactlab --log {log} run {input.design} --output {output} --workers {threads}"
 
 
+# Of a sample it writes surrogate.nc, too, which no other step reads.
 rule analysis:
     input:
-        code=code("dataset.py", "analysis/**/*.py"),
+        code=code(*MODEL, "analysis/**/*.py"),
         runs="results/{study}/runs.nc",
     output:
         "results/{study}/analysis.nc",
