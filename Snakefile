@@ -158,10 +158,10 @@ rule runs:
         "impactlab --log {log} run {input.design} --output {output} --workers {threads}"
 
 
-# The indices.csv and indices.nc of a sample come with it: no outputs, since a grid has none.
+# Of a sample indices.csv, indices.nc and surrogate.nc come with it: no outputs, for a grid has none.
 rule analysis:
     input:
-        code=code("dataset.py", "analysis/**/*.py"),
+        code=code(*MODEL, "analysis/**/*.py"),
         runs="results/{study}/runs.nc",
         resolution=lambda wildcards: resolution(wildcards, is_sample),
     output:

@@ -284,7 +284,9 @@ def remarked(bits: int) -> list[str]:
     return [words for bit, words in REMARKS.values() if bits & bit]
 
 
-_PACKAGES = ("impactlab", "numpy", "numba", "xarray", "netCDF4", "dask", "SALib", "scipy")
+_PACKAGES = (
+    *("impactlab", "numpy", "numba", "xarray", "netCDF4", "dask", "SALib", "scikit-learn", "scipy"),
+)
 
 
 def provenance() -> dict[str, str]:

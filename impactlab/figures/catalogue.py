@@ -27,6 +27,7 @@ from impactlab.figures import (
     response_distributions,
     shear,
     sobol_second_order,
+    surrogate_validation,
     time_step_convergence,
 )
 from impactlab.figures.index_bars import IndexBars
@@ -90,7 +91,7 @@ _INDICES: dict[str, FigureFile] = {
     "pawn_indices": IndexBars(measures.PAWN),
     "regression_indices": IndexBars(measures.REGRESSION),
     "surrogate_indices": IndexBars(measures.SURROGATE),
-    **_named(failure_shares, failure_map),
+    **_named(surrogate_validation, failure_shares, failure_map),
 }
 CATALOGUE = _ANSWERS | _INDICES
 """Every figure by name, in the order of the report, but for those of one response each."""

@@ -226,7 +226,7 @@ def sobol_study() -> Study:
         varied[name] = ("run", random.uniform(low, high, 256), attrs)
     settings = {"base_samples": 32, "second_order": 1, "seed": 7, "histories": 0, "profiles": 0}
     runs = _with_answers(_design(varied, study="sobol", method="sobol", **settings))
-    return runs, _indices(runs, list(ranges))
+    return runs, _indices(runs, list(ranges)).assign(_surrogates(runs))
 
 
 def _indices(runs: xr.Dataset, parameters: list[str]) -> xr.Dataset:
@@ -252,6 +252,23 @@ def _indices(runs: xr.Dataset, parameters: list[str]) -> xr.Dataset:
     }
     coords = {"response": list(RESPONSES), "parameter": parameters, "other_parameter": parameters}
     return xr.Dataset(variables, coords, runs.attrs)
+
+
+def _surrogates(runs: xr.Dataset) -> dict[str, Any]:
+    """Tests on every fifth run, 1 % off; none of the constant response."""
+    constant = xr.DataArray([name == "number_of_contacts" for name in RESPONSES], dims="response")
+    tested = runs[list(RESPONSES)].isel(run=slice(0, None, 5)).to_array("response")
+    off = 1.0 + 0.01 * (-1.0) ** tested["run"]
+    verdict = constant.astype(int)
+    return {
+        "surrogate_held_out": (
+            ("response", "held_out"),
+            (tested * off).where(~constant).transpose("response", "run").values,
+        ),
+        "held_out": tested["run"].values,
+        "surrogate_q2": ("response", np.where(constant, np.nan, 0.9876)),
+        "surrogate_verdict": _flags(verdict, "usable", "constant", "poor"),
+    }
 
 
 @pytest.fixture

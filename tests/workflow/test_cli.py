@@ -94,6 +94,39 @@ def test_a_sample_grows_and_solves_nothing_twice(folder):
     assert attrs["until_reached"] == 0
 
 
+SAMPLE = """
+title: Sample
+impact: {base: paper}
+discretisation: {nodes: 21, points: 3}
+duration: 0.5 ms
+sampling:
+  method: sobol
+  base_samples: 16
+  parameters:
+    velocity: {distribution: uniform, low: 0.2, high: 0.4}
+    beam_depth: {distribution: uniform, low: 27 mm, high: 28 mm}
+responses: [peak_force]
+"""
+
+
+def test_a_sample_predicts_what_was_not_solved(folder):
+    (folder / "studies" / "sample.yaml").write_text(SAMPLE)
+    impactlab("run", "studies/sample.yaml", cwd=folder)
+    impactlab("analyse", "results/sample/runs.nc", cwd=folder)
+    file = folder / "results" / "sample" / "surrogate.nc"
+    said = impactlab("predict", file, "velocity=30 cm/s", "beam_depth=27.8 mm", cwd=folder).stdout
+    value, error = re.search(r"peak_force\D+([\d.]+)\s*│\s*N\s*│\s*([\d.]+)", said).groups()
+    arguments = ["--velocity", 0.3, "--nodes", 21, "--points", 3, "--duration", "0.5 ms"]
+    solved = impactlab("simulate", *arguments, cwd=folder).stdout
+    expected = float(re.search(r"peak_force\D+([\d.]+)", solved)[1])
+    assert float(value) == pytest.approx(expected, abs=5 * float(error))
+    assert float(error) < 0.01 * expected
+    runs = file.with_name("runs.nc")
+    xr.load_dataset(runs).assign_attrs(analyses="sensitivity").to_netcdf(runs)
+    impactlab("analyse", runs, cwd=folder)
+    assert not file.exists()  # it would be that of another analysis
+
+
 def test_studies_are_listed(folder):
     listed = impactlab("studies", cwd=folder).stdout
     assert "small" in listed
@@ -183,6 +216,7 @@ def test_help_is_not_cut_short(tmp_path):
         (["run", "studies/broken.yaml"], ["broken.yaml", "velocty", "velocity"]),
         (["analyse", "studies/small.yaml"], ["studies/small.yaml", "netCDF"]),
         (["report", "none.nc", "none.nc"], ["none.nc"]),
+        (["predict", "none.nc", "velocity=1"], ["none.nc"]),
         (["run", "studies/small.yaml", "--scheduler", "tcp://127.0.0.1:9"], ["127.0.0.1:9"]),
     ],
 )

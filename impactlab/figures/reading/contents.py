@@ -50,11 +50,7 @@ def is_sample(runs: xr.Dataset) -> bool:
 
 def physical(runs: xr.Dataset) -> list[str]:
     """The varied parameters of the impact itself that are numbers (not those of the numerics)."""
-    return [
-        name
-        for name in varied(runs)
-        if _physical(name) and runs[name].dtype.kind in "if"
-    ]
+    return [name for name in varied(runs) if _physical(name) and runs[name].dtype.kind in "if"]
 
 
 def _physical(name: str) -> bool:

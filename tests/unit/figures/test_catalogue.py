@@ -42,7 +42,12 @@ EXPECTED = {
     "material_study": {"parameter_effects"},
     "shear_study": {"shear", "parameter_effects"},
     "discretisation_study": {"nodes_convergence", "points_convergence"},
-    "sobol_study": {"response_distributions", "sobol_indices", "sobol_second_order"},
+    "sobol_study": {
+        "response_distributions",
+        "sobol_indices",
+        "sobol_second_order",
+        "surrogate_validation",
+    },
 }
 CASES = [(study, name) for study, names in EXPECTED.items() for name in sorted(names)]
 

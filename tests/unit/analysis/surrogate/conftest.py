@@ -27,7 +27,7 @@ def ishigami(unit: Any) -> Any:
     return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def drawn_runs() -> Callable[..., xr.Dataset]:
     """Build Saltelli's runs of three parameters; answers: functions of the unit cube."""
 

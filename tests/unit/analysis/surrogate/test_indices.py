@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from impactlab.analysis.surrogate.chaos import Chaos
+from impactlab.analysis.surrogate.chaos import Chaos, basis
 from impactlab.analysis.surrogate.fitting import fit
 from impactlab.analysis.surrogate.indices import Fitted, Indices, indices
 
@@ -56,11 +56,8 @@ def test_intervals_tell_the_scatter_of_repeated_fits(copies: int) -> None:
         noise = 0.3 * random.standard_normal(300)
         values = np.repeat(unit[:, 0] + 0.5 * unit[:, 1] + noise, copies)
         unit, block = np.repeat(unit, copies, axis=0), np.repeat(np.arange(300), copies)
-        chaos = Chaos(np.array([[0, 0], [1, 0], [0, 1]]), np.zeros(3))
-        from impactlab.analysis.surrogate.chaos import basis
-
-        columns = basis(unit, chaos.degrees)
-        chaos = Chaos(chaos.degrees, np.linalg.lstsq(columns.T, values)[0])
+        degrees = np.array([[0, 0], [1, 0], [0, 1]])
+        chaos = Chaos(degrees, np.linalg.lstsq(basis(unit, degrees).T, values)[0])
         one = indices(chaos, ["x", "y"], Fitted(unit, values, block), 0.0, 0.95)
         found.append([one.first_order[0], one.first_order_interval[0] / Z95])
     scatter, stated = np.std([row[0] for row in found]), np.mean([row[1] for row in found])
