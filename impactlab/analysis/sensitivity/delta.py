@@ -3,12 +3,13 @@
 SALib's estimators with the bias reduction of Plischke et al. (2013), eq. 30, about the estimate on
 the data themselves. SALib 1.6 takes a resample for these, which brings back the bias that the
 reduction is to take away, and its "balanced" delta weighs the inputs anew, as if all of them were
-uniform.
+uniform. The resamples are by the same formulae in a form that is many times faster.
 """
 
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 from SALib.analyze.delta import calc_delta, sobol_first
 
 from impactlab.analysis.sensitivity import dummy
@@ -21,7 +22,11 @@ _2013 = "Plischke et al. (2013), Eur. J. Oper. Res. 226, 536"
 _DUMMY = "of a random column that the model never saw"
 _INDICES = {
     "delta": Index("delta, moment-independent importance", f"{_2013}, eqs. 26 and 30"),
-    "delta_first_order": Index("first-order Sobol index from given data", f"{_2013}, section 3"),
+    "delta_first_order": Index(
+        "first-order Sobol index from given data",
+        f"{_2013}, section 3",
+        comment="of the variance between classes: a tenth too small with 5 classes (500 runs)",
+    ),
     "dummy_delta": Index("delta of a dummy", f"{_2013}, eqs. 26 and 30", (), comment=_DUMMY),
     "dummy_delta_first_order": Index(
         "first-order Sobol index of a dummy from given data",
@@ -53,15 +58,20 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
     outputs: (runs,), finite and varying. NaN for a parameter of which a class holds one value of
     the response alone: SALib takes such a class for one without influence.
     """
-    runs, rng = len(outputs), sample.rng(response)
+    runs = len(outputs)
     inputs = np.column_stack([sample.inputs, dummy.column(runs, sample.rng("dummy"))])
     edges = np.linspace(0, runs, classes(runs) + 1)
-    found = [_one(column, outputs, edges, sample, rng) for column in inputs.T]
+    places = np.linspace(outputs.min(), outputs.max(), GRID)
+    values = np.array([_salib(column, outputs, edges, places) for column in inputs.T])
+    drawn = sample.rng(response).integers(runs, size=(sample.resamples, runs))
+    replicates = np.array([resampled(inputs[at], outputs[at], edges, places) for at in drawn])
+    values[:, 0] = 2 * values[:, 0] - replicates[..., 0].mean(axis=0)
+    spread = sample.half_width(replicates)
     result: dict[str, Array] = {}
-    for name, values in zip(_INDICES, np.moveaxis(np.array(found), 0, -1), strict=False):
-        for ending, row in zip(("", "_interval"), values, strict=True):
-            result[f"{name}{ending}"] = row[:-1]
-            result[f"dummy_{name}{ending}"] = row[-1]
+    for at, name in enumerate(("delta", "delta_first_order")):
+        result |= {name: values[:-1, at], f"dummy_{name}": values[-1, at]}
+        margins = spread[:, at]
+        result |= {f"{name}_interval": margins[:-1], f"dummy_{name}_interval": margins[-1]}
     return result
 
 
@@ -71,27 +81,50 @@ def classes(runs: int) -> int:
     return round(min(int(np.ceil(runs**exponent)), 48))
 
 
-def _one(
-    column: Array, outputs: Array, edges: Array, sample: Sample, rng: np.random.Generator
-) -> Array:
-    """(delta, first order) by (index, half-width) of one parameter."""
-    runs = len(outputs)
-    drawn = rng.integers(runs, size=(sample.resamples, runs))
-    places = np.linspace(outputs.min(), outputs.max(), GRID)
-    replicates = np.array([_raw(column[rows], outputs[rows], edges, places) for rows in drawn])
-    value = _raw(column, outputs, edges, places)
-    value[0] = 2 * value[0] - replicates[:, 0].mean()
-    return np.stack([value, sample.half_width(replicates)], axis=1)
-
-
-def _raw(column: Array, outputs: Array, edges: Array, places: Array) -> Array:
+def _salib(column: Array, outputs: Array, edges: Array, places: Array) -> Array:
     """Delta with its bias, NaN where a class has no density; and the first order.
 
     edges: of the classes, in ranks; places: (GRID,), where densities are compared.
     """
-    order = np.argsort(column, kind="stable")
-    groups = np.split(outputs[order], edges[1:-1].astype(int))
     first = float(sobol_first(outputs, column, edges))
-    if min(np.ptp(group) for group in groups) == 0:
+    ordered = outputs[np.argsort(column, kind="stable")]
+    if min(np.ptp(part) for part in np.split(ordered, edges[1:-1].astype(int))) == 0:
         return np.array([np.nan, first])
     return np.array([float(calc_delta(outputs, places, column, edges)), first])
+
+
+def resampled(inputs: Array, outputs: Array, edges: Array, places: Array) -> Array:
+    """The same of all parameters, (parameter, 2); NaN where a resample does not vary.
+
+    inputs: (runs, parameters). Sums over the classes are sums over stretches of sorted runs.
+    """
+    starts = edges[:-1].astype(int)
+    whole = _density(outputs, np.zeros(1, int), places)
+    variance = outputs.var() or np.nan
+    found = []
+    for column in inputs.T:
+        ordered = outputs[np.argsort(column, kind="stable")]
+        sizes = np.diff(starts, append=len(ordered))
+        shares = sizes / len(ordered)
+        apart = np.trapezoid(np.abs(_density(ordered, starts, places) - whole), places, axis=0)
+        means = np.add.reduceat(ordered, starts) / sizes
+        first = (shares * (means - outputs.mean()) ** 2).sum() / variance
+        found.append([(shares * apart).sum() / 2, first])
+    return np.array(found)
+
+
+def _density(outputs: Array, starts: npt.NDArray[np.intp], places: Array) -> Array:
+    """Of each class of outputs (runs,), which begin at `starts`, at the places: (places, classes).
+
+    Gaussian kernels of Silverman's width, as scipy.stats.gaussian_kde has them; NaN for a class
+    that does not vary.
+    """
+    sizes = np.diff(starts, append=len(outputs))
+    means = np.repeat(np.add.reduceat(outputs, starts) / sizes, sizes)
+    squares = np.add.reduceat((outputs - means) ** 2, starts) / (sizes - 1)
+    width = np.sqrt(squares) * (0.75 * sizes) ** -0.2
+    each = np.repeat(np.where(width > 0, width, np.nan), sizes)
+    kernels = np.exp(-0.5 * ((places[:, None] - outputs) / each) ** 2)
+    return np.asarray(
+        np.add.reduceat(kernels, starts, axis=1) / (np.sqrt(2 * np.pi) * width * sizes)
+    )

@@ -83,7 +83,12 @@ def _curves(outputs: Array, sample: Sample) -> Array:
 
 
 def _orders(curve: Array, harmonics: int) -> tuple[float, float]:
-    """First and total order from one curve, whose parameter has SALib's frequency."""
+    """First and total order from one curve, whose parameter has SALib's frequency.
+
+    NaN where it does not vary, as half of a curve may.
+    """
+    if np.ptp(curve) == 0:
+        return math.nan, math.nan
     frequency = math.floor((curve.size - 1) / (2 * harmonics))
     first, total = compute_orders(curve, curve.size, harmonics, frequency)
     return float(first), float(total)

@@ -17,8 +17,8 @@ from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
 from impactlab.analysis.surrogate import fit
 from impactlab.analysis.verdicts import flagged
 
-Answer = tuple[SensitivityVerdict, float, dict[str, Array]]
-"""Verdict on a response, share of its runs that a surrogate supplied, and indices if any."""
+Answer = tuple[list[SensitivityVerdict], float, dict[str, Array]]
+"""What is said of a response, share of its runs that a surrogate supplied, and indices if any."""
 
 
 def applies(runs: xr.Dataset) -> bool:
@@ -33,7 +33,8 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
     (`failed_runs: impute`).
 
     Returns what the method's module lists, on (response, *dims), with <name>_interval, the
-    half-width of the bootstrap interval; sensitivity_verdict and imputed_share (response).
+    half-width of the bootstrap interval; sensitivity_verdict, the worst that is to be said;
+    sensitivity_remarks, all of it; and imputed_share (response).
     `parameter` holds the varied parameters, or their groups. Indices are NaN where the verdict
     gives none. Raises ValueError when the runs are not the sample that their attributes tell of.
     """
@@ -45,15 +46,17 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
         _answer(name, row, sample, method, fit)
         for name, row in zip(names, values.values, strict=True)
     ]
-    verdicts, shares, rows = zip(*answers, strict=True)
+    said, shares, rows = zip(*answers, strict=True)
     wanted = method.indices(sample)
     coordinates = _coordinates(values, sample, wanted)
     sizes = {name: len(entry[1]) for name, entry in coordinates.items()}
-    codes = xr.DataArray([int(judgement) for judgement in verdicts], dims="response")
+    worst = [max(entry, default=SensitivityVerdict.USABLE) for entry in said]
+    codes = xr.DataArray([int(judgement) for judgement in worst], dims="response")
     return xr.Dataset(stored(rows, wanted, sample, sizes), coords=coordinates).assign(
         sensitivity_verdict=flagged(
             codes, SensitivityVerdict, "verdict on the sensitivity indices"
         ),
+        sensitivity_remarks=verdict.remarks(said),
         imputed_share=("response", np.array(shares), _IMPUTED),
     )
 
@@ -63,17 +66,17 @@ _IMPUTED = {"long_name": "share of runs whose value a surrogate supplied", "unit
 
 def _answer(response: str, outputs: Array, sample: Sample, method: Method, fit: Fit) -> Answer:
     """Of one response; outputs: (runs,), NaN where a run failed."""
-    gaps, share = np.isnan(outputs), 0.0
-    if gaps.any() and sample.policy == "impute":
+    share = 0.0
+    if np.isnan(outputs).any() and sample.policy == "impute":
         if not imputation.possible(outputs, sample):
-            return SensitivityVerdict.TOO_FEW_RUNS, share, {}
+            return [SensitivityVerdict.TOO_FEW_RUNS], share, {}
+        share = float(np.isnan(outputs).mean())
         outputs = imputation.completed(outputs, sample, fit, response)
-        share = float(gaps.mean())
-    judgement = verdict.of_outputs(outputs, method.varying(outputs, sample), share)
-    if judgement in (SensitivityVerdict.CONSTANT, SensitivityVerdict.FAILED_RUNS):
-        return judgement, share, {}
+    said = verdict.of_outputs(outputs, method.varying(outputs, sample), share)
+    if set(said) & set(verdict.NO_INDEX):
+        return said, 0.0, {}
     found = method.estimate(outputs, sample, response)
-    return max(judgement, verdict.of_indices(found)), share, found
+    return said + verdict.of_indices(found), share, found
 
 
 def _coordinates(

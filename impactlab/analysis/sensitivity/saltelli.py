@@ -68,9 +68,9 @@ def estimates(means: Array, factors: int) -> dict[str, Array]:
     BA = B. Saltelli's B (AB - A) and (A - AB)^2 are then zero to the last digit, whatever the
     sample, and tell no noise. The dummy is put into the estimators of Khorashadi Zadeh et al.
     (2017), Environ. Model. Softw. 91, 210, instead, as sensobol's sobol_dummy does:
-    S = (mean(A BA) - f0^2)/V and T = 1 - (mean(B BA) - f0^2)/V, with BA = B. One departure: f0 is
-    the mean of A and B. sensobol takes mean(A B) for f0^2, which cancels the very noise that the
-    first order is to show.
+    S = (mean(A BA) - f0^2)/V and T = 1 - (mean(B BA) - f0^2)/V, with BA = B and centred outputs.
+    One departure: f0 is the mean of A and B. sensobol takes mean(A B) for f0^2, which cancels the
+    very noise that the first order is to show.
     """
     a, b, squared_a, squared_b, product = np.moveaxis(means[..., :_ALONE], -1, 0)
     centre = ((a + b) / 2) ** 2

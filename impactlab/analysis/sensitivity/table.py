@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 _OF = ("parameter", "other_parameter", "base_samples")
-_BESIDE = ("sensitivity_verdict", "imputed_share")
+_BESIDE = ("sensitivity_verdict", "sensitivity_remarks", "imputed_share")
 
 
 @dataclass(frozen=True)

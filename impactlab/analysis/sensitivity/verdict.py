@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+import xarray as xr
 
 from impactlab.analysis.sensitivity.sample import Array
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict
@@ -68,25 +69,47 @@ class SensitivityVerdict(Verdict):
     )
 
 
-def of_outputs(outputs: Array, varying: Sequence[Array], imputed: float) -> SensitivityVerdict:
-    """What may be made of one response before its indices are known.
+NO_INDEX = (
+    SensitivityVerdict.CONSTANT,
+    SensitivityVerdict.FAILED_RUNS,
+    SensitivityVerdict.TOO_FEW_RUNS,
+)
+"""Verdicts under which nothing is estimated."""
+
+
+def of_outputs(
+    outputs: Array, varying: Sequence[Array], imputed: float
+) -> list[SensitivityVerdict]:
+    """What is to be said of one response before its indices are known; empty for the best.
 
     outputs: (runs,); varying: parts of them, each of which has to vary; imputed: share of runs
     whose value a surrogate supplied.
     """
     if not np.isfinite(outputs).all():
-        return SensitivityVerdict.FAILED_RUNS
+        return [SensitivityVerdict.FAILED_RUNS]
     if still(outputs, varying):
-        return SensitivityVerdict.CONSTANT
+        return [SensitivityVerdict.CONSTANT]
     values, counts = np.unique(outputs, return_counts=True)
-    if counts.max() >= MOSTLY * outputs.size:
-        return SensitivityVerdict.MOSTLY_CONSTANT
-    if imputed:
-        return SensitivityVerdict.IMPUTED
-    if _tail(outputs) > TAIL_SHARE:
-        return SensitivityVerdict.FEW_RUNS_CARRY_IT
-    jumps = values.size <= min(FEW_VALUES, outputs.size // 2)
-    return SensitivityVerdict.JUMPS if jumps else SensitivityVerdict.USABLE
+    holds = {
+        SensitivityVerdict.MOSTLY_CONSTANT: counts.max() >= MOSTLY * outputs.size,
+        SensitivityVerdict.IMPUTED: imputed > 0,
+        SensitivityVerdict.FEW_RUNS_CARRY_IT: _tail(outputs) > TAIL_SHARE,
+        SensitivityVerdict.JUMPS: values.size <= min(FEW_VALUES, outputs.size // 2),
+    }
+    return [verdict for verdict, held in holds.items() if held]
+
+
+def remarks(said: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:
+    """All that is said of each response, (response,): bits of `flag_masks`, 0 for nothing."""
+    kinds = [kind for kind in SensitivityVerdict if kind is not SensitivityVerdict.USABLE]
+    masks: dict[SensitivityVerdict, int] = {kind: 1 << at for at, kind in enumerate(kinds)}
+    codes = [sum(masks[kind] for kind in set(entry)) for entry in said]
+    attrs = {
+        "long_name": "all that is to be said of the sensitivity indices, beside the verdict",
+        "flag_masks": np.array(list(masks.values()), np.int32),
+        "flag_meanings": " ".join(kind.name.lower() for kind in kinds),
+    }
+    return xr.DataArray(np.array(codes, np.int32), dims="response", attrs=attrs)
 
 
 def still(outputs: Array, varying: Sequence[Array]) -> bool:
@@ -95,20 +118,15 @@ def still(outputs: Array, varying: Sequence[Array]) -> bool:
     return any(np.ptp(part) <= smallest or np.var(part) <= least for part in varying)
 
 
-def of_indices(found: Mapping[str, Array]) -> SensitivityVerdict:
-    """What is to be said of the indices of one response, by variable name."""
-    return max(_remarks(found), default=SensitivityVerdict.USABLE)
-
-
-def _remarks(found: Mapping[str, Array]) -> Iterator[SensitivityVerdict]:
-    if _wide(found):
-        yield SensitivityVerdict.WIDE_INTERVALS
-    if "rank_regression" in found and _best_fit(found) < LINEAR:
-        yield SensitivityVerdict.NOT_LINEAR
-    if "total_order" in found and _inconsistent(found):
-        yield SensitivityVerdict.INCONSISTENT
-    if "delta" in found and np.isnan(found["delta"]).any():
-        yield SensitivityVerdict.NO_DENSITY
+def of_indices(found: Mapping[str, Array]) -> list[SensitivityVerdict]:
+    """What is to be said of the indices of one response, by variable name; empty for the best."""
+    holds = {
+        SensitivityVerdict.WIDE_INTERVALS: _wide(found),
+        SensitivityVerdict.NOT_LINEAR: "rank_regression" in found and _best_fit(found) < LINEAR,
+        SensitivityVerdict.INCONSISTENT: "total_order" in found and _inconsistent(found),
+        SensitivityVerdict.NO_DENSITY: "delta" in found and bool(np.isnan(found["delta"]).any()),
+    }
+    return [verdict for verdict, held in holds.items() if held]
 
 
 def _wide(found: Mapping[str, Array]) -> bool:

@@ -1,0 +1,220 @@
+"""Delta, PAWN and regression of a linear Gaussian model, whose answers are known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from SALib.analyze import delta as salib_delta
+from SALib.analyze import pawn as salib_pawn
+from scipy.integrate import quad
+from scipy.stats import ks_2samp, norm, qmc, spearmanr
+
+from impactlab.analysis import sensitivity
+from impactlab.analysis.sensitivity.delta import resampled
+from impactlab.analysis.sensitivity.pawn import distances, slides
+
+Build = Callable[..., xr.Dataset]
+WEIGHTS = np.array([2.0, -1.0, 0.0])
+SHARES = WEIGHTS**2 / (WEIGHTS**2).sum()
+METHODS = ("delta", "pawn", "regression")
+
+
+@pytest.fixture(scope="module")
+def normal() -> Any:
+    """A Latin hypercube of three standard normal parameters."""
+    return norm.ppf(qmc.LatinHypercube(3, rng=np.random.default_rng(2)).random(500))
+
+
+def exact_delta(share: float) -> float:
+    """Of a linear Gaussian model: half the mean distance of the densities with and without x.
+
+    Given x = z, the response is N(z sqrt(share), 1 - share) against N(0, 1).
+    """
+    y, spread = np.linspace(-9, 9, 4001), np.sqrt(1 - share)
+
+    def distance(z: float) -> float:
+        apart = abs(norm.pdf(y) - norm.pdf(y, z * np.sqrt(share), spread))
+        return float(0.5 * np.trapezoid(apart, y) * norm.pdf(z))
+
+    return float(quad(distance, -6, 6, limit=200, epsabs=1e-4)[0])
+
+
+def test_delta_of_a_linear_model(drawn: Build, normal: Any) -> None:
+    found = sensitivity.analysis(drawn("delta", normal, normal @ WEIGHTS)).isel(response=0)
+    exact = [exact_delta(0.8), exact_delta(0.2), 0.0]
+    standard = found["delta_interval"] / 1.96
+    # classes of finite width see a little less than the density at a point
+    assert (abs(found["delta"] - exact) <= 3 * standard + 0.05).all()
+    assert (standard < 0.03).all()
+    # of five classes, the part of the variance of a normal variable that lies between them
+    heights = norm.pdf(norm.ppf(np.linspace(0, 1, 6)))
+    between = 5 * (np.diff(heights) ** 2).sum()
+    np.testing.assert_allclose(found["delta_first_order"], between * SHARES, atol=0.03)
+    assert abs(found["dummy_delta"] - found["delta"][2]) < 0.04
+    assert found["dummy_delta"] < 0.05
+    assert found["dummy_delta_first_order"] < 0.04
+
+
+def test_delta_is_free_of_the_bias_that_salib_keeps(drawn: Build, normal: Any) -> None:
+    """Eq. 30 about the estimate on the data; SALib 1.6 has it about one on a resample."""
+    outputs = normal @ WEIGHTS
+    found = sensitivity.analysis(drawn("delta", normal, outputs)).isel(response=0)
+    edges, places = np.linspace(0, 500, 6), np.linspace(outputs.min(), outputs.max(), 100)
+    plain = [salib_delta.calc_delta(outputs, places, column, edges) for column in normal.T]
+    assert found["delta"][2] < plain[2]
+    rng = np.random.default_rng(3)
+    rows = rng.integers(500, size=(100, 500))
+    again = [resampled(normal[i, 2:], outputs[i], edges, places)[0, 0] for i in rows]
+    np.testing.assert_allclose(found["delta"][2], 2 * plain[2] - np.mean(again), atol=0.006)
+
+
+def test_resamples_of_delta_are_those_of_salib(normal: Any) -> None:
+    """On runs drawn more than once, with classes of unequal size."""
+    rows = np.random.default_rng(1).integers(500, size=499)
+    inputs, outputs = normal[rows], normal[rows] @ WEIGHTS
+    edges, places = np.linspace(0, 499, 8), np.linspace(-4, 4, 100)
+    ours = resampled(inputs, outputs, edges, places)
+    for column, found in zip(inputs.T, ours, strict=True):
+        theirs = salib_delta.calc_delta(outputs, places, column, edges)
+        np.testing.assert_allclose(found[0], theirs, rtol=1e-10)
+        first = salib_delta.sobol_first(outputs, column, edges)
+        np.testing.assert_allclose(found[1], first, rtol=1e-10)
+
+
+def test_delta_is_not_given_without_density(
+    drawn: Build, normal: Any, verdicts_of: Callable[..., Any]
+) -> None:
+    """SALib takes a class with one value of the response for one without influence."""
+    outputs = np.clip(normal @ [2.0, 0.1, 0.0], 0.0, None)  # zero for half of the first parameter
+    found = sensitivity.analysis(drawn("delta", normal, outputs, resamples=10))
+    assert np.isnan(found["delta"][0, 0])
+    assert np.isfinite(found["delta_first_order"]).all()
+    assert verdicts_of(found["sensitivity_verdict"]) == ["no_density"]
+
+
+def test_pawn_is_that_of_salib(drawn: Build, normal: Any) -> None:
+    outputs = normal @ WEIGHTS
+    found = sensitivity.analysis(drawn("pawn", normal, outputs)).isel(response=0)
+    theirs = salib_pawn.analyze({"num_vars": 3, "names": list("abc")}, normal, outputs, S=10)
+    np.testing.assert_array_equal(found["pawn"], theirs["median"])
+    np.testing.assert_array_equal(found["pawn_maximum"], theirs["maximum"])
+    assert found["pawn"][0] > found["pawn"][1] > 2 * found["dummy_pawn"]
+    assert abs(found["pawn"][2] - found["dummy_pawn"]) < 0.1
+    assert "pawn_maximum_interval" not in found
+
+
+def test_pawn_of_a_linear_model(drawn: Build) -> None:
+    """Against the distance of the two distributions at the middle of each slide."""
+    inputs = norm.ppf(qmc.LatinHypercube(3, rng=np.random.default_rng(4)).random(4000))
+    found = sensitivity.analysis(drawn("pawn", inputs, inputs @ WEIGHTS, resamples=20))
+    y = np.linspace(-6, 6, 2001)
+    middles = norm.ppf(np.arange(0.05, 1, 0.1))
+    for at in (0, 1):
+        spread = np.sqrt(1 - SHARES[at])
+        apart = [
+            abs(norm.cdf(y) - norm.cdf(y, z * np.sqrt(SHARES[at]), spread)).max() for z in middles
+        ]
+        np.testing.assert_allclose(found["pawn"][0, at], np.median(apart), atol=0.05)
+
+
+def test_distances_are_those_of_kolmogorov_and_smirnov() -> None:
+    """With ties, and with runs drawn more than once, which is what a resample has."""
+    rng = np.random.default_rng(1)
+    outputs, column = np.sort(rng.integers(20, size=200)).astype(float), rng.random(200)
+    weights = np.bincount(rng.integers(200, size=200), minlength=200).astype(float)
+    last = np.flatnonzero(np.diff(outputs, append=np.inf))
+    members = slides(column)
+    ours = distances(weights, members, last)
+    drawn_anew = np.repeat(np.arange(200), weights.astype(int))
+    for slide in range(10):
+        inside = drawn_anew[members[drawn_anew, slide]]
+        theirs = ks_2samp(outputs[inside], outputs[drawn_anew], method="asymp").statistic
+        np.testing.assert_allclose(ours[slide], theirs, atol=1e-12)
+
+
+def test_pawn_interval_tells_how_samples_differ(drawn: Build) -> None:
+    """Half-widths against the spread over samples drawn anew."""
+    values, widths = [], []
+    for seed in range(25):
+        inputs = np.random.default_rng(seed).normal(size=(300, 2))
+        outputs = inputs @ WEIGHTS[:2]
+        found = sensitivity.analysis(drawn("pawn", inputs, outputs, resamples=30))
+        values.append(found["pawn"][0].values)
+        widths.append(found["pawn_interval"][0].values)
+    spread = 1.96 * np.std(values, axis=0)
+    np.testing.assert_allclose(np.mean(widths, axis=0), spread, rtol=0.5)
+
+
+def test_regression_of_a_linear_model(drawn: Build, normal: Any) -> None:
+    """Standardised coefficients, to the departure of the sample from unit variance."""
+    outputs = normal @ WEIGHTS + 0.01 * np.random.default_rng(1).normal(size=500)
+    found = sensitivity.analysis(drawn("regression", normal, outputs)).isel(response=0)
+    exact = WEIGHTS * normal.std(axis=0) / outputs.std()
+    np.testing.assert_allclose(found["regression"], exact, atol=1e-3)
+    np.testing.assert_allclose(found["regression_r_squared"], 1, atol=1e-3)
+    assert abs(found["dummy_regression"]) < 1e-3
+    assert (found["regression_interval"] < 0.1).all()
+
+
+def test_regression_with_noise_of_known_error(drawn: Build, normal: Any) -> None:
+    """R^2 and the error of a coefficient, sqrt((1 - R^2)/n), by the textbook."""
+    outputs = normal @ WEIGHTS + np.sqrt(5) * np.random.default_rng(1).normal(size=500)
+    found = sensitivity.analysis(drawn("regression", normal, outputs, resamples=1000))
+    design = np.column_stack([np.ones(500), normal])
+    coefficients, residual = np.linalg.lstsq(design, outputs)[:2]
+    share = 1 - residual[0] / ((outputs - outputs.mean()) ** 2).sum()
+    standard = coefficients[1:] * normal.std(axis=0) / outputs.std()
+    np.testing.assert_allclose(found["regression"][0], standard, rtol=1e-10)
+    np.testing.assert_allclose(found["regression_r_squared"][0], share, rtol=1e-10)
+    error = 1.96 * np.sqrt((1 - share) / 500)
+    np.testing.assert_allclose(found["regression_interval"][0, 2], error, rtol=0.15)
+
+
+def test_ranks_see_through_a_monotone_function(
+    drawn: Build, normal: Any, verdicts_of: Callable[..., Any]
+) -> None:
+    found = sensitivity.analysis(drawn("regression", normal[:, :1], np.exp(3 * normal[:, 0])))
+    np.testing.assert_allclose(found["rank_regression"], 1.0, atol=1e-12)
+    np.testing.assert_allclose(found["rank_regression_r_squared"], 1.0, atol=1e-12)
+    assert found["regression_r_squared"] < 0.5
+    outputs = normal @ WEIGHTS
+    alone = sensitivity.analysis(drawn("regression", normal[:, :1], outputs))["rank_regression"]
+    rank = spearmanr(normal[:, 0], outputs).statistic
+    np.testing.assert_allclose(alone[0, 0], rank, atol=1e-12)  # of a single one they are the same
+
+
+def test_regression_that_describes_nothing_says_so(
+    drawn: Build, normal: Any, verdicts_of: Callable[..., Any]
+) -> None:
+    found = sensitivity.analysis(drawn("regression", normal, normal[:, 0] ** 2))
+    assert verdicts_of(found["sensitivity_verdict"]) == ["not_linear"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_seed_and_order(drawn: Build, normal: Any, method: str) -> None:
+    def found(seed: int) -> xr.Dataset:
+        outputs = normal[:200] @ WEIGHTS
+        return drawn(method, normal[:200], outputs, seed=seed, resamples=5)
+
+    none, one = sensitivity.analysis(found(0)), sensitivity.analysis(found(1))
+    xr.testing.assert_identical(none, sensitivity.analysis(found(0)))
+    assert not none[f"dummy_{method}"].equals(one[f"dummy_{method}"])
+    backwards = found(0).isel(run=slice(None, None, -1))
+    xr.testing.assert_identical(none, sensitivity.analysis(backwards))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_no_groups(drawn: Build, normal: Any, method: str) -> None:
+    runs = drawn(method, normal, normal @ WEIGHTS, groups=["a", "a", "b"])
+    with pytest.raises(ValueError, match=f"'{method}' has no groups"):
+        sensitivity.analysis(runs)
+
+
+@pytest.mark.parametrize("method", ["pawn", "regression"])
+def test_too_few_runs(drawn: Build, normal: Any, method: str) -> None:
+    with pytest.raises(ValueError, match="9 runs are too few"):
+        sensitivity.analysis(drawn(method, normal[:9], normal[:9] @ WEIGHTS))

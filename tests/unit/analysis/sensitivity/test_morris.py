@@ -1,0 +1,98 @@
+"""Elementary effects of functions whose effects are known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from SALib.sample import morris as sampler
+from scipy.stats import norm
+
+from impactlab.analysis import sensitivity
+from impactlab.analysis.sensitivity.morris import levels
+
+Build = Callable[..., xr.Dataset]
+
+
+def _unit(size: int, groups: list[str] | None = None, number: int = 20, **options: Any) -> Any:
+    names = [f"x{i}" for i in range(size)]
+    problem = {"num_vars": size, "names": names, "bounds": [[0, 1]] * size, "groups": groups}
+    return sampler.sample(problem, number, num_levels=4, seed=5, **options)
+
+
+def _runs(drawn: Build, inputs: Any, outputs: Any, **attrs: Any) -> xr.Dataset:
+    given = {"trajectories": 20, "levels": 4, "optimal_trajectories": 0}
+    return drawn("morris", inputs, outputs, **(given | attrs))
+
+
+def test_linear_function_is_exact(drawn: Build) -> None:
+    unit = _unit(3)
+    found = sensitivity.analysis(_runs(drawn, unit, unit @ [3.0, -2.0, 0.0] + 7)).isel(response=0)
+    np.testing.assert_allclose(found["morris_mu"], [3, -2, 0], atol=1e-12)
+    np.testing.assert_allclose(found["morris_mu_star"], [3, 2, 0], atol=1e-12)
+    np.testing.assert_allclose(found["morris_sigma"], 0, atol=1e-12)
+    np.testing.assert_allclose(found["morris_mu_star_interval"], 0, atol=1e-12)
+    assert found["morris_mu"].dims == ("parameter",)
+    assert "units" not in found["morris_mu"].attrs  # those of the response
+    assert found["response_units"] == "N"
+
+
+def test_interaction_shows_in_sigma(drawn: Build) -> None:
+    """Of x0 x1, an effect is the other's value: one of four levels."""
+    unit = _unit(3, number=400)
+    runs = _runs(drawn, unit, unit[:, 0] * unit[:, 1], trajectories=400)
+    found = sensitivity.analysis(runs).isel(response=0)
+    np.testing.assert_allclose(found["morris_mu_star"][:2], 0.5, atol=0.06)
+    np.testing.assert_allclose(found["morris_sigma"][:2], np.sqrt(5 / 36), atol=0.03)
+    assert found["morris_sigma"][2] == 0
+
+
+def test_inputs_may_be_of_any_distribution(drawn: Build) -> None:
+    """And carry another last digit where they are the same."""
+    unit = _unit(3)
+    physical = 1e9 + 1e8 * norm.ppf(np.clip(unit, 1e-6, 1 - 1e-6))
+    physical *= 1 + 1e-16 * np.random.default_rng(1).integers(-2, 3, size=unit.shape)
+    runs = _runs(drawn, physical, unit @ [3.0, -2.0, 0.0])
+    np.testing.assert_allclose(sensitivity.analysis(runs)["morris_mu"][0], [3, -2, 0], atol=1e-12)
+
+
+def test_levels_are_told_apart_on_a_large_offset() -> None:
+    column = np.array([[1e9], [1e9 + 1], [1e9 + 2], [1e9]])
+    assert levels(column)[:, 0].tolist() == [0, 1, 2, 0]
+
+
+def test_groups_have_no_sign(drawn: Build) -> None:
+    groups = ["one", "other", "one"]
+    unit = _unit(3, groups)
+    runs = _runs(drawn, unit, unit @ [3.0, -2.0, 0.0], groups=groups)
+    found = sensitivity.analysis(runs).isel(response=0)
+    assert found["parameter"].values.tolist() == ["one", "other"]
+    np.testing.assert_allclose(found["morris_mu_star"], [3, 2], atol=1e-12)
+    np.testing.assert_allclose(found["morris_mu"], [np.nan, -2], atol=1e-12)
+    np.testing.assert_allclose(found["morris_sigma"], [np.nan, 0], atol=1e-12)
+
+
+def test_optimal_trajectories_count(drawn: Build) -> None:
+    unit = _unit(3, optimal_trajectories=4)
+    runs = _runs(drawn, unit, unit @ [3.0, -2.0, 0.0], optimal_trajectories=4)
+    np.testing.assert_allclose(sensitivity.analysis(runs)["morris_mu"][0], [3, -2, 0], atol=1e-12)
+
+
+def test_few_trajectories_of_a_rough_function_are_wide(
+    drawn: Build, verdicts_of: Callable[..., Any], ishigami: Any
+) -> None:
+    unit = _unit(3)
+    found = sensitivity.analysis(_runs(drawn, unit, ishigami.of_unit(unit)))
+    assert verdicts_of(found["sensitivity_verdict"]) == ["wide_intervals"]
+
+
+def test_refuses_what_is_not_trajectories(drawn: Build) -> None:
+    unit = _unit(3)
+    with pytest.raises(ValueError, match="number 79, but 20 trajectories of 3 steps make 80"):
+        sensitivity.analysis(_runs(drawn, unit[1:], unit[1:, 0]))
+    rolled = np.roll(unit, 1, axis=0)
+    with pytest.raises(ValueError, match="not Morris' trajectories"):
+        sensitivity.analysis(_runs(drawn, rolled, rolled[:, 0]))

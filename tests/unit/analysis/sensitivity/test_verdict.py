@@ -1,0 +1,193 @@
+"""What a sceptical reader is told, each case made up; and the policies for failed runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from SALib.sample import sobol as sampler
+from scipy.interpolate import RBFInterpolator
+from scipy.stats import norm
+
+from impactlab.analysis import sensitivity
+from impactlab.analysis.analyse import analyse
+from impactlab.analysis.sensitivity import verdict
+
+Build = Callable[..., xr.Dataset]
+Read = Callable[..., Any]
+NAMES = ["x0", "x1", "x2"]
+BASE = 512
+
+
+@pytest.fixture(scope="module")
+def unit() -> Any:
+    problem = {"num_vars": 3, "names": NAMES, "bounds": [[0, 1]] * 3}
+    return sampler.sample(problem, BASE, seed=7)
+
+
+def _verdict(drawn: Build, read: Read, unit: Any, outputs: Any, **attrs: Any) -> str:
+    runs = drawn("sobol", unit, outputs, base_samples=BASE, second_order=1, **attrs)
+    return str(read(sensitivity.analysis(runs)["sensitivity_verdict"])[0])
+
+
+def _remarks(found: xr.Dataset) -> set[str]:
+    """Of the first response, by CF alone."""
+    array = found["sensitivity_remarks"]
+    pairs = zip(array.attrs["flag_masks"], array.attrs["flag_meanings"].split(), strict=True)
+    return {name for mask, name in pairs if int(array[0]) & mask}
+
+
+def test_usable(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+    assert _verdict(drawn, verdicts_of, unit, unit @ [1.0, 1.0, 1.0]) == "usable"
+    runs = drawn("sobol", unit, unit @ [1.0, 1.0, 1.0], base_samples=BASE, second_order=1)
+    assert _remarks(sensitivity.analysis(runs)) == set()
+
+
+def test_jumps(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+    """A number of contacts."""
+    outputs = np.floor(unit @ [2.0, 0.5, 0.5])
+    runs = drawn("sobol", unit, outputs, base_samples=BASE, second_order=1)
+    found = sensitivity.analysis(runs)
+    assert verdicts_of(found["sensitivity_verdict"]) == ["wide_intervals"]  # the graver of two
+    assert _remarks(found) == {"jumps", "wide_intervals"}
+    assert np.isfinite(found["first_order"]).all()  # shown as what they are
+
+
+def test_few_runs_carry_the_variance(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+    outputs = np.exp(3.5 * norm.ppf(np.clip(unit[:, 0], 1e-4, 1 - 1e-4)) + unit[:, 1])
+    runs = drawn("sobol", unit, outputs, base_samples=BASE, second_order=1)
+    assert _remarks(sensitivity.analysis(runs)) >= {"few_runs_carry_it", "wide_intervals"}
+    assert not verdict.of_outputs(norm.ppf(unit[:, 0].clip(1e-4, 1 - 1e-4)), [unit[:, 0]], 0.0)
+
+
+def _found(first: Any, total: Any, margin: float) -> dict[str, Any]:
+    first, total = np.array(first), np.array(total)
+    margins = {f"{name}_interval": 0 * first + margin for name in ("first_order", "total_order")}
+    return {"first_order": first, "total_order": total} | margins
+
+
+@pytest.mark.parametrize(
+    ("first", "total", "margin", "name"),
+    [
+        ([0.5, 0.5], [0.5, 0.5], 0.05, "USABLE"),
+        ([0.5, 0.55], [0.6, 0.6], 0.03, "USABLE"),
+        ([0.6, 0.6], [0.6, 0.6], 0.03, "INCONSISTENT"),
+        ([0.5, -0.05], [0.6, 0.0], 0.03, "USABLE"),
+        ([0.5, -0.05], [0.6, 0.0], 0.02, "INCONSISTENT"),
+        ([0.5, 0.2], [0.4, 0.3], 0.06, "USABLE"),
+        ([0.5, 0.2], [0.4, 0.3], 0.04, "INCONSISTENT"),
+        ([0.5, 0.2], [0.5, 0.3], 0.11, "WIDE_INTERVALS"),
+        ([0.5, 0.2], [0.5, 0.3], np.nan, "WIDE_INTERVALS"),
+    ],
+)
+def test_shares_that_contradict_themselves(first: Any, total: Any, margin: Any, name: str) -> None:
+    said = verdict.of_indices(_found(first, total, margin))
+    assert [entry.name for entry in said] == [name] * (name != "USABLE")
+
+
+def _broken(drawn: Build, unit: Any, share: float, **attrs: Any) -> xr.Dataset:
+    """A part of the runs failed, a fifth response; the other response is whole."""
+    outputs = np.sin(3 * unit[:, 0]) + unit[:, 1] * unit[:, 2]
+    gaps = outputs.copy()
+    gaps[np.random.default_rng(1).random(len(unit)) < share] = np.nan
+    named = {"peak_force": gaps, "impulse": outputs}
+    return drawn("sobol", unit, named, base_samples=BASE, second_order=1, **attrs)
+
+
+def _fit(places: Any, values: Any, seed: int) -> Any:
+    """A stand-in for the surrogate."""
+    assert seed > 0
+    unique, first = np.unique(places, axis=0, return_index=True)
+    return RBFInterpolator(unique, values[first], neighbors=30)
+
+
+def test_failed_runs_leave_no_index(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+    found = sensitivity.analysis(_broken(drawn, unit, 0.02), fit=_fit)
+    assert verdicts_of(found["sensitivity_verdict"]) == ["failed_runs", "usable"]
+    assert np.isnan(found["first_order"][0]).all()
+    assert found["imputed_share"].values.tolist() == [0, 0]
+
+
+def test_imputed_runs_are_marked(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+    runs = _broken(drawn, unit, 0.05, failed_runs="impute")
+    found = sensitivity.analysis(runs, fit=_fit)
+    assert verdicts_of(found["sensitivity_verdict"]) == ["imputed", "usable"]
+    assert "imputed" not in found["sensitivity_verdict"].attrs["sound_flags"].split()
+    missing = float(np.isnan(runs["peak_force"]).mean())
+    np.testing.assert_allclose(found["imputed_share"], [missing, 0], rtol=1e-12)
+    assert missing > 0.03
+    for name in ("first_order", "total_order"):  # the truth is known here
+        np.testing.assert_allclose(found[name][0], found[name][1], atol=0.01)
+
+
+def test_too_few_runs_to_impute(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+    runs = _broken(drawn, unit, 0.25, failed_runs="impute")
+    found = sensitivity.analysis(runs, fit=_fit)
+    assert verdicts_of(found["sensitivity_verdict"]) == ["too_few_runs", "usable"]
+    assert np.isnan(found["first_order"][0]).all()
+    assert found["imputed_share"][0] == 0
+
+
+def test_a_surrogate_that_fails_is_told(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+    def fit(places: Any, values: Any, seed: int) -> Any:
+        return lambda new: np.full(len(new), np.nan)
+
+    found = sensitivity.analysis(_broken(drawn, unit, 0.02, failed_runs="impute"), fit=fit)
+    assert verdicts_of(found["sensitivity_verdict"])[0] == "failed_runs"
+    assert found["imputed_share"][0] == 0
+
+
+def test_imputing_needs_a_surrogate(drawn: Build, unit: Any) -> None:
+    with pytest.raises(ValueError, match=r"'synthetic' asks for failed_runs: impute"):
+        sensitivity.analysis(_broken(drawn, unit, 0.02, failed_runs="impute"))
+    with pytest.raises(ValueError, match="failed_runs = 'drop', but may be fail or impute"):
+        sensitivity.analysis(_broken(drawn, unit, 0.02, failed_runs="drop"))
+
+
+def test_imputing_without_a_gap_changes_nothing(drawn: Build, unit: Any) -> None:
+    kept = sensitivity.analysis(_broken(drawn, unit, 0.0))
+    xr.testing.assert_equal(
+        kept, sensitivity.analysis(_broken(drawn, unit, 0, failed_runs="impute"))
+    )
+
+
+@pytest.mark.parametrize("method", ["sobol", "morris", "fast", "delta", "pawn", "regression"])
+def test_constants_and_failures_of_every_method(
+    drawn: Build, verdicts_of: Read, method: str
+) -> None:
+    """A seeded failure, one constant response, one NaN without a reason: SALib sees none."""
+    unit = np.tile(np.tril(np.ones((4, 3)), -1), (64, 1))  # trajectories for Morris
+    unit = unit if method == "morris" else np.random.default_rng(1).random((256, 3))
+    good = unit @ [3.0, 2.0, 1.0] + 0.1 * unit[:, 0] * unit[:, 1]
+    gap = good.copy()
+    gap[17] = np.nan
+    named = {"peak_force": gap, "impulse": 0 * good + 7.0, "contact_duration": good}
+    attrs = {"base_samples": 64, "second_order": 0, "harmonics": 2, "levels": 4, "resamples": 5}
+    attrs |= {"trajectories": 64, "optimal_trajectories": 0}
+    if method == "sobol":
+        unit, named = unit[:, :2], {name: values for name, values in named.items()}
+    runs = drawn(method, unit, named, **attrs)
+    runs["status"][3] = 2  # first contact unfinished
+    found = analyse(runs)
+    assert verdicts_of(found["sensitivity_verdict"]) == ["failed_runs", "constant", "failed_runs"]
+    for name, array in found.data_vars.items():
+        if "parameter" in array.dims or str(name).startswith("dummy"):
+            assert np.isnan(array).all()
+            assert array.attrs["estimator"]
+    assert found["missing_runs"].values.tolist() == [1, 0, 1]
+
+
+@pytest.mark.parametrize("method", ["fast", "delta", "pawn", "regression"])
+def test_mostly_constant_responses_break_nothing(
+    drawn: Build, verdicts_of: Read, method: str
+) -> None:
+    """Resamples of them may not vary at all."""
+    unit = np.random.default_rng(1).random((256, 3))
+    outputs = np.zeros(256)
+    outputs[[5, 70, 133, 200]] = 1.0
+    found = sensitivity.analysis(drawn(method, unit, outputs, harmonics=2))
+    worst = "no_density" if method == "delta" else "mostly_constant"
+    assert verdicts_of(found["sensitivity_verdict"]) == [worst]
