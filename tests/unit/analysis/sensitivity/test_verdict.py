@@ -140,9 +140,7 @@ def test_a_surrogate_that_fails_is_told(drawn: Build, verdicts_of: Read, unit: A
     assert found["imputed_share"][0] == 0
 
 
-def test_imputing_needs_a_surrogate(drawn: Build, unit: Any) -> None:
-    with pytest.raises(ValueError, match=r"'synthetic' asks for failed_runs: impute"):
-        sensitivity.analysis(_broken(drawn, unit, 0.02, failed_runs="impute"))
+def test_an_unknown_policy_is_refused(drawn: Build, unit: Any) -> None:
     with pytest.raises(ValueError, match="failed_runs = 'drop', but may be fail or impute"):
         sensitivity.analysis(_broken(drawn, unit, 0.02, failed_runs="drop"))
 

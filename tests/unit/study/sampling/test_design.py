@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from SALib.analyze import sobol as sobol_analysis
+
+from impactlab.dataset import ANALYSESfrom SALib.analyze import sobol as sobol_analysis
 
 from impactlab.dataset import RESPONSES
 from impactlab.model.paper import paper_impact
@@ -93,7 +94,8 @@ def test_attributes_say_what_is_asked(designed):
         "method": "grid",
         "varied": ["rule", "velocity"],
         "responses": ["peak_force"],
-        "analyses": ["convergence_in_nodes", "convergence_in_points", "sensitivity"],
+        "analyses": list(ANALYSES),
+        "solver": "impact",
         "histories": 1,
         "profiles": 0,
         "history_samples": 7,

@@ -23,7 +23,7 @@ def test_runs_are_found_again_in_twice_as_many(sampled, second_order, seed):
         groups={"section": ["beam_depth", "beam_width"]},
     )
     large = doubled(small)
-    keys, more = (run_keys(design_cases(each), Form(0, False)) for each in (small, large))
+    keys, more = (run_keys(design_cases(each), Form(0, False), "v") for each in (small, large))
     assert len(more) == 2 * len(keys)
     assert more[: len(keys)] == keys
     assert doubled(large).attrs["base_samples"] == 64
