@@ -18,7 +18,6 @@ from impactlab.analysis.convergence.richardson import (
     CREDIBLE_ORDERS,
     SAFETY_DOUBTFUL,
     Behaviour,
-    Estimate,
     estimate,
     safety,
 )
@@ -40,7 +39,8 @@ class How(Verdict):
     FIT = 3, True, "least-squares fit over all grids: the three finest show no credible order"
     RANGE = 4, True, "three times the range of three grids that show no order and no drift"
     TWO_GRIDS = 5, False, "two grids: first order is assumed, factor 3"
-    NOTHING = 6, False, "one grid, or a drift that does not slow down: nothing bounds the error"
+    SLOW_DRIFT = 6, False, "all values move one way, at an order below 0.5: factor 3 on that order"
+    NOTHING = 7, False, "one grid, or a drift that does not slow down: nothing bounds the error"
 
 
 class Uncertainty(NamedTuple):
@@ -80,8 +80,10 @@ def _of_present(f: Array, h: Array) -> Uncertainty:
 
 def _of_three_or_more(f: Array, h: Array) -> Uncertainty:
     triples = [estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
-    if drifts(f, triples[0]):
+    if _one_way(f) and triples[0].behaviour is Behaviour.MONOTONE_DIVERGENT:
         return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
+    if _one_way(f) and triples[0].order < CREDIBLE_ORDERS[0]:
+        return _from_finest(f, triples[0].uncertainty(SAFETY_DOUBTFUL), How.SLOW_DRIFT)
     by_index = _from_finest(f, triples[0].uncertainty(safety(triples)), How.GCI)
     if f.size < least_squares.FEWEST:
         by_range = _from_finest(f, SAFETY_DOUBTFUL * float(np.ptp(f)), How.RANGE)
@@ -93,15 +95,9 @@ def _of_three_or_more(f: Array, h: Array) -> Uncertainty:
     return Uncertainty(np.maximum(by_index.amounts, fitted), How.GCI_AND_FIT)
 
 
-def drifts(values: Array, finest: Estimate) -> bool:
-    """Whether all values move one way, the finest without slowing down: the limit is out of reach.
-
-    values: (grids,), finest first; finest: of the three finest.
-    """
-    steps = np.diff(values)
-    one_way = bool((steps > 0).all() or (steps < 0).all())
-    slow = finest.behaviour is Behaviour.MONOTONE and finest.order < CREDIBLE_ORDERS[0]
-    return one_way and (slow or finest.behaviour is Behaviour.MONOTONE_DIVERGENT)
+def _one_way(f: Array) -> bool:
+    steps = np.diff(f)
+    return bool((steps > 0).all() or (steps < 0).all())
 
 
 def _from_finest(f: Array, amount: float, how: How) -> Uncertainty:
