@@ -14,10 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from impactlab.analysis.convergence import least_squares
+from impactlab.analysis.convergence.least_squares import Fit
 from impactlab.analysis.convergence.richardson import (
     CREDIBLE_ORDERS,
     SAFETY_DOUBTFUL,
     Behaviour,
+    Estimate,
     estimate,
     safety,
 )
@@ -80,19 +82,28 @@ def _of_present(f: Array, h: Array) -> Uncertainty:
 
 def _of_three_or_more(f: Array, h: Array) -> Uncertainty:
     triples = [estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
-    if _one_way(f) and triples[0].behaviour is Behaviour.MONOTONE_DIVERGENT:
-        return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
-    if _one_way(f) and triples[0].order < CREDIBLE_ORDERS[0]:
-        return _from_finest(f, triples[0].uncertainty(SAFETY_DOUBTFUL), How.SLOW_DRIFT)
-    by_index = _from_finest(f, triples[0].uncertainty(safety(triples)), How.GCI)
-    if f.size < least_squares.FEWEST:
+    finest = triples[0]
+    fitted = least_squares.fit(f, h) if f.size >= least_squares.FEWEST else None
+    if _one_way(f) and not _slows_down(finest, fitted):
+        if finest.behaviour is not Behaviour.MONOTONE:
+            return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
+        return _from_finest(f, finest.uncertainty(SAFETY_DOUBTFUL), How.SLOW_DRIFT)
+    by_index = _from_finest(f, finest.uncertainty(safety(triples)), How.GCI)
+    if fitted is None:
         by_range = _from_finest(f, SAFETY_DOUBTFUL * float(np.ptp(f)), How.RANGE)
-        return by_index if triples[0].credible else by_range
-    fitted = least_squares.uncertainty(least_squares.fit(f, h), f)
-    if not triples[0].credible:
-        return Uncertainty(fitted, How.FIT)
+        return by_index if finest.credible else by_range
+    by_fit = least_squares.uncertainty(fitted, f)
+    if not finest.credible:
+        return Uncertainty(by_fit, How.FIT)
     # Scatter passes for an order easily: the index alone would hold the limit in 6 of 10 cases.
-    return Uncertainty(np.maximum(by_index.amounts, fitted), How.GCI_AND_FIT)
+    return Uncertainty(np.maximum(by_index.amounts, by_fit), How.GCI_AND_FIT)
+
+
+def _slows_down(finest: Estimate, fitted: Fit | None) -> bool:
+    """Whether the three finest grids, or else all of four or more, show an order above 0.5."""
+    least = CREDIBLE_ORDERS[0]
+    seen = finest.behaviour is Behaviour.MONOTONE and finest.order >= least
+    return seen or (fitted is not None and fitted.free_order >= least)
 
 
 def _one_way(f: Array) -> bool:

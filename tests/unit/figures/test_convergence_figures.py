@@ -66,8 +66,9 @@ def test_the_legend_keeps_the_order_of_the_curves(study: Study) -> None:
 
 def test_elastic_runs_have_no_curve_of_plastic_strain(study: Study) -> None:
     axes = _panel(NODES.plot(*study), "Peak plastic strain")
-    labels = {str(line.get_label()) for line in axes.lines} - {"_guide"}
-    assert labels == {"15 m/s, 3 points", "15 m/s, 17 points"}
+    labels = {str(line.get_label()) for line in axes.lines}
+    curves = {label for label in labels if not label.startswith("_")}
+    assert curves == {"15 m/s, 3 points", "15 m/s, 17 points"}
 
 
 def test_verdicts_are_written_and_warnings_stand_out(study: Study) -> None:
@@ -200,7 +201,7 @@ def test_cost_against_error(study: Study) -> None:
     """Leapfrog's steps shrink with the spacing squared: work grows with the cube of the nodes."""
     runs, analysis = study
     axes = _panel(COST.plot(runs, analysis), "Peak force")
-    work, errors = _curve(axes, "0.99 m/s, Gauss-Lobatto")
+    work, errors = _curve(axes, "0.99 m/s, 17 points")
     np.testing.assert_allclose(work[1:] / work[:-1], 8.0, rtol=0.05)
     _, same = _curve(_panel(NODES.plot(runs, analysis), "Peak force"), "0.99 m/s, 17 points")
     np.testing.assert_allclose(errors, same)
