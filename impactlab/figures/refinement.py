@@ -156,7 +156,7 @@ def _draw_trend(ax: Axes, spacing: Array, errors: Array, trend: Trend, line: Lin
 
 
 def _write_orders(ax: Axes, orders: list[tuple[Line2D, Trend]]) -> None:
-    """The order of each curve beside its marker, where there is room."""
+    """The order of each curve beside its marker, to the right of the panel."""
     known_orders = [(line, trend) for line, trend in orders if np.isfinite(trend.order)]
     if known_orders:
         ax.legend(
@@ -165,7 +165,9 @@ def _write_orders(ax: Axes, orders: list[tuple[Line2D, Trend]]) -> None:
                 f"p = {trend.order:.2f}" if trend.observed else f"[p = {trend.order:g}]"
                 for _, trend in known_orders
             ],
-            loc="lower right",
+            loc="lower left",
+            bbox_to_anchor=(1.0, 0.0),
+            borderaxespad=0.0,
             fontsize=5.5,
             handlelength=1.0,
             handletextpad=0.4,
@@ -178,7 +180,7 @@ def _finish(ax: Axes, spacing: Array, difference: xr.DataArray, dim: str) -> Non
     """Logarithmic axes and a guide of second order above all that is drawn."""
     if not ax.lines:
         enough = bool((difference.count(dim) > 1).any())
-        responses_grid.empty(ax, "same at every spacing" if enough else "too few values")
+        responses_grid.empty(ax, "same on every grid" if enough else "too few values")
         return
     shown = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
     ends = np.array([spacing.min(), spacing.max()])

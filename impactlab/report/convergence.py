@@ -15,7 +15,7 @@ from impactlab.report.table import Cell, Table
 
 @dataclass(frozen=True)
 class Judged:
-    """One axis: its table, what to know of it, and the verdicts and behaviours with meanings."""
+    """One axis: its table, what to know of it, verdicts and behaviours with their meanings."""
 
     table: Table
     remarks: list[str]
@@ -26,9 +26,11 @@ def judged(runs: xr.Dataset, analysis: xr.Dataset) -> list[Judged]:
     """The axes that the analysis has, in the order space, time, depth."""
     return [
         Judged(
-            table(runs, analysis, axis, caption), remarks(analysis, axis), meanings(analysis, axis)
+            table(runs, analysis, axis, caption),
+            [reading, *remarks(analysis, axis)],
+            meanings(analysis, axis),
         )
-        for axis, (caption, table) in _AXES.items()
+        for axis, (caption, table, reading) in _AXES.items()
         if f"{axis}_summary" in analysis
     ]
 
@@ -61,22 +63,18 @@ def _refined(runs: xr.Dataset, analysis: xr.Dataset, axis: str, caption: str) ->
         "Response",
         "Worst verdict",
         "Verdicts over the grid",
-        "Behaviours",
         "Observed order",
-        "Order of the fit",
         "Largest GCI",
-        "GCI ratio over r^p",
-        "Uncertainty of the fit",
+        "Order of the fit",
+        "Uncertainty by the fit",
         "Numerical uncertainty",
     ]
     rows = [
         [
             *_verdicts(analysis, axis, name),
-            Cell(_listed(_counts(analysis, f"{axis}_behaviour", name))),
             Cell(_spread(analysis, f"{axis}_observed_order", name), "number"),
+            _gci(analysis, axis, name),
             Cell(_spread(analysis, f"{axis}_fit_order", name), "number"),
-            Cell(_percent(_largest(analysis, f"{axis}_gci", name)), "number"),
-            Cell(_spread(analysis, f"{axis}_asymptotic_ratio", name), "number"),
             Cell(_percent(_largest(analysis, f"{axis}_fit_uncertainty", name)), "number"),
             Cell(_percent(_largest(analysis, f"{axis}_uncertainty", name)), "number"),
         ]
@@ -111,12 +109,24 @@ def _rules(analysis: xr.Dataset) -> dict[str, dict[str, int]]:
     return {name: {"rule": at} for at, name in enumerate(names)}
 
 
-_AXES: dict[str, tuple[str, Callable[[xr.Dataset, xr.Dataset, str, str], Table]]] = {
-    "nodes": ("Convergence in nodes along the span", _refined),
-    "time_step": ("Convergence in the time step at fixed nodes", _refined),
-    "points": ("Convergence in integration points over the depth", _points),
+_Table = Callable[[xr.Dataset, xr.Dataset, str, str], Table]
+_ORDERS = (
+    "Observed order, grid convergence index (GCI) and asymptotic ratio are those of the three "
+    "finest grids, with the factor 1.25, or 3 where not every three successive grids show a "
+    "credible order. The fit is that of Eça and Hoekstra over four grids or more. The numerical "
+    "uncertainty of the finest value rests on both, on the larger where there is an order; all are "
+    "relative to that value. Ranges and largest values are over the rest of the grid."
+)
+_RULES = (
+    "Each rule is judged by its own most points. The numerical uncertainty is three times the "
+    "difference to the next fewer points, since the error need not follow a power of the points."
+)
+_AXES: dict[str, tuple[str, _Table, str]] = {
+    "nodes": ("Convergence in nodes along the span", _refined, _ORDERS),
+    "time_step": ("Convergence in the time step at fixed nodes", _refined, _ORDERS),
+    "points": ("Convergence in integration points over the depth", _points, _RULES),
 }
-"""Caption and table of each axis."""
+"""Caption and table of each axis, and how to read it."""
 
 
 def _verdicts(analysis: xr.Dataset, axis: str, name: str) -> list[Cell]:
@@ -126,7 +136,7 @@ def _verdicts(analysis: xr.Dataset, axis: str, name: str) -> list[Cell]:
     return [
         Cell(words.sentence(words.response(name))),
         Cell(text, kind),
-        Cell(_tally(analysis, axis, name)),
+        Cell(_tally(analysis, axis, name), detail=_behaviours(analysis, axis, name)),
     ]
 
 
@@ -138,6 +148,19 @@ def _tally(analysis: xr.Dataset, axis: str, name: str) -> str:
     outcomes = tally[f"{axis}_outcome"].values
     pairs = zip(outcomes, tally.values, strict=True)
     return _listed({str(flag).replace("_", " "): int(n) for flag, n in pairs if n})
+
+
+def _behaviours(analysis: xr.Dataset, axis: str, name: str) -> str:
+    """How the three finest grids behave, where an axis has an order; "" else."""
+    counts = _counts(analysis, f"{axis}_behaviour", name)
+    return f"behaviour: {_listed(counts)}" if counts else ""
+
+
+def _gci(analysis: xr.Dataset, axis: str, name: str) -> Cell:
+    """The largest index, and the asymptotic ratio of all where there is one."""
+    ratio = _spread(analysis, f"{axis}_asymptotic_ratio", name)
+    detail = "" if ratio == "–" else f"asymptotic ratio {ratio}"
+    return Cell(_percent(_largest(analysis, f"{axis}_gci", name)), "number", detail)
 
 
 def _counts(analysis: xr.Dataset, variable: str, name: str) -> dict[str, int]:

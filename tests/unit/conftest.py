@@ -198,6 +198,8 @@ def discretisation_study() -> Study:
             "nodes_observed_order": finest + 2.0,
             "nodes_extrapolated": limit.where(~strains),
             "nodes_gci": finest + 1e-3,
+            "nodes_uncertainty": finest + 2e-3,
+            "nodes_behaviour": _flags(finest + 2 * strains, "monotone", "stalled", "divergent"),
             "nodes_verdict": _flags(finest + 2 * strains, *names),
             "nodes_summary": _flags(2 * strains, *names),
             "points_error": abs(stacked / stacked.isel(points=-1, drop=True) - 1.0),
@@ -208,6 +210,32 @@ def discretisation_study() -> Study:
         attrs=runs.attrs,
     )
     return runs, analysis
+
+
+@pytest.fixture
+def time_step_study() -> Study:
+    """Courant by scheme by nodes: errors of second order in the time step about each limit."""
+    varied = {
+        "courant": [0.2, 0.4, 0.8],
+        "scheme": ["leapfrog", "semi_implicit"],
+        "nodes": [101, 201],
+    }
+    design = _design(varied, study="time_step", method="grid", histories=0, profiles=0)
+    runs = _with_answers(design)
+    limit = runs[list(RESPONSES)].to_array("response").isel(courant=0, drop=True)
+    for name in RESPONSES:
+        runs[name] = runs[name] * (1.0 + 1e-3 * runs["courant"] ** 2)
+    names = ("converged", "divergent")
+    analysis = xr.Dataset(
+        {
+            "time_step_observed_order": 0.0 * limit + 2.0,
+            "time_step_extrapolated": limit,
+            "time_step_uncertainty": 0.0 * limit + 1e-4,
+            "time_step_summary": _flags(xr.zeros_like(limit[:, 0, 0]), *names),
+        },
+        attrs=runs.attrs,
+    )
+    return described(runs), analysis
 
 
 @pytest.fixture

@@ -108,7 +108,7 @@ def judge(values: Array, spacings: Array) -> Judgement:
         fitted.expansion if fitted else Expansion.NONE,
         bound.how,
         finest.behaviour,
-        _verdict(triples, relative(bound.amounts[0], values[0])),
+        _verdict(triples, bound.how, relative(bound.amounts[0], values[0])),
     )
 
 
@@ -153,8 +153,8 @@ def _fit(values: Array, spacings: Array) -> Fit | None:
     return least_squares.fit(values, spacings)
 
 
-def _verdict(triples: list[Estimate], uncertainty: float) -> AxisVerdict:
-    finest, within = triples[0], uncertainty <= TOLERANCE
+def _verdict(triples: list[Estimate], how: How, uncertainty: float) -> AxisVerdict:
+    finest, within = triples[0], how.sound and uncertainty <= TOLERANCE
     if finest.behaviour in _DECIDED:
         return _OTHERWISE[finest.behaviour]
     if within and finest.credible:

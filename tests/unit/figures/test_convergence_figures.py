@@ -11,6 +11,7 @@ from impactlab.figures.catalogue import CATALOGUE
 
 Study = Any
 NODES, POINTS = CATALOGUE["nodes_convergence"], CATALOGUE["points_convergence"]
+TIME, COST = CATALOGUE["time_step_convergence"], CATALOGUE["convergence_cost"]
 
 
 @pytest.fixture
@@ -35,8 +36,8 @@ def _words(axes: Axes) -> list[str]:
 
 def test_differences_are_to_the_extrapolated_value(study: Study) -> None:
     runs, analysis = study
-    spacing, difference = _curve(_panel(NODES.plot(*study), "Peak force"), "15 m/s, 9 points")
-    where = {"velocity": 15.0, "points": 9, "rule": "lobatto"}
+    spacing, difference = _curve(_panel(NODES.plot(*study), "Peak force"), "15 m/s, 17 points")
+    where = {"velocity": 15.0, "points": 17, "rule": "lobatto"}
     limit = float(analysis["nodes_extrapolated"].sel(response="peak_force", **where))
     values = runs["peak_force"].sel(where)
     np.testing.assert_allclose(spacing, 780.0 / (runs["nodes"] - 1))
@@ -47,8 +48,8 @@ def test_differences_are_to_the_extrapolated_value(study: Study) -> None:
 
 def test_without_an_extrapolated_value_the_finest_is_the_reference(study: Study) -> None:
     runs, _ = study
-    _, difference = _curve(_panel(NODES.plot(*study), "Peak plastic strain"), "15 m/s, 9 points")
-    values = runs["peak_plastic_strain"].sel(velocity=15.0, points=9, rule="lobatto").values
+    _, difference = _curve(_panel(NODES.plot(*study), "Peak plastic strain"), "15 m/s, 17 points")
+    values = runs["peak_plastic_strain"].sel(velocity=15.0, points=17, rule="lobatto").values
     np.testing.assert_allclose(difference[:2], abs(values[:2] - values[2]) / values[2])
     assert np.isnan(difference[2])
 
@@ -65,8 +66,9 @@ def test_the_legend_keeps_the_order_of_the_curves(study: Study) -> None:
 
 def test_elastic_runs_have_no_curve_of_plastic_strain(study: Study) -> None:
     axes = _panel(NODES.plot(*study), "Peak plastic strain")
-    labels = {str(line.get_label()) for line in axes.lines} - {"_guide"}
-    assert labels == {"15 m/s, 3 points", "15 m/s, 9 points", "15 m/s, 17 points"}
+    labels = {str(line.get_label()) for line in axes.lines}
+    curves = {label for label in labels if not label.startswith("_")}
+    assert curves == {"15 m/s, 3 points", "15 m/s, 17 points"}
 
 
 def test_verdicts_are_written_and_warnings_stand_out(study: Study) -> None:
@@ -88,7 +90,7 @@ def test_the_guide_has_second_order(study: Study) -> None:
 
 def test_what_does_not_change_says_so(study: Study) -> None:
     contacts = "Number of contacts"
-    assert "same at every spacing" in _words(_panel(NODES.plot(*study), contacts))
+    assert "same on every grid" in _words(_panel(NODES.plot(*study), contacts))
     assert "same for every number" in _words(_panel(POINTS.plot(*study), contacts))
 
 
@@ -109,8 +111,8 @@ def test_round_off_is_no_difference(study: Study) -> None:
 
 def test_failed_runs_leave_gaps_in_both(study: Study, failing: Any) -> None:
     runs, analysis = study
-    broken = failing(runs, {"nodes": 1, "points": 2, "rule": 0, "velocity": 1})
-    _, difference = _curve(_panel(NODES.plot(broken, analysis), "Peak force"), "15 m/s, 9 points")
+    broken = failing(runs, {"nodes": 1, "points": 3, "rule": 0, "velocity": 1})
+    _, difference = _curve(_panel(NODES.plot(broken, analysis), "Peak force"), "15 m/s, 17 points")
     assert np.isnan(difference).tolist() == [False, True, False]
     analysis["points_error"].loc[{"response": "peak_force", "points": 5}] = np.nan
     _, error = _curve(_panel(POINTS.plot(runs, analysis), "Peak force"), "Gauss-Legendre, 15 m/s")
@@ -136,3 +138,70 @@ def test_a_varied_span_makes_the_spacing_relative(study: Study) -> None:
     runs, analysis = study
     figure = NODES.plot(runs.assign_coords(beam_span=("velocity", [0.5, 0.78])), analysis)
     assert figure.get_supxlabel() == "Spacing of the nodes over the span (–)"
+
+
+def _orders(axes: Axes) -> list[str]:
+    legend = axes.get_legend()
+    return [text.get_text() for text in legend.get_texts()] if legend else []
+
+
+def test_the_order_is_drawn_through_the_errors_and_written(study: Study) -> None:
+    runs, analysis = study
+    analysis["nodes_observed_order"][:] = 1.5
+    axes = _panel(NODES.plot(runs, analysis), "Peak force")
+    assert _orders(axes) == ["p = 1.50"] * 4
+    x, y = _curve(axes, "_order")
+    assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(1.5)
+    _, errors = _curve(axes, "0.99 m/s, 3 points")
+    assert errors.min() < y.min() < y.max() < 3 * errors.max()
+
+
+def test_an_assumed_order_is_in_brackets(study: Study) -> None:
+    runs, analysis = study
+    where = {"response": "peak_force", "velocity": 15.0}
+    analysis["nodes_extrapolated"].loc[where] = np.nan
+    finest = analysis["nodes_gci"]
+    fitted = analysis.assign(
+        nodes_fit_order=0 * finest + 2,
+        nodes_fit_extrapolated=runs["peak_force"].isel(nodes=-1) * 0.999 + 0 * finest,
+        nodes_fit_expansion=0 * finest + 2,
+    )
+    axes = _panel(NODES.plot(runs, fitted), "Peak force")
+    assert _orders(axes) == ["p = 2.00"] * 2 + ["[p = 2]"] * 2
+
+
+def test_the_bar_reaches_up_to_the_uncertainty(study: Study) -> None:
+    runs, analysis = study
+    axes = _panel(NODES.plot(runs, analysis), "Peak force")
+    spacing, errors = _curve(axes, "0.99 m/s, 3 points")
+    x, y = _curve(axes, "_bar")
+    assert x.tolist() == [spacing.min()] * 2
+    np.testing.assert_allclose(y, [errors[-1], 2e-3])
+
+
+def test_an_infinite_uncertainty_has_no_bar(study: Study) -> None:
+    runs, analysis = study
+    analysis["nodes_uncertainty"][:] = np.inf
+    lines = _panel(NODES.plot(runs, analysis), "Peak force").lines
+    assert "_bar" not in {line.get_label() for line in lines}
+
+
+def test_time_steps_at_fixed_nodes(time_step_study: Study) -> None:
+    runs, analysis = time_step_study
+    runs = runs[["peak_force", "status"]]
+    axes = _panel(TIME.plot(runs, analysis), "Peak force")
+    courant, errors = _curve(axes, "semi-implicit, 201 nodes")
+    assert courant.tolist() == [0.2, 0.4, 0.8]
+    np.testing.assert_allclose(errors, 1e-3 * courant**2)
+    assert not NODES.applies(runs, analysis)
+    assert not COST.applies(runs, analysis)
+
+
+def test_cost_against_error(study: Study) -> None:
+    """Leapfrog's steps shrink with the spacing squared: work grows with the cube of the nodes."""
+    runs, analysis = study
+    axes = _panel(COST.plot(runs, analysis), "Peak force")
+    work, errors = _curve(axes, "0.99 m/s, 17 points")
+    np.testing.assert_allclose(work[1:] / work[:-1], 8.0, rtol=0.05)
+    _, same = _curve(_panel(NODES.plot(runs, analysis), "Peak force"), "0.99 m/s, 17 points")
+    np.testing.assert_allclose(errors, same)

@@ -33,9 +33,12 @@ def test_verdicts_a_row_a_response(report: Any, discretisation_study: Study) -> 
     )
     assert _row(page, NODES, "Peak force")[1:] == [
         "converged",
-        "converged 3, divergent 3",
+        "converged 3, divergent 3behaviour: monotone 24",
         "2",
         "0.1 %",
+        "–",
+        "–",
+        "0.2 %",
     ]
     assert _row(page, NODES, "Peak plastic strain")[1] == "divergent"
     assert _row(page, POINTS, "Peak plastic strain")[1] == "not yet converged"
@@ -58,9 +61,50 @@ def test_numbers_that_are_not_defined_are_dashes(report: Any, discretisation_stu
     analysis["points_needed"].loc[strain] = np.nan
     analysis["points_needed"].loc[{"response": "impulse", "velocity": 15.0}] = np.nan
     page = report(runs, analysis)
-    assert _row(page, NODES, "Peak plastic strain")[3:] == ["–", "∞ %"]
+    assert _row(page, NODES, "Peak plastic strain")[3:5] == ["–", "∞ %"]
     assert _row(page, POINTS, "Peak plastic strain")[3] == "none below the most"
-    assert _row(page, POINTS, "Impulse")[3] == "5none below the most at 9 of 18 points"
+    assert _row(page, POINTS, "Impulse")[3] == "5none below the most at 3 of 6 points"
+
+
+def test_what_is_refined_along_and_what_has_no_limit_is_said(
+    report: Any, discretisation_study: Study
+) -> None:
+    runs, analysis = discretisation_study
+    flags = {"flag_meanings": "monotone stalled not_convergent_by_design"}
+    analysis["nodes_behaviour"].attrs |= flags
+    analysis["nodes_summary"].attrs |= {
+        "comment": "Space and time go together.",
+        "without_limit": "peak_plastic_strain: it gathers\npeak_force: never so",
+    }
+    page = report(runs, analysis)
+    assert "Space and time go together." in page.text
+    assert "The peak plastic strain is not convergent by design: it gathers." in page.text
+    assert "never so" not in page.text
+    assert "behaviour: not convergent by design 24" in _row(page, NODES, "Peak plastic strain")[2]
+
+
+def test_points_needed_by_each_rule(report: Any, discretisation_study: Study) -> None:
+    runs, analysis = discretisation_study
+    where = {"response": "impulse", "rule": "layers"}
+    analysis["points_needed"].loc[where] = 17.0
+    page = report(runs, analysis.assign(points_uncertainty=0 * analysis["points_needed"] + 0.015))
+    assert page.tables[POINTS][0][3:6] == [
+        "Points needed for 1 %, Gauss-Lobatto",
+        "Points needed for 1 %, Gauss-Legendre",
+        "Points needed for 1 %, uniform layers",
+    ]
+    assert _row(page, POINTS, "Impulse")[3:] == ["5", "5", "17", "1.5 %"]
+
+
+def test_the_time_step_has_a_table_and_a_caution(report: Any, time_step_study: Study) -> None:
+    runs, analysis = time_step_study
+    analysis["time_step_summary"].loc[{"response": "impulse"}] = 1
+    page = report(runs, analysis)
+    table = "Convergence in the time step at fixed nodes"
+    assert _row(page, table, "Peak force")[1:4] == ["converged", "–", "2"]
+    assert _row(page, table, "Peak force")[-1] == "0.01 %"
+    assert "impulse (divergent" in _list(page, "Not converged in the time step")
+    assert NODES not in page.tables
 
 
 def test_sentences_name_significant_shares_alone(report: Any, sobol_study: Study) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis.convergence import nodes as convergence_in_nodes
+from impactlab.analysis.convergence import nodes as in_nodes
 from impactlab.analysis.convergence.axis import AxisVerdict, judge
 
 NODES = [51, 101, 201, 401, 801]
@@ -102,7 +102,7 @@ def test_analysis_of_a_grid(grid_runs: Build, verdicts_of: Callable[..., Any]) -
         peak_force=lambda nodes, velocity: 1e4 * velocity * (1 + 8 * _h(nodes) ** 2),
         peak_plastic_strain=lambda nodes, velocity: 1e-5 * (velocity > 10) / _h(nodes),
     )
-    found = convergence_in_nodes.analysis(runs)
+    found = in_nodes.analysis(runs)
     assert found["nodes_gci"].dims == ("response", "velocity")
     force = found.sel(response="peak_force")
     np.testing.assert_allclose(force["nodes_observed_order"], 2.0, rtol=1e-6)
@@ -124,7 +124,7 @@ def test_analysis_of_a_grid(grid_runs: Build, verdicts_of: Callable[..., Any]) -
 def test_ratio_comes_from_the_intervals(grid_runs: Build) -> None:
     """With N for N - 1 the order of these few nodes would be off by a tenth."""
     runs = grid_runs({"nodes": [5, 9, 21]}, peak_force=lambda nodes: 7 + _h(nodes) ** 2)
-    found = convergence_in_nodes.analysis(runs)
+    found = in_nodes.analysis(runs)
     assert found["nodes_observed_order"].item() == pytest.approx(2.0, abs=1e-9)
 
 
@@ -136,7 +136,7 @@ def test_a_failed_run_gives_no_number(grid_runs: Build, verdicts_of: Callable[..
     )
     runs["peak_force"][1, 2] = np.nan
     runs["status"][1, 2] = 32
-    found = convergence_in_nodes.analysis(runs)
+    found = in_nodes.analysis(runs)
     assert verdicts_of(found["nodes_summary"]) == ["undetermined", "converged_second_order"]
     gone = found.sel(response="peak_force", velocity=5.0)
     for name in ("nodes_observed_order", "nodes_extrapolated", "nodes_gci"):
@@ -148,13 +148,13 @@ def test_a_number_from_a_diverged_run_is_not_used(
 ) -> None:
     runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: 5 + _h(nodes) ** 2)
     runs["status"][0] = 1
-    found = convergence_in_nodes.analysis(runs)
+    found = in_nodes.analysis(runs)
     assert verdicts_of(found["nodes_verdict"]) == ["undetermined"]
 
 
 def test_says_that_time_step_and_spacing_go_together(grid_runs: Build) -> None:
     runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: 5 + _h(nodes) ** 2)
-    found = convergence_in_nodes.analysis(runs)
+    found = in_nodes.analysis(runs)
     for name in ("nodes_observed_order", "nodes_gci", "nodes_verdict", "nodes_summary"):
         assert "space and time together" in found[name].attrs["comment"]
 
@@ -162,10 +162,10 @@ def test_says_that_time_step_and_spacing_go_together(grid_runs: Build) -> None:
 @pytest.mark.parametrize(("nodes", "applies"), [([51, 101], False), ([51, 101, 201], True)])
 def test_needs_three_grids(grid_runs: Build, nodes: list[int], applies: bool) -> None:
     runs = grid_runs({"nodes": nodes}, peak_force=lambda nodes: nodes)
-    assert convergence_in_nodes.applies(runs) is applies
+    assert in_nodes.applies(runs) is applies
 
 
 def test_refuses_repeated_nodes(grid_runs: Build) -> None:
     runs = grid_runs({"nodes": [51, 101, 101]}, peak_force=lambda nodes: nodes)
     with pytest.raises(ValueError, match="must rise"):
-        convergence_in_nodes.analysis(runs)
+        in_nodes.analysis(runs)

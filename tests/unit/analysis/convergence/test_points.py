@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis.convergence import points as convergence_in_points
+from impactlab.analysis.convergence import points as in_points
 
 POINTS = [2, 3, 5, 9, 17]
 Build = Callable[..., xr.Dataset]
@@ -40,7 +40,7 @@ def test_every_verdict(
     runs = grid_runs(
         {"points": POINTS}, peak_force=lambda points: [lookup[p] for p in points.values]
     )
-    found = convergence_in_points.analysis(runs)
+    found = in_points.analysis(runs)
     assert found["points_needed"].item() == pytest.approx(needed, nan_ok=True)
     assert verdicts_of(found["points_verdict"]) == [verdict]
     assert np.isfinite(values[-1]) == bool((found["points_error"][0, -1] == 0).item())
@@ -55,7 +55,7 @@ def test_errors_are_relative_to_the_most_points(
             -velocity * (1 + (rule == "layers") * points**-3.0)
         ),
     )
-    found = convergence_in_points.analysis(runs)
+    found = in_points.analysis(runs)
     error = found["points_error"]
     assert error.dims == ("response", "rule", "points", "velocity")
     assert error["points"].values.tolist() == [9, 3, 33, 5]
@@ -74,11 +74,31 @@ def test_errors_are_relative_to_the_most_points(
 
 def test_a_reference_of_zero_makes_other_values_infinitely_wrong(grid_runs: Build) -> None:
     runs = grid_runs({"points": [2, 3]}, peak_plastic_strain=lambda points: 1e-3 * (points < 3))
-    found = convergence_in_points.analysis(runs)
+    found = in_points.analysis(runs)
     assert found["points_error"].values.tolist() == [[np.inf, 0.0]]
 
 
 @pytest.mark.parametrize(("points", "applies"), [([3], False), ([3, 5], True)])
 def test_needs_two_values(grid_runs: Build, points: list[int], applies: bool) -> None:
     runs = grid_runs({"points": points}, peak_force=lambda points: points)
-    assert convergence_in_points.applies(runs) is applies
+    assert in_points.applies(runs) is applies
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        ([1.0, 1.1, 0.8], [0.3, 0.3, 0.6]),
+        ([1.0, 1.1, 1.0], [0.3, 0.3, 0.3]),  # a chance hit is no certainty
+        ([1.0, 1.1, np.nan], [0.3, 0.3, np.inf]),
+        ([1.0, np.nan, 1.1], [np.inf] * 3),
+        ([1.0], [np.inf]),
+    ],
+)
+def test_uncertainty_of_each_number_of_points(values: Any, expected: Any) -> None:
+    np.testing.assert_allclose(in_points.numerical_uncertainty(values), expected)
+
+
+def test_uncertainty_with_the_most_points_is_relative(grid_runs: Build) -> None:
+    runs = grid_runs({"points": [5, 3]}, peak_force=lambda points: 2.0 + 0.1 * (points < 5))
+    found = in_points.analysis(runs)
+    assert found["points_uncertainty"].item() == pytest.approx(0.15)

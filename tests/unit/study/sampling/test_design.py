@@ -3,10 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
+from SALib.analyze import sobol as sobol_analysis
 
-from impactlab.dataset import ANALYSESfrom SALib.analyze import sobol as sobol_analysis
-
-from impactlab.dataset import RESPONSES
+from impactlab.dataset import ANALYSES, RESPONSES
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS
 from impactlab.study.errors import StudyError

@@ -1,0 +1,95 @@
+"""The uncertainty of each grid holds the limit, and is infinite where nothing can be said."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from impactlab.analysis.convergence.uncertainty import How, numerical_uncertainty
+
+H = 2.0 ** np.arange(5)
+
+
+@pytest.mark.parametrize("order", [0.6, 1.0, 1.5, 2.0, 2.8])
+@pytest.mark.parametrize("grids", [2, 3, 4, 5])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_every_grid_of_a_converging_sequence_holds_the_limit(
+    order: float, grids: int, sign: float
+) -> None:
+    h = H[:grids]
+    values = 5.0 + sign * 1e-3 * h**order
+    found = numerical_uncertainty(values, h)
+    errors = abs(values - 5.0)
+    if grids > 2 or order >= 1:  # of two grids the first order is assumed, with a factor of 3
+        assert (found.amounts >= errors).all()
+    if order <= 2 and grids > 2:
+        assert (found.amounts <= 1.5 * errors).all()
+
+
+@pytest.mark.parametrize(
+    ("values", "how"),
+    [
+        ([2.0, 2.0, 2.0 + 1e-10], How.ROUND_OFF),
+        ([0.0, 0.0, 0.0, 0.0], How.ROUND_OFF),
+        ([1.01, 1.04, 1.16], How.GCI),
+        ([1.01, 1.04, 1.16, 1.64], How.GCI_AND_FIT),
+        ([1.00, 1.02, 0.94, 1.01], How.FIT),
+        ([1.00, 1.02, 0.94], How.RANGE),
+        ([1.00, 1.02], How.TWO_GRIDS),
+        ([1.0, 2.0**0.3, 4.0**0.3], How.SLOW_DRIFT),
+        ([4.0, 2.0, 1.0], How.NOTHING),  # a strain that doubles
+        ([5.0, 4.0, 3.0, 2.0, 1.0], How.NOTHING),
+        ([1.0], How.NOTHING),
+        ([1.0, np.nan, np.nan], How.NOTHING),
+    ],
+)
+def test_what_it_rests_on(values: Any, how: How) -> None:
+    found = numerical_uncertainty(values, H[: len(values)])
+    assert found.how is how
+    assert np.isinf(found.amounts).all() == (how is How.NOTHING)
+
+
+def test_two_and_three_grids_by_hand() -> None:
+    np.testing.assert_allclose(numerical_uncertainty([1.0, 1.1], [1.0, 3.0]).amounts, [0.15, 0.25])
+    three = numerical_uncertainty([1.00, 1.02, 0.94], [1.0, 2.0, 4.0])
+    np.testing.assert_allclose(three.amounts, [0.24, 0.26, 0.30])
+
+
+def test_nasa_table() -> None:
+    """GCI of the finest 0.1031 %; the next lies further off by its distance."""
+    found = numerical_uncertainty([0.97050, 0.96854, 0.96178], [1.0, 2.0, 4.0])
+    assert found.amounts[0] / 0.97050 == pytest.approx(0.001031, abs=5e-7)
+    assert found.amounts[1] == pytest.approx(found.amounts[0] + 0.00196)
+
+
+def test_a_slow_drift_is_bounded_by_its_own_order() -> None:
+    values = 1.0 - 0.1 * H**0.3
+    found = numerical_uncertainty(values, H)
+    assert found.amounts[0] == pytest.approx(3 * 0.1)
+    assert not found.how.sound
+
+
+def test_a_missing_grid_is_left_out() -> None:
+    values = 5.0 + 1e-3 * H**2
+    values[2] = np.nan
+    found = numerical_uncertainty(values, H)
+    assert np.isinf(found.amounts).tolist() == [False, False, True, False, False]
+    assert found.amounts[0] >= 1e-3
+
+
+def test_scatter_that_passes_for_an_order_is_covered() -> None:
+    """Noise of a fifth of the finest error: the index alone holds 4 limits of 5."""
+    random, held = np.random.default_rng(5), 0
+    for _ in range(200):
+        values = 1.0 + 1e-3 * (H**2 + 0.2 * random.normal(size=5))
+        found = numerical_uncertainty(values, H)
+        held += bool((abs(values - 1.0) <= found.amounts).all())
+    assert held >= 0.95 * 200
+
+
+@pytest.mark.parametrize("spacings", [[2.0, 1.0, 4.0], [0.0, 1.0, 2.0], [1.0, 1.0, 2.0]])
+def test_refuses_spacings_that_do_not_rise(spacings: list[float]) -> None:
+    with pytest.raises(ValueError, match="must rise"):
+        numerical_uncertainty([1.0, 2.0, 3.0], spacings)
