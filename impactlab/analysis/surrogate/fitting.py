@@ -6,6 +6,8 @@ Least angle regression itself is scikit-learn's.
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
@@ -49,10 +51,11 @@ def fit(unit: Array, values: Array, seed: int) -> Chaos:
     degrees = candidates(
         unit.shape[1], min(_MOST_CANDIDATES, len(values) // 2), _highest_degree(unit)
     )
-    columns = basis(unit, degrees)
-    order = _order(columns, values)
-    count, coefficients = _least_squares(columns[order], values)
-    return Chaos(degrees[order[:count]], coefficients)
+    columns, mean = basis(unit, degrees), values.mean()
+    order = _order(columns, values - mean)
+    coefficients = _least_squares(columns[order], values - mean)
+    coefficients[0] += mean
+    return Chaos(degrees[order[: coefficients.size]], coefficients)
 
 
 def _highest_degree(unit: Array) -> int:
@@ -62,24 +65,31 @@ def _highest_degree(unit: Array) -> int:
 
 
 def _order(columns: Array, values: Array) -> list[int]:
-    """The terms in the order in which least angle regression takes them, the constant first."""
+    """The terms in the order in which least angle regression takes them, the constant first.
+
+    values: of mean zero.
+    """
+    from sklearn.exceptions import ConvergenceWarning
     from sklearn.linear_model import lars_path_gram  # takes a second
 
     centred = columns[1:] - columns[1:].mean(axis=1, keepdims=True)
-    centred /= np.sqrt((centred**2).mean(axis=1, keepdims=True))
-    covariance = centred @ (values - values.mean())
-    _, active, _ = lars_path_gram(
-        covariance,
-        centred @ centred.T,
-        n_samples=len(values),
-        max_iter=min(_MOST_TERMS, len(values) // 4),
-        alpha_min=_SMALLEST * np.abs(covariance).max() / len(values),
-    )
+    centred /= np.linalg.norm(centred, axis=1, keepdims=True)
+    covariance = centred @ values
+    with warnings.catch_warnings():
+        # Terms that the runs cannot tell apart: it drops one of them, as it should.
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        _, active, _ = lars_path_gram(
+            covariance,
+            centred @ centred.T,
+            n_samples=len(values),
+            max_iter=min(_MOST_TERMS, len(values) // 4),
+            alpha_min=_SMALLEST * np.abs(covariance).max() / len(values),
+        )
     return [0, *(int(term) + 1 for term in active)]
 
 
-def _least_squares(columns: Array, values: Array) -> tuple[int, Array]:
-    """How many of the terms, from the first, predict best, and their coefficients.
+def _least_squares(columns: Array, values: Array) -> Array:
+    """The coefficients of as many terms, from the first, as predict best.
 
     Best: the least leave-one-out error, which one QR decomposition gives for all counts at once,
     corrected for the number of terms k of n runs by (n + k)/(n - k): Blatman and Sudret (2011),
@@ -92,4 +102,4 @@ def _least_squares(columns: Array, values: Array) -> tuple[int, Array]:
     free = np.maximum(1 - np.cumsum(q**2, axis=1), _SMALLEST)
     error = ((residual / free) ** 2).mean(axis=0) * (runs + count) / (runs - count)
     best = int(np.argmin(error)) + 1
-    return best, scipy.linalg.solve_triangular(r[:best, :best], projected[:best])
+    return np.asarray(scipy.linalg.solve_triangular(r[:best, :best], projected[:best]))

@@ -67,14 +67,16 @@ def _coordinates(values: xr.DataArray, sample: Sample, numbers: Any) -> dict[str
 
 def _numbers(found: Found) -> dict[str, Any]:
     def row(name: str, none: float, words: str, **attrs: str) -> tuple[str, list[Any], Any]:
-        values = [getattr(one, name) if one else none for one in found]
+        values = [attrgetter(name)(one) if one else none for one in found]
         return "response", values, {"long_name": words, **attrs}
 
     error = "1 - mean squared error / variance over the runs held out"
     root = "root mean squared error over the runs held out, in the unit of the response"
     return {
-        "surrogate_q2": row("q2", np.nan, f"predictivity of the surrogate: {error}", units="1"),
-        "surrogate_rmse": row("rmse", np.nan, root),
+        "surrogate_q2": row(
+            "errors.q2", np.nan, f"predictivity of the surrogate: {error}", units="1"
+        ),
+        "surrogate_rmse": row("errors.rmse", np.nan, root),
         "surrogate_runs": row("runs", 0, "runs that the surrogate was fitted to", units="1"),
     }
 

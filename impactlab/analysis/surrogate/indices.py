@@ -26,6 +26,19 @@ class Indices:
 
 
 @dataclass(frozen=True)
+class Errors:
+    """On runs held out: 1 less mean squared error over variance, and the root of the former."""
+
+    q2: float
+    rmse: float
+
+    @property
+    def missed(self) -> float:
+        """Share of the variance that is not predicted, from 0 to 1."""
+        return min(max(1 - self.q2, 0.0), 1.0)
+
+
+@dataclass(frozen=True)
 class Fitted:
     """What a chaos was fitted to: unit (runs, parameters), values (runs,), block (runs,)."""
 
@@ -35,20 +48,20 @@ class Fitted:
 
 
 def indices(
-    chaos: Chaos, groups: Sequence[str], runs: Fitted, missed: float, confidence: float
+    chaos: Chaos, groups: Sequence[str], runs: Fitted, errors: Errors, confidence: float
 ) -> Indices:
     """Indices of first and total order, with intervals.
 
-    groups: of each parameter. missed: share of the variance of held-out runs that the chaos
-    misses. A half-width is the sum of two parts: the scatter of the coefficients, from the
-    residuals of the fit (the linearised bootstrap of whole blocks of runs; the choice of terms is
-    taken as given), and `missed`, for that share may belong to any parameter. All NaN where the
+    groups: of each parameter. errors: on runs held out. A half-width is the sum of two parts: the
+    scatter of the coefficients (the linearised bootstrap of whole blocks of runs, their residuals
+    as large as the errors on runs held out; the choice of terms is taken as given), and the share
+    of the variance that the chaos misses, for it may belong to any parameter. All NaN where the
     chaos is a constant.
     """
     alone, taking_part = _members(chaos, groups)
     varying = chaos.degrees.any(axis=1)
     whole = (chaos.coefficients[varying] ** 2).sum() or np.nan
-    influence = _influence(chaos, runs)
+    influence = _influence(chaos, runs, errors.rmse)
     factor = float(scipy.stats.norm.ppf((1 + confidence) / 2))
 
     def index(members: NDArray[np.bool_]) -> Array:
@@ -57,7 +70,7 @@ def indices(
     def half_width(members: NDArray[np.bool_]) -> Array:
         gradient = members - np.outer(index(members), varying)
         scatter = 2 * gradient * chaos.coefficients / whole @ influence
-        return np.asarray(factor * np.sqrt((scatter**2).sum(axis=1)) + missed)
+        return np.asarray(factor * np.sqrt((scatter**2).sum(axis=1)) + errors.missed)
 
     return Indices(index(alone), index(taking_part), half_width(alone), half_width(taking_part))
 
@@ -70,14 +83,17 @@ def _members(chaos: Chaos, groups: Sequence[str]) -> tuple[NDArray[np.bool_], ND
     return taking_part & (taking_part.sum(axis=0) == 1), taking_part
 
 
-def _influence(chaos: Chaos, runs: Fitted) -> Array:
+def _influence(chaos: Chaos, runs: Fitted, rmse: float) -> Array:
     """(terms, blocks): how far each block of runs draws each coefficient from the others'.
 
     Their outer product is the covariance of the coefficients that is robust to dependence within
-    blocks: Liang and Zeger (1986), Biometrika 73, 13.
+    blocks: Liang and Zeger (1986), Biometrika 73, 13. The residuals are scaled to the error on
+    runs held out: a fit of many terms to few blocks leaves residuals far smaller than that.
     """
     columns = basis(runs.unit, chaos.degrees)
-    scores = columns * (runs.values - chaos.coefficients @ columns)
+    residual = runs.values - chaos.coefficients @ columns
+    size = float(np.sqrt(np.mean(residual**2))) or 1.0
+    scores = columns * residual * (rmse / size)
     starts = np.flatnonzero(np.diff(runs.block, prepend=-1))
     pulls = np.add.reduceat(scores, starts, axis=1)
     return np.asarray(np.linalg.solve(columns @ columns.T, pulls))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from impactlab.analysis.surrogate.chaos import Array, Chaos
 from impactlab.analysis.surrogate.fitting import drawn, fewest_runs, fit
-from impactlab.analysis.surrogate.indices import Fitted, Indices, indices
+from impactlab.analysis.surrogate.indices import Errors, Fitted, Indices, indices
 from impactlab.analysis.surrogate.sample import Sample
 from impactlab.analysis.surrogate.verdict import SurrogateVerdict, after_testing, before_fitting
 
@@ -20,14 +20,13 @@ _FEWEST_TESTS = 10
 class Tested:
     """A chaos and how well it predicts.
 
-    predicted: (tests,), in the response's unit. q2: 1 less mean squared error over variance, of
-    the tests that have a value. rmse: root of that mean. runs: how many the chaos was fitted to.
+    predicted: (tests,), in the response's unit. errors: on the tests that have a value. runs: how
+    many the chaos was fitted to.
     """
 
     chaos: Chaos
     predicted: Array
-    q2: float
-    rmse: float
+    errors: Errors
     runs: int
     indices: Indices
 
@@ -47,7 +46,7 @@ def surrogate(values: Array, sample: Sample) -> tuple[SurrogateVerdict, Tested |
     if verdict in (SurrogateVerdict.TOO_FEW_RUNS, SurrogateVerdict.CONSTANT):
         return verdict, None
     tested = _tested(values, sample, training)
-    return after_testing(verdict, tested.q2), tested
+    return after_testing(verdict, tested.errors.q2), tested
 
 
 def _tested(values: Array, sample: Sample, training: NDArray[np.int64]) -> Tested:
@@ -55,15 +54,14 @@ def _tested(values: Array, sample: Sample, training: NDArray[np.int64]) -> Teste
     fitted = Fitted(sample.unit[rows], values[rows], sample.block[rows])
     chaos = fit(fitted.unit, fitted.values, sample.fit_seed)
     predicted = chaos(sample.unit[sample.tests])
-    q2, rmse = _errors(predicted, values[sample.tests])
-    missed = min(max(1 - q2, 0.0), 1.0)
-    found = indices(chaos, sample.groups, fitted, missed, sample.confidence)
-    return Tested(chaos, predicted, q2, rmse, rows.size, found)
+    errors = _errors(predicted, values[sample.tests])
+    found = indices(chaos, sample.groups, fitted, errors, sample.confidence)
+    return Tested(chaos, predicted, errors, rows.size, found)
 
 
-def _errors(predicted: Array, values: Array) -> tuple[float, float]:
-    """Predictivity, minus infinity where the values are all alike, and root mean square error."""
+def _errors(predicted: Array, values: Array) -> Errors:
+    """Of predictions with a value to hold them against; q2 is -inf where the values are alike."""
     known = np.isfinite(values)
     square = float(np.mean((predicted - values)[known] ** 2))
     variance = float(np.var(values[known]))
-    return 1 - square / variance if variance > 0 else -np.inf, float(np.sqrt(square))
+    return Errors(1 - square / variance if variance > 0 else -np.inf, float(np.sqrt(square)))

@@ -11,7 +11,7 @@ GOOD = 0.9
 """Predictivity on held-out runs from which on a surrogate needs no warning."""
 MOSTLY = 0.9
 FEW = 20
-"""Distinct values up to which a response jumps between levels."""
+"""Distinct values up to which a response jumps between levels, where each comes ten times."""
 
 
 class SurrogateVerdict(Verdict):
@@ -41,7 +41,11 @@ def before_fitting(values: Array, enough: bool) -> SurrogateVerdict:
     counts = np.unique(found, return_counts=True)[1]
     if counts.max() >= MOSTLY * found.size:
         return SurrogateVerdict.MOSTLY_CONSTANT
-    return SurrogateVerdict.JUMPS if counts.size <= FEW else SurrogateVerdict.USABLE
+    return (
+        SurrogateVerdict.JUMPS
+        if counts.size <= min(FEW, found.size // 10)
+        else SurrogateVerdict.USABLE
+    )
 
 
 def after_testing(before: SurrogateVerdict, predictivity: float) -> SurrogateVerdict:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from SALib.sample import fast_sampler
 from sklearn.linear_model import LinearRegression
 
 from impactlab.analysis.surrogate import fit
@@ -54,6 +55,21 @@ def test_few_levels_bound_the_degree(random: np.random.Generator) -> None:
     chaos = fit(unit, np.sin(5 * unit[:, 0]) + unit[:, 1], 0)
     assert chaos.degrees.max() <= 3
     np.testing.assert_allclose(chaos(unit), np.sin(5 * unit[:, 0]) + unit[:, 1], atol=1e-9)
+
+
+def test_terms_that_the_runs_cannot_tell_apart_do_no_harm(random: np.random.Generator) -> None:
+    """On the short curves of extended FAST many polynomials are each other's aliases."""
+    problem = {"num_vars": 3, "names": list("xyz"), "bounds": [[0, 1]] * 3}
+    unit, other = fast_sampler.sample(problem, 65, seed=3), random.random((200, 3))
+    chaos = fit(unit, np.exp(unit[:, 0]) * (1 + unit[:, 1]), 0)
+    exact = np.exp(other[:, 0]) * (1 + other[:, 1])
+    assert np.abs(chaos(other) - exact).max() < 0.5
+
+
+def test_a_small_change_of_a_large_value_is_seen(random: np.random.Generator) -> None:
+    unit, other = random.random((200, 2)), random.random((50, 2))
+    found = fit(unit, 1e6 + bent(np.c_[unit, unit[:, :1]]), 0)(other) - 1e6
+    assert np.abs(found - bent(np.c_[other, other[:, :1]])).max() < 0.1
 
 
 @pytest.mark.parametrize("seed", [0, 5])

@@ -9,16 +9,17 @@ import pytest
 
 from impactlab.analysis.surrogate.chaos import Chaos, basis
 from impactlab.analysis.surrogate.fitting import fit
-from impactlab.analysis.surrogate.indices import Fitted, Indices, indices
+from impactlab.analysis.surrogate.indices import Errors, Fitted, Indices, indices
 
 Z95 = 1.959964
 
 
-def _indices(
-    unit: Any, values: Any, groups: str, block: Any = None, missed: float = 0.0
-) -> Indices:
-    fitted = Fitted(unit, values, np.arange(len(unit)) if block is None else block)
-    return indices(fit(unit, values, 0), list(groups), fitted, missed, 0.95)
+EXACT = Errors(q2=1.0, rmse=0.0)
+
+
+def _indices(unit: Any, values: Any, groups: str, errors: Errors = EXACT) -> Indices:
+    fitted = Fitted(unit, values, np.arange(len(unit)))
+    return indices(fit(unit, values, 0), list(groups), fitted, errors, 0.95)
 
 
 def test_two_parameters_and_their_product() -> None:
@@ -42,7 +43,7 @@ def test_groups_take_their_parameters_together() -> None:
 
 def test_the_share_that_is_missed_widens_every_interval() -> None:
     unit = np.random.default_rng(0).random((200, 2))
-    found = _indices(unit, unit[:, 0], "xy", missed=0.07)
+    found = _indices(unit, unit[:, 0], "xy", Errors(q2=0.93, rmse=0.0))
     for half_width in (found.first_order_interval, found.total_order_interval):
         np.testing.assert_allclose(half_width, 0.07, atol=1e-9)
 
@@ -51,6 +52,7 @@ def test_the_share_that_is_missed_widens_every_interval() -> None:
 def test_intervals_tell_the_scatter_of_repeated_fits(copies: int) -> None:
     """Of noise that whole blocks share: copies of a run bring no knowledge."""
     random, found = np.random.default_rng(1), []
+    errors = Errors(q2=1.0, rmse=0.3)
     for _ in range(60):
         unit = random.random((300, 2))
         noise = 0.3 * random.standard_normal(300)
@@ -58,15 +60,24 @@ def test_intervals_tell_the_scatter_of_repeated_fits(copies: int) -> None:
         unit, block = np.repeat(unit, copies, axis=0), np.repeat(np.arange(300), copies)
         degrees = np.array([[0, 0], [1, 0], [0, 1]])
         chaos = Chaos(degrees, np.linalg.lstsq(basis(unit, degrees).T, values)[0])
-        one = indices(chaos, ["x", "y"], Fitted(unit, values, block), 0.0, 0.95)
+        one = indices(chaos, ["x", "y"], Fitted(unit, values, block), errors, 0.95)
         found.append([one.first_order[0], one.first_order_interval[0] / Z95])
     scatter, stated = np.std([row[0] for row in found]), np.mean([row[1] for row in found])
     assert 0.75 < stated / scatter < 1.33
 
 
+def test_the_error_on_runs_held_out_is_what_scatters() -> None:
+    """Not the residual, which a fit of many terms makes small."""
+    unit = np.random.default_rng(0).random((200, 2))
+    values = np.abs(unit[:, 0] - 0.3) + unit[:, 1]
+    one, other = (_indices(unit, values, "xy", Errors(1.0, rmse)) for rmse in (0.01, 0.03))
+    np.testing.assert_allclose(other.first_order_interval, 3 * one.first_order_interval)
+    assert (one.first_order_interval > 0).all()
+
+
 def test_a_constant_has_no_indices() -> None:
     unit = np.random.default_rng(0).random((50, 2))
     chaos = Chaos(np.zeros((1, 2), dtype=int), np.array([3.0]))
-    found = indices(chaos, ["x", "y"], Fitted(unit, unit[:, 0], np.arange(50)), 1.0, 0.95)
+    found = indices(chaos, ["x", "y"], Fitted(unit, unit[:, 0], np.arange(50)), EXACT, 0.95)
     assert np.isnan(found.first_order).all()
     assert np.isnan(found.total_order_interval).all()
