@@ -33,7 +33,7 @@ def _drawn(figure: Figure) -> Iterator[str]:
 
 
 def _axes(curve: Drawn) -> str:
-    return f"{curve.y_label} against {curve.x_label}"
+    return " against ".join(filter(None, (curve.y_label, curve.x_label)))
 
 
 def _curves(found: list[Drawn]) -> str:

@@ -51,7 +51,7 @@ def _described(runs: xr.Dataset, name: str) -> xr.DataArray:
 def _values(coordinate: xr.DataArray) -> list[Cell]:
     unit, size = words.unit(coordinate), coordinate.size
     if "distribution" in coordinate.attrs:
-        return [Cell(_distribution(coordinate)), Cell(f"{size} draws")]
+        return [Cell(_distribution(coordinate)), Cell(f"{size} draws", "number")]
     if size <= _LISTED or coordinate.dtype.kind not in "if":
         return [Cell(", ".join(words.values(coordinate, range(size))) + unit), Cell(str(size))]
     ends = [int(np.argmin(coordinate.values)), int(np.argmax(coordinate.values))]
