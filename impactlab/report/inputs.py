@@ -45,7 +45,9 @@ def fixed_parameters(runs: xr.Dataset) -> Table:
 
 
 def _described(runs: xr.Dataset, name: str) -> xr.DataArray:
-    return runs[name].assign_attrs(attributes(name) | runs[name].attrs)
+    """With the attributes of the table, where it knows the parameter."""
+    table = attributes(name) if name in (*PARAMETERS, "duration") else {}
+    return runs[name].assign_attrs(table | runs[name].attrs)
 
 
 def _values(coordinate: xr.DataArray) -> list[Cell]:
