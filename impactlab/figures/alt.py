@@ -8,6 +8,7 @@ from itertools import groupby
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from impactlab.figures import data
 from impactlab.figures.data import Drawn
@@ -19,21 +20,22 @@ _PANELS, _CURVES = 5, 3
 
 def alt(figure: Figure) -> str:
     """Each panel in a sentence: where its bars are longest, or the ranges of its curves."""
-    told = [*_drawn(figure), *_maps(figure), *_remarks(figure)]
+    curves = list(data.drawn(figure))
+    told = [*_drawn(curves), *_maps(figure), *_remarks(figure, {one.panel for one in curves})]
     shown = " ".join(told[:_PANELS])
     more = len(told) - _PANELS
     return f"{shown} And {words.counted(more, 'more panel')}." if more > 0 else shown
 
 
-def _drawn(figure: Figure) -> Iterator[str]:
-    for panel, curves in groupby(data.drawn(figure), key=lambda curve: curve.panel):
-        found = list(curves)
+def _drawn(curves: list[Drawn]) -> Iterator[str]:
+    for panel, group in groupby(curves, key=lambda curve: curve.panel):
+        found = list(group)
         name = panel if not panel.startswith("panel ") else _axes(found[0])
         yield f"{name}: {_curves(found)}."
 
 
 def _axes(curve: Drawn) -> str:
-    return f"{curve.y_label} against {curve.x_label}"
+    return " against ".join(filter(None, (curve.y_label, curve.x_label)))
 
 
 def _curves(found: list[Drawn]) -> str:
@@ -55,21 +57,24 @@ def _curve(curve: Drawn) -> str:
 
 def _maps(figure: Figure) -> Iterator[str]:
     for ax in figure.axes:
-        if not ax.images:
-            continue
-        cells: np.ndarray = np.ma.filled(
-            np.ma.masked_invalid(np.ma.asarray(ax.images[-1].get_array())), -np.inf
-        )
-        row, column = np.unravel_index(int(cells.argmax()), cells.shape)
-        if np.isfinite(cells[row, column]):
+        cells = _cells(ax)
+        if cells.size:
+            row, column = np.unravel_index(int(cells.argmax()), cells.shape)
             where = f"row {row + 1}, column {column + 1}"
             yield f"{_title(ax)}: largest in {where} ({_number(float(cells[row, column]))})."
 
 
-def _remarks(figure: Figure) -> Iterator[str]:
+def _cells(ax: Axes) -> NDArray[np.float64]:
+    """The cells of a map, −∞ where there is nothing; empty where no cell has a number."""
+    image = np.ma.asarray(ax.images[-1].get_array()) if ax.images else np.ma.masked_all((0, 0))
+    cells = np.ma.filled(np.ma.masked_invalid(image), -np.inf)
+    return np.asarray(cells if np.isfinite(cells).any() else [], dtype=float)
+
+
+def _remarks(figure: Figure, drawn: set[str]) -> Iterator[str]:
     """Panels with words in place of data."""
     for ax in figure.axes:
-        if ax.texts and not (ax.lines or ax.containers or ax.images):
+        if ax.texts and _title(ax) not in drawn and not _cells(ax).size:
             yield f"{_title(ax)}: {' '.join(ax.texts[0].get_text().split())}."
 
 
@@ -77,7 +82,7 @@ def _title(ax: Axes) -> str:
     return ax.get_title(loc="left") or "Panel"
 
 
-def _range(values: np.ndarray) -> str:
+def _range(values: NDArray[np.float64]) -> str:
     low, high = _number(float(values.min())), _number(float(values.max()))
     return low if low == high else f"{low} to {high}"
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from impactlab.figures import responses_grid, scales, style
-from impactlab.figures.reading import measures, verdicts, words
+from impactlab.figures.reading import measures, missing, verdicts, words
 from impactlab.figures.reading.measures import Measure, asked
 
 _SAMPLES = "base_samples"
@@ -47,7 +47,8 @@ class IndexConvergence:
             f"The {self.measure.words} index from the first samples alone, up to all "
             f"{int(analysis[_SAMPLES].max())} base samples; bands: {verdicts.confidence(analysis)} "
             "intervals, cut off outside −0.25 to 1.25. Indices that still drift beyond their bands "
-            "at the right need more samples."
+            "at the right need more samples. "
+            f"{missing.note(runs, asked(runs, analysis))}".strip()
         )
 
     @style.paper

@@ -66,7 +66,7 @@ def _plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> N
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
         return
-    ax.set(xlabel=f"µ* ({unit.symbol or '–'})", ylabel=f"σ ({unit.symbol or '–'})")
+    ax.set(xlabel=words.axis("mean µ*", unit.symbol), ylabel=words.axis("spread σ", unit.symbol))
     _guides(ax, right=float(np.nanmax(x + np.nan_to_num(margin, posinf=0.0))), top=np.nanmax(y))
 
 

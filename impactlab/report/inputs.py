@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import VARIABLES, attributes
+from impactlab.dataset import attributes
 from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import names, varied
 from impactlab.figures.reading.units import display
@@ -45,14 +45,15 @@ def fixed_parameters(runs: xr.Dataset) -> Table:
 
 
 def _described(runs: xr.Dataset, name: str) -> xr.DataArray:
-    told = attributes(name) if name in PARAMETERS or name in VARIABLES else {}
-    return runs[name].assign_attrs(told | runs[name].attrs)
+    """With the attributes of the table, where it knows the parameter."""
+    table = attributes(name) if name in (*PARAMETERS, "duration") else {}
+    return runs[name].assign_attrs(table | runs[name].attrs)
 
 
 def _values(coordinate: xr.DataArray) -> list[Cell]:
     unit, size = words.unit(coordinate), coordinate.size
     if "distribution" in coordinate.attrs:
-        return [Cell(_distribution(coordinate)), Cell(f"{size} draws")]
+        return [Cell(_distribution(coordinate)), Cell(f"{size} draws", "number")]
     if size <= _LISTED or coordinate.dtype.kind not in "if":
         return [Cell(", ".join(words.values(coordinate, range(size))) + unit), Cell(str(size))]
     ends = [int(np.argmin(coordinate.values)), int(np.argmax(coordinate.values))]

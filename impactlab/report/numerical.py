@@ -53,14 +53,14 @@ def _lost(analysis: xr.Dataset, name: str, measure: str, label: str) -> Iterator
     lost = index.numerically_lost
     if lost.any():
         told = [
-            f"{key} ({value:.3f} against {bound:.3f})".replace("-", "−")
-            for key, value, bound in zip(
-                keys[lost], index.values[lost], index.numerical[lost], strict=True
-            )
+            f"{key} ({value:.3f})".replace("-", "−")
+            for key, value in zip(keys[lost], index.values[lost], strict=True)
         ]
+        bound = words.number(float(index.numerical[lost].max()), 2)
         yield (
-            f"{words.sentence(words.response(name))}: not resolved at this discretisation, for the "
-            f"{label} index is below what the numerical error could change: {words.listing(told)}."
+            f"{words.sentence(words.response(name))}, {label}: not resolved at this "
+            "discretisation, for the numerical error could change these indices by as much (up to "
+            f"{bound}): {words.listing(told)}."
         )
 
 

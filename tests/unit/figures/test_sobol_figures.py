@@ -97,9 +97,24 @@ def test_histograms_count_every_finite_run(study: Study, failing: Any) -> None:
     assert "56 of 256 runs are missing" in caption
 
 
-def test_counts_get_a_bin_each(study: Study) -> None:
+def test_few_values_get_a_bar_each(study: Study) -> None:
     runs, analysis = study
     runs["number_of_contacts"][:100] = 3.0
     runs["number_of_contacts"][100:110] = 5.0
     axes = _panel(CATALOGUE["response_distributions"].plot(runs, analysis), "Number of contacts")
-    assert [bar.get_height() for bar in axes.containers[0].patches] == [146, 100, 0, 10]
+    bars = axes.containers[0].patches
+    assert [bar.get_height() for bar in bars] == [146, 100, 10]
+    assert [bar.get_x() + bar.get_width() / 2 for bar in bars] == [2.0, 3.0, 5.0]
+    caption = CATALOGUE["response_distributions"].caption(runs, analysis)
+    assert "Bars, for there are few values: number of contacts." in caption
+
+
+def test_a_value_that_most_runs_share_is_told_and_does_not_hide_the_rest(study: Study) -> None:
+    runs, analysis = study
+    runs["restitution"][:192] = 0.0
+    figure = CATALOGUE["response_distributions"].plot(runs, analysis)
+    axes = _panel(figure, "Restitution")
+    assert sum(bar.get_height() for bar in axes.containers[0].patches) == 64
+    assert _words(axes) == ["75 % of the runs: 0\n(not drawn)"]
+    caption = CATALOGUE["response_distributions"].caption(runs, analysis)
+    assert "Mostly one value, drawn without it: restitution." in caption

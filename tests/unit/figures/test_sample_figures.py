@@ -1,0 +1,155 @@
+"""Scatters, bars of other methods, convergence of indices and failures of a sample."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import samples
+import scipy.stats
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.container import BarContainer
+from matplotlib.figure import Figure
+
+from impactlab.figures import data, draw
+from impactlab.figures.alt import alt
+from impactlab.figures.catalogue import CATALOGUE
+from impactlab.figures.failure_shares import wilson
+from impactlab.figures.scatter import Scatter, conditional_mean
+
+Study = tuple[xr.Dataset, xr.Dataset]
+
+
+@pytest.fixture
+def study() -> Study:
+    """Two responses, four parameters, the fastest 40 of 400 runs failed."""
+    runs = samples.sample(400, 4, failures=40)[["peak_force", "remote_plastic_strain", "status"]]
+    return runs, samples.indices(runs)
+
+
+def _panel(figure: Figure, title: str) -> Axes:
+    return next(ax for ax in figure.axes if ax.get_title(loc="left").startswith(title))
+
+
+def test_the_conditional_mean_of_a_known_law() -> None:
+    random = np.random.default_rng(0)
+    x = random.uniform(0.0, 1.0, 40_000)
+    y = x**2 + random.normal(0.0, 0.1, x.size)
+    middle, mean = conditional_mean(x, y)
+    assert middle.size == 20
+    # the mean of x² over a bin of width 1/20 is its middle squared, plus a twelfth of 1/20²
+    np.testing.assert_allclose(mean, middle**2 + 0.05**2 / 12, atol=4 * 0.1 / np.sqrt(2000))
+
+
+def test_runs_of_one_value_share_a_bin() -> None:
+    x = np.repeat([0.0, 1 / 3, 2 / 3, 1.0], 100)  # the levels of Morris
+    middle, mean = conditional_mean(x, 2 * x)
+    np.testing.assert_allclose(middle, [0.0, 1 / 3, 2 / 3, 1.0])
+    np.testing.assert_allclose(mean, 2 * middle)
+
+
+def test_points_are_a_picture_and_the_file_stays_small(tmp_path: Path) -> None:
+    runs = samples.sample(20_000)[["peak_force", "status"]]
+    figure = Scatter("peak_force").plot(runs, xr.Dataset())
+    points = [line for ax in figure.axes for line in ax.lines if line.get_label() == "_runs"]
+    assert len(points) == 9
+    assert {len(np.asarray(line.get_xdata())) for line in points} == {2000}
+    svg, _ = draw.save(figure, tmp_path, "scatter")
+    assert svg.stat().st_size < 800_000
+    assert {curve.curve for curve in data.drawn(figure)} == {"conditional mean"}
+    assert "2000 of the 20000 runs" in Scatter("peak_force").caption(runs, xr.Dataset())
+
+
+def test_noise_is_pale_and_the_dummy_a_line(study: Study) -> None:
+    axes = _panel(CATALOGUE["sobol_indices"].plot(*study), "Peak force")
+    for bars in (entry for entry in axes.containers if isinstance(entry, BarContainer)):
+        assert [bar.get_alpha() for bar in bars.patches] == [None, None, 0.45, 0.45]
+    floors = [line.get_segments()[0][0][0] for line in axes.collections if line.get_linestyle()]
+    assert 0.03 in np.round(floors, 6)
+
+
+def test_bars_are_told_by_the_name_of_their_parameter(study: Study) -> None:
+    first = next(data.drawn(CATALOGUE["delta_indices"].plot(*study)))
+    assert first.category[:2] == ["impact velocity", "yield stress of the beam"]
+    assert first.x.tolist() == study[1]["delta"].sel(response="peak_force").values.tolist()
+
+
+def test_signed_coefficients_have_the_dummy_on_both_sides(study: Study) -> None:
+    axes = _panel(CATALOGUE["regression_indices"].plot(*study), "Peak force")
+    ends = {round(float(s[0][0]), 6) for line in axes.collections for s in line.get_segments()}
+    assert {-0.03, 0.03} <= ends
+
+
+def test_morris_in_the_unit_of_the_response(study: Study) -> None:
+    _, analysis = study
+    figure = CATALOGUE["morris_plane"].plot(*study)
+    axes = _panel(figure, "Peak force")
+    assert axes.get_xlabel() == "Mean µ* (kN)"
+    points = [curve for curve in data.drawn(figure) if curve.panel == "Peak force"]
+    stored = analysis.sel(response="peak_force")
+    expected = 1e-3 * np.array([stored["morris_mu_star"], stored["morris_sigma"]]).T
+    np.testing.assert_allclose([[p.x[0], p.y[0]] for p in points], expected)
+
+
+def test_convergence_of_the_indices_is_the_stored_one(study: Study) -> None:
+    _, analysis = study
+    axes = _panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")
+    stored = analysis["total_order_by_samples"].sel(response="peak_force")
+    for at, line in enumerate(axes.lines):
+        np.testing.assert_allclose(np.asarray(line.get_ydata()), stored.isel(parameter=at))
+    assert "up to all 32 base samples" in CATALOGUE["total_order_convergence"].caption(*study)
+
+
+@pytest.mark.parametrize(("failed", "total"), [(0, 40), (3, 50), (40, 40), (500, 8192)])
+def test_the_interval_of_a_share_is_scipys(failed: int, total: int) -> None:
+    other = scipy.stats.binomtest(failed, total).proportion_ci(method="wilson")
+    assert wilson(failed, total) == pytest.approx((other.low, other.high), abs=1e-12)
+
+
+def test_the_share_of_failures_rises_where_they_are(study: Study) -> None:
+    figure = CATALOGUE["failure_shares"].plot(*study)
+    velocity, stress, *_ = data.drawn(figure)
+    np.testing.assert_allclose(velocity.y, 9 * [0.0] + [100.0])
+    assert stress.y.max() < 30.0
+    assert "40 of 400 runs failed" in CATALOGUE["failure_shares"].caption(*study)
+
+
+def test_the_map_is_over_the_parameter_that_tells_failures(study: Study) -> None:
+    runs, _ = study
+    caption = CATALOGUE["failure_map"].caption(*study)
+    assert "impact velocity 1.00" in caption
+    failed = np.isnan(runs["peak_force"].values)
+    found = scipy.stats.ks_2samp(
+        runs["beam_yield_stress"].values[failed], runs["beam_yield_stress"].values[~failed]
+    )
+    if "yield stress of the beam" in caption:
+        assert f"yield stress of the beam {found.statistic:.2f}" in caption
+    points = next(
+        c for c in data.drawn(CATALOGUE["failure_map"].plot(*study)) if c.curve == "failed"
+    )
+    np.testing.assert_allclose(np.sort(points.x), np.sort(runs["velocity"].values[failed]))
+
+
+def test_without_failures_there_is_no_map() -> None:
+    runs = samples.sample(64)
+    assert not CATALOGUE["failure_map"].applies(runs, xr.Dataset())
+    assert not CATALOGUE["failure_shares"].applies(runs, xr.Dataset())
+
+
+def test_alternative_texts_tell_what_is_largest(study: Study) -> None:
+    bars = alt(CATALOGUE["sobol_indices"].plot(*study))
+    assert bars.startswith("Peak force: first order: largest for impact velocity (0.711); total")
+    cells = alt(CATALOGUE["sobol_second_order"].plot(*study))
+    assert cells.startswith("Peak force: largest in row 1, column 2 (0.07).")
+    lines = alt(CATALOGUE["total_order_convergence"].plot(*study))
+    assert lines.startswith("Peak force: highest of 4: impact velocity: ")
+
+
+def test_an_empty_panel_is_told(study: Study) -> None:
+    runs, analysis = study
+    for name in ("first_order", "total_order", "second_order"):
+        analysis[name].loc[{"response": "peak_force"}] = np.nan
+    for figure in ("sobol_indices", "sobol_second_order"):
+        assert "Peak force: undefined: usable." in alt(CATALOGUE[figure].plot(runs, analysis))

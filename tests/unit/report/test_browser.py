@@ -1,0 +1,151 @@
+"""The report of a sample, read and clicked through in a browser."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import samples
+
+from impactlab.figures.draw import draw_all
+from impactlab.report.report import write_report
+
+pytestmark = [pytest.mark.chromium, pytest.mark.slow]
+CHROMIUM = shutil.which("chromium")
+FLAGS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+FOCUS = "document.activeElement"
+Page = Any
+"""A page of playwright's, with what it asked for (`asked`) and complained of (`complaints`)."""
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A report with failures, a mostly constant response and every kind of index."""
+    folder = tmp_path_factory.mktemp("sample")
+    runs = samples.sample(128, failures=5)[["peak_force", "remote_plastic_strain", "status"]]
+    analysis = samples.indices(runs)
+    draw_all(runs, analysis, folder / "figures")
+    write_report(runs, analysis, folder / "figures", folder / "report.html")
+    return (folder / "report.html").as_uri()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Chromium, as Debian has it."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    if CHROMIUM is None:
+        pytest.skip("there is no command chromium")
+    with playwright.sync_playwright() as driver:
+        chromium = driver.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def page(browser: Any, address: str) -> Iterator[Page]:
+    """The report, opened; at the end it must have asked for nothing and complained of nothing."""
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    asked: list[str] = []
+    complaints: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("console", lambda message: complaints.append(message.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(address)
+    yield page
+    page.close()
+    assert [url for url in asked if not url.startswith(("data:", address))] == []
+    assert complaints == []
+
+
+def test_the_keyboard_reaches_everything_in_the_order_of_the_page(page: Page) -> None:
+    wanted = page.evaluate(
+        "[...document.querySelectorAll('a[href], summary, [tabindex=\"0\"]')]"
+        ".filter(e => e.checkVisibility({contentVisibilityAuto: true})).length"
+    )
+    seen = []
+    for _ in range(wanted):
+        page.keyboard.press("Tab")
+        seen.append(
+            page.evaluate(
+                f"[{FOCUS}.tagName, {FOCUS}.getAttribute('href'), "
+                f"parseFloat(getComputedStyle({FOCUS}).outlineWidth)]"
+            )
+        )
+    assert seen[0][:2] == ["A", "#main"]
+    assert all(name in ("A", "SUMMARY", "DIV", "PRE") for name, _, _ in seen)
+    assert all(outline >= 2 for _, _, outline in seen), "focus is not visible"
+    links = page.locator("a[href]:visible").count()
+    assert len({href for _, href, _ in seen if href}) == links > 15
+
+
+def test_the_navigation_leads_to_each_section(page: Page) -> None:
+    links = page.locator("nav a")
+    titles = links.all_inner_texts()
+    assert titles[0] == "Before using these numbers"
+    assert titles.index("First and total order") < titles.index("Ranking")
+    assert titles[-1] == "Provenance"
+    for at, title in enumerate(titles):
+        links.nth(at).click()
+        target = page.locator(page.url.partition("#")[2].join(("#", "")))
+        assert title in target.locator("h2").first.inner_text()
+        top = target.evaluate("e => e.getBoundingClientRect().top")
+        assert -1 < top < 900
+    assert page.locator("main section").count() == len(titles)
+
+
+def test_every_fold_opens_by_keyboard_and_holds_a_table(page: Page) -> None:
+    folds = page.locator("details")
+    assert folds.count() > 12
+    for at in range(folds.count()):
+        fold = folds.nth(at)
+        assert not fold.locator("table").is_visible()
+        fold.locator("summary").focus()
+        page.keyboard.press("Enter")
+        assert fold.locator("tbody tr").first.is_visible()
+
+
+@pytest.mark.parametrize("width", [1280, 400])
+def test_nothing_is_wider_than_the_window(page: Page, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 900})
+    for fold in page.locator("details").all():
+        fold.evaluate("e => e.open = true")
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_every_figure_is_drawn_and_told(page: Page) -> None:
+    figures = page.locator("figure img")
+    assert figures.count() == len(page.locator("figcaption").all()) > 10
+    drawn = figures.evaluate_all("all => all.map(e => e.complete && e.naturalWidth > 0)")
+    assert all(drawn)
+    told = figures.evaluate_all("all => all.map(e => e.alt)")
+    assert len(set(told)) == len(told)
+    bars = next(text for text in told if text.startswith("Sobol indices."))
+    assert "Peak force: first order: largest for impact velocity (0.711)" in bars
+
+
+def test_what_is_in_doubt_is_named_beside_the_numbers(page: Page) -> None:
+    rows = page.locator("#sensitivity > .scroll tbody tr", has_text="Remote plastic strain")
+    assert rows.count() == 2
+    assert all("mostly constant" in text for text in rows.all_inner_texts())
+
+
+def test_prints_without_cutting(page: Page, tmp_path: Path) -> None:
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": 660, "height": 900})  # between the margins of A4, at 96 dpi
+    assert page.evaluate("document.documentElement.scrollWidth") <= 660
+    assert not page.locator("nav").is_visible()
+    heights = page.locator("figure img").evaluate_all("all => all.map(e => e.offsetHeight)")
+    assert max(heights) < 21 / 2.54 * 96 + 1
+    page.pdf(path=tmp_path / "report.pdf", prefer_css_page_size=True)
+    assert (tmp_path / "report.pdf").stat().st_size > 100_000

@@ -1,0 +1,270 @@
+"""The report of a sample: its sections, sentences, tables and files."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import html5lib
+import numpy as np
+import pytest
+import samples
+import xarray as xr
+
+from impactlab.figures.draw import draw_all
+from impactlab.report import numerical, ranking, surrogate
+from impactlab.report.drawn_data import drawn_data
+from impactlab.report.report import write_report
+from impactlab.report.tidy import write_indices
+
+Study = tuple[xr.Dataset, xr.Dataset]
+PEAK = {"response": "peak_force"}
+
+
+@pytest.fixture
+def study() -> Study:
+    """Two responses, four parameters, all indices; no number is in doubt for numerical error."""
+    runs = samples.sample(64, 4)[["peak_force", "remote_plastic_strain", "status"]]
+    analysis = samples.indices(runs)
+    analysis["first_order_numerical"][:] = analysis["total_order_numerical"][:] = 0.0
+    return runs, analysis
+
+
+def _titles(page: Any) -> list[str]:
+    return [attrs["id"] for attrs in page.named("section")]
+
+
+def _table(page: Any, start: str) -> list[list[str]]:
+    return next(rows for caption, rows in page.tables.items() if caption.startswith(start))
+
+
+def test_sections_stand_in_the_order_of_sensobol(report: Any, study: Study) -> None:
+    assert _titles(report(*study)) == [
+        "cautions",
+        "runs",
+        "results",
+        "scatter",
+        "sensitivity",
+        "second-order",
+        "index-convergence",
+        "ranking",
+        "morris",
+        "delta",
+        "pawn",
+        "regression",
+        "surrogate",
+        "outcome",
+        "numerical",
+        "figures",
+        "notes",
+        "provenance",
+    ]
+
+
+def test_figures_are_numbered_as_they_stand(study: Study, tmp_path: Path, page: Any) -> None:
+    runs, analysis = study
+    kept = ["first_order", "total_order", "sensitivity_verdict", "numerical_uncertainty"]
+    draw_all(runs, analysis[kept], tmp_path / "figures")
+    write_report(runs, analysis[kept], tmp_path / "figures", tmp_path / "report.html")
+    text = (tmp_path / "report.html").read_text("utf-8")
+    places = [text.index(f"<strong>Figure {number}.") for number in range(1, 5)]
+    assert places == sorted(places)
+    assert "<strong>Figure 5." not in text
+    found = page(text)
+    for attrs in found.named("a"):
+        if not attrs["href"].startswith("#"):
+            assert (tmp_path / attrs["href"]).exists()
+    html5lib.HTMLParser(strict=True).parse(text)
+
+
+def test_an_index_within_the_dummys_interval_is_not_named(study: Study) -> None:
+    runs, analysis = study
+    analysis["dummy_first_order"].loc[PEAK] = 0.2
+    (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
+    assert "71 % (± 3) of the variance of the peak force comes from the impact velocity" in sentence
+    assert "yield stress" not in sentence
+    analysis["dummy_first_order"].loc[PEAK] = 0.8
+    (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
+    assert sentence.startswith("No parameter alone has a significant share")
+
+
+def test_an_index_below_the_numerical_error_is_not_named_but_warned_of(study: Study) -> None:
+    runs, analysis = study
+    assert numerical.warnings(runs, analysis) == []
+    analysis["first_order_numerical"].loc[PEAK] = [0.0, 0.2, 0.0, 0.0]
+    assert "yield stress" not in ranking.sentences(runs, analysis, ranking.SOBOL)[0]
+    (warning,) = numerical.warnings(runs, analysis)
+    value = float(analysis["first_order"].sel(PEAK)[1])
+    assert warning == (
+        "Peak force, first order: not resolved at this discretisation, for the numerical error "
+        "could change these indices by as much (up to 0.2): yield stress of the beam "
+        f"({value:.3f})."
+    )
+
+
+def test_the_numerical_warning_is_a_caution_and_in_the_table(report: Any, study: Study) -> None:
+    runs, analysis = study
+    analysis["total_order_numerical"].loc[PEAK] = 0.5
+    page = report(runs, analysis)
+    assert "Some indices are below what the numerical error could change" in page.text
+    row = next(r for r in _table(page, "Sobol indices, total order") if r[0] == "Peak force")
+    assert row[1] == "0.79 ± 0.04"
+    assert row[2].endswith("below numerical error")
+    assert _table(page, "Numerical uncertainty")[1] == ["Peak force", "0.5 %", "0.2 %"]
+
+
+def test_ranks_are_shown_as_far_as_known(report: Any, study: Study) -> None:
+    runs, analysis = study
+    analysis["total_order"].loc[PEAK] = [0.5, 0.46, 0.2, 0.01]
+    page = report(runs, analysis)
+    rows = _table(page, "Ranks of the parameters by Sobol indices, total order")
+    assert rows[1] == ["Peak force", "1–2", "1–2", "3", "noise"]
+
+
+def test_the_verdict_stands_beside_every_number(report: Any, study: Study) -> None:
+    page = report(*study)
+    starts = ("Sobol", "Ranks", "Delta", "PAWN", "Regression", "Elementary", "The surrogate on")
+    tables = [rows for caption, rows in page.tables.items() if caption.startswith(starts)]
+    assert len(tables) == 11
+    for rows in tables:
+        assert rows[2][0] == "Remote plastic strainmostly constant"
+
+
+def test_morris_in_words(study: Study) -> None:
+    runs, analysis = study
+    analysis["morris_mu_star"].loc[PEAK] = [12e3, 3e3, 10.0, 0.0]
+    analysis["morris_mu_star_interval"].loc[PEAK] = 600.0
+    analysis["morris_sigma"].loc[PEAK] = [1e3, 4e3, 1e3, 1e3]
+    assert ranking.sentences(runs, analysis, ranking.MORRIS)[0] == (
+        "Going through its whole range, the impact velocity moves the peak force by 12 kN ± 0.6 "
+        "and the yield stress of the beam by 3 kN ± 0.6 on average. The effect of the yield stress "
+        "of the beam changes with the others or along the range by more than its mean (σ above µ*)."
+    )
+
+
+def test_most_is_said_of_one_parameter_that_leads_beyond_doubt(study: Study) -> None:
+    runs, analysis = study
+    analysis["delta"].loc[PEAK] = [0.4, 0.2, 0.01, 0.01]
+    assert ranking.sentences(runs, analysis, ranking.DELTA)[0] == (
+        "The peak force depends most on the impact velocity (delta 0.40 ± 0.02), then on the yield "
+        "stress of the beam (delta 0.20 ± 0.02)."
+    )
+    analysis["delta"].loc[PEAK] = [0.4, 0.38, 0.01, 0.01]
+    assert ranking.sentences(runs, analysis, ranking.DELTA)[0].startswith(
+        "The peak force depends on the impact velocity (delta 0.40 ± 0.02) and the yield stress"
+    )
+
+
+def test_a_poor_fit_is_said_with_its_coefficients(study: Study) -> None:
+    runs, analysis = study
+    analysis["regression"].loc[PEAK] = [0.6, -0.3, 0.0, 0.0]
+    analysis["regression_r_squared"].loc[PEAK] = 0.45
+    assert ranking.sentences(runs, analysis, ranking.REGRESSION)[0] == (
+        "The peak force rises with the impact velocity (0.60 ± 0.02) and falls with the yield "
+        "stress of the beam (−0.30 ± 0.02). The linear fit explains 45 % of its variance: the "
+        "coefficients do not tell what it depends on."
+    )
+
+
+def test_a_surrogate_that_disagrees_or_is_poor_is_named(study: Study) -> None:
+    runs, analysis = study
+    analysis["surrogate_total_order"].loc[PEAK] = [0.5, 0.13, 0.0, 0.0]
+    analysis["surrogate_q2"].loc[PEAK] = 0.6
+    found = surrogate.section(runs, analysis)
+    assert found.sentences == [
+        "Peak force: the total-order indices of the runs and of the surrogate differ beyond their "
+        "intervals for impact velocity."
+    ]
+    assert (found.tables[0].rows[0][1].text, found.tables[0].rows[0][1].detail) == ("0.6", "poor")
+
+
+def test_imputed_values_are_told(report: Any, study: Study) -> None:
+    runs, analysis = study
+    analysis["imputed_share"].loc[PEAK] = 0.004
+    page = report(runs, analysis)
+    told = "For the indices of the peak force, a surrogate supplied the value of 0.4 % of the runs."
+    assert told in page.text
+    assert "up to 0.4 % of the runs of a response, come from a surrogate" in page.text
+
+
+def test_groups_take_the_place_of_parameters(report: Any) -> None:
+    runs = samples.sample(64, 4)[["peak_force", "status"]]
+    runs.attrs["groups"] = ["speed", "beam_material", "beam_material", "beam_material"]
+    page = report(runs, samples.indices(runs, ["speed", "beam_material"]))
+    assert _table(page, "Varied parameters")[2][3] == "beam material"
+    assert _table(page, "Sobol indices, first order")[0][1:3] == ["Speed", "Beam material"]
+
+
+def test_responses_and_parameters_of_another_solver(report: Any) -> None:
+    """A test function has neither impacts nor units."""
+    random = np.random.default_rng(0)
+    x = random.uniform(-np.pi, np.pi, 64)
+    given = {"distribution": "uniform", "low": -np.pi, "high": np.pi}
+    attrs = {"study": "ishigami", "method": "sobol", "varied": "x1", "responses": "value"}
+    runs = xr.Dataset(
+        {"value": ("run", np.sin(x)), "status": ("run", np.zeros(64, int))},
+        {"run": np.arange(64), "x1": ("run", x, given)},
+        attrs,
+    )
+    analysis = xr.Dataset(
+        {
+            "first_order": (("response", "parameter"), [[0.31]]),
+            "total_order": (("response", "parameter"), [[0.56]]),
+        },
+        {"response": ["value"], "parameter": ["x1"]},
+        attrs,
+    )
+    page = report(runs, analysis)
+    assert _table(page, "Sobol indices, first order")[1] == ["Value", "0.31"]
+    assert "uniform: low −3.142, high 3.142" in page.text
+
+
+def test_all_indices_are_in_one_tidy_file(study: Study, tmp_path: Path) -> None:
+    _, analysis = study
+    path = write_indices(analysis, tmp_path / "indices.csv")
+    assert path is not None
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+
+    def chosen(**labels: str) -> list[dict[str, str]]:
+        return [row for row in rows if all(row[key] == value for key, value in labels.items())]
+
+    (row,) = chosen(index="first_order", response="peak_force", parameter="velocity")
+    stored = analysis["first_order"].sel(PEAK).sel(parameter="velocity")
+    assert float(row["value"]) == pytest.approx(float(stored), rel=1e-8)
+    assert (row["interval"], row["verdict"]) == ("0.03", "usable")
+    assert len(chosen(index="second_order", response="peak_force")) == 6  # pairs of 4, once each
+    assert len(chosen(index="total_order_by_samples", base_samples="8")) == 2 * 4
+    assert len(chosen(index="dummy_delta", parameter="")) == 2
+    assert {row["verdict"] for row in chosen(response="remote_plastic_strain")} == {
+        "mostly_constant"
+    }
+    assert not [row for row in rows if row["index"].endswith(("_interval", "_numerical"))]
+
+
+def test_without_indices_there_is_no_file(tmp_path: Path) -> None:
+    (tmp_path / "indices.csv").write_text("of an earlier study")
+    assert write_indices(xr.Dataset(), tmp_path / "indices.csv") is None
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_data_of_a_figure_are_thinned_evenly(tmp_path: Path) -> None:
+    lines = ["panel,curve,x_label,y_label,category,x,y"]
+    for curve in ("one", "two"):
+        lines += [f"Force,{curve},Time (ms),Force (kN),,{at},{at * at}" for at in range(200)]
+    (tmp_path / "figure.csv").write_text("\n".join(lines))
+    table = drawn_data(tmp_path / "figure.csv")
+    assert table.caption == "Data as drawn (80 of 400 points)"
+    assert table.head == ["Panel", "Curve", "Time (ms)", "Force (kN)"]
+    assert [cell.text for cell in table.rows[1]] == ["Force", "one", "5", "25"]
+    assert [cell.text for cell in table.rows[40]] == ["Force", "two", "0", "0"]
+
+
+def test_the_data_of_named_bars_are_all_told(tmp_path: Path) -> None:
+    lines = ["panel,curve,x_label,y_label,category,x,y"]
+    lines += [f"Force,first order,Share (–),,parameter {at},0.5,{at}" for at in range(100)]
+    (tmp_path / "figure.csv").write_text("\n".join(lines))
+    table = drawn_data(tmp_path / "figure.csv")
+    assert table.head == ["Panel", "Curve", "Of", "Share (–)"]
+    assert len(table.rows) == 100
