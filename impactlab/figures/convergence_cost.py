@@ -94,5 +94,5 @@ def _finish(ax: Axes) -> None:
     scales.logarithmic(ax, "x", decades)
     scales.at(ax, "x", decades)
     ax.set_xlim(decades[0], decades[-1])
-    scales.logarithmic(ax, "y", errors)
+    scales.logarithmic(ax, "y", [*errors, _TOLERANCE])
     ax.axhline(_TOLERANCE, label="_guide", linestyle="--", **style.GUIDE)
