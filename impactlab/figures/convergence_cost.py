@@ -86,7 +86,13 @@ def _finish(ax: Axes) -> None:
     if not ax.lines:
         responses_grid.empty(ax, "no error to show")
         return
-    for which, other in (("x", "get_xdata"), ("y", "get_ydata")):
-        shown = [np.asarray(getattr(line, other)(), dtype=float) for line in ax.lines]
-        scales.logarithmic(ax, which, np.concatenate(shown))  # type: ignore[arg-type]
+    work, errors = (
+        np.concatenate([np.asarray(data, dtype=float) for data in axis])
+        for axis in zip(*(line.get_data() for line in ax.lines), strict=True)
+    )
+    decades = 10.0 ** np.arange(np.floor(np.log10(work.min())), np.ceil(np.log10(work.max())) + 1)
+    scales.logarithmic(ax, "x", decades)
+    scales.at(ax, "x", decades)
+    ax.set_xlim(decades[0], decades[-1])
+    scales.logarithmic(ax, "y", [*errors, _TOLERANCE])
     ax.axhline(_TOLERANCE, label="_guide", linestyle="--", **style.GUIDE)

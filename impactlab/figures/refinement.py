@@ -168,7 +168,7 @@ def _write_orders(ax: Axes, orders: list[tuple[Line2D, Trend]]) -> None:
             loc="lower left",
             bbox_to_anchor=(1.0, 0.0),
             borderaxespad=0.0,
-            fontsize=5.5,
+            fontsize=6,
             handlelength=1.0,
             handletextpad=0.4,
             labelspacing=0.2,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
+from scipy.optimize import curve_fit
 
 from impactlab.analysis.convergence.least_squares import Expansion, fit, uncertainty
 
@@ -50,6 +51,37 @@ def test_the_expansion_of_both_is_a_weighted_parabola() -> None:
         parabola = Polynomial.fit(H, values, 2, w=np.sqrt(weight)).convert()
         residuals[name] = (5 * np.sum(weight * (values - parabola(H)) ** 2) / (5 - 3)) ** 0.5
     assert found.deviation == pytest.approx(min(residuals.values()), rel=1e-9)
+
+
+def test_a_fitted_order_costs_a_degree_of_freedom() -> None:
+    """Against scipy's Levenberg-Marquardt on the same curve, with and without weights 1/h."""
+    values = 3.0 - 0.1 * H**1.5 + 1e-2 * np.array([1, -2, 1, 2, -1])
+    found = fit(values, H)
+    assert found.expansion is Expansion.FREE
+    deviations = []
+    for weight in (np.ones(5), 1 / H):
+        (f0, a, p), _ = curve_fit(
+            lambda h, f0, a, p: f0 + a * h**p,
+            H,
+            values,
+            (3.0, -0.1, 1.5),
+            sigma=weight**-0.5,
+            xtol=1e-12,
+        )
+        misfit = np.sum(weight / weight.sum() * (values - f0 - a * H**p) ** 2)
+        deviations.append(((5 * misfit / (5 - 3)) ** 0.5, f0, p))
+    assert (found.deviation, found.extrapolated, found.order) == pytest.approx(
+        min(deviations), rel=1e-5
+    )
+
+
+def test_a_good_fit_of_an_assumed_order_has_the_factor_3() -> None:
+    values = 1.0 + 1e-3 * H**2.4
+    found = fit(values, H)
+    assert found.expansion is Expansion.SECOND
+    assert found.deviation < np.ptp(values) / 4
+    expected = 3 * found.errors + found.deviation + abs(found.residuals)
+    np.testing.assert_allclose(uncertainty(found, values), expected)
 
 
 def test_a_poor_fit_is_widened_by_its_deviation() -> None:

@@ -59,6 +59,25 @@ def test_nasa_table() -> None:
 
 
 @pytest.mark.parametrize(
+    ("values", "spacings"),
+    [
+        ([6.063, 5.972, 5.863], _spacings(CELIK)),
+        ([0.97050, 0.96854, 0.96178], [1.0, 2.0, 4.0]),
+    ],
+)
+def test_asymptotic_ratio_of_the_tables(values: list[float], spacings: list[float]) -> None:
+    """Celik's equation for p makes it f1/f2 on any ratios."""
+    found = estimate(values, spacings)
+    assert found.asymptotic_ratio == pytest.approx(values[0] / values[1], rel=1e-9)
+
+
+def test_too_high_an_order_shows_in_the_asymptotic_ratio() -> None:
+    found = estimate([1 + 1e-6 * h**2.9 for h in (1.0, 2.0, 4.0)], [1.0, 2.0, 4.0])
+    assert found.asymptotic_ratio == pytest.approx(2**0.9, rel=1e-4)
+    assert math.isnan(estimate([1.0, 1.2, 0.9], [1.0, 2.0, 4.0]).asymptotic_ratio)
+
+
+@pytest.mark.parametrize(
     ("values", "behaviour", "order"),
     [
         ([1.01, 1.04, 1.16], Behaviour.MONOTONE, 2.0),
