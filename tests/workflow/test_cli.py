@@ -62,6 +62,25 @@ def test_every_step_without_snakemake(folder):
     assert xr.load_dataset(results / "runs.nc")["peak_force"].sel(velocity=2, nodes=41) > 1e4
 
 
+def test_indices_of_a_sample_are_told_beside_its_analysis(folder):
+    grid = STUDY[STUDY.index("  method") : STUDY.index("responses")]
+    drawn = """  method: sobol
+  base_samples: 8
+  parameters:
+    velocity: {distribution: uniform, low: 1 m/s, high: 2 m/s}
+    beam_depth: {distribution: uniform, low: 26 mm, high: 29 mm}
+"""
+    (folder / "studies" / "sample.yaml").write_text(STUDY.replace(grid, drawn))
+    impactlab("run", "studies/sample.yaml", cwd=folder)
+    results = folder / "results" / "sample"
+    impactlab("analyse", results / "runs.nc", cwd=folder)
+    head, first, *_ = (results / "indices.csv").read_text().splitlines()
+    assert head.startswith("response,parameter,other_parameter,base_samples,index,value,low,high")
+    assert first.startswith("peak_force,velocity,,,first_order,")
+    stored = xr.load_dataset(results / "indices.nc")["first_order"]
+    assert stored.sel(response="peak_force", parameter="velocity") == float(first.split(",")[5])
+
+
 def test_studies_are_listed(folder):
     listed = impactlab("studies", cwd=folder).stdout
     assert "small" in listed
