@@ -2,8 +2,8 @@
 # make paper   the figures and statements of the paper, in results/paper
 # make test    the checks and the tests
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
-#              its kernels, and what a second thread brings; both schemes' cost and error:
-#              wants an idle machine; and the bootstrap of Sobol indices
+#              its kernels, and what a second thread brings; both schemes' cost and error;
+#              the bootstrap of Sobol indices: wants an idle machine
 # make mutants the tests' own test: faults seeded into the kernels, and what catches each
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"

@@ -127,6 +127,25 @@ def test_a_sample_predicts_what_was_not_solved(folder):
     assert not file.exists()  # it would be that of another analysis
 
 
+def test_indices_of_a_sample_are_told_beside_its_analysis(folder):
+    grid = STUDY[STUDY.index("  method") : STUDY.index("responses")]
+    drawn = """  method: sobol
+  base_samples: 8
+  parameters:
+    velocity: {distribution: uniform, low: 1 m/s, high: 2 m/s}
+    beam_depth: {distribution: uniform, low: 26 mm, high: 29 mm}
+"""
+    (folder / "studies" / "indices.yaml").write_text(STUDY.replace(grid, drawn))
+    impactlab("run", "studies/indices.yaml", cwd=folder)
+    results = folder / "results" / "indices"
+    impactlab("analyse", results / "runs.nc", cwd=folder)
+    head, first, *_ = (results / "indices.csv").read_text().splitlines()
+    assert head.startswith("response,parameter,other_parameter,base_samples,index,value,low,high")
+    assert first.startswith("peak_force,velocity,,,first_order,")
+    stored = xr.load_dataset(results / "indices.nc")["first_order"]
+    assert stored.sel(response="peak_force", parameter="velocity") == float(first.split(",")[5])
+
+
 def test_studies_are_listed(folder):
     listed = impactlab("studies", cwd=folder).stdout
     assert "small" in listed

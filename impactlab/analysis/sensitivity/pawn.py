@@ -81,7 +81,7 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
 def _half_widths(inputs: Array, outputs: Array, sample: Sample, rng: np.random.Generator) -> Array:
     """Of the medians, (parameter,): runs are drawn anew, the limits of the slides stay."""
     order = np.argsort(outputs, kind="stable")
-    last = np.flatnonzero(np.diff(outputs[order], append=np.inf))
+    last = last_of_equals(outputs[order])
     members = [slides(column)[order] for column in inputs.T]
     replicates = [
         [_median(distances(row[order], member, last)) for member in members]
@@ -97,11 +97,16 @@ def slides(column: Array) -> npt.NDArray[np.bool_]:
     return (column[:, None] >= limits[:-1]) & (column[:, None] < limits[1:])
 
 
+def last_of_equals(ordered: Array) -> npt.NDArray[np.intp]:
+    """The places of the last of each stretch of equal outputs, at which distributions step."""
+    return np.flatnonzero(np.diff(ordered, append=np.inf))
+
+
 def distances(weights: Array, members: npt.NDArray[np.bool_], last: npt.NDArray[np.intp]) -> Array:
     """Kolmogorov-Smirnov distance of each slide from all runs, (slides,).
 
     weights: (runs,), how often each run counts, by rising output; members: bool (runs, slides) in
-    the same order; last: the place of the last of each run of equal outputs. NaN where empty.
+    the same order; last: of `last_of_equals`. NaN where empty.
     """
     whole = np.cumsum(weights)
     parts = np.cumsum(weights[:, None] * members, axis=0)

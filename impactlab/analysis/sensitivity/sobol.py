@@ -120,10 +120,9 @@ def _nested(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
         names = ("first_order", "total_order")
         return {f"{name}{ending}": gap for name in names for ending in ("", "_interval")}
     parts = Outputs.of(outputs, factors, _second_order(sample))
-    rng = sample.rng(response, str(len(parts.a)))
     statistics = parts.statistics(interactions=False)
     return points(parts) | half_widths(
-        statistics, lambda means: estimates(means, factors), sample, rng
+        statistics, lambda means: estimates(means, factors), sample, sample.rng(response)
     )
 
 

@@ -15,7 +15,7 @@ from scipy.stats import ks_2samp, norm, qmc, spearmanr
 
 from impactlab.analysis import sensitivity
 from impactlab.analysis.sensitivity.delta import resampled
-from impactlab.analysis.sensitivity.pawn import distances, slides
+from impactlab.analysis.sensitivity.pawn import distances, last_of_equals, slides
 
 Build = Callable[..., xr.Dataset]
 WEIGHTS = np.array([2.0, -1.0, 0.0])
@@ -126,8 +126,9 @@ def test_distances_are_those_of_kolmogorov_and_smirnov() -> None:
     rng = np.random.default_rng(1)
     outputs, column = np.sort(rng.integers(20, size=200)).astype(float), rng.random(200)
     weights = np.bincount(rng.integers(200, size=200), minlength=200).astype(float)
-    last = np.flatnonzero(np.diff(outputs, append=np.inf))
+    last = last_of_equals(outputs)
     members = slides(column)
+    assert members.sum() == 199  # but for the largest value
     ours = distances(weights, members, last)
     drawn_anew = np.repeat(np.arange(200), weights.astype(int))
     for slide in range(10):

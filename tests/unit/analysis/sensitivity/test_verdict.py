@@ -63,6 +63,14 @@ def test_few_runs_carry_the_variance(drawn: Build, verdicts_of: Read, unit: Any)
     assert not verdict.of_outputs(norm.ppf(unit[:, 0].clip(1e-4, 1 - 1e-4)), [unit[:, 0]], 0.0)
 
 
+def test_a_part_that_all_but_stands_still_is_constant() -> None:
+    """Its variance, by which indices are divided, is nothing beside that of the whole."""
+    part, rest = np.array([0.0, 1e-5, 0.0, 1e-5]), np.array([-1.0, 1.0, -1.0, 1.0])
+    assert verdict.still(np.concatenate([part, rest]), [part])
+    assert not verdict.still(np.concatenate([part, rest]), [rest])
+    assert not verdict.still(np.concatenate([100 * part, rest]), [100 * part])
+
+
 def _found(first: Any, total: Any, margin: float) -> dict[str, Any]:
     first, total = np.array(first), np.array(total)
     margins = {f"{name}_interval": 0 * first + margin for name in ("first_order", "total_order")}
