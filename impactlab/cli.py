@@ -184,13 +184,13 @@ def analyse(
     surrogate.nc lies beside the analysis; `impactlab predict` reads it.
     """
     from impactlab.analysis.analyse import analyse as analysed
-    from impactlab.analysis.surrogate import stored
+    from impactlab.analysis.surrogate import packed
     from impactlab.study.netcdf import read_netcdf, write_netcdf
 
     solved, path = read_netcdf(runs), output or runs.with_name("analysis.nc")
     found = analysed(solved)
     write_netcdf(found, path)
-    if surrogates := stored(solved, found):
+    if surrogates := packed(solved, found):
         write_netcdf(surrogates, path.with_name("surrogate.nc"))
     else:
         path.with_name("surrogate.nc").unlink(missing_ok=True)

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from SALib.analyze import sobol as sobol_analysis
 
-from impactlab.dataset import RESPONSES
+from impactlab.dataset import ANALYSES, RESPONSES
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS
 from impactlab.study.declaration import read_study
@@ -106,7 +106,7 @@ def test_attributes_say_what_is_asked(designed):
         "method": "grid",
         "varied": ["rule", "velocity"],
         "responses": ["peak_force"],
-        "analyses": ["convergence_in_nodes", "convergence_in_points", "sensitivity"],
+        "analyses": list(ANALYSES),
         "histories": 1,
         "profiles": 0,
         "samples": 7,
