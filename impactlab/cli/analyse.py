@@ -24,7 +24,7 @@ def analyse(
     """
     from impactlab.analysis.analyse import analyse as analysed
     from impactlab.analysis.sensitivity import table
-    from impactlab.analysis.surrogate import stored
+    from impactlab.analysis.surrogate import packed
     from impactlab.study.netcdf import read_netcdf, write_netcdf
 
     solved, path = read_netcdf(runs), output or runs.with_name("analysis.nc")
@@ -33,7 +33,7 @@ def analyse(
         table.write_csv(found, path.with_name("indices.csv"))
         write_netcdf(indices, path.with_name("indices.nc"))
     write_netcdf(found, path)
-    if surrogates := stored(solved, found):
+    if surrogates := packed(solved, found):
         write_netcdf(surrogates, path.with_name("surrogate.nc"))
     else:
         path.with_name("surrogate.nc").unlink(missing_ok=True)

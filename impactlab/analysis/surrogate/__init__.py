@@ -9,4 +9,4 @@ from impactlab.analysis.surrogate.fitting import fit as fit
 from impactlab.analysis.surrogate.from_runs import analysis as analysis
 from impactlab.analysis.surrogate.from_runs import applies as applies
 from impactlab.analysis.surrogate.stored import load_surrogate as load_surrogate
-from impactlab.analysis.surrogate.stored import stored as stored
+from impactlab.analysis.surrogate.stored import packed as packed

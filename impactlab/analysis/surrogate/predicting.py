@@ -22,7 +22,7 @@ class Surrogate:
     """The surrogates of all responses of one study."""
 
     def __init__(self, dataset: xr.Dataset) -> None:
-        """From surrogate.nc (see `stored`)."""
+        """From surrogate.nc (see `packed`)."""
         self.dataset = dataset
         self.parameters: tuple[str, ...] = tuple(map(str, dataset["parameter"].values))
         self.responses: tuple[str, ...] = tuple(map(str, dataset["response"].values))

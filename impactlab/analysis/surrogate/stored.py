@@ -15,7 +15,7 @@ from impactlab.model.distributions import arguments
 _OF_RESPONSE = ("verdict", "q2", "rmse", "runs")
 
 
-def stored(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
+def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
     """The surrogates of a sample as a dataset of their own; None where the analysis has none.
 
     Variables, without the prefix that they have in `analysis`: coefficient (response, term),

@@ -60,10 +60,10 @@ def test_few_levels_bound_the_degree(random: np.random.Generator) -> None:
 def test_terms_that_the_runs_cannot_tell_apart_do_no_harm(random: np.random.Generator) -> None:
     """On the short curves of extended FAST many polynomials are each other's aliases."""
     problem = {"num_vars": 3, "names": list("xyz"), "bounds": [[0, 1]] * 3}
-    unit, other = fast_sampler.sample(problem, 65, seed=3), random.random((200, 3))
+    unit, other = fast_sampler.sample(problem, 65, seed=2)[:130], random.random((200, 3))
     chaos = fit(unit, np.exp(unit[:, 0]) * (1 + unit[:, 1]), 0)
     exact = np.exp(other[:, 0]) * (1 + other[:, 1])
-    assert np.abs(chaos(other) - exact).max() < 0.5
+    assert np.abs(chaos(other) - exact).max() < 0.05
 
 
 def test_a_small_change_of_a_large_value_is_seen(random: np.random.Generator) -> None:

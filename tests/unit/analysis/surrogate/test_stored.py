@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis.surrogate import analysis, load_surrogate, stored
+from impactlab.analysis.surrogate import analysis, load_surrogate, packed
 from impactlab.analysis.surrogate.predicting import Surrogate
 
 from .conftest import ishigami
@@ -38,7 +38,7 @@ def loaded(
     runs: xr.Dataset, found: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Surrogate:
     """Read where scikit-learn is not installed."""
-    dataset = stored(runs, found)
+    dataset = packed(runs, found)
     assert dataset is not None
     dataset.to_netcdf(tmp_path / "surrogate.nc", engine="netcdf4")
     monkeypatch.setitem(sys.modules, "sklearn", None)
@@ -144,4 +144,4 @@ def test_files_that_are_none(tmp_path: Path) -> None:
 
 
 def test_an_analysis_without_surrogates_keeps_none(runs: xr.Dataset) -> None:
-    assert stored(runs, xr.Dataset()) is None
+    assert packed(runs, xr.Dataset()) is None
