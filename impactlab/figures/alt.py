@@ -66,7 +66,7 @@ def _maps(figure: Figure) -> Iterator[str]:
 
 def _cells(ax: Axes) -> NDArray[np.float64]:
     """The cells of a map, −∞ where there is nothing; empty where no cell has a number."""
-    image = np.ma.asarray(ax.images[-1].get_array()) if ax.images else np.ma.masked_all((0, 0))
+    image = np.ma.asarray(ax.images[-1].get_array() if ax.images else [])
     cells = np.ma.filled(np.ma.masked_invalid(image), -np.inf)
     return np.asarray(cells if np.isfinite(cells).any() else [], dtype=float)
 
