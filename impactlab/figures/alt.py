@@ -66,9 +66,11 @@ def _maps(figure: Figure) -> Iterator[str]:
 
 def _cells(ax: Axes) -> NDArray[np.float64]:
     """The cells of a map, −∞ where there is nothing; empty where no cell has a number."""
-    image = np.ma.asarray(ax.images[-1].get_array()) if ax.images else np.ma.masked_all((0, 0))
-    cells = np.ma.filled(np.ma.masked_invalid(image), -np.inf)
-    return np.asarray(cells if np.isfinite(cells).any() else [], dtype=float)
+    if not ax.images:
+        return np.empty(0)
+    found: NDArray[np.float64] = np.ma.filled(np.ma.asarray(ax.images[-1].get_array()), np.nan)
+    cells = np.where(np.isfinite(found), found, -np.inf)
+    return cells if np.isfinite(cells).any() else np.empty(0)
 
 
 def _remarks(figure: Figure, drawn: set[str]) -> Iterator[str]:

@@ -45,6 +45,7 @@ class IndexBars:
                     _estimator(analysis, self.family),
                     f"Lines on the bars: {verdicts.confidence(analysis)} intervals.",
                     _floor_words(analysis, self.family),
+                    _numerical_words(analysis, self.family),
                     missing.note(runs, asked(runs, analysis)),
                 ),
             )
@@ -87,6 +88,11 @@ def _floor_words(analysis: xr.Dataset, family: Family) -> str:
         "Dashed: upper end of the interval of a dummy parameter, which does nothing; what does not "
         "reach beyond it with its whole interval is noise, and pale."
     )
+
+
+def _numerical_words(analysis: xr.Dataset, family: Family) -> str:
+    given = any(f"{measure.name}_numerical" in analysis for measure in family.measures)
+    return "Pale, too: below what the numerical error could change." if given else ""
 
 
 def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:

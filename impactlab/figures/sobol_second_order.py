@@ -18,6 +18,8 @@ from impactlab.figures.reading.measures import asked, parameters
 TITLE = "Sobol indices of second order"
 _INDEX = "second_order"
 _FEWEST = 2
+_WEAK = 10.0
+"""Per cent: the scale of colours never ends below."""
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -32,7 +34,7 @@ def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown and what is missing."""
     return (
-        "Share of the variance that comes from the interaction of two parameters; columns are "
+        "Share of the variance, in %, that two parameters bring together; columns are "
         f"numbered as the rows. Grey: zero lies within the {verdicts.confidence(analysis)} "
         "interval. "
         f"{missing.note(runs, asked(runs, analysis))}".strip()
@@ -45,9 +47,9 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     shown = asked(runs, analysis)
     listed = parameters(analysis)
     figure, axes = responses_grid.panels(shown, height=12 + 4.6 * len(listed))
-    values = {name: pairs(analysis[_INDEX].sel(response=name)) for name in shown}
-    margin = {name: _margins(analysis, name) for name in shown}
-    colours = Normalize(0.0, max([_top(values[n], margin[n]) for n in shown], default=0.1))
+    values = {name: 100 * pairs(analysis[_INDEX].sel(response=name)) for name in shown}
+    margin = {name: 100 * _margins(analysis, name) for name in shown}
+    colours = Normalize(0.0, max([_top(values[n], margin[n]) for n in shown], default=_WEAK))
     for at, (name, ax) in enumerate(axes.items()):
         image = _map(ax, values[name], np.abs(values[name]) > margin[name], colours)
         undefined(ax, analysis, name, _INDEX)
@@ -55,7 +57,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     bar = figure.colorbar(
         image, ax=list(axes.values()), location="bottom", fraction=0.02, aspect=40, shrink=0.6
     )
-    bar.set_label("Share of the variance (–)")
+    bar.set_label("Share of the variance (%)")
     return figure
 
 
@@ -76,8 +78,8 @@ def _margins(analysis: xr.Dataset, name: str) -> NDArray[np.float64]:
 
 
 def _top(values: NDArray[np.float64], margin: NDArray[np.float64]) -> float:
-    """The largest significant index, at least 0.1, so that noise does not get strong colours."""
-    return float(np.max(values, initial=0.1, where=np.abs(values) > margin))
+    """The largest significant index, at least _WEAK, so that noise does not get strong colours."""
+    return float(np.max(values, initial=_WEAK, where=np.abs(values) > margin))
 
 
 def _map(
@@ -95,9 +97,9 @@ def _map(
 
 
 def _short(value: float) -> str:
-    """Two decimals without the zero before the point: ".07", "−.01"."""
-    text = f"{value:.2f}".replace("-", "−").replace("0.", ".")
-    return ".00" if text == "−.00" else text
+    """Whole per cent, for a cell has room for two digits."""
+    text = f"{value:.0f}".replace("-", "−")
+    return "0" if text == "−0" else text
 
 
 def _label(ax: Axes, listed: list[str], *, named: bool) -> None:

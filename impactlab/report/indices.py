@@ -14,6 +14,8 @@ from impactlab.report.table import Cell, Table
 
 _FINE = 0.005
 """Half-width below which a third decimal means something."""
+_LEAST = 0.001
+"""Magnitude below which an index and its half-width are not told one by one."""
 
 
 def tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Table]:
@@ -44,6 +46,8 @@ def told(value: float, margin: float) -> str:
     """A number without unit and the half-width of its interval: "0.71 ± 0.03"."""
     if not np.isfinite(value):
         return "undefined"
+    if max(abs(value), margin) < _LEAST:
+        return f"below {_LEAST}"
     decimals = 3 if margin < _FINE else 2
     text = f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")
     return f"{text} ± {margin:.{decimals}f}" if np.isfinite(margin) else text

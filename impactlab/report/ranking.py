@@ -28,6 +28,10 @@ from impactlab.report.table import Cell, Table
 
 _COARSE = 0.02
 """Half-width from which on shares are told in whole per cent."""
+_SMALL = 0.1
+"""Share below which they never are."""
+_WORTH = 0.02
+"""Share of the variance from which on interactions are worth a sentence."""
 _NAMED = 3
 """At most so many parameters are named in a sentence."""
 POOR_FIT = 0.7
@@ -100,7 +104,7 @@ def _interactions(analysis: xr.Dataset, name: str) -> Iterator[str]:
     first = measures.index(analysis, "first_order", name)
     total = measures.index(analysis, "total_order", name)
     surplus = total.values - first.values
-    beyond = total.significant & (surplus > first.margins + total.margins)
+    beyond = total.significant & (surplus > np.maximum(first.margins + total.margins, _WORTH))
     if beyond.any():
         at = int(np.argmax(np.where(beyond, surplus, -np.inf)))
         parameter = words.parameter(measures.parameters(analysis)[at])
@@ -189,5 +193,5 @@ def _significant(analysis: xr.Dataset, measure: str, name: str) -> Named:
 
 
 def _share(value: float, margin: float) -> str:
-    decimals = 0 if margin >= _COARSE else 1
+    decimals = 0 if margin >= _COARSE and value >= _SMALL else 1
     return f"{100 * value:.{decimals}f} % (± {100 * margin:.{decimals}f})"

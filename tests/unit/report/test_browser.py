@@ -24,6 +24,8 @@ FLAGS = (
     "--disable-component-update",
     "--disable-sync",
 )
+ALIKE = ("pawn", "regression", "surrogate_first_order", "total_order_by_samples")
+"""Left out: their figures look like others, and each takes seconds to draw."""
 FOCUS = "document.activeElement"
 Page = Any
 """A page of playwright's, with what it asked for (`asked`) and complained of (`complaints`)."""
@@ -31,10 +33,10 @@ Page = Any
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """A report with failures, a mostly constant response and every kind of index."""
+    """A report with failures, a mostly constant response and most kinds of indices."""
     folder = tmp_path_factory.mktemp("sample")
     runs = samples.sample(128, failures=5)[["peak_force", "remote_plastic_strain", "status"]]
-    analysis = samples.indices(runs)
+    analysis = samples.indices(runs).drop_vars(ALIKE)
     draw_all(runs, analysis, folder / "figures")
     write_report(runs, analysis, folder / "figures", folder / "report.html")
     return (folder / "report.html").as_uri()
@@ -106,7 +108,7 @@ def test_the_navigation_leads_to_each_section(page: Page) -> None:
 
 def test_every_fold_opens_by_keyboard_and_holds_a_table(page: Page) -> None:
     folds = page.locator("details")
-    assert folds.count() > 12
+    assert folds.count() > 10
     for at in range(folds.count()):
         fold = folds.nth(at)
         assert not fold.locator("table").is_visible()
@@ -125,7 +127,7 @@ def test_nothing_is_wider_than_the_window(page: Page, width: int) -> None:
 
 def test_every_figure_is_drawn_and_told(page: Page) -> None:
     figures = page.locator("figure img")
-    assert figures.count() == len(page.locator("figcaption").all()) > 10
+    assert figures.count() == len(page.locator("figcaption").all()) >= 10
     drawn = figures.evaluate_all("all => all.map(e => e.complete && e.naturalWidth > 0)")
     assert all(drawn)
     told = figures.evaluate_all("all => all.map(e => e.alt)")
