@@ -10,8 +10,3 @@ from impactlab.analysis.sensitivity.sample import Array
 def column(runs: int, rng: np.random.Generator) -> Array:
     """A Latin hypercube in one dimension, (runs,), in the open interval (0, 1)."""
     return (rng.permutation(runs) + 0.5) / runs
-
-
-def split(name: str, values: Array) -> dict[str, Array]:
-    """Indices (parameters, and the dummy last) by variable name: those of the dummy apart."""
-    return {name: values[:-1], f"dummy_{name}": values[-1]}
