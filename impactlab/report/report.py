@@ -10,24 +10,23 @@ from typing import Any
 
 import xarray as xr
 
+from impactlab.analysis.sensitivity.table import indices
 from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import count
 from impactlab.report import cautions, convergence, inputs, notes, outcome, provenance, sections
 from impactlab.report.page import write_page
 from impactlab.report.pictures import Picture, pictures
 from impactlab.report.section import Section
-from impactlab.report.tidy import write_indices
 
 
 def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, path: Path) -> None:
     """Write the report of a study from its stored datasets and figures.
 
-    runs: runs.nc; analysis: analysis.nc; figures_folder: what draw_all wrote. Beside the report of
-    a sample: indices.csv, see tidy.py. Raises FileNotFoundError when a figure is missing, OSError
-    when `path` cannot be written.
+    runs: runs.nc; analysis: analysis.nc; figures_folder: what draw_all wrote. The report
+    of a sample links indices.csv, which lies beside its analysis. Raises FileNotFoundError when a
+    figure is missing, OSError when `path` cannot be written.
     """
-    table = write_indices(analysis, path.with_name("indices.csv"))
-    first, then = sections.sections(runs, analysis, table.name if table else "")
+    first, then = sections.sections(runs, analysis, "indices.csv" if indices(analysis) else "")
     ordered = _numbered(pictures(figures_folder), [*first, *then])
     rest = [name for name in ordered if not _placed(name, [*first, *then])]
     if rest or not ordered:

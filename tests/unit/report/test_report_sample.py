@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,6 @@ from impactlab.figures.draw import draw_all
 from impactlab.report import numerical, ranking, surrogate
 from impactlab.report.drawn_data import drawn_data
 from impactlab.report.report import write_report
-from impactlab.report.tidy import write_indices
 
 Study = tuple[xr.Dataset, xr.Dataset]
 PEAK = {"response": "peak_force"}
@@ -218,35 +216,6 @@ def test_responses_and_parameters_of_another_solver(report: Any) -> None:
     page = report(runs, analysis)
     assert _table(page, "Sobol indices, first order")[1] == ["Value", "0.31"]
     assert "uniform: low −3.142, high 3.142" in page.text
-
-
-def test_all_indices_are_in_one_tidy_file(study: Study, tmp_path: Path) -> None:
-    _, analysis = study
-    path = write_indices(analysis, tmp_path / "indices.csv")
-    assert path is not None
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-
-    def chosen(**labels: str) -> list[dict[str, str]]:
-        return [row for row in rows if all(row[key] == value for key, value in labels.items())]
-
-    (row,) = chosen(index="first_order", response="peak_force", parameter="velocity")
-    stored = analysis["first_order"].sel(PEAK).sel(parameter="velocity")
-    assert float(row["value"]) == pytest.approx(float(stored), rel=1e-8)
-    assert (row["interval"], row["verdict"]) == ("0.03", "usable")
-    assert len(chosen(index="second_order", response="peak_force")) == 6  # pairs of 4, once each
-    assert len(chosen(index="total_order_by_samples", base_samples="8")) == 2 * 4
-    assert len(chosen(index="dummy_delta", parameter="")) == 2
-    assert {row["verdict"] for row in chosen(response="remote_plastic_strain")} == {
-        "mostly_constant"
-    }
-    assert not [row for row in rows if row["index"].endswith(("_interval", "_numerical"))]
-
-
-def test_without_indices_there_is_no_file(tmp_path: Path) -> None:
-    (tmp_path / "indices.csv").write_text("of an earlier study")
-    assert write_indices(xr.Dataset(), tmp_path / "indices.csv") is None
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_data_of_a_figure_are_thinned_evenly(tmp_path: Path) -> None:
