@@ -56,7 +56,7 @@ class IndexBars:
         """A panel a response; bars within the noise are pale."""
         rows, bars = analysis.sizes["parameter"], len(self.family.measures_in(analysis))
         height = 10 + max(4.2, 1.4 * bars) * rows
-        figure, axes = responses_grid.panels(asked(runs, analysis), height=height)
+        figure, axes = responses_grid.panels(asked(runs, analysis), height, beneath=8)
         for at, (name, ax) in enumerate(axes.items()):
             _bars(ax, analysis, self.family, name)
             undefined(ax, analysis, name, self.family.measures_in(analysis)[0].name)

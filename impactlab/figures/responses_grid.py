@@ -20,9 +20,15 @@ ROUND_OFF = 1e-9
 """Relative differences up to this are none: round-off adds up over the time steps."""
 
 
-def panels(names: Sequence[str], height: float) -> tuple[Figure, dict[str, Axes]]:
-    """As tall as it takes (a row is `height` mm); each panel under its response's name."""
+def panels(
+    names: Sequence[str], height: float, beneath: float = 0.0
+) -> tuple[Figure, dict[str, Axes]]:
+    """As tall as it takes; each panel under its response's name.
+
+    height: of a row, mm; beneath: of what stands below all rows, mm.
+    """
     figure, axes = style.panels(len(names), columns=COLUMNS, height=height)
+    figure.set_figheight(figure.get_figheight() + beneath * style.MILLIMETRE)
     found = dict(zip(names, axes, strict=True))
     for name, ax in found.items():
         ax.set_title(words.sentence(words.response(name)), loc="left")

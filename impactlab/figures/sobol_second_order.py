@@ -46,7 +46,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """A panel a response, a cell a pair, all in one scale of colours."""
     shown = asked(runs, analysis)
     listed = parameters(analysis)
-    figure, axes = responses_grid.panels(shown, height=12 + 4.6 * len(listed))
+    figure, axes = responses_grid.panels(shown, 12 + 4.6 * len(listed), beneath=14)
     values = {name: 100 * pairs(analysis[_INDEX].sel(response=name)) for name in shown}
     margin = {name: 100 * _margins(analysis, name) for name in shown}
     colours = Normalize(0.0, max([_top(values[n], margin[n]) for n in shown], default=_WEAK))
@@ -54,8 +54,9 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         image = _map(ax, values[name], np.abs(values[name]) > margin[name], colours)
         undefined(ax, analysis, name, _INDEX)
         _label(ax, listed, named=at % responses_grid.COLUMNS == 0)
+    thin = 20 * min(len(shown), 2)
     bar = figure.colorbar(
-        image, ax=list(axes.values()), location="bottom", fraction=0.02, aspect=40, shrink=0.6
+        image, ax=list(axes.values()), location="bottom", fraction=0.05, aspect=thin, shrink=0.6
     )
     bar.set_label("Share of the variance (%)")
     return figure

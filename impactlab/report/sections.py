@@ -46,7 +46,7 @@ def figures(names: list[str]) -> Section:
 def _runs(runs: xr.Dataset) -> Section:
     title = "What was varied, and how" if is_sample(runs) else "What was run"
     tables = [inputs.varied_parameters(runs), inputs.fixed_parameters(runs)]
-    return Section("runs", title, tables=tables)
+    return Section("runs", title, tables=[table for table in tables if table.rows])
 
 
 def _results(runs: xr.Dataset, drawn: list[str] | None = None) -> Section:

@@ -30,7 +30,7 @@ def section(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
         "A surrogate was fitted to the runs and tried on runs that it had not seen.",
         _differences(runs, analysis) if beside and "first_order" in analysis else [],
         [_quality(runs, analysis)],
-        ["surrogate_indices"],
+        ["surrogate_validation", "surrogate_indices"],
         indices.tables(runs, analysis, SURROGATE) if beside else [],
     )
 
