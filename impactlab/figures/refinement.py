@@ -21,9 +21,9 @@ FEWEST = 3
 CAPTION = (
     "Difference to the limit, relative to it: Richardson's value, or where there is none that of "
     "the least-squares fit, or else the finest value. Thin dashes: the order p of that limit (in "
-    "brackets where it is assumed, not observed). The bar at the "
-    "finest value reaches up to its numerical uncertainty. Grey: second order. A verdict is the "
-    "worst over the whole grid, also over what is not drawn."
+    "brackets where it is assumed, not observed). The bar at the finest value reaches up to its "
+    "numerical uncertainty. Grey: second order. A verdict is the worst over the whole grid, also "
+    "over what is not drawn."
 )
 _DASHED: dict[str, Any] = {"linestyle": (0, (2, 1.5)), "linewidth": 0.6}
 Array = NDArray[np.float64]
