@@ -11,6 +11,7 @@ import warnings
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from impactlab.analysis.surrogate.chaos import Array, Chaos, basis
 from impactlab.analysis.surrogate.terms import candidates
@@ -21,7 +22,7 @@ _MOST_CANDIDATES = 400
 _MOST_TERMS = 200
 _HIGHEST_DEGREE = 20
 _SMALLEST = 1e-12
-"""A term whose correlation with the residual falls below this part of the first one's is noise."""
+"""Leverage that is left to a run at least, so that nothing is divided by zero."""
 
 
 def fewest_runs(parameters: int) -> int:
@@ -47,7 +48,11 @@ def fit(unit: Array, values: Array, seed: int) -> Chaos:
             f"it needs {fewest_runs(unit.shape[1])}"
         )
     rows = drawn(len(values), seed)
-    unit, values = unit[rows], values[rows]
+    with threadpool_limits(limits=1):  # the same bits on any number of processors
+        return _fitted(unit[rows], values[rows])
+
+
+def _fitted(unit: Array, values: Array) -> Chaos:
     degrees = candidates(
         unit.shape[1], min(_MOST_CANDIDATES, len(values) // 2), _highest_degree(unit)
     )
@@ -74,16 +79,16 @@ def _order(columns: Array, values: Array) -> list[int]:
 
     centred = columns[1:] - columns[1:].mean(axis=1, keepdims=True)
     centred /= np.linalg.norm(centred, axis=1, keepdims=True)
-    covariance = centred @ values
+    # Of norm one as the terms are: its tolerances are absolute.
+    correlation = centred @ (values / (np.linalg.norm(values) or 1.0))
     with warnings.catch_warnings():
         # Terms that the runs cannot tell apart: it drops one of them, as it should.
         warnings.simplefilter("ignore", ConvergenceWarning)
         _, active, _ = lars_path_gram(
-            covariance,
+            correlation,
             centred @ centred.T,
-            n_samples=len(values),
+            n_samples=1,
             max_iter=min(_MOST_TERMS, len(values) // 4),
-            alpha_min=_SMALLEST * np.abs(covariance).max() / len(values),
         )
     return [0, *(int(term) + 1 for term in active)]
 

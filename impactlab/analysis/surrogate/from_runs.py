@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from threadpoolctl import threadpool_limits
 
 from impactlab.analysis.responses import usable
 from impactlab.analysis.surrogate.chaos import Array
@@ -40,7 +41,8 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     """
     runs = runs.sortby("run")
     sample, values = Sample.of(runs), usable(runs).transpose("response", "run")
-    pairs = [surrogate(row, sample) for row in values.values]
+    with threadpool_limits(limits=1):  # the same bits on any number of processors
+        pairs = [surrogate(row, sample) for row in values.values]
     codes = xr.DataArray([int(verdict) for verdict, _ in pairs], dims="response")
     found = [tested for _, tested in pairs]
     variables = _numbers(found) | _tests(found, sample) | _indices(found, sample)

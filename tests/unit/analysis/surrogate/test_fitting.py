@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from SALib.sample import fast_sampler
 from sklearn.linear_model import LinearRegression
+from threadpoolctl import threadpool_limits
 
 from impactlab.analysis.surrogate import fit
 from impactlab.analysis.surrogate.chaos import basis
@@ -86,6 +87,25 @@ def test_the_same_runs_give_the_same_bits(random: np.random.Generator) -> None:
     one, other = fit(unit, bent(unit), 1), fit(unit, bent(unit), 1)
     assert one.coefficients.tobytes() == other.coefficients.tobytes()
     assert one.degrees.tobytes() == other.degrees.tobytes()
+
+
+@pytest.mark.parametrize("unit_of_response", [1e-9, 1e9])
+def test_the_unit_of_the_response_does_not_matter(
+    random: np.random.Generator, unit_of_response: float
+) -> None:
+    unit = random.random((300, 3))
+    one, other = fit(unit, bent(unit), 1), fit(unit, unit_of_response * bent(unit), 1)
+    assert np.array_equal(one.degrees, other.degrees)
+    np.testing.assert_allclose(other.coefficients, unit_of_response * one.coefficients, rtol=1e-9)
+
+
+@pytest.mark.parametrize("threads", [2, 4])
+def test_processors_do_not_matter(random: np.random.Generator, threads: int) -> None:
+    unit = random.random((3000, 3))
+    with threadpool_limits(limits=threads):
+        found = fit(unit, bent(unit), 1).coefficients
+    with threadpool_limits(limits=1):
+        assert fit(unit, bent(unit), 1).coefficients.tobytes() == found.tobytes()
 
 
 def test_too_few_runs_are_refused(random: np.random.Generator) -> None:
