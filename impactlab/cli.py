@@ -179,9 +179,9 @@ def analyse(
     runs: RunsFile,
     output: Annotated[Path | None, typer.Option(help="Default: beside the runs.")] = None,
 ) -> None:
-    """Convergence and sensitivity from solved runs, and surrogate.nc of a sample.
+    """Convergence and sensitivity from solved runs; surrogates.
 
-    surrogate.nc lies beside the analysis; `impactlab predict` reads it.
+    The surrogates of a sample lie in surrogate.nc beside the analysis: see `impactlab predict`.
     """
     from impactlab.analysis.analyse import analyse as analysed
     from impactlab.analysis.surrogate import packed
