@@ -29,11 +29,11 @@ def analyse(
 
     solved, path = read_netcdf(runs), output or runs.with_name("analysis.nc")
     found = analysed(solved, read_netcdf(resolution) if resolution else None)
+    write_netcdf(found, path)
+    for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps of another study
+        path.with_name(name).unlink(missing_ok=True)
     if indices := table.indices(found):
         table.write_csv(found, path.with_name("indices.csv"))
         write_netcdf(indices, path.with_name("indices.nc"))
-    write_netcdf(found, path)
     if surrogates := packed(solved, found):
         write_netcdf(surrogates, path.with_name("surrogate.nc"))
-    else:
-        path.with_name("surrogate.nc").unlink(missing_ok=True)

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.uncertainty import numerical_uncertainty
 
 Array = NDArray[np.float64]
@@ -18,11 +19,14 @@ AXES = ("nodes", "points", "courant")
 def uncertainty(values: xr.DataArray, axis: str) -> xr.DataArray:
     """Of the value on every rung, in its unit, infinite where nothing can be said.
 
-    values: on (response, case, axis), the rungs rising in cost.
+    values: on (response, case, axis), the rungs rising in cost. Points and time step are judged
+    by the differences to the costliest rung: once fibres yield, the error falls by no power of the
+    points; and what the time step changes at fixed nodes is too little (some 1e-6) and too
+    irregular for one.
     """
     finest_first = values.isel({axis: slice(None, None, -1)})
     rungs = finest_first[axis].values.astype(float)
-    judge = partial(_by_spacing, nodes=rungs) if axis == "nodes" else _from_the_most
+    judge = partial(_by_spacing, nodes=rungs) if axis == "nodes" else points.numerical_uncertainty
     found: xr.DataArray = xr.apply_ufunc(
         judge, finest_first, input_core_dims=[[axis]], output_core_dims=[[axis]], vectorize=True
     )
@@ -31,13 +35,3 @@ def uncertainty(values: xr.DataArray, axis: str) -> xr.DataArray:
 
 def _by_spacing(values: Array, nodes: Array) -> Array:
     return numerical_uncertainty(values, 1.0 / (nodes - 1.0)).amounts
-
-
-def _from_the_most(values: Array) -> Array:
-    """Distances to the costliest rung, with that of the next one added.
-
-    Once fibres yield, the error falls by no power of the points; and what the time step changes
-    at fixed nodes is too little (some 1e-6) and too irregular for one.
-    """
-    amounts: Array = np.abs(values - values[0]) + np.abs(values[1] - values[0])
-    return amounts

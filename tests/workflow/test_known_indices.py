@@ -1,5 +1,6 @@
 """Test functions through the whole way of a study, from the file to the page."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -90,7 +91,7 @@ def test_the_report_tells_what_is_known(ishigami, tmp_path):
     page = (tmp_path / "report.html").read_text()
     assert "44 % (± " in page
     assert "of the variance of the value comes from the x2 alone" in page
-    assert "NaN" not in page
+    assert "NaN" not in re.sub(r"base64,[^\"]*", "", page)
 
 
 def test_the_committed_study_states_what_is_known():
