@@ -8,6 +8,7 @@ import pytest
 from scipy.stats import norm
 
 from impactlab.analysis.analyse import analyse
+from impactlab.dataset import FAILURES
 from impactlab.figures.draw import draw_all
 from impactlab.reference.functions import FUNCTIONS
 from impactlab.report.report import write_report
@@ -84,6 +85,32 @@ def test_sobol_indices_of_g(g, name):
     assert_within_three_standard_errors(analysis, name, getattr(FUNCTIONS[study.function], name)())
 
 
+METHODS = {
+    "morris": ("trajectories: 20", {"morris_mu_star"}, {"morris_plane"}),
+    "fast": ("samples: 400", {"first_order", "total_order"}, {"sobol_indices"}),
+    "delta": ("samples: 1000", {"delta"}, {"delta_indices"}),
+    "pawn": ("samples: 1000", {"pawn"}, {"pawn_indices"}),
+    "regression": ("samples: 1000", {"regression", "rank_regression"}, {"regression_indices"}),
+}
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_ranks_the_parameters_of_g_and_reaches_its_page(g, method, tmp_path):
+    """They matter the less the larger a is: x1, x2, x3, x4, and the others hardly."""
+    others, measures, figures = METHODS[method]
+    runs, analysis, _ = g(method, others)
+    for name in measures - {"regression", "rank_regression"}:  # these see no even function
+        found = analysis[name].isel(response=0).values
+        assert found[0] > found[1] > found[2] > found[4:].max(), name
+        assert found.argmax() == 0
+    draw_all(runs, analysis, tmp_path / "figures")
+    assert figures | {"scatter_value"} <= {path.stem for path in (tmp_path / "figures").iterdir()}
+    write_report(runs, analysis, tmp_path / "figures", tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text()
+    assert f"{runs.sizes['run']}</strong> runs" in page
+    assert "(grid)" not in page
+
+
 def test_the_report_tells_what_is_known(ishigami, tmp_path):
     runs, analysis, _ = ishigami
     draw_all(runs, analysis, tmp_path / "figures")
@@ -92,6 +119,62 @@ def test_the_report_tells_what_is_known(ishigami, tmp_path):
     assert "44 % (± " in page
     assert "of the variance of the value comes from the x2 alone" in page
     assert "NaN" not in re.sub(r"base64,[^\"]*", "", page)
+
+
+FAILED, NAN = 40, 5
+
+
+@pytest.fixture(scope="module")
+def broken(ishigami):
+    """Ishigami's runs with seeded failures, a constant response and one with a single NaN."""
+    runs = ishigami[0]
+    rng = np.random.default_rng(3)
+    likely = np.flatnonzero(runs["x1"].values > 2)  # failures that have a place in the space
+    failed = rng.choice(likely, FAILED, replace=False)
+    status, value = runs["status"].values.copy(), runs["value"].values.copy()
+    status[failed] |= FAILURES["diverged"][0]
+    value[failed] = np.nan
+    single = runs["value"].values.copy()
+    single[NAN] = np.nan
+    broken = runs.assign(
+        value=runs["value"].copy(data=value),
+        status=runs["status"].copy(data=status),
+        constant=("run", np.full(value.size, 4.2), {"long_name": "constant", "units": "1"}),
+        single_gap=("run", single, {"long_name": "with one NaN", "units": "1"}),
+    )
+    return broken.assign_attrs(responses=["value", "constant", "single_gap"]), failed
+
+
+def test_failures_a_constant_and_a_nan_give_no_index_and_are_told(broken, tmp_path):
+    runs, failed = broken
+    analysis = analyse(runs)
+    assert np.isnan(analysis["first_order"]).all()
+    draw_all(runs, analysis, tmp_path / "figures")
+    assert {"failure_shares", "failure_map"} <= {f.stem for f in (tmp_path / "figures").iterdir()}
+    write_report(runs, analysis, tmp_path / "figures", tmp_path / "report.html")
+    page = re.sub(r"base64,[^\"]*", "", (tmp_path / "report.html").read_text())
+    assert f"{FAILED + 1} of {runs.sizes['run']} runs failed" in page
+    assert "the run diverged" in page
+    assert f"run {failed.min()}" in page
+    assert "NaN" not in page
+
+
+def test_imputed_indices_are_near_the_known_ones_and_marked(broken, ishigami, tmp_path):
+    runs, _ = broken
+    analysis = analyse(runs.assign_attrs(failed_runs="impute"))
+    known = FUNCTIONS["ishigami"].total_order()
+    np.testing.assert_allclose(analysis["total_order"].sel(response="value"), known, atol=0.06)
+    whole = ishigami[1]["total_order"].isel(response=0).values
+    np.testing.assert_allclose(analysis["total_order"].sel(response="value"), whole, atol=0.01)
+    share = analysis["imputed_share"]
+    assert share.sel(response="value").item() == pytest.approx(FAILED / runs.sizes["run"])
+    assert share.sel(response="single_gap").item() >= 1 / runs.sizes["run"]
+    assert np.isnan(analysis["total_order"].sel(response="constant")).all()
+    draw_all(runs, analysis, tmp_path / "figures")
+    write_report(runs, analysis, tmp_path / "figures", tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text()
+    assert "a surrogate supplied the value of" in page
+    assert "the response does not vary" in page
 
 
 def test_the_committed_study_states_what_is_known():
