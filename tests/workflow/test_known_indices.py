@@ -140,7 +140,7 @@ def broken(ishigami):
         value=runs["value"].copy(data=value),
         status=runs["status"].copy(data=status),
         constant=("run", np.full(value.size, 4.2), {"long_name": "constant", "units": "1"}),
-        single_gap=("run", single, {"long_name": "with one NaN", "units": "1"}),
+        single_gap=("run", single, {"long_name": "with one gap", "units": "1"}),
     )
     return broken.assign_attrs(responses=["value", "constant", "single_gap"]), failed
 
