@@ -15,7 +15,10 @@ def design(
     study: StudyFile,
     output: Annotated[Path | None, typer.Option(help="Default: results/NAME/design.nc.")] = None,
 ) -> None:
-    """Sample a study into its runs; `discretisation: auto` is found first."""
+    """Sample a study into its runs.
+
+    A discretisation that is `auto` is found first, as by `impactlab recommend`.
+    """
     from impactlab.study.declaration import read_study
     from impactlab.study.netcdf import write_netcdf
     from impactlab.study.sampling import design as sampled

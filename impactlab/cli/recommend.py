@@ -33,7 +33,7 @@ def recommend(
     ] = None,
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
 ) -> None:
-    """Find the cheapest nodes, points and courant that are fine enough.
+    """Find the cheapest discretisation that is fine enough.
 
     The study's corner cases are solved with finer and finer discretisations; the file keeps the
     evidence.

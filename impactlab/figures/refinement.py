@@ -189,5 +189,5 @@ def _finish(ax: Axes, spacing: Array, difference: xr.DataArray, dim: str) -> Non
     scales.logarithmic(ax, "x", spacing)
     scales.logarithmic(ax, "y", [*shown, *guide])
     if spacing.size <= 5:
-        scales.at(ax, "x", spacing)
+        scales.at(ax, "x", scales.apart(spacing))
     ax.set_xlim(0.85 * ends[0], 1.18 * ends[1])

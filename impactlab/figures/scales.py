@@ -60,6 +60,17 @@ def at(axes: Axes, which: Which, values: ArrayLike) -> None:
     axis.set_major_formatter(_PLAIN)
 
 
+def apart(values: ArrayLike, share: float = 0.18) -> list[float]:
+    """The values that are at least a share of the logarithmic axis apart, from the largest on."""
+    ordered = np.sort(np.ravel(np.asarray(values, dtype=float)))[::-1]
+    least = share * np.log(ordered[0] / ordered[-1])
+    kept: list[float] = []
+    for value in ordered.tolist():
+        if not kept or np.log(kept[-1] / value) >= least:
+            kept.append(value)
+    return kept
+
+
 def _axis(axes: Axes, which: Which) -> Axis:
     return axes.xaxis if which == "x" else axes.yaxis
 

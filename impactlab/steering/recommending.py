@@ -102,8 +102,9 @@ def _tried(
 def _axis(
     trials: Trials, axis: str, rungs: tuple[float, ...], at: Discretisation
 ) -> dict[str, xr.DataArray]:
-    values = trials.along(axis, rungs, at)
-    return {f"{axis}_value": values, f"{axis}_uncertainty": uncertainty(values, axis)}
+    values, without_limit = trials.along(axis, rungs, at)
+    amounts = uncertainty(values, axis).where(~without_limit, np.inf)
+    return {f"{axis}_value": values, f"{axis}_uncertainty": amounts}
 
 
 def _enough(found: xr.Dataset, asked: xr.DataArray, tolerance: float) -> int:
@@ -120,5 +121,6 @@ def _check(found: xr.Dataset, trials: Trials, rungs: Ladders, own: Discretisatio
     last = replace(own, points=rungs.points[-1], courant=rungs.courant[-1])
     if chosen is None:
         return xr.full_like(found["nodes_value"].isel(nodes=0, drop=True), np.nan)
-    ours = trials.along("nodes", (chosen.nodes,), chosen).isel(nodes=0, drop=True)
-    return abs(ours - trials.along("nodes", rungs.nodes[-1:], last).isel(nodes=0, drop=True))
+    ours = trials.along("nodes", (chosen.nodes,), chosen).values
+    theirs = trials.along("nodes", rungs.nodes[-1:], last).values
+    return abs(ours.isel(nodes=0, drop=True) - theirs.isel(nodes=0, drop=True))

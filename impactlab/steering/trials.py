@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from impactlab.analysis.convergence import by_design
 from impactlab.analysis.responses import usable
 from impactlab.dataset import described
 from impactlab.model.discretisation import Discretisation
@@ -21,6 +22,17 @@ from impactlab.study.execution import execute
 Cases = Mapping[str, Sequence[Value]]
 
 
+class Answered(NamedTuple):
+    """Responses of all cases along an axis of the discretisation.
+
+    values: on (response, case, axis), NaN where a run failed, in SI units; without_limit: on
+    (response, case), where the model itself has none along this axis.
+    """
+
+    values: xr.DataArray
+    without_limit: xr.DataArray
+
+
 class Trials:
     """Solves the corner cases of a study with other discretisations; what is solved is kept."""
 
@@ -28,16 +40,18 @@ class Trials:
         """cases: values by parameter, one a case; folder: for the shards."""
         self._study, self._cases, self._folder, self._engine = study, cases, folder, engine
 
-    def along(self, axis: str, rungs: Sequence[float], at: Discretisation) -> xr.DataArray:
-        """The responses on (response, case, axis), NaN where a run failed, in SI units.
+    def along(self, axis: str, rungs: Sequence[float], at: Discretisation) -> Answered:
+        """The answers with these values of nodes, points or courant.
 
-        rungs: values of nodes, points or courant; the other two are those of `at`. Raises
-        OSError when the disk is full or no scheduler answers.
+        rungs: the values; the other two are those of `at`. Raises OSError when the disk is full or
+        no scheduler answers.
         """
         runs = execute(self._design(axis, rungs, at), self._folder, self._engine)
         values = usable(runs).transpose("response", "case", axis)
+        without = by_design.mask(runs, values, axis, axis)
         labels = [name for name in values.coords if name not in values.dims]
-        return values.drop_vars([name for name in labels if values[name].dims != ("response",)])
+        others = [name for name in labels if values[name].dims != ("response",)]
+        return Answered(values.drop_vars(others), without.drop_vars(others, errors="ignore"))
 
     def _design(self, axis: str, rungs: Sequence[float], at: Discretisation) -> xr.Dataset:
         study = replace(self._study, discretisation=at)

@@ -10,12 +10,12 @@ import pytest
 import impactlab as il
 from impactlab.analysis import failures
 from impactlab.dataset import FAILED, MARKS, RESPONSES
+from impactlab.figures.reading import missing
 from impactlab.kernels.contact import LAWS
 from impactlab.kernels.contact.switch import limit
 from impactlab.reference import hertz
 from impactlab.report.cautions import cautions
 from impactlab.report.console import print_responses
-from impactlab.report.outcome import failed_runs
 from impactlab.verification.cases import rigid_backed
 
 BIT, WORDS = MARKS["outside_contact_law"]
@@ -62,7 +62,7 @@ def runs():
 def test_it_is_no_failure(runs):
     assert (runs.status.values & BIT).tolist() == [0, BIT, 0]
     assert not (runs.status.values & FAILED).any()
-    assert not failed_runs(runs).any()
+    assert not missing.failed(runs).any()
     found = failures.analysis(runs)
     assert found.number_of_failed_runs == 0
     assert found.missing_runs.sum() == 0
