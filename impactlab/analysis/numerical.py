@@ -28,7 +28,7 @@ class NumericalFrom(Verdict):
 
     MEASURED = 0, True, "the change of the indices themselves on finer grids"
     BOUND = 1, True, "a cautious bound from the error of the response in corner cases"
-    NOTHING = 2, False, "nothing bounds what the discretisation does to the indices"
+    NOTHING = 2, False, "nothing tells what the discretisation does to the indices"
 
 
 def numerical(

@@ -20,11 +20,17 @@ from impactlab.analysis.sensitivity.bootstrap import half_widths
 from impactlab.analysis.sensitivity.imputation import Fit
 from impactlab.analysis.sensitivity.saltelli import Outputs, estimates
 from impactlab.analysis.sensitivity.sample import Array, Sample
-from impactlab.analysis.sensitivity.verdict import still
+from impactlab.analysis.sensitivity.verdict import still, tail
 
 ORDERS = ("first_order", "total_order")
 ENDINGS = ("", "_change", "_change_interval")
 USED, FINER, COARSER, MORE_POINTS = "used", "finer", "coarser", "more_points"
+TAIL_SHARE = 0.25
+"""Of the variance, that one run in a hundred may carry at most (of a normal response: 0.09).
+
+Above, single runs decide, such as those in which a further impact falls into the first contact:
+which of them another grid moves, and whether it moves one, so few base samples cannot tell.
+"""
 _TO_LIMIT = 2.0
 """Distance to the limit over change, where each refinement takes half of the error."""
 _FIRST_ORDER = 1.0
@@ -40,8 +46,8 @@ def uncertainty(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
 
     Returns for each of ORDERS, on (response, parameter) and without unit: <order>, that distance;
     <order>_change, from the used to the finer grid, and <order>_change_interval, the half-width of
-    its interval. NaN where a grid gives no index. Raises ValueError when the runs are not the
-    sample that their attributes tell of.
+    its interval. NaN where a grid gives no index, and where few runs carry the variance
+    (TAIL_SHARE). Raises ValueError when the runs are not the sample that their attributes tell of.
 
     The distance is the change to the finer grid and as much again from there to the limit (first
     order) times SAFETY_DOUBTFUL, or SAFETY_CREDIBLE where the coarser grid, too, shows that the
@@ -72,7 +78,7 @@ def _of_response(
 ) -> dict[str, Array]:
     """Of one response; empty where a grid gives no index. outputs: (grid, run)."""
     complete = [_complete(row, sample, fit, name) for row in outputs]
-    if not all(_varies(row, sample) for row in complete):
+    if not all(_measurable(row, sample) for row in complete):
         return {}
     factors, used = len(sample.factors), list(spacings).index(USED)
     statistics = [Outputs.of(row, factors, second_order=False).statistics() for row in complete]
@@ -122,6 +128,8 @@ def _complete(outputs: Array, sample: Sample, fit: Fit, name: str) -> Array:
     return imputation.completed(outputs, sample, fit, name)
 
 
-def _varies(outputs: Array, sample: Sample) -> bool:
-    complete = bool(np.isfinite(outputs).all())
-    return complete and not still(outputs, sobol.varying(outputs, sample))
+def _measurable(outputs: Array, sample: Sample) -> bool:
+    """Whether every run answers, the response varies, and no few runs carry its variance."""
+    if not np.isfinite(outputs).all() or still(outputs, sobol.varying(outputs, sample)):
+        return False
+    return tail(outputs) <= TAIL_SHARE
