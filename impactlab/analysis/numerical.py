@@ -73,7 +73,8 @@ def numerical(
     if orders:
         measured = changed[orders[0]].notnull().any("parameter") if changed else share.isnull()
         found["numerical_from"] = _from(measured, share)
-    return xr.Dataset(found).merge(changed.drop_vars(refining.ORDERS, errors="ignore"))
+    parts = xr.Dataset(found), changed.drop_vars(refining.ORDERS, errors="ignore")
+    return xr.merge(parts, join="exact", compat="equals").reset_coords(drop=True)
 
 
 def _of_responses(runs: xr.Dataset, resolution: xr.Dataset) -> dict[str, xr.DataArray]:
