@@ -36,9 +36,25 @@ def is_sample(study):
     return has_key(study, r"\bmethod\s*:\s*(?!grid)\w") and not has_key(study, r"^function\s*:")
 
 
+def is_refined(study):
+    """Whether its numerical uncertainty is measured: a Sobol sample of impacts."""
+    return is_sample(study) and has_key(study, r"\bmethod\s*:\s*sobol\b")
+
+
 def resolution(wildcards, needed):
     """What was found out about discretisations, where it is needed."""
     return [f"results/{wildcards.study}/resolution.nc"] if needed(wildcards.study) else []
+
+
+def refinement(wildcards):
+    """The first runs on finer grids, where there are any."""
+    return [f"results/{wildcards.study}/refinement.nc"] if is_refined(wildcards.study) else []
+
+
+def evidence(wildcards, input):
+    """What is known of the numerical uncertainty, as options."""
+    known = {"resolution": input.resolution, "refinement": input.refinement}
+    return " ".join(f"--{name} {file}" for name, file in known.items() if file)
 
 
 def solving(wildcards):
@@ -158,12 +174,31 @@ rule runs:
         "impactlab --log {log} run {input.design} --output {output} --workers {threads}"
 
 
+# It shares the shards of the runs: the grid that they used is not solved again.
+rule refinement:
+    input:
+        code=code(*SOLVER, "study/**/*.py", "steering/refining.py"),
+        runs="results/{study}/runs.nc",
+    output:
+        "results/{study}/refinement.nc",
+    log:
+        "results/{study}/logs/refinement.log",
+    benchmark:
+        "results/{study}/benchmarks/refinement.tsv"
+    threads: os.cpu_count()  # scaled down to --cores
+    conda:
+        "environment.yaml"
+    shell:
+        "impactlab --log {log} refine {input.runs} --output {output} --workers {threads}"
+
+
 # Of a sample indices.csv, indices.nc and surrogate.nc come with it: no outputs, for a grid has none.
 rule analysis:
     input:
         code=code(*MODEL, "analysis/**/*.py"),
         runs="results/{study}/runs.nc",
         resolution=lambda wildcards: resolution(wildcards, is_sample),
+        refinement=refinement,
     output:
         "results/{study}/analysis.nc",
     log:
@@ -171,12 +206,12 @@ rule analysis:
     benchmark:
         "results/{study}/benchmarks/analysis.tsv"
     params:
-        resolution=lambda wildcards, input: f"--resolution {input.resolution}" if input.resolution else "",
+        evidence=evidence,
     threads: 1
     conda:
         "environment.yaml"
     shell:
-        "impactlab --log {log} analyse {input.runs} {params.resolution} --output {output}"
+        "impactlab --log {log} analyse {input.runs} {params.evidence} --output {output}"
 
 
 # Checks that fail are findings like others: the report comes first, the verdict last.

@@ -34,15 +34,19 @@ _MODULES: dict[str, Analysis] = {
 """Every analysis there is; a new one is a module, a line here and a line in dataset.ANALYSES."""
 
 
-def analyse(runs: xr.Dataset, resolution: xr.Dataset | None = None) -> xr.Dataset:
+def analyse(
+    runs: xr.Dataset,
+    resolution: xr.Dataset | None = None,
+    refinement: xr.Dataset | None = None,
+) -> xr.Dataset:
     """Failures, convergence and sensitivity of a study, whichever apply, in one dataset.
 
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
-    attribute `analyses` says which are wanted (without it: all). resolution: what
-    steering.recommending found for this study: adds the numerical uncertainty of sensitivity
-    indices (see `numerical`). Returns the variables that the applying modules document, on
-    `response` and the dimensions that they leave, with the attributes of the runs. Raises
-    ValueError when the runs are not what their attributes say.
+    attribute `analyses` says which are wanted (without it: all). resolution, refinement: what
+    steering.recommending and steering.refining found for this study: add the numerical uncertainty
+    of sensitivity indices (see `numerical`). Returns the variables that the applying modules
+    document, on `response` and the dimensions that they leave, with the attributes of the runs.
+    Raises ValueError when the runs are not what their attributes say.
     """
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
     parts = [
@@ -51,6 +55,6 @@ def analyse(runs: xr.Dataset, resolution: xr.Dataset | None = None) -> xr.Datase
         if module.applies(runs) and name not in ANALYSES.keys() - wanted
     ]
     merged = xr.merge(parts, join="exact", compat="equals", combine_attrs="override")
-    if resolution is not None:
-        merged = merged.merge(numerical(runs, merged, resolution), join="exact")
+    if resolution is not None or refinement is not None:
+        merged = merged.merge(numerical(runs, merged, resolution, refinement), join="exact")
     return merged.assign_attrs(runs.attrs).drop_encoding()

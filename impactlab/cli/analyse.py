@@ -15,6 +15,9 @@ def analyse(
     resolution: Annotated[
         Path | None, typer.Option(help="What `recommend` found: numerical uncertainty.")
     ] = None,
+    refinement: Annotated[
+        Path | None, typer.Option(help="What `refine` solved: the same of Sobol indices, measured.")
+    ] = None,
     output: Annotated[Path | None, typer.Option(help="Default: beside the runs.")] = None,
 ) -> None:
     """Convergence and sensitivity from solved runs.
@@ -28,7 +31,8 @@ def analyse(
     from impactlab.study.netcdf import read_netcdf, write_netcdf
 
     solved, path = read_netcdf(runs), output or runs.with_name("analysis.nc")
-    found = analysed(solved, read_netcdf(resolution) if resolution else None)
+    others = [read_netcdf(each) if each else None for each in (resolution, refinement)]
+    found = analysed(solved, *others)
     write_netcdf(found, path)
     for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps of another study
         path.with_name(name).unlink(missing_ok=True)

@@ -17,6 +17,7 @@ from impactlab.cli.index import index
 from impactlab.cli.paper import paper
 from impactlab.cli.predict import predict
 from impactlab.cli.recommend import recommend
+from impactlab.cli.refine import refine
 from impactlab.cli.report import report
 from impactlab.cli.run import run
 from impactlab.cli.simulate import simulate
@@ -29,6 +30,7 @@ _COMMANDS = (
     recommend,
     design,
     run,
+    refine,
     analyse,
     predict,
     verify,

@@ -1,8 +1,8 @@
 """Which parameters matter most: ranks and plain sentences that claim no more than is known.
 
 A parameter is named where its whole interval lies above zero and above the dummy parameter's, and
-its index above what the numerical error could make of it. One comes before another only where
-their intervals do not overlap.
+its index above what the numerical error could make of it; where only the latter fails, it is said.
+One comes before another only where their intervals, with the numerical error, do not overlap.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from impactlab.figures.reading import measures, verdicts, words
 from impactlab.figures.reading.measures import (
@@ -19,6 +20,7 @@ from impactlab.figures.reading.measures import (
     PAWN,
     REGRESSION,
     SOBOL,
+    Array,
     Family,
     Index,
     asked,
@@ -37,7 +39,7 @@ _NAMED = 3
 POOR_FIT = 0.7
 """Share of the variance below which a linear fit says little (Saltelli et al. 2008, chapter 1)."""
 Named = list[tuple[str, float, float]]
-"""(parameter in words, index, half-width), the largest magnitude first."""
+"""(parameter in words, index, what is in doubt of it), the largest magnitude first."""
 
 
 def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
@@ -50,7 +52,10 @@ def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
         for name in asked(runs, analysis)
     ]
     title = f"Ranks of the parameters by {family.title}, {measure.words}"
-    return Table(f"{title} (noise: not told from zero or the dummy)", head, rows)
+    explained = "noise: not told from zero or the dummy"
+    if f"{measure.name}_numerical" in analysis:
+        explained += "; numerical: not told from its numerical error"
+    return Table(f"{title} ({explained})", head, rows)
 
 
 def sentences(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[str]:
@@ -60,15 +65,14 @@ def sentences(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[st
 
 def _ranks(index: Index) -> list[Cell]:
     cells = []
-    for (best, worst), stands, value in zip(
-        index.ranks, index.significant, index.values, strict=True
-    ):
+    rows = zip(index.ranks, index.values, index.significant, index.numerically_lost, strict=True)
+    for (best, worst), value, stands, lost in rows:
         if not np.isfinite(value):
             cells.append(Cell("undefined", "muted"))
         elif stands:
             cells.append(Cell(str(best) if best == worst else f"{best}–{worst}", "number"))
         else:
-            cells.append(Cell("noise", "muted"))
+            cells.append(Cell("numerical" if lost else "noise", "muted"))
     return cells
 
 
@@ -88,23 +92,30 @@ def _sentence(runs: xr.Dataset, analysis: xr.Dataset, family: Family, name: str)
 def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
     """What comes from single parameters, the largest share first; then interactions."""
     response = words.response(name)
-    found = _significant(analysis, "first_order", name)
-    if not found:
-        yield f"No parameter alone has a significant share in the variance of the {response}."
-    else:
+    found, lost = _significant(analysis, "first_order", name), _lost(analysis, "first_order", name)
+    if found:
         (first, value, margin), *rest = found[:_NAMED]
         head = f"{_share(value, margin)} of the variance of the {response} comes from the {first}"
         others = [f"{_share(value, margin)} from the {key}" for key, value, margin in rest]
         yield f"At these ranges {words.listing([f'{head} alone', *others])}."
+    if lost:
+        left = [f"{key}, {_share(value, error)}" for key, value, error in lost[:_NAMED]]
+        yield (
+            f"The numerical error leaves open what share of the variance of the {response} comes "
+            f"from these alone: {'; '.join(left)}."
+        )
+    if not found and not lost:
+        yield f"No parameter alone has a significant share in the variance of the {response}."
     yield from _interactions(analysis, name)
 
 
 def _interactions(analysis: xr.Dataset, name: str) -> Iterator[str]:
-    """The parameter whose total index lies above its first-order index beyond both intervals."""
+    """The parameter whose total index lies above its first order, beyond all that is in doubt."""
     first = measures.index(analysis, "first_order", name)
     total = measures.index(analysis, "total_order", name)
     surplus = total.values - first.values
-    beyond = total.significant & (surplus > np.maximum(first.margins + total.margins, _WORTH))
+    reach = first.margins + total.margins + first.numerical + total.numerical
+    beyond = total.significant & (surplus > np.maximum(reach, _WORTH))
     if beyond.any():
         at = int(np.argmax(np.where(beyond, surplus, -np.inf)))
         parameter = words.parameter(measures.parameters(analysis)[at])
@@ -186,9 +197,19 @@ def _leads(index: Index) -> bool:
 
 def _significant(analysis: xr.Dataset, measure: str, name: str) -> Named:
     index = measures.index(analysis, measure, name)
+    return _named(analysis, index.values, index.margins, index.significant)
+
+
+def _lost(analysis: xr.Dataset, measure: str, name: str) -> Named:
+    """What is above noise, but not told from its numerical error, in the place of half-widths."""
+    index = measures.index(analysis, measure, name)
+    return _named(analysis, index.values, index.numerical, index.numerically_lost)
+
+
+def _named(analysis: xr.Dataset, values: Array, beside: Array, asked: NDArray[np.bool_]) -> Named:
     keys = [words.parameter(key) for key in measures.parameters(analysis)]
-    rows = zip(keys, index.values, index.margins, index.significant, strict=True)
-    found = [(key, float(v), float(m)) for key, v, m, stands in rows if stands]
+    rows = zip(keys, values, beside, asked, strict=True)
+    found = [(key, float(v), float(b)) for key, v, b, stands in rows if stands]
     return sorted(found, key=lambda entry: -abs(entry[1]))
 
 

@@ -127,6 +127,21 @@ def test_a_sample_predicts_what_was_not_solved(folder):
     assert not file.exists()  # it would be that of another analysis
 
 
+def test_a_sample_is_refined_and_tells_its_numerical_error(folder):
+    (folder / "studies" / "sample.yaml").write_text(SAMPLE)
+    impactlab("run", "studies/sample.yaml", cwd=folder)
+    results = folder / "results" / "sample"
+    # 16 base samples of 4 runs on 3 grids; the runs of the used grid are among the 96 solved
+    said = impactlab("refine", results / "runs.nc", cwd=folder).stderr
+    assert "192 runs, 64 of them solved before" in said
+    refinement = results / "refinement.nc"
+    impactlab("analyse", results / "runs.nc", "--refinement", refinement, cwd=folder)
+    analysis = xr.load_dataset(results / "analysis.nc")
+    assert analysis["numerical_from"].item() == 0
+    assert (analysis["first_order_numerical"] < 0.2).all()
+    assert "first_order_numerical" in (results / "indices.csv").read_text()
+
+
 def test_indices_of_a_sample_are_told_beside_its_analysis(folder):
     grid = STUDY[STUDY.index("  method") : STUDY.index("responses")]
     drawn = """  method: sobol

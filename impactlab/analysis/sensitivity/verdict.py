@@ -93,7 +93,7 @@ def of_outputs(
     holds = {
         SensitivityVerdict.MOSTLY_CONSTANT: counts.max() >= MOSTLY * outputs.size,
         SensitivityVerdict.IMPUTED: imputed > 0,
-        SensitivityVerdict.FEW_RUNS_CARRY_IT: _tail(outputs) > TAIL_SHARE,
+        SensitivityVerdict.FEW_RUNS_CARRY_IT: tail(outputs) > TAIL_SHARE,
         SensitivityVerdict.JUMPS: values.size <= min(FEW_VALUES, outputs.size // 2),
     }
     return [verdict for verdict, held in holds.items() if held]
@@ -155,7 +155,7 @@ def _inconsistent(found: Mapping[str, Array]) -> bool:
     )
 
 
-def _tail(outputs: Array) -> float:
+def tail(outputs: Array) -> float:
     """Share of the variance that comes from the runs farthest from the mean."""
     squares = np.sort((outputs - outputs.mean()) ** 2)
     return float(squares[-max(1, round(TAIL * squares.size)) :].sum() / squares.sum())

@@ -64,22 +64,29 @@ class Index:
     floor: float
 
     @property
+    def above_noise(self) -> NDArray[np.bool_]:
+        """Where the whole interval lies beyond zero and the dummy."""
+        return np.asarray(np.abs(self.values) - self.margins > self.floor)
+
+    @property
     def significant(self) -> NDArray[np.bool_]:
-        """Where the whole interval lies beyond the dummy, and the index beyond numerical error."""
-        size = np.abs(self.values)
-        return np.asarray((size - self.margins > self.floor) & (size > self.numerical))
+        """Where an index is above noise, and beyond what numerical error could make of it."""
+        return self.above_noise & (np.abs(self.values) > self.numerical)
 
     @property
     def numerically_lost(self) -> NDArray[np.bool_]:
-        """Where the numerical error alone could make an index as large as this."""
-        return np.asarray((self.numerical > 0) & (np.abs(self.values) <= self.numerical))
+        """Where numerical error alone takes an index that is above noise."""
+        return self.above_noise & ~self.significant
 
     @property
     def ranks(self) -> list[tuple[int, int]]:
-        """The best and the worst rank of each magnitude that the intervals leave open, from 1."""
-        low, high = np.abs(self.values) - self.margins, np.abs(self.values) + self.margins
-        best = 1 + (low[None, :] > high[:, None]).sum(1)
-        worst = low.size - (high[None, :] < low[:, None]).sum(1)
+        """The best and the worst rank of each magnitude, from 1.
+
+        What interval and numerical error leave open, these two added.
+        """
+        size, reach = np.abs(self.values), self.margins + self.numerical
+        best = 1 + (size - reach > (size + reach)[:, None]).sum(1)
+        worst = size.size - (size + reach < (size - reach)[:, None]).sum(1)
         return list(zip(best.tolist(), worst.tolist(), strict=True))
 
 

@@ -60,7 +60,10 @@ def test_no_bound_is_infinite_and_no_error_is_none():
     )
     y = np.arange(10.0)
     unbounded = numerical(runs_of(y), analysis, resolution_of([0.1, np.inf]))
-    assert np.isinf(unbounded["total_order_numerical"].values[0, 0])
+    assert np.isinf(unbounded["numerical_share"].item())
+    assert unbounded["total_order_numerical"].values[0, 0] == 0.5  # it may still be 0 or 1
+    assert unbounded["numerical_from"].attrs["flag_meanings"].split()[2] == "nothing"
+    assert unbounded["numerical_from"].item() == 2
     assert np.isnan(unbounded["total_order_numerical"].values[0, 1])
     exact = numerical(runs_of(y), analysis, resolution_of([0.0, 0.0]))
     assert exact["total_order_numerical"].values[0, 0] == 0

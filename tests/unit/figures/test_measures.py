@@ -26,6 +26,20 @@ def test_an_index_below_the_numerical_error_does_not_stand() -> None:
     assert found.numerically_lost.tolist() == [True, False]
 
 
+def test_noise_is_told_from_numerical_error() -> None:
+    found = Index(np.array([0.5, 0.02]), np.array([0.1, 0.03]), np.array([0.6, 0.6]), 0.0)
+    assert found.above_noise.tolist() == [True, False]
+    assert found.numerically_lost.tolist() == [True, False]
+    assert found.significant.tolist() == [False, False]
+
+
+def test_numerical_error_opens_ranks_too() -> None:
+    values, margins = np.array([0.5, 0.3, 0.1]), np.full(3, 0.05)
+    assert Index(values, margins, np.zeros(3), 0.0).ranks == [(1, 1), (2, 2), (3, 3)]
+    found = Index(values, margins, np.array([0.1, 0.05, 0.0]), 0.0)
+    assert found.ranks == [(1, 2), (1, 2), (3, 3)]
+
+
 def test_ranks_are_open_where_intervals_overlap() -> None:
     found = _index([0.5, 0.3, 0.29, -0.7], [0.05, 0.05, 0.05, 0.05])
     assert found.ranks == [(2, 2), (3, 4), (3, 4), (1, 1)]

@@ -11,6 +11,8 @@ import pytest
 import samples
 import xarray as xr
 
+from impactlab.analysis.numerical import NumericalFrom
+from impactlab.analysis.verdicts import flagged
 from impactlab.figures.draw import draw_all
 from impactlab.report import numerical, ranking, surrogate
 from impactlab.report.drawn_data import drawn_data
@@ -91,7 +93,12 @@ def test_an_index_below_the_numerical_error_is_not_named_but_warned_of(study: St
     runs, analysis = study
     assert numerical.warnings(runs, analysis) == []
     analysis["first_order_numerical"].loc[PEAK] = [0.0, 0.2, 0.0, 0.0]
-    assert "yield stress" not in ranking.sentences(runs, analysis, ranking.SOBOL)[0]
+    told, left = ranking.sentences(runs, analysis, ranking.SOBOL)[0].split(" The numerical error ")
+    assert "yield stress" not in told
+    assert left.startswith(
+        "leaves open what share of the variance of the peak force comes from these alone: yield "
+        "stress of the beam, 12 % (± 20). With all its interactions"
+    )
     (warning,) = numerical.warnings(runs, analysis)
     value = float(analysis["first_order"].sel(PEAK)[1])
     assert warning == (
@@ -99,6 +106,38 @@ def test_an_index_below_the_numerical_error_is_not_named_but_warned_of(study: St
         "could change these indices by as much (up to 0.2): yield stress of the beam "
         f"({value:.3f})."
     )
+
+
+def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant(
+    report: Any, study: Study
+) -> None:
+    runs, analysis = study
+    for order in ("first_order", "total_order"):
+        analysis[f"{order}_numerical"].loc[PEAK] = 0.9
+    (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
+    assert sentence == (
+        "The numerical error leaves open what share of the variance of the peak force comes from "
+        "these alone: impact velocity, 71 % (± 90); yield stress of the beam, 12 % (± 90)."
+    )
+    rows = _table(report(runs, analysis), "Ranks of the parameters by Sobol indices, total order")
+    assert rows[1] == ["Peak force", "numerical", "numerical", "noise", "noise"]
+
+
+@pytest.mark.parametrize(
+    ("code", "told", "missing"),
+    [(0, "measured where the first runs", "only a bound"), (1, "only a bound", "measured where")],
+)
+def test_what_the_numerical_error_rests_on_is_told(
+    report: Any, study: Study, code: int, told: str, missing: str
+) -> None:
+    runs, analysis = study
+    codes = xr.full_like(analysis["response"], code, dtype=np.int8)
+    analysis["numerical_from"] = flagged(codes, NumericalFrom, "what it rests on")
+    page = report(runs, analysis.drop_vars(["numerical_uncertainty", "numerical_share"]))
+    row = _table(page, "Numerical uncertainty")[1]
+    assert row == ["Peak force", "–", "–", "0", "0", ("measured", "bound")[code]]
+    assert told in page.text
+    assert missing not in page.text
 
 
 def test_the_numerical_warning_is_a_caution_and_in_the_table(report: Any, study: Study) -> None:
@@ -109,7 +148,7 @@ def test_the_numerical_warning_is_a_caution_and_in_the_table(report: Any, study:
     row = next(r for r in _table(page, "Sobol indices, total order") if r[0] == "Peak force")
     assert row[1] == "0.79 ± 0.04"
     assert row[2].endswith("below numerical error")
-    assert _table(page, "Numerical uncertainty")[1] == ["Peak force", "0.5 %", "0.2 %"]
+    assert _table(page, "Numerical uncertainty")[1] == ["Peak force", "0.5 %", "0.2 %", "0", "0.5"]
 
 
 def test_ranks_are_shown_as_far_as_known(report: Any, study: Study) -> None:

@@ -1,0 +1,43 @@
+"""What a finer discretisation does to sensitivity indices."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from impactlab.cli.interrupt import stop_at_once
+from impactlab.cli.options import RunsFile
+
+
+def refine(
+    runs: RunsFile,
+    output: Annotated[
+        Path | None, typer.Option(help="Default: refinement.nc, beside the runs.")
+    ] = None,
+    base_samples: Annotated[
+        int | None,
+        typer.Option(min=16, help="How many are solved again. Default: N/8, from 16 to 64."),
+    ] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
+) -> None:
+    """Solve the first runs of a Sobol sample on finer grids.
+
+    `impactlab analyse --refinement` tells from them how far the indices may be off numerically; the
+    more base samples, the closer.
+    """
+    from functools import partial
+
+    from impactlab.steering.refining import refined
+    from impactlab.study.engine import Engine
+    from impactlab.study.execution import execute
+    from impactlab.study.netcdf import read_netcdf, write_netcdf
+
+    solved, path = read_netcdf(runs), output or runs.with_name("refinement.nc")
+    signal.signal(signal.SIGINT, stop_at_once)
+    engine = Engine("threads", workers)
+    solve = partial(execute, shards_folder=runs.with_name("shards"), engine=engine)
+    write_netcdf(refined(solved, solve, base_samples), path)

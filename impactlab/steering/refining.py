@@ -1,0 +1,90 @@
+"""The first base samples of a Sobol sample once more, on other grids."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.study.solvers import solver_of
+
+MOST, FEWEST, SHARE = 64, 16, 8
+"""Base samples that are solved again: at most, at least, and as a share (1/SHARE) of all."""
+COARSEST = 25
+"""Nodes from which on a coarser grid still resembles the beam."""
+Solve = Callable[[xr.Dataset], xr.Dataset]
+
+
+def refined(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr.Dataset:
+    """The first base samples on the grid of the runs and on others, everything else the same.
+
+    runs: a Sobol sample of impacts, as in runs.nc. solve: makes the runs of a design; it is given
+    the grid of the runs, too, whose answers lie among its shards as a rule. count: base samples to
+    solve again; None: see `base_samples`.
+
+    Returns runs on (run, grid), SI units, with the attributes of a Sobol sample of so many
+    base_samples without second order. `grid` is "used"; "finer", with half the spacing (and at the
+    same courant a smaller time step); "more_points" over the depth, nearly twice as many; and
+    "coarser", with about twice the spacing, where that leaves COARSEST nodes; nodes and points
+    (grid) tell each. Raises ValueError where the runs are no such sample, OSError when the disk is
+    full or no scheduler answers.
+    """
+    _check(runs)
+    names = [str(name) for name in np.atleast_1d(runs.attrs["varied"])]
+    first = _first(runs.sortby("run"), count)
+    grids = _grids(int(runs["nodes"]), int(runs["points"]))
+    beside = [name for name, values in first.coords.items() if set(values.dims) - {"run"}]
+    design = first.drop_vars([*first.data_vars, *beside, "nodes", "points"]).assign_coords(
+        grid=("grid", list(grids), {"long_name": "discretisation"}),
+        nodes=("grid", [nodes for nodes, _ in grids.values()]),
+        points=("grid", [points for _, points in grids.values()]),
+    )
+    solved = solve(design.assign_attrs(varied=[*names, "nodes", "points"], histories=0, profiles=0))
+    return solved.assign_attrs(varied=names)
+
+
+def base_samples(whole: int) -> int:
+    """How many of a sample's base samples are solved again: a small part of the work, but enough.
+
+    The half-width of the changes falls with the square root of the number.
+    """
+    return min(whole, max(FEWEST, min(MOST, whole // SHARE)))
+
+
+def _grids(nodes: int, points: int) -> dict[str, tuple[int, int]]:
+    """Nodes and points of each grid, by name."""
+    grids = {
+        "used": (nodes, points),
+        "finer": (2 * nodes - 1, points),
+        "more_points": (nodes, 2 * points - 1),
+    }
+    coarser = 2 * round((nodes - 1) / 4) + 1  # odd, for a node in the middle
+    return grids | ({"coarser": (coarser, points)} if coarser >= COARSEST else {})
+
+
+def _first(runs: xr.Dataset, count: int | None) -> xr.Dataset:
+    """The runs of the first base samples: those at A, at A with a column of B each, and at B.
+
+    What else the second order takes, B with columns of A, comes between the last two.
+    """
+    whole = int(runs.attrs["base_samples"])
+    step, second = runs.sizes["run"] // whole, int(runs.attrs["second_order"])
+    factors = (step - 2) // (2 if second else 1)
+    wanted = [*range(factors + 1), step - 1]
+    count = min(whole, count or base_samples(whole))
+    places = np.add.outer(step * np.arange(count), wanted).ravel()
+    said: dict[str, Any] = {"base_samples": count, "second_order": 0}
+    return runs.isel(run=places).assign_attrs(said)
+
+
+def _check(runs: xr.Dataset) -> None:
+    name, method = runs.attrs.get("study", "?"), runs.attrs.get("method", "none")
+    if method != "sobol":
+        raise ValueError(
+            f"study {name!r}: its runs are of method {method}, but only those of sobol can be "
+            "refined"
+        )
+    if solver_of(runs) != "impact":
+        raise ValueError(f"study {name!r}: its runs are no impacts: there is no grid to refine")
