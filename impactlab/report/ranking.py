@@ -20,7 +20,6 @@ from impactlab.figures.reading.measures import (
     PAWN,
     REGRESSION,
     SOBOL,
-    Array,
     Family,
     Index,
     asked,
@@ -39,7 +38,7 @@ _NAMED = 3
 POOR_FIT = 0.7
 """Share of the variance below which a linear fit says little (Saltelli et al. 2008, chapter 1)."""
 Named = list[tuple[str, float, float]]
-"""(parameter in words, index, what is in doubt of it), the largest magnitude first."""
+"""(parameter in words, index, half-width), the largest magnitude first."""
 
 
 def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
@@ -91,18 +90,18 @@ def _sentence(runs: xr.Dataset, analysis: xr.Dataset, family: Family, name: str)
 
 def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
     """What comes from single parameters, the largest share first; then interactions."""
-    response = words.response(name)
-    found, lost = _significant(analysis, "first_order", name), _lost(analysis, "first_order", name)
+    response, index = words.response(name), measures.index(analysis, "first_order", name)
+    found = _shares(analysis, index, index.significant)
+    lost = _shares(analysis, index, index.numerically_lost)
     if found:
-        (first, value, margin), *rest = found[:_NAMED]
-        head = f"{_share(value, margin)} of the variance of the {response} comes from the {first}"
-        others = [f"{_share(value, margin)} from the {key}" for key, value, margin in rest]
-        yield f"At these ranges {words.listing([f'{head} alone', *others])}."
+        (first, share), *rest = found
+        head = f"{share} of the variance of the {response} comes from the {first} alone"
+        others = [f"{share} from the {key}" for key, share in rest]
+        yield f"At these ranges {words.listing([head, *others])}."
     if lost:
-        left = [f"{key}, {_share(value, error)}" for key, value, error in lost[:_NAMED]]
         yield (
             f"The numerical error leaves open what share of the variance of the {response} comes "
-            f"from these alone: {'; '.join(left)}."
+            f"from these alone: {'; '.join(f'{key}, {share}' for key, share in lost)}."
         )
     if not found and not lost:
         yield f"No parameter alone has a significant share in the variance of the {response}."
@@ -119,8 +118,7 @@ def _interactions(analysis: xr.Dataset, name: str) -> Iterator[str]:
     if beyond.any():
         at = int(np.argmax(np.where(beyond, surplus, -np.inf)))
         parameter = words.parameter(measures.parameters(analysis)[at])
-        share = _share(total.values[at], total.margins[at])
-        yield f"With all its interactions the {parameter} takes part in {share}."
+        yield f"With all its interactions the {parameter} takes part in {_share(total, at)}."
 
 
 def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
@@ -197,22 +195,24 @@ def _leads(index: Index) -> bool:
 
 def _significant(analysis: xr.Dataset, measure: str, name: str) -> Named:
     index = measures.index(analysis, measure, name)
-    return _named(analysis, index.values, index.margins, index.significant)
-
-
-def _lost(analysis: xr.Dataset, measure: str, name: str) -> Named:
-    """What is above noise, but not told from its numerical error, in the place of half-widths."""
-    index = measures.index(analysis, measure, name)
-    return _named(analysis, index.values, index.numerical, index.numerically_lost)
-
-
-def _named(analysis: xr.Dataset, values: Array, beside: Array, asked: NDArray[np.bool_]) -> Named:
     keys = [words.parameter(key) for key in measures.parameters(analysis)]
-    rows = zip(keys, values, beside, asked, strict=True)
-    found = [(key, float(v), float(b)) for key, v, b, stands in rows if stands]
+    rows = zip(keys, index.values, index.margins, index.significant, strict=True)
+    found = [(key, float(v), float(m)) for key, v, m, stands in rows if stands]
     return sorted(found, key=lambda entry: -abs(entry[1]))
 
 
-def _share(value: float, margin: float) -> str:
+def _shares(analysis: xr.Dataset, index: Index, asked: NDArray[np.bool_]) -> list[tuple[str, str]]:
+    """(parameter, share) in words, the largest of those asked for first."""
+    keys = [words.parameter(key) for key in measures.parameters(analysis)]
+    order = [at for at in np.argsort(-np.abs(index.values)) if asked[at]]
+    return [(keys[at], _share(index, at)) for at in order[:_NAMED]]
+
+
+def _share(index: Index, at: int) -> str:
+    """With the half-width of its interval and, where that is known, the numerical error."""
+    value, margin, error = (
+        float(each[at]) for each in (index.values, index.margins, index.numerical)
+    )
     decimals = 0 if margin >= _COARSE and value >= _SMALL else 1
-    return f"{100 * value:.{decimals}f} % (± {100 * margin:.{decimals}f})"
+    numerically = f", numerically ± {100 * error:.{decimals}f}" if error else ""
+    return f"{100 * value:.{decimals}f} % (± {100 * margin:.{decimals}f}{numerically})"

@@ -90,7 +90,8 @@ def _convergence() -> Section:
 def _ranking(runs: xr.Dataset, analysis: xr.Dataset, first: Family, file: str) -> Section:
     lead = (
         "Sentences name significant parameters only, with the half-width of the "
-        f"{verdicts.confidence(analysis)} interval. Ranks are a range where intervals overlap."
+        f"{verdicts.confidence(analysis)} interval. Ranks are a range where intervals, widened by "
+        "the numerical error where that is known, overlap."
     )
     return Section(
         "ranking",

@@ -95,9 +95,10 @@ def test_an_index_below_the_numerical_error_is_not_named_but_warned_of(study: St
     analysis["first_order_numerical"].loc[PEAK] = [0.0, 0.2, 0.0, 0.0]
     told, left = ranking.sentences(runs, analysis, ranking.SOBOL)[0].split(" The numerical error ")
     assert "yield stress" not in told
+    assert "71 % (± 3) of the variance" in told
     assert left.startswith(
         "leaves open what share of the variance of the peak force comes from these alone: yield "
-        "stress of the beam, 12 % (± 20). With all its interactions"
+        "stress of the beam, 12 % (± 3, numerically ± 20). With all its interactions"
     )
     (warning,) = numerical.warnings(runs, analysis)
     value = float(analysis["first_order"].sel(PEAK)[1])
@@ -117,7 +118,8 @@ def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant
     (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
     assert sentence == (
         "The numerical error leaves open what share of the variance of the peak force comes from "
-        "these alone: impact velocity, 71 % (± 90); yield stress of the beam, 12 % (± 90)."
+        "these alone: impact velocity, 71 % (± 3, numerically ± 90); yield stress of the beam, "
+        "12 % (± 3, numerically ± 90)."
     )
     rows = _table(report(runs, analysis), "Ranks of the parameters by Sobol indices, total order")
     assert rows[1] == ["Peak force", "numerical", "numerical", "noise", "noise"]
