@@ -8,6 +8,7 @@ import numpy as np
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
+from impactlab.kernels.jit import compiled
 from impactlab.kernels.types import Array
 
 _null: Any = cgutils.get_null_value  # numba has no types here
@@ -23,6 +24,15 @@ def lent(array: Array) -> Array:
     in a hot loop costs more than the work.
     """
     return array
+
+
+@compiled
+def end_loan(owner: Any) -> None:
+    """Say that what was lent of `owner` (an array, or a tuple of them) is not used any more.
+
+    Compiled code frees an array after its last use: without this call after the loan that is
+    where it is lent, and what borrows it works on memory that is another's by then.
+    """
 
 
 def _make_view(context: Any, array: Any) -> Any:

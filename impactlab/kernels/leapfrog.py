@@ -11,7 +11,7 @@ import numpy as np
 
 from impactlab.kernels import responses
 from impactlab.kernels import track as watch
-from impactlab.kernels.arrays import lent
+from impactlab.kernels.arrays import end_loan, lent
 from impactlab.kernels.beam import (
     Beam,
     Grid,
@@ -211,6 +211,11 @@ def run(
         lent(samples),
         steps,
     )
+    end_loan(section)
+    end_loan(beam)
+    end_loan(held)
+    end_loan(others)
+    end_loan(samples)
     if now < 0:
         responses.clear(answer, DIVERGED)
         samples[:] = np.nan
