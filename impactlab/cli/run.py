@@ -23,6 +23,9 @@ def run(
     or 1,
     processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
     scheduler: Annotated[str, typer.Option(help="Address of a running dask scheduler.")] = "",
+    batch_seconds: Annotated[
+        float, typer.Option(min=0.001, hidden=True, help="Of a task, about, at most.")
+    ] = 1.0,
 ) -> None:
     """Solve the runs of a study that have not been solved yet.
 
@@ -42,7 +45,7 @@ def run(
         evidence = (output or RESULTS / design_file.stem / "runs.nc").with_name("resolution.nc")
         samples = sampled(settled(read_study(design_file), evidence))
     path = output or RESULTS / samples.attrs["study"] / "runs.nc"
-    engine = Engine("processes" if processes else "threads", workers, scheduler)
+    engine = Engine("processes" if processes else "threads", workers, scheduler, batch_seconds)
     signal.signal(signal.SIGINT, stop_at_once)
     solve = partial(execute, shards_folder=path.parent / "shards", engine=engine)
     if "until_interval" in samples.attrs:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 _COST = 3e8
-"""Of a batch, at most, in node-steps: about a second."""
+"""Of a second, in node-steps."""
 _VALUES = 20_000_000
 """Stored numbers a batch, at most: bounds the memory of a task."""
 _A_WORKER = 4
@@ -16,13 +16,14 @@ _A_WORKER = 4
 
 
 def batches(
-    cost: np.ndarray[Any, Any], values: int, runs: list[int], workers: int
+    cost: np.ndarray[Any, Any], values: int, runs: list[int], workers: int, seconds: float = 1.0
 ) -> Iterator[list[int]]:
     """The numbers of `runs` in consecutive batches of about equal cost.
 
-    cost: of each of all runs, in node-steps; values: stored numbers a run.
+    cost: of each of all runs, in node-steps; values: stored numbers a run; seconds: of a batch,
+    about, at most.
     """
-    limit = min(_COST, cost[runs].sum() / (_A_WORKER * workers))
+    limit = min(_COST * seconds, cost[runs].sum() / (_A_WORKER * workers))
     most = max(1, _VALUES // values)
     batch: list[int] = []
     spent = 0.0

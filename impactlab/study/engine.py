@@ -20,6 +20,8 @@ class Engine:
     kind: Literal["threads", "processes"] = "threads"
     workers: int = 1
     address: str = ""
+    batch_seconds: float = 1.0
+    """Of a task, about, at most."""
 
     @contextmanager
     def client(self) -> Iterator[Client]:

@@ -103,7 +103,13 @@ def _solved(
     solver.solve(
         cases[:0], Form(form.samples, profiles=False)
     )  # compiles before workers ask for it
-    waiting = batches(solver.cost(cases), solver.values(cases, form), runs, engine.workers)
+    waiting = batches(
+        solver.cost(cases),
+        solver.values(cases, form),
+        runs,
+        engine.workers,
+        engine.batch_seconds,
+    )
     under_way: dict[Any, list[int]] = {}
     with (
         engine.client() as client,
