@@ -1,6 +1,7 @@
 # make study   from the study files to results/index.html
 # make paper   the figures and statements of the paper, in results/paper
 # make test    the checks and the tests
+# make chaos   what crashes, full disks, lost workers and hostile files must not do (20 minutes)
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings; both schemes' cost and error;
 #              the bootstrap of Sobol indices: wants an idle machine
@@ -22,7 +23,7 @@ IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
 
-.PHONY: study paper test lint pytest bench mutants coverage constraints unlock clean
+.PHONY: study paper test lint pytest chaos bench mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -49,6 +50,9 @@ lint: $(MADE)-dev
 pytest: $(MADE)-dev
 	$(IN_VENV) python -m pytest $(PYTEST_ARGS)
 
+chaos: $(MADE)-dev
+	$(IN_VENV) python -m pytest -m chaos $(PYTEST_ARGS)
+
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
@@ -60,7 +64,7 @@ mutants: $(MADE)-dev
 
 # Compiled kernels hide from coverage: here they run as plain Python, on the small cases only.
 coverage: $(MADE)-dev
-	$(IN_VENV) NUMBA_DISABLE_JIT=1 python -m pytest tests/unit -m 'not slow' \
+	$(IN_VENV) NUMBA_DISABLE_JIT=1 python -m pytest tests/unit -m 'not slow and not chaos' \
 	  --cov --cov-report=term-missing:skip-covered $(PYTEST_ARGS)
 
 # Newest versions for every Python and platform; needs uv (https://docs.astral.sh/uv).
