@@ -54,9 +54,6 @@ def main() -> None:
     gc.set_threshold(100_000)  # loading modules makes many objects, but no rubbish
     try:
         app()
-    except KeyboardInterrupt:
-        print("impactlab: interrupted", file=sys.stderr)
-        sys.exit(130)
     except (ValueError, OSError) as error:
         logger = logging.getLogger("impactlab")
         logger.error("%s", error)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 from pathlib import Path
 from typing import Annotated
 
@@ -31,6 +30,7 @@ def run(
 
     Finished batches are kept in results/NAME/shards: an interrupted study goes on from there.
     """
+    stop_at_once()
     from functools import partial
 
     from impactlab.study.declaration import read_study
@@ -46,7 +46,6 @@ def run(
         samples = sampled(settled(read_study(design_file), evidence))
     path = output or RESULTS / samples.attrs["study"] / "runs.nc"
     engine = Engine("processes" if processes else "threads", workers, scheduler, batch_seconds)
-    signal.signal(signal.SIGINT, stop_at_once)
     solve = partial(execute, shards_folder=path.parent / "shards", engine=engine)
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse as analysed

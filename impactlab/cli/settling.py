@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,7 +26,7 @@ def settled(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStu
 
     found = read_netcdf(evidence) if evidence.exists() else None
     if found is None or not fits(found, study):
-        signal.signal(signal.SIGINT, stop_at_once)
+        stop_at_once()
         engine = Engine("threads", os.cpu_count() or 1)
         found = recommend(study, evidence.with_name("trials"), engine)
         write_netcdf(found, evidence)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -33,15 +34,26 @@ class Engine:
             client = Client(self.address, timeout=10, set_as_default=False)
         else:
             apart = self.kind == "processes"
-            client = Client(
-                processes=apart,
-                n_workers=self.workers if apart else 1,
-                threads_per_worker=1 if apart else self.workers,
-                dashboard_address=_LOOPBACK,
-                worker_dashboard_address=_LOOPBACK,
-                memory_limit=0,
-                silence_logs=logging.ERROR,
-                set_as_default=False,
-            )
+            with _deaf_to_ctrl_c():
+                client = Client(
+                    processes=apart,
+                    n_workers=self.workers if apart else 1,
+                    threads_per_worker=1 if apart else self.workers,
+                    dashboard_address=_LOOPBACK,
+                    worker_dashboard_address=_LOOPBACK,
+                    memory_limit=0,
+                    silence_logs=logging.ERROR,
+                    set_as_default=False,
+                )
         with client:
             yield client
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Worker processes started within never hear Ctrl-C: it is for the one that started them."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
