@@ -7,6 +7,7 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from typing import Literal
 
 from distributed import Client
@@ -52,6 +53,7 @@ class Engine:
 @contextmanager
 def _deaf_to_ctrl_c() -> Iterator[None]:
     """Worker processes started within never hear Ctrl-C: it is for the one that started them."""
+    resource_tracker.ensure_running()  # else started within, where it would unblock the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
