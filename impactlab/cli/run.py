@@ -23,7 +23,7 @@ def run(
     processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
     scheduler: Annotated[str, typer.Option(help="Address of a running dask scheduler.")] = "",
     batch_seconds: Annotated[
-        float, typer.Option(min=0.001, hidden=True, help="Of a task, about, at most.")
+        float, typer.Option(min=0.001, hidden=True, help="Of a task, about.")
     ] = 1.0,
 ) -> None:
     """Solve the runs of a study that have not been solved yet.

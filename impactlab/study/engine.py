@@ -23,7 +23,7 @@ class Engine:
     workers: int = 1
     address: str = ""
     batch_seconds: float = 1.0
-    """Of a task, about, at most."""
+    """Of a task, about."""
 
     @contextmanager
     def client(self) -> Iterator[Client]:
