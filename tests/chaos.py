@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
@@ -65,6 +66,11 @@ class Command:
         while not (self.ended or true()):
             assert time.monotonic() < deadline, f"stuck: {self.said}"
             time.sleep(0.005)
+
+    def pause(self):
+        """A moment, or less where the command ends."""
+        with suppress(subprocess.TimeoutExpired):
+            self.process.wait(timeout=0.2)
 
     def wait_until_it_solves(self):
         self.wait_until(lambda: "solved before" in self.said)
@@ -140,11 +146,13 @@ def shards(folder):
 
 def keys_on_disk(folder):
     """The key of every run that is in a shard."""
-    found = set()
-    for path in shards(folder):
-        with netCDF4.Dataset(path) as shard:
-            found |= {row.tobytes() for row in np.asarray(shard["key"][:], dtype=np.uint8)}
-    return found
+    return {key for path in shards(folder) for key in keys_in(path)}
+
+
+def keys_in(path):
+    """The key of every run in a shard, read without impactlab."""
+    with netCDF4.Dataset(path) as shard:
+        return {row.tobytes() for row in np.asarray(shard["key"][:], dtype=np.uint8)}
 
 
 def solved_before(said):

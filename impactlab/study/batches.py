@@ -59,5 +59,5 @@ class Batches:
 
     def _target(self, share: float) -> float:
         """Seconds of the next task; share: a worker's share of what is left, in s."""
-        first = self._wished if self._seconds else _FIRST_SECONDS
-        return min(self._wished, first, max(share / _SHARE, _LEAST_SECONDS))
+        wished = self._wished if self._seconds else min(self._wished, _FIRST_SECONDS)
+        return min(wished, max(share / _SHARE, _LEAST_SECONDS))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Iterator
 from concurrent.futures import CancelledError
@@ -18,6 +19,7 @@ from impactlab.study.solvers import SOLVERS
 from impactlab.study.storage import Form, joined
 from impactlab.study.work import Work
 
+log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
 Task = Future[tuple[Columns, float]]
 
@@ -25,6 +27,8 @@ _AHEAD = 3
 """Batches under way or waiting, a worker: the graph does not grow with the study."""
 _LOOK_AGAIN = 1.0
 """Seconds between counts of the workers, which may come and go."""
+_MOMENT = 0.01
+"""Seconds between looks at what has finished: short beside a task, of which more are waiting."""
 _KEPT = "Finished runs are kept: the same command goes on from there."
 
 
@@ -56,9 +60,18 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
     with engine.client() as client:
         crew = _Crew(client, work, batches)
         queue = as_completed(crew.more(), loop=client.loop)
-        for finished in queue.batches():
+        for finished in _finished(queue, crew):
             yield joined([crew.answer(future) for future in finished])
             queue.update(crew.more())
+
+
+def _finished(queue: as_completed, crew: _Crew) -> Iterator[list[Task]]:
+    """Tasks as they finish; meanwhile, a look at whether any worker is there."""
+    while not queue.is_empty():
+        while not queue.has_ready():
+            crew.look()
+            time.sleep(_MOMENT)
+        yield queue.next_batch()
 
 
 class _Crew:
@@ -67,18 +80,31 @@ class _Crew:
     def __init__(self, client: Client, work: Work, batches: Batches) -> None:
         self._client, self._work, self._batches = client, work, batches
         self._under_way: dict[Any, Array] = {}
-        self._workers, self._counted = 1, 0.0
+        self._threads, self._counted = 1, 0.0
 
     def more(self) -> list[Task]:
         """New tasks, as many as the workers need to be busy."""
-        self._count()
+        self.look()
+        workers = max(1, self._threads)
         futures = []
-        while len(self._under_way) < _AHEAD * self._workers:
-            runs = self._batches.take(self._workers)
+        while len(self._under_way) < _AHEAD * workers:
+            runs = self._batches.take(workers)
             if not runs.size:
                 break
             futures.append(self._submit(runs))
         return futures
+
+    def look(self) -> None:
+        """Count the threads of all workers, now and then; a study without any says so, and waits.
+
+        Workers come and go: on a busy cluster the first one may take hours.
+        """
+        if time.monotonic() - self._counted < _LOOK_AGAIN:
+            return
+        before, self._threads = self._threads, sum(self._client.nthreads().values())
+        self._counted = time.monotonic()
+        if before and not self._threads:
+            log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
 
     def answer(self, future: Task) -> tuple[Array, Columns]:
         """Numbers and answers of a finished batch. Raises OSError where its worker failed."""
@@ -96,12 +122,6 @@ class _Crew:
         )
         self._under_way[future.key] = runs
         return future
-
-    def _count(self) -> None:
-        """Threads of all workers; one before the first worker is there."""
-        if time.monotonic() - self._counted > _LOOK_AGAIN:
-            self._workers = max(1, sum(self._client.nthreads().values()))
-            self._counted = time.monotonic()
 
 
 def _result(future: Task) -> tuple[Columns, float]:

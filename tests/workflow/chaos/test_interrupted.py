@@ -84,5 +84,3 @@ def _rest(terminal):
         return os.read(terminal, 1000)
     except OSError:  # the other end is closed
         return b""
-
-
