@@ -18,10 +18,10 @@ _SPEED = 3e8
 """Cost a second, before it is measured."""
 _MEMORY = 0.8
 """Weight of all measurements so far beside the next one."""
-_VALUES = 20_000_000
+_VALUES = 4_000_000
 """Stored numbers a task, at most: bounds its memory."""
-_RUNS = 20_000
-"""Runs a task, at most: dask warns of cases beyond 10 MB."""
+_RUNS = 10_000
+"""Runs a task, at most: its cases travel with it, and take 2 MB."""
 
 
 class Batches:

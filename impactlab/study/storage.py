@@ -24,7 +24,7 @@ Array = np.ndarray[Any, Any]
 
 _MANY = 64
 """Small shards at most: then they are merged."""
-_SMALL = 32e6
+_SMALL = 8e6
 """Bytes from which a shard stays as it is; the small ones together are not more for long."""
 DAMAGED = ".damaged"
 """Ends the name of a shard that was set aside."""

@@ -13,7 +13,7 @@ from impactlab.study.solvers import SOLVERS, solver_of
 from impactlab.study.storage import Form, run_keys
 
 Array = np.ndarray[Any, Any]
-_CHUNK = 50_000
+_CHUNK = 10_000
 """Runs whose cases are in memory together."""
 
 
