@@ -50,8 +50,9 @@ def run(
         samples = sampled(settled(read_study(design_file), evidence))
     path = output or RESULTS / samples.attrs["study"] / "runs.nc"
     profile = read_profile(cluster) if cluster else None
-    kind = "processes" if processes else "threads"
-    engine = Engine(kind, workers, scheduler, profile, batch_seconds)
+    engine = Engine(
+        "processes" if processes else "threads", workers, scheduler, profile, batch_seconds
+    )
     solve = partial(execute, shards_folder=path.parent / "shards", engine=engine)
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse as analysed

@@ -36,7 +36,8 @@ class Engine:
     @contextmanager
     def client(self) -> Iterator[Client]:
         """A dask client for the time of a study. Raises OSError when no scheduler answers."""
-        logging.getLogger("distributed").setLevel(logging.ERROR)
+        for name in ("distributed", "distributed.client"):  # what matters is raised, too
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         if self.address:
             clients = _running(self.address)
         elif self.profile:

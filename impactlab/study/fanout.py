@@ -101,7 +101,7 @@ class _Crew:
         """
         if time.monotonic() - self._counted < _LOOK_AGAIN:
             return
-        before, self._threads = self._threads, sum(self._client.nthreads().values())
+        before, self._threads = self._threads, _threads(self._client)
         self._counted = time.monotonic()
         if before and not self._threads:
             log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
@@ -124,13 +124,24 @@ class _Crew:
         return future
 
 
+def _threads(client: Client) -> int:
+    try:
+        return sum(client.nthreads().values())
+    except OSError as error:
+        raise _gone(error) from error
+
+
+def _gone(error: BaseException) -> ConnectionError:
+    return ConnectionError(f"the dask scheduler is gone ({error}). {_KEPT}")
+
+
 def _result(future: Task) -> tuple[Columns, float]:
     try:
         columns, seconds = future.result()
     except KilledWorker as error:
         raise OSError(f"a batch of runs ended every dask worker that took it: {error}") from error
     except (CancelledError, CommClosedError) as error:
-        raise ConnectionError(f"the dask scheduler is gone ({error}). {_KEPT}") from error
+        raise _gone(error) from error
     except (ImportError, RuntimeError) as error:
         raise OSError(f"a dask worker failed: {error}. {_KEPT}") from error
     return columns, seconds

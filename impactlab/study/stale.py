@@ -21,7 +21,5 @@ def stale(shards_folder: Path, designs: Iterable[xr.Dataset]) -> dict[Path, str]
     its runs is asked for. Raises BlockingIOError where a process works in the folder.
     """
     with held(shards_folder):
-        wanted = [
-            (work, Shards(shards_folder, work.form, _version(work))) for work in works(designs)
-        ]
+        wanted = [(work, Shards(shards_folder, work.form, _version(work))) for work in works(designs)]
         ...

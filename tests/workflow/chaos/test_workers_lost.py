@@ -33,7 +33,7 @@ def test_every_process_killed_again_and_again(folder, undisturbed):
             worker.kill()
         command.pause()
     assert command.end() == 1, command.said
-    assert "dask worker" in complaint(command.said)
+    assert "worker" in complaint(command.said)
     goes_on(folder, undisturbed)
 
 
