@@ -6,6 +6,8 @@ import subprocess
 import sys
 import time
 
+from distributed import Client
+
 SOON = {"DASK_DISTRIBUTED__COMM__TIMEOUTS__TCP": "3s"}
 """A connection that is silent is given up after three seconds, not thirty."""
 
@@ -43,6 +45,11 @@ class Cluster:
         here = ("--local-directory", self._folder)
         for _ in range(number):
             self.workers.append(self._started("worker", *options, *here, inside=inside))
+
+    def wait_for(self, workers):
+        """Wait until so many are there."""
+        with Client(self.address, set_as_default=False) as client:
+            client.wait_for_workers(workers, timeout=60)
 
     def _started(self, what, *options, inside=()):
         command = [*inside, sys.executable, "-m", "dask", what, *map(str, options)]

@@ -82,7 +82,7 @@ def be_a_folder(paths, foreign, drawn):
     return paths[:1]
 
 
-DAMAGES = [truncate, truncate, truncate, empty, garbage, swap, take_anothers_place, be_a_folder]
+DAMAGES = [truncate, truncate, empty, garbage, swap, take_anothers_place, be_a_folder]
 
 
 @pytest.mark.parametrize("seed", range(len(DAMAGES)))

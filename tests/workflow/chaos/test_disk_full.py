@@ -24,10 +24,10 @@ BALLAST = "ballast"
 
 @pytest.fixture
 def small_disk(folder):
-    """The study, with results/ on a disk of its own of 8 MiB."""
+    """The study, with results/ on a disk of its own of 32 MiB."""
     results = folder / "results"
     results.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=8m", "tmpfs", str(results)]
+    mount = ["mount", "-t", "tmpfs", "-o", "size=32m", "tmpfs", str(results)]
     if os.geteuid() != 0 or subprocess.run(mount, capture_output=True).returncode != 0:
         pytest.skip("a small disk can only be mounted by root, where mounting is allowed")
     yield folder
