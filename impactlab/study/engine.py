@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from typing import Literal
@@ -39,7 +39,7 @@ class Engine:
         for name in ("distributed", "distributed.client"):  # what matters is raised, too
             logging.getLogger(name).setLevel(logging.CRITICAL)
         if self.address:
-            clients = _running(self.address)
+            clients: AbstractContextManager[Client] = _running(self.address)
         elif self.profile:
             clients = _slurm(self.profile)
         else:
