@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
+import dask
 from distributed import Client
 
 from impactlab.study.slurm import Profile, slurm_cluster
 
 _LOOPBACK = "127.0.0.1:0"
+_FORGETFUL = {"distributed.admin.low-level-log-length": 10}
+"""dask keeps the last messages, cases and all: 1000 by default."""
 
 
 @dataclass(frozen=True)
@@ -33,22 +36,25 @@ class Engine:
     def client(self) -> Iterator[Client]:
         """A dask client for the time of a study. Raises OSError when no scheduler answers."""
         logging.getLogger("distributed").setLevel(logging.ERROR)
-        if self.address:
-            clients = _running(self.address)
-        elif self.profile:
-            clients = _slurm(self.profile)
-        else:
-            clients = _here(self.workers, processes=self.kind == "processes")
-        with clients as client:
+        with dask.config.set(_FORGETFUL), self._clients() as client:
             yield client
+
+    def _clients(self) -> AbstractContextManager[Client]:
+        if self.address:
+            return _running(self.address)
+        if self.profile:
+            return _slurm(self.profile)
+        return _here(self.workers, processes=self.kind == "processes")
 
 
 # No client is the default one: xarray would lock its files through the scheduler, slowly, and for
 # ever where Ctrl-C comes in between.
 
 
-def _running(address: str) -> Client:
-    return Client(address, timeout=10, set_as_default=False)
+@contextmanager
+def _running(address: str) -> Iterator[Client]:
+    with Client(address, timeout=10, set_as_default=False) as client:
+        yield client
 
 
 @contextmanager
@@ -59,8 +65,9 @@ def _slurm(profile: Profile) -> Iterator[Client]:
             yield client
 
 
-def _here(workers: int, *, processes: bool) -> Client:
-    return Client(
+@contextmanager
+def _here(workers: int, *, processes: bool) -> Iterator[Client]:
+    with Client(
         processes=processes,
         n_workers=workers if processes else 1,
         threads_per_worker=1 if processes else workers,
@@ -70,4 +77,5 @@ def _here(workers: int, *, processes: bool) -> Client:
         memory_limit=0,
         silence_logs=logging.ERROR,
         set_as_default=False,
-    )
+    ) as client:
+        yield client

@@ -51,7 +51,7 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
     first = work.cases(missing[:1])
     compiled_for = Form(work.form.samples, profiles=False)
     solver.solve(first[:0], compiled_for)  # before workers ask for it
-    batches = Batches(missing, work.cost[missing], solver.values(first, work.form))
+    batches = Batches(missing, work.cost, solver.values(first, work.form))
     with engine.client() as client:
         crew = _Crew(client, work, batches)
         queue = as_completed(crew.more(), loop=client.loop)
