@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import dask
-from distributed import Client
+from distributed import Client, Security
 
 from impactlab.study.slurm import Profile, slurm_cluster
 
@@ -53,6 +53,8 @@ class Engine:
 
 @contextmanager
 def _running(address: str) -> Iterator[Client]:
+    if address.startswith("tls:") and not Security().get_connection_args("client")["ssl_context"]:
+        raise OSError(f"{address}: dask's settings name no certificate (distributed.comm.tls)")
     with Client(address, timeout=10, set_as_default=False) as client:
         yield client
 

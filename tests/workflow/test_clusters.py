@@ -1,4 +1,4 @@
-"""A study on schedulers and workers that are processes of their own: the same bits as in threads."""
+"""A study on schedulers and workers of their own: the same bits as in threads."""
 
 import os
 import re
@@ -20,6 +20,11 @@ sampling:
   parameters:
     velocity: {start: 1 m/s, stop: 2 m/s, number: 200}
 responses: [peak_force, impulse]
+"""
+SBATCH = """#!/bin/sh
+script=$(cat "$1")  # it is removed as soon as it is submitted
+setsid sh -c "$script" >/dev/null 2>&1 &
+echo "Submitted batch job $!"
 """
 BRIDGE = "impactlab0"
 NETWORK = "10.213.47"
@@ -160,9 +165,7 @@ def test_slurm_jobs_as_a_shell_would_run_them(folder):
     pytest.importorskip("dask_jobqueue")
     bin_folder = folder / "bin"
     bin_folder.mkdir()
-    (bin_folder / "sbatch").write_text(
-        '#!/bin/sh\nsetsid sh "$1" >/dev/null 2>&1 &\necho "Submitted batch job $!"\n'
-    )
+    (bin_folder / "sbatch").write_text(SBATCH)
     (bin_folder / "scancel").write_text('#!/bin/sh\nfor job; do kill -- "-$job"; done\n')
     for file in bin_folder.iterdir():
         file.chmod(0o755)
