@@ -8,8 +8,8 @@ import time
 
 from distributed import Client
 
-SOON = {"DASK_DISTRIBUTED__COMM__TIMEOUTS__TCP": "3s"}
-"""A connection that is silent is given up after three seconds, not thirty."""
+SOON = {"DASK_DISTRIBUTED__COMM__TIMEOUTS__TCP": "12s"}
+"""A silent connection is given up after twelve seconds, not thirty; dask takes no fewer than 11."""
 
 
 class Cluster:

@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.analyse import analyse
+from impactlab.cli.clean import clean
 from impactlab.cli.design import design
 from impactlab.cli.figures import figures
 from impactlab.cli.index import index
@@ -20,6 +21,7 @@ from impactlab.cli.recommend import recommend
 from impactlab.cli.report import report
 from impactlab.cli.run import run
 from impactlab.cli.simulate import simulate
+from impactlab.cli.status import status
 from impactlab.cli.studies import studies
 from impactlab.cli.verify import verify
 
@@ -29,6 +31,7 @@ _COMMANDS = (
     recommend,
     design,
     run,
+    status,
     analyse,
     predict,
     verify,
@@ -36,6 +39,7 @@ _COMMANDS = (
     report,
     paper,
     index,
+    clean,
 )
 """In the order of the help; a new one is a file and a line here."""
 

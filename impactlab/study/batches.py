@@ -28,25 +28,27 @@ class Batches:
     """Cuts runs into consecutive batches, sized when they are asked for."""
 
     def __init__(self, runs: Array, cost: Array, values: int, seconds: float = 1.0) -> None:
-        """runs: their numbers; cost: of each, in a solver's unit; values: stored numbers a run.
+        """runs: their numbers, out of those that `cost` holds, in a solver's unit.
 
-        seconds: of a batch; one is long beside what dask and the disk take for it.
+        values: stored numbers a run; seconds: of a batch, long beside what dask and the disk take
+        for one.
         """
-        self._runs = runs
-        self._until = np.concatenate([[0.0], np.cumsum(cost)])
-        self._most = max(1, min(_RUNS, _VALUES // values))
-        self._at = 0
+        self._runs, self._costs = runs, cost
         self._wished = seconds
+        self._most = max(1, min(_RUNS, _VALUES // values))
+        self._at, self._left = 0, float(cost[runs].sum())
         self._cost, self._seconds = 0.0, 0.0
 
     def take(self, workers: int) -> Array:
         """The numbers of the next runs; empty when all are taken."""
-        start, spent = self._at, self._until[self._at]
-        left = self._until[-1] - spent
-        limit = spent + self._speed * self._target(left / self._speed / workers)
-        stop = int(np.searchsorted(self._until, limit, side="right")) - 1
-        self._at = min(max(stop, start + 1), start + self._most, self._runs.size)
-        return self._runs[start : self._at]
+        ahead = self._runs[self._at : self._at + self._most]
+        until = np.cumsum(self._costs[ahead])
+        limit = self._speed * self._target(self._left / self._speed / workers)
+        taken = max(1, int(np.searchsorted(until, limit, side="right")))
+        runs = ahead[:taken]
+        self._at += runs.size
+        self._left -= float(self._costs[runs].sum())
+        return runs
 
     def learn(self, cost: float, seconds: float) -> None:
         """Size further batches by one that took so long."""

@@ -10,11 +10,14 @@ from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from typing import Literal
 
-from distributed import Client, LocalCluster
+import dask
+from distributed import Client, LocalCluster, Security
 
 from impactlab.study.slurm import Profile, slurm_cluster
 
 _LOOPBACK = "127.0.0.1:0"
+_FORGETFUL = {"distributed.admin.low-level-log-length": 10}
+"""dask keeps the last messages, cases and all: 1000 by default."""
 
 
 @dataclass(frozen=True)
@@ -38,22 +41,27 @@ class Engine:
         """A dask client for the time of a study. Raises OSError when no scheduler answers."""
         for name in ("distributed", "distributed.client"):  # what matters is raised, too
             logging.getLogger(name).setLevel(logging.CRITICAL)
-        if self.address:
-            clients: AbstractContextManager[Client] = _running(self.address)
-        elif self.profile:
-            clients = _slurm(self.profile)
-        else:
-            clients = _here(self.workers, processes=self.kind == "processes")
-        with clients as client:
+        with dask.config.set(_FORGETFUL), self._clients() as client:
             yield client
+
+    def _clients(self) -> AbstractContextManager[Client]:
+        if self.address:
+            return _running(self.address)
+        if self.profile:
+            return _slurm(self.profile)
+        return _here(self.workers, processes=self.kind == "processes")
 
 
 # No client is the default one: xarray would lock its files through the scheduler, slowly, and for
 # ever where Ctrl-C comes in between.
 
 
-def _running(address: str) -> Client:
-    return Client(address, timeout=10, set_as_default=False)
+@contextmanager
+def _running(address: str) -> Iterator[Client]:
+    if address.startswith("tls:") and not Security().get_connection_args("client")["ssl_context"]:
+        raise OSError(f"{address}: dask's settings name no certificate (distributed.comm.tls)")
+    with Client(address, timeout=10, set_as_default=False) as client:
+        yield client
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import time
 from collections.abc import Iterator
@@ -21,7 +22,8 @@ from impactlab.study.work import Work
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
-Task = Future[tuple[Columns, float]]
+Result = tuple[Columns, float]
+Task = Future[Result]
 
 _AHEAD = 3
 """Batches under way or waiting, a worker: the graph does not grow with the study."""
@@ -32,7 +34,7 @@ _MOMENT = 0.01
 _KEPT = "Finished runs are kept: the same command goes on from there."
 
 
-def solve_batch(solver: str, cases: Array, form: Form, version: str) -> tuple[Columns, float]:
+def solve_batch(solver: str, cases: Array, form: Form, version: str) -> Result:
     """The task that dask runs: the answers, and the seconds that they took.
 
     Raises RuntimeError where the solver is not the caller's.
@@ -56,22 +58,26 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
     compiled_for = Form(work.form.samples, profiles=False)
     solver.solve(first[:0], compiled_for)  # before workers ask for it
     values = solver.values(first, work.form)
-    batches = Batches(missing, work.cost[missing], values, engine.batch_seconds)
+    batches = Batches(missing, work.cost, values, engine.batch_seconds)
     with engine.client() as client:
         crew = _Crew(client, work, batches)
-        queue = as_completed(crew.more(), loop=client.loop)
+        # with results: to wait for one of a worker that is gone would be to wait for ever
+        queue = as_completed(crew.more(), loop=client.loop, with_results=True)
         for finished in _finished(queue, crew):
-            yield joined([crew.answer(future) for future in finished])
+            yield joined([crew.took(future, result) for future, result in finished])
             queue.update(crew.more())
 
 
-def _finished(queue: as_completed, crew: _Crew) -> Iterator[list[Task]]:
+def _finished(queue: as_completed, crew: _Crew) -> Iterator[list[tuple[Task, Result]]]:
     """Tasks as they finish; meanwhile, a look at whether any worker is there."""
     while not queue.is_empty():
         while not queue.has_ready():
             crew.look()
             time.sleep(_MOMENT)
-        yield queue.next_batch()
+        ready = [_next(queue)]
+        while queue.has_ready():
+            ready.append(_next(queue))
+        yield ready
 
 
 class _Crew:
@@ -106,10 +112,9 @@ class _Crew:
         if before and not self._threads:
             log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
 
-    def answer(self, future: Task) -> tuple[Array, Columns]:
-        """Numbers and answers of a finished batch. Raises OSError where its worker failed."""
-        runs = self._under_way.pop(future.key)
-        columns, seconds = _result(future)
+    def took(self, future: Task, result: Result) -> tuple[Array, Columns]:
+        """Numbers and answers of a finished batch."""
+        runs, (columns, seconds) = self._under_way.pop(future.key), result
         future.release()
         self._batches.learn(float(self._work.cost[runs].sum()), seconds)
         return runs, columns
@@ -135,13 +140,16 @@ def _gone(error: BaseException) -> ConnectionError:
     return ConnectionError(f"the dask scheduler is gone ({error}). {_KEPT}")
 
 
-def _result(future: Task) -> tuple[Columns, float]:
+def _next(queue: as_completed) -> tuple[Task, Result]:
+    """A finished task. Raises OSError where its workers, or the scheduler, failed."""
     try:
-        columns, seconds = future.result()
+        future, result = next(queue)
     except KilledWorker as error:
         raise OSError(f"a batch of runs ended every dask worker that took it: {error}") from error
-    except (CancelledError, CommClosedError) as error:
+    except CommClosedError as error:
         raise _gone(error) from error
     except (ImportError, RuntimeError) as error:
         raise OSError(f"a dask worker failed: {error}. {_KEPT}") from error
-    return columns, seconds
+    if isinstance(result, CancelledError | asyncio.CancelledError):
+        raise _gone(result)
+    return future, result

@@ -11,7 +11,11 @@ from pathlib import Path
 from uuid import uuid4
 
 import xarray as xr
+from netCDF4 import set_chunk_cache
 from rich.filesize import decimal
+
+_CACHE = 1_000_000
+"""Bytes of a variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path, *, compress: bool = True) -> None:
@@ -27,6 +31,7 @@ def write_netcdf(dataset: xr.Dataset, path: Path, *, compress: bool = True) -> N
         for name, values in dataset.data_vars.items()
         if compress and values.dtype.kind == "f" and values.size > 10_000
     }
+    set_chunk_cache(_CACHE)
     try:
         dataset.to_netcdf(unfinished, engine="netcdf4", encoding=large)
         with unfinished.open("rb") as handle:

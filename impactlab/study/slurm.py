@@ -13,7 +13,7 @@ from impactlab.study.declaration.reading import read_mapping, read_text
 from impactlab.study.errors import StudyError
 
 if TYPE_CHECKING:
-    from dask_jobqueue import SLURMCluster
+    from dask_jobqueue.slurm import SLURMCluster
 
 
 class Profile(BaseModel):
@@ -55,7 +55,7 @@ def slurm_cluster(profile: Profile) -> SLURMCluster:
     Raises OSError where dask-jobqueue or Slurm is not there.
     """
     try:
-        from dask_jobqueue import SLURMCluster
+        from dask_jobqueue.slurm import SLURMCluster
     except ImportError:
         raise OSError("dask-jobqueue is not installed: pip install 'impactlab[slurm]'") from None
     if not shutil.which("sbatch"):

@@ -73,8 +73,14 @@ class Shards:
     def read(self) -> Iterator[tuple[Array, Columns]]:
         """Keys and answers of every sound shard; a damaged one is named in the log."""
         for path in self.files():
-            if found := self._sound(path):
+            if found := _sound(path):
                 yield found
+
+    @staticmethod
+    def keys(path: Path) -> Array:
+        """Of the runs in one shard; none where it is damaged."""
+        found = _sound(path)
+        return found[0] if found else np.zeros(0, dtype=KEY)
 
     def files(self) -> list[Path]:
         """All shards, sound or not."""
@@ -88,7 +94,7 @@ class Shards:
         for unfinished in self.folder.glob(".*"):
             unfinished.unlink()
         for path in self.files():
-            if found := self._sound(path):
+            if found := _sound(path):
                 self._noted(path)
                 yield found
             else:
@@ -109,7 +115,7 @@ class Shards:
     def merge(self) -> None:
         """Put one shard in the place of all small ones, which go when it is on disk."""
         merged, self._small = sorted(self._small), {}
-        parts = [found for path in merged if (found := self._sound(path))]
+        parts = [found for path in merged if (found := _sound(path))]
         if len(parts) < 2:
             return
         keys, columns = joined(parts)
@@ -123,13 +129,6 @@ class Shards:
         if size < _SMALL:
             self._small[path] = size
 
-    def _sound(self, path: Path) -> tuple[Array, Columns] | None:
-        try:
-            return unpack(path, _claim(path))
-        except DAMAGE as error:
-            log.warning("%s is damaged, and its runs will be solved again (%s)", path, error)
-            return None
-
 
 def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
     """Keys and columns of several batches or shards as those of one."""
@@ -139,6 +138,14 @@ def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
         np.concatenate(keys),
         {name: np.concatenate([each[name] for each in columns]) for name in names},
     )
+
+
+def _sound(path: Path) -> tuple[Array, Columns] | None:
+    try:
+        return unpack(path, _claim(path))
+    except DAMAGE as error:
+        log.warning("%s is damaged, and its runs will be solved again (%s)", path, error)
+        return None
 
 
 def _claim(path: Path) -> str:

@@ -40,6 +40,11 @@ class Table:
         """The runs without an answer, ascending; of equal runs the first stands for all."""
         return np.flatnonzero(~self._done)
 
+    def left(self) -> int:
+        """How many runs of the design lack an answer, equal ones counted each."""
+        _, firsts = self._rows(self._keys[self._repeats])
+        return int(np.count_nonzero(~self._done) + np.count_nonzero(~self._done[firsts]))
+
     def columns(self) -> Columns:
         """The answers, a row a run of the design."""
         _, rows = self._rows(self._keys[self._repeats])

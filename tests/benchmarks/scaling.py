@@ -1,4 +1,4 @@
-"""What fan-out, storage and progress cost beside the kernels, and what memory a size takes.
+"""What a study costs beside its kernels, and what memory: `make scaling`, with --full a million.
 
 Each line is a process of its own, so that its peak memory is its own. `overhead` compares processor
 time with that of the kernels alone, over cases that are already there, measured right before and
