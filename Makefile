@@ -1,9 +1,11 @@
 # make study   from the study files to results/index.html
 # make paper   the figures and statements of the paper, in results/paper
 # make test    the checks and the tests
+# make chaos   what crashes, full disks, lost workers and hostile files must not do (20 minutes)
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings; both schemes' cost and error;
 #              the bootstrap of Sobol indices: wants an idle machine
+# make scaling overhead, throughput and peak memory of a study: SCALING_ARGS=--full for a million runs
 # make mutants the tests' own test: faults seeded into the kernels, and what catches each
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
@@ -11,6 +13,7 @@ PYTHON ?= python3
 CORES ?= all
 STUDIES ?=
 PYTEST_ARGS ?=
+SCALING_ARGS ?=
 UV ?= uv
 VENV ?= .venv
 
@@ -22,7 +25,7 @@ IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
 
-.PHONY: study paper test lint pytest bench mutants coverage constraints unlock clean
+.PHONY: study paper test lint pytest chaos bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -49,18 +52,24 @@ lint: $(MADE)-dev
 pytest: $(MADE)-dev
 	$(IN_VENV) python -m pytest $(PYTEST_ARGS)
 
+chaos: $(MADE)-dev
+	$(IN_VENV) python -m pytest -m chaos $(PYTEST_ARGS)
+
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
 	$(IN_VENV) python tests/benchmarks/schemes.py
 	$(IN_VENV) python tests/benchmarks/bootstrap.py
 
+scaling: $(MADE)-dev
+	$(IN_VENV) python tests/benchmarks/scaling.py $(SCALING_ARGS)
+
 mutants: $(MADE)-dev
 	$(BIN)/python tests/mutations/run.py
 
 # Compiled kernels hide from coverage: here they run as plain Python, on the small cases only.
 coverage: $(MADE)-dev
-	$(IN_VENV) NUMBA_DISABLE_JIT=1 python -m pytest tests/unit -m 'not slow' \
+	$(IN_VENV) NUMBA_DISABLE_JIT=1 python -m pytest tests/unit -m 'not slow and not chaos' \
 	  --cov --cov-report=term-missing:skip-covered $(PYTEST_ARGS)
 
 # Newest versions for every Python and platform; needs uv (https://docs.astral.sh/uv).

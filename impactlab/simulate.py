@@ -38,6 +38,10 @@ solve(case_table(il.paper_impact(), il.Discretisation(nodes=5), duration=1e-6))
 """
 
 
+Columns = dict[str, np.ndarray[Any, Any]]
+"""Answers by name."""
+
+
 @dataclass(frozen=True)
 class Answers:
     """What the kernels gave for R runs.
@@ -49,6 +53,12 @@ class Answers:
     responses: np.ndarray[Any, Any]
     histories: dict[str, np.ndarray[Any, Any]]
     profiles: dict[str, np.ndarray[Any, Any]]
+
+    def columns(self) -> Columns:
+        """Every response, history and profile by name, each of shape (R, ...)."""
+        names = self.responses.dtype.names or ()
+        responses = {name: self.responses[name].copy() for name in names}
+        return responses | self.histories | self.profiles
 
 
 def simulate(
@@ -74,7 +84,7 @@ def simulate(
     cases = case_table(impact, grid, duration=duration)
     answers = solve(cases, samples=samples, profiles=True)
     dataset = xr.Dataset(
-        answer_variables(answers, tuple(RESPONSES), ()),
+        answer_variables(answers.columns(), tuple(RESPONSES), ()),
         coords=sample_coordinates(duration, samples) | profile_coordinates(impact, grid),
         attrs=provenance(),
     )
@@ -104,7 +114,7 @@ def simulate_many(
     cases = case_table(impact, grid, duration=duration, varied=varied)
     labels = {name: ("run", np.asarray(values)) for name, values in varied.items()}
     dataset = xr.Dataset(
-        answer_variables(solve(cases), tuple(RESPONSES), ("run",)),
+        answer_variables(solve(cases).columns(), tuple(RESPONSES), ("run",)),
         coords=labels | {"run": np.arange(cases.size), "duration": duration},
         attrs=provenance(),
     )
@@ -117,8 +127,11 @@ def case_table(
     *,
     duration: float,
     varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]] | None = None,
+    first_run: int = 0,
 ) -> np.ndarray[Any, Any]:
     """The kernels' table of cases, one record (kernels.case.CASE) a run; each run is checked.
+
+    first_run: the number that messages give the first one.
 
     Raises ValueError naming the run and its field when the model refuses a value.
     """
@@ -134,10 +147,10 @@ def case_table(
         columns = {name: column(values) for name, values in varied.items()}
         many = with_values(impact, discretisation, columns)
     except (TypeError, ValueError):  # some run may be wrong, or right in a way of its own
-        each = _one_by_one(impact, discretisation, varied)
+        each = _one_by_one(impact, discretisation, varied, first_run)
         tables = [np.zeros(0, CASE), *(_table(*run, duration, 1) for run in each)]
-        return _compatible(np.concatenate(tables))
-    return _compatible(_table(*many, duration, lengths.pop() if lengths else 1))
+        return _compatible(np.concatenate(tables), first_run)
+    return _compatible(_table(*many, duration, lengths.pop() if lengths else 1), first_run)
 
 
 def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False) -> Answers:
@@ -164,20 +177,21 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
 
 
 def answer_variables(
-    answers: Answers, responses: tuple[str, ...], dims: tuple[str, ...]
+    answers: Columns, responses: tuple[str, ...], dims: tuple[str, ...]
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray[Any, Any]]]:
     """The answers as data variables on `dims` (for one run: none), the asked responses only.
 
     `status` keeps the bits that matter to these responses; `remarks` are of the run as a whole.
     """
     lead = dims or ("run",)
-    bits = (answers.responses["status"] & kept_bits(responses)).astype(np.int32)
-    scalars = {name: (lead, answers.responses[name].copy()) for name in responses}
+    bits = (answers["status"] & kept_bits(responses)).astype(np.int32)
+    scalars = {name: (lead, answers[name]) for name in responses}
     fields = {
-        name: ((*lead, *(HISTORIES | PROFILES)[name].dims), values)
-        for name, values in (answers.histories | answers.profiles).items()
+        name: ((*lead, *entry.dims), answers[name])
+        for name, entry in (HISTORIES | PROFILES).items()
+        if name in answers
     }
-    remarks = answers.responses["remarks"].astype(np.int32)
+    remarks = answers["remarks"].astype(np.int32)
     return scalars | fields | {"status": (lead, bits), "remarks": (lead, remarks)}
 
 
@@ -206,9 +220,10 @@ def _one_by_one(
     impact: Impact,
     discretisation: Discretisation,
     varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]],
+    first_run: int,
 ) -> Iterator[tuple[Impact, Discretisation]]:
     """The impact of every run. Raises ValueError naming the first one that the model refuses."""
-    for run, row in enumerate(zip(*varied.values(), strict=True)):
+    for run, row in enumerate(zip(*varied.values(), strict=True), first_run):
         values = dict(zip(varied, map(_plain, row), strict=True))
         try:
             yield with_values(impact, discretisation, values)
@@ -230,14 +245,14 @@ def _table(
     return cases
 
 
-def _compatible(cases: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def _compatible(cases: np.ndarray[Any, Any], first_run: int) -> np.ndarray[Any, Any]:
     """The cases, none of which asks for a scheme that its model of the beam does not have."""
     leapfrog_only = cases["beam_model"] > BEAM_MODELS.index("elastic")
     wrong = np.flatnonzero(leapfrog_only & (cases["scheme"] != SCHEMES.index("leapfrog")))
     if wrong.size:
         case = cases[wrong[0]]
         raise ValueError(
-            f"run {wrong[0]}: Discretisation.scheme = {SCHEMES[case.scheme]!r}: "
+            f"run {first_run + wrong[0]}: Discretisation.scheme = {SCHEMES[case.scheme]!r}: "
             f"Impact.beam_model = {BEAM_MODELS[case.beam_model]!r} has 'leapfrog' alone"
         )
     return cases

@@ -3,6 +3,12 @@
 Heavy imports wait until a command needs them.
 """
 
-from impactlab.cli.app import main
+from impactlab.cli.interrupt import stop_quietly
 
-__all__ = ["main"]
+
+def main() -> None:
+    """Run the command line, see impactlab.cli.app.main; Ctrl-C ends it from the start."""
+    stop_quietly()
+    from impactlab.cli.app import main
+
+    main()

@@ -28,6 +28,7 @@ def analyse(
     from impactlab.analysis.analyse import analyse as analysed
     from impactlab.analysis.sensitivity import table
     from impactlab.analysis.surrogate import packed
+    from impactlab.figures.files import replaced
     from impactlab.study.netcdf import read_netcdf, write_netcdf
 
     solved, path = read_netcdf(runs), output or runs.with_name("analysis.nc")
@@ -37,7 +38,8 @@ def analyse(
     for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps of another study
         path.with_name(name).unlink(missing_ok=True)
     if indices := table.indices(found):
-        table.write_csv(found, path.with_name("indices.csv"))
+        with replaced(path.with_name("indices.csv")) as temporary:
+            table.write_csv(found, temporary)
         write_netcdf(indices, path.with_name("indices.nc"))
     if surrogates := packed(solved, found):
         write_netcdf(surrogates, path.with_name("surrogate.nc"))

@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.analyse import analyse
+from impactlab.cli.clean import clean
 from impactlab.cli.design import design
 from impactlab.cli.figures import figures
 from impactlab.cli.index import index
@@ -21,6 +22,7 @@ from impactlab.cli.refine import refine
 from impactlab.cli.report import report
 from impactlab.cli.run import run
 from impactlab.cli.simulate import simulate
+from impactlab.cli.status import status
 from impactlab.cli.studies import studies
 from impactlab.cli.verify import verify
 
@@ -31,6 +33,7 @@ _COMMANDS = (
     design,
     run,
     refine,
+    status,
     analyse,
     predict,
     verify,
@@ -38,6 +41,7 @@ _COMMANDS = (
     report,
     paper,
     index,
+    clean,
 )
 """In the order of the help; a new one is a file and a line here."""
 
@@ -56,9 +60,6 @@ def main() -> None:
     gc.set_threshold(100_000)  # loading modules makes many objects, but no rubbish
     try:
         app()
-    except KeyboardInterrupt:
-        print("impactlab: interrupted", file=sys.stderr)
-        sys.exit(130)
     except (ValueError, OSError) as error:
         logger = logging.getLogger("impactlab")
         logger.error("%s", error)

@@ -1,14 +1,39 @@
-"""What Ctrl-C does while runs are solved."""
+"""What Ctrl-C does."""
 
 from __future__ import annotations
 
 import os
+import signal
 import sys
+from multiprocessing import active_children
+from typing import NoReturn
 
 
-def stop_at_once(number: int, frame: object) -> None:
-    """End on Ctrl-C: finished batches are on disk, and dask's own clean-up may hang in between."""
+def stop_quietly() -> None:
+    """From here on, Ctrl-C ends the command in one line; what is half done is put away."""
+    signal.signal(signal.SIGINT, _stop)
+
+
+def stop_at_once() -> None:
+    """From here on, Ctrl-C ends the command without its clean-up: dask's own may hang.
+
+    Finished batches are on disk.
+    """
+    # a process of multiprocessing's cleans up behind us: it need not tell what
+    quiet = "ignore::UserWarning:multiprocessing.resource_tracker"
+    os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (os.getenv("PYTHONWARNINGS"), quiet)))
+    signal.signal(signal.SIGINT, _stop_at_once)
+
+
+def _stop(number: int, frame: object) -> NoReturn:
+    os.write(sys.stderr.fileno(), b"impactlab: interrupted\n")
+    raise SystemExit(130)
+
+
+def _stop_at_once(number: int, frame: object) -> NoReturn:
     show_cursor = "\x1b[?25h\n" if sys.stderr.isatty() else ""
     message = f"{show_cursor}impactlab: interrupted; the same command goes on from here\n"
     os.write(sys.stderr.fileno(), message.encode())
+    for worker in active_children():
+        worker.kill()
     os._exit(130)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 from pathlib import Path
 from typing import Annotated
 
@@ -46,7 +45,7 @@ def recommend(
 
     declared = read_impacts(study)
     path = output or RESULTS / study.stem / "resolution.nc"
-    signal.signal(signal.SIGINT, stop_at_once)
+    stop_at_once()
     wishes = declared.auto or Auto()
     if tolerance:
         limit = given("--tolerance", tolerance, "1")

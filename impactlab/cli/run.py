@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 from pathlib import Path
 from typing import Annotated
 
@@ -23,11 +22,18 @@ def run(
     or 1,
     processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
     scheduler: Annotated[str, typer.Option(help="Address of a running dask scheduler.")] = "",
+    cluster: Annotated[
+        Path | None, typer.Option(help="Slurm jobs as in this file; see profiles/slurm.")
+    ] = None,
+    batch_seconds: Annotated[
+        float, typer.Option(min=0.001, hidden=True, help="Of a task, about.")
+    ] = 1.0,
 ) -> None:
     """Solve the runs of a study that have not been solved yet.
 
     Finished batches are kept in results/NAME/shards: an interrupted study goes on from there.
     """
+    stop_at_once()
     from functools import partial
 
     from impactlab.study.declaration import read_study
@@ -35,6 +41,7 @@ def run(
     from impactlab.study.execution import execute
     from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.study.sampling import design as sampled
+    from impactlab.study.slurm import read_profile
 
     if design_file.suffix == ".nc":
         samples = read_netcdf(design_file)
@@ -42,8 +49,10 @@ def run(
         evidence = (output or RESULTS / design_file.stem / "runs.nc").with_name("resolution.nc")
         samples = sampled(settled(read_study(design_file), evidence))
     path = output or RESULTS / samples.attrs["study"] / "runs.nc"
-    engine = Engine("processes" if processes else "threads", workers, scheduler)
-    signal.signal(signal.SIGINT, stop_at_once)
+    profile = read_profile(cluster) if cluster else None
+    engine = Engine(
+        "processes" if processes else "threads", workers, scheduler, profile, batch_seconds
+    )
     solve = partial(execute, shards_folder=path.parent / "shards", engine=engine)
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse as analysed

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from impactlab.cli.interrupt import stop_at_once
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from impactlab.study.declaration import FunctionStudy, Study
 
 
@@ -21,15 +22,36 @@ def settled(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStu
         return study
     from impactlab.report.recommendation import print_recommendation
     from impactlab.steering.recommending import recommend
-    from impactlab.steering.resolving import fits, resolved
+    from impactlab.steering.resolving import resolved
     from impactlab.study.engine import Engine
-    from impactlab.study.netcdf import read_netcdf, write_netcdf
+    from impactlab.study.netcdf import write_netcdf
 
-    found = read_netcdf(evidence) if evidence.exists() else None
-    if found is None or not fits(found, study):
-        signal.signal(signal.SIGINT, stop_at_once)
+    found = _kept(study, evidence)
+    if found is None:
+        stop_at_once()
         engine = Engine("threads", os.cpu_count() or 1)
         found = recommend(study, evidence.with_name("trials"), engine)
         write_netcdf(found, evidence)
     print_recommendation(found)
     return resolved(study, found)
+
+
+def settled_before(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy | None:
+    """The study as `settled` gives it; None where the trials have still to be made."""
+    from impactlab.study.declaration import FunctionStudy
+
+    if isinstance(study, FunctionStudy) or study.auto is None:
+        return study
+    from impactlab.steering.resolving import resolved
+
+    found = _kept(study, evidence)
+    return None if found is None else resolved(study, found)
+
+
+def _kept(study: Study, evidence: Path) -> xr.Dataset | None:
+    """What was found before for this very study."""
+    from impactlab.steering.resolving import fits
+    from impactlab.study.netcdf import read_netcdf
+
+    found = read_netcdf(evidence) if evidence.exists() else None
+    return None if found is None or not fits(found, study) else found

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.filesize import decimal
 from rich.markup import escape
 from rich.table import Table
 
 from impactlab.dataset import RESPONSES, marks, reasons, remarked
 from impactlab.verification.outcome import Outcome, gravest_first
+
+if TYPE_CHECKING:
+    from impactlab.study.status import Status
 
 
 def print_responses(run: Any) -> None:
@@ -73,3 +78,33 @@ def print_outcomes(outcomes: Iterable[Outcome]) -> None:
             f"{outcome.seconds:.1f}",
         )
     Console().print(table)
+
+
+def print_status(name: str, found: Status) -> None:
+    """How far a study is: a line each for its runs, what lies on disk, and who is at work."""
+    left = found.runs - found.done
+    print(f"{name}: {found.done:,} of {found.runs:,} runs solved, {left:,} left")
+    if found.failed:
+        print(f"failed: {found.failed:,} lack a response that is asked for")
+    if found.age is not None:
+        print(f"on disk: {decimal(found.size)}, the latest {age_text(found.age)} ago")
+    print(f"at work: {found.holder or 'nobody'}")
+
+
+def print_files(reasons_of: Mapping[Path, str]) -> None:
+    """One line a file that can go: its size and why; then their size in all."""
+    table = Table("file", "size", "why")
+    for path, reason in reasons_of.items():
+        table.add_row(escape(str(path)), decimal(path.stat().st_size), reason)
+    Console().print(table)
+    total = sum(path.stat().st_size for path in reasons_of)
+    print(f"{len(reasons_of)} files, {decimal(total)}")
+
+
+def age_text(seconds: float) -> str:
+    """A time span in its largest unit: 3 minutes."""
+    for unit, length in (("day", 86_400), ("hour", 3600), ("minute", 60)):
+        if seconds >= length:
+            count = int(seconds // length)
+            return f"{count} {unit}{'s' if count > 1 else ''}"
+    return f"{int(seconds)} s"

@@ -1,36 +1,65 @@
-"""How runs are put together into tasks: by what they cost, not by their number."""
+"""How runs are put together into tasks: about a second each, by what finished ones took."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-_COST = 3e8
-"""Of a batch, at most, in node-steps: about a second."""
-_VALUES = 20_000_000
-"""Stored numbers a batch, at most: bounds the memory of a task."""
-_A_WORKER = 4
-"""Batches a worker, at least: so that none idles while another works through the last one."""
+Array = np.ndarray[Any, Any]
+
+_FIRST_SECONDS = 0.1
+"""Of the first tasks, which measure."""
+_LEAST_SECONDS = 0.05
+"""Of a task near the end."""
+_SHARE = 2
+"""A task is at most this part of a worker's share of what is left: none idles at the end."""
+_SPEED = 3e8
+"""Cost a second, before it is measured."""
+_MEMORY = 0.8
+"""Weight of all measurements so far beside the next one."""
+_VALUES = 4_000_000
+"""Stored numbers a task, at most: bounds its memory."""
+_RUNS = 10_000
+"""Runs a task, at most: its cases travel with it, and take 2 MB."""
 
 
-def batches(
-    cost: np.ndarray[Any, Any], values: int, runs: list[int], workers: int
-) -> Iterator[list[int]]:
-    """The numbers of `runs` in consecutive batches of about equal cost.
+class Batches:
+    """Cuts runs into consecutive batches, sized when they are asked for."""
 
-    cost: of each of all runs, in node-steps; values: stored numbers a run.
-    """
-    limit = min(_COST, cost[runs].sum() / (_A_WORKER * workers))
-    most = max(1, _VALUES // values)
-    batch: list[int] = []
-    spent = 0.0
-    for run, price in zip(runs, cost[runs].tolist(), strict=True):
-        if batch and (spent + price > limit or len(batch) >= most):
-            yield batch
-            batch, spent = [], 0.0
-        batch.append(run)
-        spent += price
-    if batch:
-        yield batch
+    def __init__(self, runs: Array, cost: Array, values: int, seconds: float = 1.0) -> None:
+        """runs: their numbers, out of those that `cost` holds, in a solver's unit.
+
+        values: stored numbers a run; seconds: of a batch, long beside what dask and the disk take
+        for one.
+        """
+        self._runs, self._costs = runs, cost
+        self._wished = seconds
+        self._most = max(1, min(_RUNS, _VALUES // values))
+        self._at, self._left = 0, float(cost[runs].sum())
+        self._cost, self._seconds = 0.0, 0.0
+
+    def take(self, workers: int) -> Array:
+        """The numbers of the next runs; empty when all are taken."""
+        ahead = self._runs[self._at : self._at + self._most]
+        until = np.cumsum(self._costs[ahead])
+        limit = self._speed * self._target(self._left / self._speed / workers)
+        taken = max(1, int(np.searchsorted(until, limit, side="right")))
+        runs = ahead[:taken]
+        self._at += runs.size
+        self._left -= float(self._costs[runs].sum())
+        return runs
+
+    def learn(self, cost: float, seconds: float) -> None:
+        """Size further batches by one that took so long."""
+        self._cost = _MEMORY * self._cost + cost
+        self._seconds = _MEMORY * self._seconds + seconds
+
+    @property
+    def _speed(self) -> float:
+        return self._cost / self._seconds if self._seconds else _SPEED
+
+    def _target(self, share: float) -> float:
+        """Seconds of the next task; share: a worker's share of what is left, in s."""
+        wished = self._wished if self._seconds else min(self._wished, _FIRST_SECONDS)
+        return min(wished, max(share / _SHARE, _LEAST_SECONDS))

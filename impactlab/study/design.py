@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -23,8 +24,15 @@ def run_shape(design: xr.Dataset) -> tuple[tuple[str, ...], tuple[int, ...]]:
     return once, tuple(design.sizes[dim] for dim in once)
 
 
-def flattened(design: xr.Dataset, name: str) -> np.ndarray[Any, Any]:
-    """A parameter's value in each run, dimensions in C order: shape (runs,)."""
-    sizes = dict(zip(*run_shape(design), strict=True))
-    values: np.ndarray[Any, Any] = design[name].variable.set_dims(sizes).values.ravel()
+def run_count(design: xr.Dataset) -> int:
+    """How many runs there are."""
+    return math.prod(run_shape(design)[1])
+
+
+def flattened(design: xr.Dataset, name: str, runs: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """A parameter's value in these runs, numbered with the dimensions in C order: shape (runs,)."""
+    dims, shape = run_shape(design)
+    places = np.unravel_index(runs, shape)
+    own = tuple(places[dims.index(str(dim))] for dim in design[name].dims)
+    values: np.ndarray[Any, Any] = np.broadcast_to(design[name].values[own], runs.shape)
     return values

@@ -3,43 +3,101 @@
 from __future__ import annotations
 
 import logging
+import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from typing import Literal
 
-from distributed import Client
+import dask
+from distributed import Client, LocalCluster, Security
+
+from impactlab.study.slurm import Profile, slurm_cluster
 
 _LOOPBACK = "127.0.0.1:0"
+_FORGETFUL = {"distributed.admin.low-level-log-length": 10}
+"""dask keeps the last messages, cases and all: 1000 by default."""
 
 
 @dataclass(frozen=True)
 class Engine:
-    """On a running dask scheduler where an address is given, else in threads or processes here."""
+    """On a running dask scheduler where an address is given, as Slurm jobs where a profile is.
+
+    Else in threads or processes here. Schedulers and dashboards that are started here listen on
+    the loopback alone, but for the scheduler of Slurm jobs, which listens on the profile's
+    interface. dask's own configuration holds, TLS included.
+    """
 
     kind: Literal["threads", "processes"] = "threads"
     workers: int = 1
     address: str = ""
+    profile: Profile | None = None
+    batch_seconds: float = 1.0
+    """Of a task, about."""
 
     @contextmanager
     def client(self) -> Iterator[Client]:
         """A dask client for the time of a study. Raises OSError when no scheduler answers."""
-        # not as default: xarray would lock its files through the scheduler, slowly, and for ever
-        # where Ctrl-C comes in between
-        logging.getLogger("distributed").setLevel(logging.ERROR)
+        for name in ("distributed", "distributed.client"):  # what matters is raised, too
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+        with dask.config.set(_FORGETFUL), self._clients() as client:
+            yield client
+
+    def _clients(self) -> AbstractContextManager[Client]:
         if self.address:
-            client = Client(self.address, timeout=10, set_as_default=False)
-        else:
-            apart = self.kind == "processes"
-            client = Client(
-                processes=apart,
-                n_workers=self.workers if apart else 1,
-                threads_per_worker=1 if apart else self.workers,
+            return _running(self.address)
+        if self.profile:
+            return _slurm(self.profile)
+        return _here(self.workers, processes=self.kind == "processes")
+
+
+# No client is the default one: xarray would lock its files through the scheduler, slowly, and for
+# ever where Ctrl-C comes in between.
+
+
+@contextmanager
+def _running(address: str) -> Iterator[Client]:
+    if address.startswith("tls:") and not Security().get_connection_args("client")["ssl_context"]:
+        raise OSError(f"{address}: dask's settings name no certificate (distributed.comm.tls)")
+    with Client(address, timeout=10, set_as_default=False) as client:
+        yield client
+
+
+@contextmanager
+def _slurm(profile: Profile) -> Iterator[Client]:
+    with slurm_cluster(profile) as cluster:
+        cluster.scale(jobs=profile.jobs)
+        with Client(cluster, set_as_default=False) as client:
+            yield client
+
+
+@contextmanager
+def _here(workers: int, *, processes: bool) -> Iterator[Client]:
+    try:
+        with _deaf_to_ctrl_c():
+            cluster = LocalCluster(
+                processes=processes,
+                n_workers=workers if processes else 1,
+                threads_per_worker=1 if processes else workers,
+                host="127.0.0.1" if processes else None,
                 dashboard_address=_LOOPBACK,
                 worker_dashboard_address=_LOOPBACK,
                 memory_limit=0,
                 silence_logs=logging.ERROR,
-                set_as_default=False,
             )
-        with client:
-            yield client
+    except RuntimeError as error:
+        raise OSError(f"the workers on this machine did not start: {error}") from error
+    with cluster, Client(cluster, set_as_default=False) as client:
+        yield client
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Worker processes started within never hear Ctrl-C: it is for the one that started them."""
+    resource_tracker.ensure_running()  # else started within, where it would unblock the signal
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,129 +1,63 @@
-"""From a design to its runs: batches over dask, finished ones kept, none solved twice."""
+"""From a design to its runs: finished batches kept, none solved twice."""
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from distributed import as_completed
 
-from impactlab.dataset import status_bits
-from impactlab.simulate import Answers
-from impactlab.study.batches import batches
 from impactlab.study.engine import Engine
+from impactlab.study.fanout import solved
+from impactlab.study.lock import held
 from impactlab.study.progress import Progress
+from impactlab.study.shard import Columns
 from impactlab.study.solvers import SOLVERS, solver_of
-from impactlab.study.storage import Form, Shards, run_keys
+from impactlab.study.storage import Shards
+from impactlab.study.table import Table
+from impactlab.study.work import Work
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
-
-_AHEAD = 3
-"""Batches under way or waiting, a worker."""
-_FAILED = status_bits(())
 
 
 def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Dataset:
     """Solve what of the design has not been solved yet, and return all of it as runs.nc holds it.
 
     design: see impactlab.study.sampling.design. Every finished batch is in `shards_folder`
-    before the next one is counted, so that an interrupted study goes on from there.
+    before it is counted, so that an interrupted study goes on from there. Held in memory: what is
+    returned, and some 40 bytes a run.
 
-    Raises ValueError when the model refuses a run, OSError when the disk is full or when no
-    scheduler answers.
+    Raises ValueError when the model refuses a run; OSError when the disk is full, when no
+    scheduler answers or its workers fail; BlockingIOError when another process is at work in
+    `shards_folder`.
     """
     name = solver_of(design)
     solver = SOLVERS[name]
-    cases = solver.cases(design)
-    samples = int(design.attrs["history_samples"]) if design.attrs["histories"] else 0
-    form = Form(samples, bool(design.attrs["profiles"]))
-    keys = run_keys(cases, form, solver.VERSION)
-    shards = Shards(shards_folder, form, solver.RESPONSE, solver.VERSION)
-    known, parts = _known(shards)
-    first_of = {key: run for run, key in reversed(list(enumerate(keys)))}
-    missing = sorted(run for key, run in first_of.items() if key not in known)
-    log.info("%d runs, %d of them solved before", len(keys), len(keys) - len(missing))
-    for runs, answers in _solved(name, cases, missing, form, engine):
-        shards.write([keys[run] for run in runs], answers)
-        known |= {keys[run]: (len(parts), row) for row, run in enumerate(runs)}
-        parts.append(answers)
-    answers = gather(parts, [known[key] for key in keys])
-    if len(parts) > 1:
-        shards.replace_all(list(known), gather(parts, list(known.values())))
-    return solver.labelled(design, answers)
+    with held(shards_folder):
+        work = Work.of(design)
+        shards = Shards(shards_folder, work.form, solver.VERSION)
+        table = Table(work.keys, solver.columns(design))
+        for keys, columns in shards.recover():
+            table.fill(keys, columns)
+        missing = table.missing()
+        log.info("%d runs, %d of them solved before", work.size, work.size - missing.size)
+        for keys, columns in _followed(work, missing, engine):
+            shards.write(keys, columns)
+            table.fill(keys, columns)
+        shards.merge()
+        return solver.labelled(design, table.columns())
 
 
-def gather(parts: list[Answers], places: list[tuple[int, int]]) -> Answers:
-    """One Answers with a run for each (part, row) of `places`, in that order."""
-    offsets = np.cumsum([0, *(part.responses.size for part in parts)])
-    rows = np.array([offsets[part] + row for part, row in places])
-
-    def picked(arrays: list[Array]) -> Array:
-        rows_of_all: Array = np.concatenate(arrays)[rows]
-        return rows_of_all
-
-    return Answers(
-        picked([part.responses for part in parts]),
-        {name: picked([part.histories[name] for part in parts]) for name in parts[0].histories},
-        {name: picked([part.profiles[name] for part in parts]) for name in parts[0].profiles},
-    )
-
-
-def solve_batch(solver: str, cases: Array, form: Form, version: str) -> Answers:
-    """The task that dask runs. Raises RuntimeError where the solver is not the caller's."""
-    if version != SOLVERS[solver].VERSION:
-        raise RuntimeError(
-            "this dask worker has another version of impactlab: install the same one on all of them"
-        )
-    return SOLVERS[solver].solve(cases, form)
-
-
-def _known(shards: Shards) -> tuple[dict[bytes, tuple[int, int]], list[Answers]]:
-    """Where each run on disk is: key -> (part, row), and the parts."""
-    known: dict[bytes, tuple[int, int]] = {}
-    parts: list[Answers] = []
-    for keys, answers in shards.read():
-        known |= {key: (len(parts), row) for row, key in enumerate(keys)}
-        parts.append(answers)
-    return known, parts
-
-
-def _solved(
-    name: str, cases: Array, runs: list[int], form: Form, engine: Engine
-) -> Iterator[tuple[list[int], Answers]]:
-    """Batches of runs with their answers, in the order in which they finish."""
-    if not runs:
+def _followed(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, Columns]]:
+    """Keys and answers of the missing runs as they come in; a bar tells how far they are."""
+    if not missing.size:
         return
-    solver = SOLVERS[name]
-    solver.solve(
-        cases[:0], Form(form.samples, profiles=False)
-    )  # compiles before workers ask for it
-    waiting = batches(solver.cost(cases), solver.values(cases, form), runs, engine.workers)
-    under_way: dict[Any, list[int]] = {}
-    with (
-        engine.client() as client,
-        Progress(total=cases.size, done=cases.size - len(runs)) as progress,
-    ):
-
-        def submit(batch: list[int]) -> Any:
-            future = client.submit(
-                solve_batch, name, cases[batch], form, solver.VERSION, pure=False
-            )
-            under_way[future.key] = batch
-            return future
-
-        slots = _AHEAD * max(engine.workers, len(client.nthreads()))
-        queue = as_completed([submit(batch) for batch in islice(waiting, slots)], loop=client.loop)
-        for future in queue:
-            answers = future.result()
-            future.release()
-            batch = under_way.pop(future.key)
-            yield batch, answers
-            failed = np.count_nonzero(answers.responses["status"] & _FAILED)
-            progress.advance(len(batch), int(failed))
-            queue.update([submit(batch) for batch in islice(waiting, 1)])
+    bits = SOLVERS[work.solver].failures(work.design)
+    with Progress(total=work.size, done=work.size - missing.size) as progress:
+        for runs, columns in solved(work, missing, engine):
+            yield work.keys[runs], columns
+            progress.advance(runs.size, int(np.count_nonzero(columns["status"] & bits)))

@@ -1,14 +1,14 @@
-"""Finished batches on disk: checked, atomically renamed netCDF shards, found again by content.
+"""Finished runs on disk: found again by content, never lost, never taken for another's.
 
-A run's key is a hash of its case and of the version of its solver, so a shard is never taken for
-another run's answer, and a changed study finds what still fits.
+A run's key is a hash of its case, its form and the version of its solver, so that a changed study
+finds what still fits. Small shards are merged while a study is solved: thousands are slow to open.
 """
 
 from __future__ import annotations
 
 import hashlib
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,13 +16,18 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import HISTORIES, PROFILES
-from impactlab.simulate import Answers
-from impactlab.study.netcdf import read_netcdf, write_netcdf
+from impactlab.study.netcdf import write_netcdf
+from impactlab.study.shard import DAMAGE, KEY, Columns, pack, unpack
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
-_KEY_BYTES = 16
+
+_MANY = 64
+"""Small shards at most: then they are merged."""
+_SMALL = 8e6
+"""Bytes from which a shard stays as it is; the small ones together are not more for long."""
+DAMAGED = ".damaged"
+"""Ends the name of a shard that was set aside."""
 
 
 @dataclass(frozen=True)
@@ -32,80 +37,117 @@ class Form:
     samples: int
     profiles: bool
 
+    @staticmethod
+    def of(design: xr.Dataset) -> Form:
+        """What a design asks for."""
+        samples = int(design.attrs["history_samples"]) if design.attrs["histories"] else 0
+        return Form(samples, bool(design.attrs["profiles"]))
 
-def run_keys(cases: Array, form: Form, version: str) -> list[bytes]:
-    """One key a case, 16 bytes: equal keys, equal answers. version: of the solver."""
+
+def run_keys(cases: Array, form: Form, version: str) -> Array:
+    """One key a case, shape (cases,), 16 bytes: equal keys, equal answers. version: of the solver.
+
+    In memory, bytes that follow each other are one case: two equal cases have equal bytes.
+    """
     prefix = hashlib.sha256(f"{version} {form} {cases.dtype.descr}".encode())
-    keys = []
-    for case in cases:
+    rows = memoryview(cases.tobytes())
+    digests = []
+    for start in range(0, len(rows), cases.dtype.itemsize):
         digest = prefix.copy()
-        digest.update(case.tobytes())
-        keys.append(digest.digest()[:_KEY_BYTES])
-    return keys
+        digest.update(rows[start : start + cases.dtype.itemsize])
+        digests.append(digest.digest()[: KEY.itemsize])
+    return np.frombuffer(b"".join(digests), dtype=KEY)
 
 
 class Shards:
     """The shards of one study in one form, by one solver, in one folder."""
 
-    def __init__(self, folder: Path, form: Form, response: np.dtype[Any], version: str) -> None:
+    def __init__(self, folder: Path, form: Form, version: str) -> None:
         """Look in `folder`/<hash of solver and form>, made when first written to.
 
-        response: of the solver's record of responses; version: of the solver.
+        version: of the solver.
         """
-        name = hashlib.sha256(f"{version} {form}".encode()).hexdigest()[:16]
-        self.folder = folder / name
-        self.response = response
+        self.folder = folder / hashlib.sha256(f"{version} {form}".encode()).hexdigest()[:16]
+        self._small: dict[Path, int] = {}
 
-    def read(self) -> Iterator[tuple[list[bytes], Answers]]:
+    def read(self) -> Iterator[tuple[Array, Columns]]:
         """Keys and answers of every sound shard; a damaged one is named in the log."""
-        for path in sorted(self.folder.glob("*.nc")):
-            try:
-                yield _unpack(read_netcdf(path), self.response)
-            except (OSError, ValueError, KeyError, RuntimeError) as error:
-                log.warning("%s is damaged and will be solved again (%s)", path, error)
+        for path in self.files():
+            if found := _sound(path):
+                yield found
 
-    def write(self, keys: list[bytes], answers: Answers) -> Path:
-        """Keep a batch; returns its file, named for its keys. Raises OSError (a full disk, say)."""
-        path = self.folder / f"{hashlib.sha256(b''.join(keys)).hexdigest()[:32]}.nc"
-        write_netcdf(_pack(keys, answers), path)
+    @staticmethod
+    def keys(path: Path) -> Array:
+        """Of the runs in one shard; none where it is damaged."""
+        found = _sound(path)
+        return found[0] if found else np.zeros(0, dtype=KEY)
+
+    def files(self) -> list[Path]:
+        """All shards, sound or not."""
+        return sorted(self.folder.glob("*.nc"))
+
+    def recover(self) -> Iterator[tuple[Array, Columns]]:
+        """As read, by the one process that writes here: tidies up what a crash left behind.
+
+        A damaged shard is renamed, for a person to look at; what was not written to its end goes.
+        """
+        for unfinished in self.folder.glob(".*"):
+            unfinished.unlink()
+        for path in self.files():
+            if found := _sound(path):
+                self._noted(path)
+                yield found
+            else:
+                path.replace(path.with_name(path.name + DAMAGED))
+
+    def write(self, keys: Array, columns: Columns) -> Path:
+        """Keep runs; returns their file, named for their keys. Raises OSError (a full disk, say).
+
+        columns: of each name, a row a key.
+        """
+        path = self.folder / f"{hashlib.sha256(keys.tobytes()).hexdigest()[:32]}.nc"
+        write_netcdf(pack(keys, columns, _claim(path)), path, compress=False)
+        self._noted(path)
+        if len(self._small) >= _MANY or sum(self._small.values()) >= _SMALL:
+            self.merge()
         return path
 
-    def replace_all(self, keys: list[bytes], answers: Answers) -> None:
-        """One shard in the place of all: thousands of small files are slow to open."""
-        others = set(self.folder.glob("*.nc"))
-        kept = self.write(keys, answers)
-        for path in others - {kept}:
-            path.unlink(missing_ok=True)
+    def merge(self) -> None:
+        """Put one shard in the place of all small ones, which go when it is on disk."""
+        merged, self._small = sorted(self._small), {}
+        parts = [found for path in merged if (found := _sound(path))]
+        if len(parts) < 2:
+            return
+        keys, columns = joined(parts)
+        _, first = np.unique(keys, return_index=True)
+        kept = self.write(keys[first], {name: values[first] for name, values in columns.items()})
+        for path in set(merged) - {kept}:
+            path.unlink()
+
+    def _noted(self, path: Path) -> None:
+        size = path.stat().st_size
+        if size < _SMALL:
+            self._small[path] = size
 
 
-def _pack(keys: list[bytes], answers: Answers) -> xr.Dataset:
-    table = np.frombuffer(b"".join(keys), dtype=np.uint8).reshape(-1, _KEY_BYTES)
-    variables: dict[str, Any] = {"key": (("run", "byte"), table)}
-    for name in answers.responses.dtype.names or ():
-        variables[name] = (("run",), np.ascontiguousarray(answers.responses[name]))
-    for name, values in (answers.histories | answers.profiles).items():
-        variables[name] = (("run", *(HISTORIES | PROFILES)[name].dims), values)
-    dataset = xr.Dataset(variables)
-    return dataset.assign_attrs(checksum=_checksum(dataset))
+def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
+    """Keys and columns of several batches or shards as those of one."""
+    keys, columns = zip(*parts, strict=True)
+    names = columns[0]
+    return (
+        np.concatenate(keys),
+        {name: np.concatenate([each[name] for each in columns]) for name in names},
+    )
 
 
-def _unpack(shard: xr.Dataset, response: np.dtype[Any]) -> tuple[list[bytes], Answers]:
-    """Keys and answers of a shard. Raises ValueError when its checksum does not hold."""
-    if _checksum(shard) != shard.attrs["checksum"]:
-        raise ValueError("its checksum does not hold")
-    responses = np.zeros(shard.sizes["run"], dtype=response)
-    for name in response.names or ():
-        responses[name] = shard[name].values
-    keys = [row.tobytes() for row in shard["key"].values]
-    histories = {name: shard[name].values for name in HISTORIES if name in shard}
-    profiles = {name: shard[name].values for name in PROFILES if name in shard}
-    return keys, Answers(responses, histories, profiles)
+def _sound(path: Path) -> tuple[Array, Columns] | None:
+    try:
+        return unpack(path, _claim(path))
+    except DAMAGE as error:
+        log.warning("%s is damaged, and its runs will be solved again (%s)", path, error)
+        return None
 
 
-def _checksum(dataset: xr.Dataset) -> str:
-    digest = hashlib.sha256()
-    for name in sorted(map(str, dataset.data_vars)):
-        values = dataset[name].values
-        digest.update(f"{name} {dataset[name].dims} {values.shape} {values.dtype}".encode())
-        digest.update(np.ascontiguousarray(values).tobytes())
-    return digest.hexdigest()
+def _claim(path: Path) -> str:
+    """What the place of a file says of its content."""
+    return f"{path.parent.name}/{path.name}"

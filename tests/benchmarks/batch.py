@@ -21,16 +21,15 @@ from rich.console import Console
 from rich.table import Table
 
 import impactlab as il
-from impactlab.kernels.jit import SOURCES_HASH
 from impactlab.kernels.leapfrog import run_all
 from impactlab.kernels.responses import RESPONSE
 from impactlab.simulate import case_table
-from impactlab.study.batches import batches
-from impactlab.study.execution import solve_batch
+from impactlab.study.fanout import solve_batch
 from impactlab.study.solvers import impact
 from impactlab.study.storage import Form, run_keys
 
 RUNS = 1000
+TASKS = 20
 DURATIONS = (1e-3, 25e-3)
 IMPACT = il.paper_impact()
 GRID = il.Discretisation(nodes=101)
@@ -73,12 +72,10 @@ def study(duration: float, threads: int) -> Callable[[], object]:
     def solved() -> object:
         cases = case_table(IMPACT, GRID, duration=duration, varied=VARIED)
         run_keys(cases, FORM, impact.VERSION)
-        tasks = batches(
-            impact.cost(cases), impact.values(cases, FORM), list(range(RUNS)), workers=2
-        )
         with ThreadPoolExecutor(threads) as pool:
             under_way = [
-                pool.submit(solve_batch, cases[runs], FORM, SOURCES_HASH) for runs in tasks
+                pool.submit(solve_batch, "impact", part, FORM, impact.VERSION)
+                for part in np.array_split(cases, TASKS)
             ]
             return [task.result() for task in under_way]
 

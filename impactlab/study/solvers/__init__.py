@@ -7,7 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
-from impactlab.simulate import Answers
+from impactlab.study.shard import Columns
 from impactlab.study.solvers import function, impact
 from impactlab.study.storage import Form
 
@@ -15,15 +15,24 @@ Array = np.ndarray[Any, Any]
 
 
 class Solver(Protocol):
-    """What the file of a solver offers. Cases and responses: structured arrays, a record a run."""
+    """What the file of a solver offers. Cases: a structured array, a record a run."""
 
     VERSION: str
     """A hash that changes with the answers: answers of another version are not reused."""
-    RESPONSE: np.dtype[Any]
-    """Of the record of responses; its field `status` says why some are missing (0: none is)."""
 
-    def cases(self, design: xr.Dataset) -> Array:
-        """All that a run depends on, dimensions flattened. Raises ValueError naming a wrong run."""
+    def columns(self, design: xr.Dataset) -> tuple[str, ...]:
+        """Names of the answers that `labelled` takes."""
+        ...
+
+    def failures(self, design: xr.Dataset) -> int:
+        """The bits of the answer `status` with which a run lacks something asked for."""
+        ...
+
+    def cases(self, design: xr.Dataset, runs: Array) -> Array:
+        """All that these runs depend on, by number, dimensions flattened.
+
+        Raises ValueError naming a wrong run; the runs then follow each other.
+        """
         ...
 
     def cost(self, cases: Array) -> Array:
@@ -34,11 +43,11 @@ class Solver(Protocol):
         """How many numbers are kept of a run."""
         ...
 
-    def solve(self, cases: Array, form: Form) -> Answers:
-        """The answers, the same bits in any batch."""
+    def solve(self, cases: Array, form: Form) -> Columns:
+        """The answers by name, a row a run, `status` among them; the same bits in any batch."""
         ...
 
-    def labelled(self, design: xr.Dataset, answers: Answers) -> xr.Dataset:
+    def labelled(self, design: xr.Dataset, answers: Columns) -> xr.Dataset:
         """The answers in the design's order, under its labels and with provenance."""
         ...
 

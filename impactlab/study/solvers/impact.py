@@ -7,16 +7,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance
+from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 from impactlab.kernels.jit import SOURCES_HASH
-from impactlab.kernels.responses import RESPONSE
 from impactlab.model.cost import node_steps
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import (
-    Answers,
     answer_variables,
     case_table,
     profile_coordinates,
@@ -24,20 +22,41 @@ from impactlab.simulate import (
 )
 from impactlab.simulate import solve as solve_cases
 from impactlab.study.design import flattened, run_shape, varied_names
+from impactlab.study.shard import Columns
 from impactlab.study.storage import Form
 
-__all__ = ["RESPONSE", "VERSION", "cases", "cost", "labelled", "solve", "values"]
 VERSION = SOURCES_HASH
-cost = node_steps
+_OF_ANY_RUN = 6000.0
+"""Cost of a run beside its node-steps: some 20 microseconds."""
 
 
-def cases(design: xr.Dataset) -> np.ndarray[Any, Any]:
-    """The kernels' case table of a design, its dimensions flattened in C order.
+def columns(design: xr.Dataset) -> tuple[str, ...]:
+    """The asked responses, what is to be known of them, and the histories and profiles kept."""
+    form = Form.of(design)
+    histories = HISTORIES if form.samples else ()
+    profiles = PROFILES if form.profiles else ()
+    return (*_responses(design), "status", "remarks", *histories, *profiles)
+
+
+def failures(design: xr.Dataset) -> int:
+    """Those that take an asked response away."""
+    return status_bits(_responses(design))
+
+
+def cases(design: xr.Dataset, runs: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """The kernels' case table of these runs.
 
     Raises ValueError naming the run when the model refuses a value.
     """
-    columns = {name: flattened(design, name) for name in varied_names(design)}
-    return case_table(*_base(design), duration=design["duration"].item(), varied=columns)
+    varied = {name: flattened(design, name, runs) for name in varied_names(design)}
+    duration = design["duration"].item()
+    return case_table(*_base(design), duration=duration, varied=varied, first_run=int(runs[0]))
+
+
+def cost(cases: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Node-steps, and what comes with any run."""
+    found: np.ndarray[Any, Any] = node_steps(cases) + _OF_ANY_RUN
+    return found
 
 
 def values(cases: np.ndarray[Any, Any], form: Form) -> int:
@@ -46,22 +65,25 @@ def values(cases: np.ndarray[Any, Any], form: Form) -> int:
     return len(RESPONSES) + len(HISTORIES) * form.samples + len(PROFILES) * profile
 
 
-def solve(cases: np.ndarray[Any, Any], form: Form) -> Answers:
+def solve(cases: np.ndarray[Any, Any], form: Form) -> Columns:
     """The kernels' answers."""
-    return solve_cases(cases, samples=form.samples, profiles=form.profiles)
+    return solve_cases(cases, samples=form.samples, profiles=form.profiles).columns()
 
 
-def labelled(design: xr.Dataset, answers: Answers) -> xr.Dataset:
+def labelled(design: xr.Dataset, answers: Columns) -> xr.Dataset:
     """The answers of a design's runs, in its order, under its labels and with provenance."""
     dims, shape = run_shape(design)
-    responses = tuple(str(name) for name in np.atleast_1d(design.attrs["responses"]))
-    flat = answer_variables(answers, responses, ("run",))
+    flat = answer_variables(answers, _responses(design), ("run",))
     variables = {
         name: ((*dims, *others[1:]), values.reshape(*shape, *values.shape[1:]))
         for name, (others, values) in flat.items()
     }
-    dataset = design.assign(variables).assign_coords(_answer_coordinates(design, answers))
+    dataset = design.assign(variables).assign_coords(_answer_coordinates(design, Form.of(design)))
     return described(dataset.assign_attrs(provenance()))
+
+
+def _responses(design: xr.Dataset) -> tuple[str, ...]:
+    return tuple(str(name) for name in np.atleast_1d(design.attrs["responses"]))
 
 
 def _base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
@@ -72,12 +94,10 @@ def _base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
     return with_values(paper_impact(), Discretisation(), fixed)
 
 
-def _answer_coordinates(design: xr.Dataset, answers: Answers) -> dict[str, Any]:
+def _answer_coordinates(design: xr.Dataset, form: Form) -> dict[str, Any]:
     coordinates: dict[str, Any] = {}
-    if answers.histories:
-        coordinates |= sample_coordinates(
-            design["duration"].item(), design.attrs["history_samples"]
-        )
-    if answers.profiles:
+    if form.samples:
+        coordinates |= sample_coordinates(design["duration"].item(), form.samples)
+    if form.profiles:
         coordinates |= profile_coordinates(*_base(design))
     return coordinates

@@ -15,11 +15,11 @@ from impactlab.model.parameters import flatten
 from impactlab.simulate import case_table
 from impactlab.study import batches as batching
 from impactlab.study import execution
-from impactlab.study.batches import batches
 from impactlab.study.engine import Engine
 from impactlab.study.execution import execute
-from impactlab.study.solvers.impact import cases as design_cases
+from impactlab.study.fanout import solve_batch
 from impactlab.study.storage import Form
+from impactlab.study.work import Work
 
 RESPONSES_ASKED = ["peak_force", "contact_duration", "restitution"]
 
@@ -46,13 +46,13 @@ def design(velocities=(0.5, 1.0, 5.0), nodes=(11, 21), **attrs):
 def solved(monkeypatch):
     """How many runs were sent out, a study each."""
     counts = []
-    original = execution._solved
+    original = execution.solved
 
-    def counted(name, cases, runs, *args):
-        counts.append(len(runs))
-        return original(name, cases, runs, *args)
+    def counted(work, missing, engine):
+        counts.append(missing.size)
+        return original(work, missing, engine)
 
-    monkeypatch.setattr(execution, "_solved", counted)
+    monkeypatch.setattr(execution, "solved", counted)
     return counts
 
 
@@ -72,7 +72,7 @@ def test_runs_carry_the_labels_of_the_design(tmp_path):
 @pytest.mark.parametrize("engine", [Engine("threads", 3), Engine("processes", 2)])
 def test_same_bits_for_any_engine_and_batch_size(tmp_path, engine, monkeypatch):
     whole = execute(design(), tmp_path / "one", Engine("threads", 1))
-    monkeypatch.setattr(batching, "_COST", 1.0)  # a run a task
+    monkeypatch.setattr(batching, "_RUNS", 1)  # a run a task
     split = execute(design(), tmp_path / "two", engine)
     for name in whole.data_vars:
         assert whole[name].values.tobytes() == split[name].values.tobytes(), name
@@ -97,15 +97,15 @@ def test_a_change_solves_just_what_it_touches(tmp_path, solved):
 
 
 def test_interrupted_studies_go_on(tmp_path, solved, monkeypatch):
-    monkeypatch.setattr(batching, "_COST", 1.0)
+    monkeypatch.setattr(batching, "_RUNS", 1)
     write = execution.Shards.write
     kept = []
 
-    def failing(self, keys, answers):
-        if len(kept) == 3:
+    def failing(self, keys, columns):
+        if len(kept) >= 3:
             raise KeyboardInterrupt
-        kept.append(keys)
-        return write(self, keys, answers)
+        kept.extend(keys)
+        return write(self, keys, columns)
 
     with monkeypatch.context() as interrupted:
         interrupted.setattr(execution.Shards, "write", failing)
@@ -113,7 +113,7 @@ def test_interrupted_studies_go_on(tmp_path, solved, monkeypatch):
             execute(design(), tmp_path, Engine())
     solved.clear()
     resumed = execute(design(), tmp_path, Engine())
-    assert sum(solved) == 3
+    assert 0 < sum(solved) == 6 - len(kept)
     fresh = execute(design(), tmp_path / "fresh", Engine())
     assert resumed.drop_attrs().identical(fresh.drop_attrs())
 
@@ -135,15 +135,6 @@ def test_status_keeps_only_the_reasons_of_the_asked_responses(tmp_path):
     assert (execute(short, tmp_path, Engine())["status"] == 0).all()
 
 
-def test_batches_hold_every_run_once_and_split_by_cost():
-    cases = design_cases(design(velocities=np.linspace(1, 2, 50), nodes=(11, 201)))
-    parts = list(batches(node_steps(cases), 17, list(range(100)), workers=2))
-    assert sorted(run for part in parts for run in part) == list(range(100))
-    cost = [sum(node_steps(cases[run]) for run in part) for part in parts]
-    assert len(parts) >= 4
-    assert max(cost) <= sum(cost) / 8 + max(node_steps(case) for case in cases)
-
-
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("nodes", [201, 601])
 def test_the_estimated_cost_is_that_of_the_kernels_steps(scheme, nodes):
@@ -155,4 +146,4 @@ def test_the_estimated_cost_is_that_of_the_kernels_steps(scheme, nodes):
 
 def test_workers_with_other_kernels_are_refused():
     with pytest.raises(RuntimeError, match="another version"):
-        execution.solve_batch("impact", design_cases(design()), Form(0, False), "other")
+        solve_batch("impact", Work.of(design()).cases(np.arange(2)), Form(0, False), "other")

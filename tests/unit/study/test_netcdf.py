@@ -1,9 +1,22 @@
-"""Datasets on disk: all of a file or none of it."""
+"""Files whole or not at all, and words for a disk that is full."""
 
+import subprocess
+
+import numpy as np
 import pytest
 import xarray as xr
 
 from impactlab.study.netcdf import read_netcdf, write_netcdf
+
+
+def noise(size):
+    return xr.Dataset({"a": ("run", np.random.default_rng(1).uniform(size=size))})
+
+
+def test_unreadable_files_are_named(tmp_path):
+    (tmp_path / "x.nc").write_text("no such thing")
+    with pytest.raises(OSError, match=r"x\.nc: cannot be read as netCDF"):
+        read_netcdf(tmp_path / "x.nc")
 
 
 def test_failed_write_leaves_the_old_file_and_no_rubbish(tmp_path):
@@ -13,3 +26,24 @@ def test_failed_write_leaves_the_old_file_and_no_rubbish(tmp_path):
         write_netcdf(xr.Dataset({"a": ((), object())}), path)
     assert read_netcdf(path)["a"].item() == 1.0
     assert [entry.name for entry in tmp_path.iterdir()] == ["runs.nc"]
+
+
+@pytest.fixture
+def tiny_disk(tmp_path):
+    """A file system of 1 MB."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(folder)]
+    if subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("mounting is not permitted here")
+    yield folder
+    subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+@pytest.mark.parametrize("compress", [True, False])
+def test_a_full_disk_is_told_and_the_older_file_stays(tiny_disk, compress):
+    write_netcdf(noise(1000), tiny_disk / "x.nc", compress=compress)
+    with pytest.raises(OSError, match=r"x\.nc: could not be written .* are free .* needed"):
+        write_netcdf(noise(1_000_000), tiny_disk / "x.nc", compress=compress)
+    assert read_netcdf(tiny_disk / "x.nc").identical(noise(1000))
+    assert [path.name for path in tiny_disk.iterdir()] == ["x.nc"]

@@ -1,11 +1,14 @@
 """Shards: found again by content, and never when damaged."""
 
+import shutil
+
 import numpy as np
 import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab.simulate import case_table, solve
+from impactlab.simulate import case_table
+from impactlab.study import storage
 from impactlab.study.netcdf import read_netcdf
 from impactlab.study.solvers import impact
 from impactlab.study.storage import Form, Shards, run_keys
@@ -20,69 +23,140 @@ def cases(*velocities, nodes=11):
 
 @pytest.fixture
 def shards(tmp_path):
-    return Shards(tmp_path, FORM, impact.RESPONSE, impact.VERSION)
+    return Shards(tmp_path, FORM, impact.VERSION)
 
 
 def written(shards, table):
-    answers = solve(table, samples=FORM.samples, profiles=FORM.profiles)
+    columns = impact.solve(table, FORM)
     keys = run_keys(table, FORM, impact.VERSION)
-    return keys, answers, shards.write(keys, answers)
+    return keys, columns, shards.write(keys, columns)
+
+
+def found_keys(shards):
+    return {bytes(key) for keys, _ in shards.read() for key in keys}
 
 
 def test_what_was_written_is_read_to_the_bit(shards):
-    keys, answers, _ = written(shards, cases(0.5, 1.0, 2.0))
-    ((found_keys, found),) = shards.read()
-    assert found_keys == keys
-    assert found.responses.tobytes() == answers.responses.tobytes()
-    for ours, theirs in (
-        (answers.histories, found.histories),
-        (answers.profiles, found.profiles),
-    ):
-        assert ours.keys() == theirs.keys()
-        assert all(np.array_equal(ours[name], theirs[name]) for name in ours)
+    keys, columns, _ = written(shards, cases(0.5, 1.0, 2.0))
+    ((found, read),) = shards.read()
+    assert found.tobytes() == keys.tobytes()
+    assert read.keys() == columns.keys()
+    assert all(read[name].tobytes() == columns[name].tobytes() for name in columns)
 
 
 def test_keys_tell_apart_every_field_and_form():
     table = cases(0.5, 1.0)
     keys = set(run_keys(table, FORM, impact.VERSION))
+    assert len(keys) == 2
     for name in table.dtype.names:
         other = table.copy()
         other[name] += 1
         assert keys.isdisjoint(run_keys(other, FORM, impact.VERSION)), name
+    assert keys.isdisjoint(run_keys(table, FORM, "other"))
     assert keys.isdisjoint(run_keys(table, Form(samples=12, profiles=True), impact.VERSION))
     assert keys.isdisjoint(run_keys(table, Form(samples=11, profiles=False), impact.VERSION))
 
 
-@pytest.mark.parametrize("damage", ["truncated", "flipped", "foreign", "empty"])
-def test_damaged_shards_are_passed_over_and_named(shards, damage, caplog):
-    written(shards, cases(0.5))
-    _, _, path = written(shards, cases(1.0))
+def truncated(path, other):
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) // 2])
+
+
+def flipped(path, other):
     content = bytearray(path.read_bytes())
-    if damage == "truncated":
-        path.write_bytes(content[: len(content) // 2])
-    elif damage == "flipped":
-        force = read_netcdf(path)["peak_force"].values.tobytes()
-        content[content.index(force)] ^= 1
-        path.write_bytes(content)
-    elif damage == "foreign":
-        xr.Dataset({"key": ("run", [1.0])}).to_netcdf(path)
-    else:
-        path.write_bytes(b"")
-    found = list(shards.read())
-    assert len(found) == 1
-    assert found[0][0] == run_keys(cases(0.5), FORM, impact.VERSION)
+    force = read_netcdf(path)["peak_force"].values.tobytes()
+    content[content.index(force)] ^= 1
+    path.write_bytes(content)
+
+
+def swapped(path, other):
+    shutil.copy(other, path)
+
+
+def foreign(path, other):
+    xr.Dataset({"key": ("run", [1.0])}).to_netcdf(path)
+
+
+def empty(path, other):
+    path.write_bytes(b"")
+
+
+@pytest.mark.parametrize("damage", [truncated, flipped, swapped, foreign, empty])
+def test_damaged_shards_are_named_and_set_aside(shards, damage, caplog):
+    keys, _, other = written(shards, cases(0.5))
+    _, _, path = written(shards, cases(1.0))
+    damage(path, other)
+    ((found, _),) = shards.read()
+    assert found.tobytes() == keys.tobytes()
     assert str(path) in caplog.text
+    assert path.exists()  # reading changes nothing
+    assert len(list(shards.recover())) == 1
+    assert path.with_name(path.name + ".damaged").exists()
+    assert shards.files() == [other]
+
+
+def test_a_shard_of_another_folder_is_found_out(shards, tmp_path, caplog):
+    *_, path = written(shards, cases(0.5))
+    other = Shards(tmp_path, FORM, "another version")
+    other.folder.mkdir()
+    shutil.copy(path, other.folder)
+    assert list(other.read()) == []
+    assert "damaged" in caplog.text
 
 
 def test_other_forms_are_not_seen(shards, tmp_path):
     written(shards, cases(0.5))
-    other = Shards(tmp_path, Form(samples=0, profiles=False), impact.RESPONSE, impact.VERSION)
+    other = Shards(tmp_path, Form(samples=0, profiles=False), impact.VERSION)
     assert list(other.read()) == []
 
 
-def test_one_shard_takes_the_place_of_all(shards):
-    keys, answers, _ = written(shards, cases(0.5, 1.0))
-    written(shards, cases(2.0))
-    shards.replace_all(keys, answers)
-    ((found, _),) = shards.read()
-    assert found == keys
+def test_one_shard_takes_the_place_of_all_small_ones(shards, monkeypatch, tmp_path):
+    first, columns, _ = written(shards, cases(0.5, 1.0))
+    with monkeypatch.context() as any_is_large:
+        any_is_large.setattr(storage, "_SMALL", 0)
+        *_, large = written(Shards(tmp_path, FORM, impact.VERSION), cases(2.0))
+    second, *_ = written(shards, cases(1.0, 3.0))
+    shards.merge()
+    assert large in shards.files()
+    assert len(shards.files()) == 2
+    assert found_keys(shards) == {*first, *second, *run_keys(cases(2.0), FORM, impact.VERSION)}
+    (merged,) = [part for part in shards.read() if part[0].size == 3]
+    at = merged[0].tolist().index(first[0])
+    assert merged[1]["peak_force"][at] == columns["peak_force"][0]
+
+
+def test_small_shards_are_merged_while_they_come(shards, monkeypatch):
+    monkeypatch.setattr(storage, "_MANY", 4)
+    velocities = np.linspace(1, 2, 10)
+    for velocity in velocities:
+        written(shards, cases(velocity))
+        assert len(shards.files()) <= 4
+    assert found_keys(shards) == set(run_keys(cases(*velocities), FORM, impact.VERSION))
+
+
+def test_a_crash_between_merging_and_clearing_loses_nothing(shards, monkeypatch, tmp_path):
+    keys = {key for velocity in (1.0, 2.0) for key in written(shards, cases(velocity))[0]}
+    with monkeypatch.context() as crash:
+        crash.setattr(type(tmp_path), "unlink", crashing)
+        with pytest.raises(KeyboardInterrupt):
+            shards.merge()
+    assert len(shards.files()) == 3
+    again = Shards(tmp_path, FORM, impact.VERSION)
+    list(again.recover())
+    again.merge()
+    assert len(again.files()) == 1
+    assert found_keys(again) == keys
+    assert sum(found.size for found, _ in again.read()) == 2
+
+
+def crashing(path, missing_ok=False):
+    """In the place of Path.unlink; temporary names are cleared with missing_ok."""
+    if not missing_ok:
+        raise KeyboardInterrupt
+
+
+def test_what_was_not_written_to_its_end_is_cleared(shards):
+    *_, path = written(shards, cases(0.5))
+    (path.parent / ".some.nc.1234").write_bytes(b"half")
+    assert len(list(shards.recover())) == 1
+    assert list(path.parent.iterdir()) == [path]

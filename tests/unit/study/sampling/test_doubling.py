@@ -5,8 +5,7 @@ import pytest
 import xarray as xr
 
 from impactlab.study.sampling.doubling import doubled
-from impactlab.study.solvers.impact import cases as design_cases
-from impactlab.study.storage import Form, run_keys
+from impactlab.study.work import Work
 
 
 @pytest.mark.parametrize("second_order", [True, False])
@@ -23,9 +22,9 @@ def test_runs_are_found_again_in_twice_as_many(sampled, second_order, seed):
         groups={"section": ["beam_depth", "beam_width"]},
     )
     large = doubled(small)
-    keys, more = (run_keys(design_cases(each), Form(0, False), "v") for each in (small, large))
-    assert len(more) == 2 * len(keys)
-    assert more[: len(keys)] == keys
+    keys, more = (Work.of(each).keys for each in (small, large))
+    assert more.size == 2 * keys.size
+    assert np.array_equal(more[: keys.size], keys)
     assert doubled(large).attrs["base_samples"] == 64
     changed = {key for key in large.attrs if large.attrs[key] != small.attrs[key]}
     assert changed == {"base_samples"}

@@ -31,8 +31,8 @@ def test_values_are_the_functions_under_the_designs_labels(tmp_path):
 
 @pytest.mark.parametrize("size", [1, 3, 7])
 def test_the_same_bits_in_any_batch(size):
-    cases = function.cases(design(x1=np.linspace(-3, 3, 40), x2=np.linspace(1, 2, 40)))
-    form = Form(0, False)
-    whole = function.solve(cases, form).responses["value"]
-    parts = [function.solve(cases[at : at + size], form).responses for at in range(0, 40, size)]
-    assert whole.tobytes() == np.concatenate(parts)["value"].tobytes()
+    asked = design(x1=np.linspace(-3, 3, 40), x2=np.linspace(1, 2, 40))
+    cases, form = function.cases(asked, np.arange(40)), Form(0, False)
+    whole = function.solve(cases, form)["value"]
+    parts = [function.solve(cases[at : at + size], form)["value"] for at in range(0, 40, size)]
+    assert whole.tobytes() == np.concatenate(parts).tobytes()

@@ -1,0 +1,54 @@
+"""Shards that no study asks for any more."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from impactlab.cli.options import RESULTS
+from impactlab.cli.settling import settled_before
+
+
+def clean(
+    folder: Annotated[Path, typer.Argument(help="Where the study files lie.")] = Path("studies"),
+    results: Annotated[Path, typer.Option(help="Where results land.")] = RESULTS,
+    yes: Annotated[bool, typer.Option("--yes", help="Remove without asking.")] = False,
+) -> None:
+    """Remove solved runs that no study of a folder asks for any more, after asking.
+
+    What a changed study still asks for stays, and so do runs.nc and the reports.
+    """
+    from contextlib import ExitStack
+
+    from impactlab.report.console import print_files
+    from impactlab.study.lock import held
+
+    if not any(folder.glob("*.yaml")):
+        raise FileNotFoundError(f"{folder}: no study files (*.yaml) there: nothing was removed")
+    with ExitStack() as locks:
+        found: dict[Path, str] = {}
+        for shards in sorted(results.glob("*/shards")):
+            locks.enter_context(held(shards))
+            found |= _stale(folder / f"{shards.parent.name}.yaml", shards)
+        if not found:
+            print("Nothing to remove: every shard is asked for.")
+            return
+        print_files(found)
+        if yes or typer.confirm("Remove these files?"):
+            for path in found:
+                path.unlink()
+
+
+def _stale(file: Path, shards: Path) -> dict[Path, str]:
+    """What can go of one study's shards; nothing while its discretisation has to be found."""
+    from impactlab.study.declaration import read_study
+    from impactlab.study.sampling import design
+    from impactlab.study.sampling.stages import stages
+    from impactlab.study.stale import stale
+
+    if not file.exists():
+        return stale(shards, ())
+    declared = settled_before(read_study(file), shards.with_name("resolution.nc"))
+    return {} if declared is None else stale(shards, list(stages(design(declared))))

@@ -1,0 +1,37 @@
+"""How far a study is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from impactlab.cli.options import RESULTS, StudyFile
+from impactlab.cli.settling import settled_before
+
+
+def status(
+    study: StudyFile,
+    results: Annotated[Path, typer.Option(help="Where results land.")] = RESULTS,
+) -> None:
+    """Tell how many runs are solved, failed and left, their size, and whether one is at work.
+
+    Nothing is changed; a study may be at work meanwhile.
+    """
+    from impactlab.report.console import print_status
+    from impactlab.study.declaration import read_study
+    from impactlab.study.sampling import design
+    from impactlab.study.sampling.stages import stages
+    from impactlab.study.status import status as status_of
+
+    folder = results / study.stem
+    declared = settled_before(read_study(study), folder / "resolution.nc")
+    if declared is None:
+        print(f"{study.stem}: its discretisation is auto and was not found yet: nothing is solved")
+        return
+    for stage in stages(design(declared)):
+        found = status_of(stage, folder / "shards")
+        if found.done < found.runs:
+            break
+    print_status(study.stem, found)

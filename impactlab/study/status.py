@@ -1,0 +1,63 @@
+"""How far a study is, from what lies on disk."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from impactlab.study.lock import holder
+from impactlab.study.solvers import SOLVERS
+from impactlab.study.storage import Shards
+from impactlab.study.table import Table
+from impactlab.study.work import Work
+
+
+@dataclass(frozen=True)
+class Status:
+    """Runs in all, and on disk; of these, how many lack a response that is asked for.
+
+    age: of the latest shard in s, None without one; size: of all shards in bytes, those of other
+    solvers and forms included; holder: who works on it now, or "".
+    """
+
+    runs: int
+    done: int
+    failed: int
+    age: float | None
+    size: int
+    holder: str
+
+
+def status(design: xr.Dataset, shards_folder: Path) -> Status:
+    """The status of a design; shards are only read, also while another process writes them."""
+    work = Work.of(design)
+    solver = SOLVERS[work.solver]
+    shards = Shards(shards_folder, work.form, solver.VERSION)
+    table = Table(work.keys, ["status"])
+    for keys, columns in shards.read():
+        table.fill(keys, columns)
+    left = table.left()
+    bits = table.columns().get("status", np.zeros(0, dtype=np.int32))
+    return Status(
+        runs=work.size,
+        done=work.size - left,
+        failed=int(np.count_nonzero(bits & solver.failures(design))),
+        age=_age(shards.files()),
+        size=disk_size(shards_folder.rglob("*")),
+        holder=holder(shards_folder),
+    )
+
+
+def disk_size(paths: Iterable[Path]) -> int:
+    """Bytes of these files; one that has gone in between counts nothing."""
+    return sum(path.stat().st_size for path in paths if path.is_file())
+
+
+def _age(files: Iterable[Path]) -> float | None:
+    times = [path.stat().st_mtime for path in files]
+    return time.time() - max(times) if times else None

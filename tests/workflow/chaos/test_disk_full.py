@@ -1,0 +1,124 @@
+"""A disk that fills up: one clear line, what was on disk stays, and it goes on with room."""
+
+import os
+import shutil
+import subprocess
+
+import pytest
+from chaos import (
+    RUNS,
+    SMALL,
+    Command,
+    assert_same_bits,
+    complaint,
+    keys_on_disk,
+    resumed,
+    run,
+    solved_before,
+)
+
+pytestmark = pytest.mark.chaos
+
+BALLAST = "ballast"
+
+
+@pytest.fixture
+def small_disk(folder):
+    """The study, with results/ on a disk of its own of 32 MiB."""
+    results = folder / "results"
+    results.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=32m", "tmpfs", str(results)]
+    if os.geteuid() != 0 or subprocess.run(mount, capture_output=True).returncode != 0:
+        pytest.skip("a small disk can only be mounted by root, where mounting is allowed")
+    yield folder
+    subprocess.run(["umount", "--lazy", str(results)], check=True)
+
+
+def fill(folder, left):
+    """Leave that many bytes."""
+    results = folder / "results"
+    size = shutil.disk_usage(results).free - left
+    (results / BALLAST).write_bytes(bytes(size))
+
+
+def make_room(folder):
+    (folder / "results" / BALLAST).unlink()
+
+
+def complains(command, *words):
+    """That it ends in one line with these words."""
+    assert command.end() == 1, command.said
+    said = complaint(command.said)
+    for word in words:
+        assert word in said, said
+
+
+@pytest.mark.parametrize("left", [50_000, 300_000, 600_000])
+def test_while_shards_are_written(small_disk, left, undisturbed):
+    fill(small_disk, left)
+    complains(run(small_disk, "--workers", "2", *SMALL), "shards", "free")
+    before = len(keys_on_disk(small_disk))  # reads every shard: all are whole
+    assert before > 0 or left < 100_000
+    make_room(small_disk)
+    runs, said = resumed(small_disk)
+    assert solved_before(said) == before
+    assert_same_bits(runs, undisturbed)
+    assert not list((small_disk / "results" / "tough").glob("**/.*.nc.*"))
+
+
+def test_while_shards_are_merged(small_disk, undisturbed):
+    """Room for every shard, and none for a second copy of all."""
+    fill(small_disk, 1_300_000)
+    complains(run(small_disk, "--workers", "1", *SMALL), "free")
+    before = len(keys_on_disk(small_disk))
+    make_room(small_disk)
+    runs, said = resumed(small_disk)
+    assert solved_before(said) == before
+    assert_same_bits(runs, undisturbed)
+
+
+def test_while_the_runs_are_written(small_disk, undisturbed):
+    resumed(small_disk)
+    file = small_disk / "results" / "tough" / "runs.nc"
+    file.unlink()
+    fill(small_disk, 20_000)
+    complains(run(small_disk), "runs.nc", "free")
+    assert not file.exists()
+    make_room(small_disk)
+    runs, said = resumed(small_disk)
+    assert solved_before(said) == RUNS
+    assert_same_bits(runs, undisturbed)
+
+
+def test_an_older_file_stays(small_disk, undisturbed):
+    runs, _ = resumed(small_disk)
+    fill(small_disk, 20_000)
+    complains(run(small_disk), "runs.nc", "free")
+    make_room(small_disk)
+    assert_same_bits(runs, undisturbed)
+
+
+def step(folder, *args):
+    results = "results/tough/"
+    files = [results + arg if arg.endswith(".nc") else arg for arg in args]
+    return Command(*files, cwd=folder)
+
+
+STEPS = [
+    ("analyse", "runs.nc"),
+    ("figures", "runs.nc", "analysis.nc"),
+    ("report", "runs.nc", "analysis.nc"),
+]
+"""What is made of the runs, in order."""
+
+
+@pytest.mark.parametrize("which", range(3), ids=[args[0] for args in STEPS])
+def test_while_a_later_step_is_written(small_disk, which):
+    resumed(small_disk)
+    for args in STEPS[:which]:
+        assert step(small_disk, *args).end() == 0
+    fill(small_disk, 4_096)
+    complains(step(small_disk, *STEPS[which]), "tough", "free")
+    make_room(small_disk)
+    last = step(small_disk, *STEPS[which])
+    assert last.end() == 0, last.said

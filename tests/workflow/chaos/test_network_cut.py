@@ -1,0 +1,84 @@
+"""Workers in a network namespace of their own, which is cut off while they solve."""
+
+import os
+import signal
+import subprocess
+from contextlib import contextmanager
+
+import pytest
+from chaos import SMALL, assert_same_bits, keys_on_disk, resumed, run, solved_before, stored
+from cluster import SOON, Cluster
+
+pytestmark = pytest.mark.chaos
+
+HERE, THERE = "10.213.77.1", "10.213.77.2"
+"""Both ends of a cable."""
+
+
+def ip(*args):
+    return subprocess.run(["ip", *args], capture_output=True, text=True)
+
+
+@contextmanager
+def namespace(name):
+    """A network namespace, joined by a cable to this one."""
+    cable, far = f"{name}-a", f"{name}-b"
+    steps = [
+        ("netns", "add", name),
+        ("link", "add", cable, "type", "veth", "peer", "name", far, "netns", name),
+        ("addr", "add", f"{HERE}/30", "dev", cable),
+        ("link", "set", cable, "up"),
+        ("-n", name, "addr", "add", f"{THERE}/30", "dev", far),
+        ("-n", name, "link", "set", far, "up"),
+        ("-n", name, "link", "set", "lo", "up"),
+    ]
+    try:
+        for step in steps:
+            if (done := ip(*step)).returncode != 0:
+                pytest.skip(f"no network namespaces here: {done.stderr.strip()}")
+        yield ["ip", "netns", "exec", name]
+    finally:
+        ip("netns", "delete", name)
+        ip("link", "delete", cable)
+
+
+@pytest.fixture
+def apart():
+    """The name of a namespace, and the command that runs others inside."""
+    name = f"chaos{os.getpid() % 100_000}"
+    with namespace(name) as inside:
+        yield name, inside
+
+
+def test_one_worker_cut_off(folder, apart, undisturbed):
+    """The others take over what it had."""
+    name, inside = apart
+    with Cluster(folder, HERE, **SOON) as cluster:
+        cluster.add(2)
+        cluster.add(inside=inside)
+        cluster.wait_for(3)
+        command = run(folder, "--scheduler", cluster.address, *SMALL)
+        command.wait_for_shards(3)
+        ip("-n", name, "link", "set", f"{name}-b", "down")
+        assert command.end() == 0, command.said
+    assert_same_bits(stored(folder), undisturbed)
+
+
+def test_every_worker_cut_off(folder, apart, undisturbed):
+    """It says so and waits; broken off, it goes on elsewhere."""
+    name, inside = apart
+    with Cluster(folder, HERE, **SOON) as cluster:
+        cluster.add(2, inside=inside)
+        cluster.wait_for(2)
+        command = run(folder, "--scheduler", cluster.address, *SMALL)
+        command.wait_for_shards(3)
+        ip("-n", name, "link", "set", f"{name}-b", "down")
+        command.wait_until(lambda: "no worker" in command.said)
+        assert not command.ended, command.said
+        command.send(signal.SIGINT)
+        assert command.end() == 130, command.said
+    before = len(keys_on_disk(folder))
+    assert before > 0
+    runs, said = resumed(folder)
+    assert solved_before(said) == before
+    assert_same_bits(runs, undisturbed)

@@ -1,0 +1,72 @@
+"""Two processes on one study: one works, the other waits or says so, and no run is lost."""
+
+import signal
+
+import pytest
+from chaos import (
+    RUNS,
+    SMALL,
+    Command,
+    assert_same_bits,
+    complaint,
+    resumed,
+    run,
+    solved_before,
+    stored,
+)
+
+pytestmark = pytest.mark.chaos
+
+
+def another(folder, *options):
+    """A second command on the study; what it says lies apart."""
+    elsewhere = folder / "another"
+    elsewhere.mkdir(exist_ok=True)
+    output = folder / "results" / "tough" / "runs.nc"
+    study = folder / "studies" / "tough.yaml"
+    return Command("run", study, "--output", output, *options, cwd=elsewhere)
+
+
+def test_the_second_one_says_who_is_at_work(folder, undisturbed):
+    first = run(folder, *SMALL)
+    first.wait_for_shards(2)
+    second = another(folder)
+    assert second.end() == 1, second.said
+    assert str(first.process.pid) in complaint(second.said)
+    assert first.end() == 0, first.said
+    assert_same_bits(stored(folder), undisturbed)
+
+
+def test_both_started_at_the_same_moment(folder, undisturbed):
+    both = [run(folder, *SMALL), another(folder, *SMALL)]
+    codes = sorted(command.end() for command in both)
+    assert codes[0] == 0
+    for command in both:
+        assert "Traceback" not in command.said
+    assert_same_bits(stored(folder), undisturbed)
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_a_dead_process_holds_up_nobody(folder, how, undisturbed):
+    first = run(folder, *SMALL)
+    first.wait_for_shards(2)
+    first.send(how)
+    first.end()
+    second = another(folder)
+    assert second.end() == 0, second.said
+    assert 0 < solved_before(second.said) < RUNS
+    assert_same_bits(stored(folder), undisturbed)
+
+
+def test_a_stopped_process_is_still_at_work(folder, undisturbed):
+    """Ctrl-Z keeps the study; it goes on when it is let."""
+    first = run(folder, *SMALL)
+    first.wait_for_shards(2)
+    first.send(signal.SIGSTOP)
+    second = another(folder)
+    assert second.end() == 1, second.said
+    first.send(signal.SIGCONT)
+    assert first.end() == 0, first.said
+    runs, said = resumed(folder)
+    assert solved_before(said) == RUNS
+    assert_same_bits(runs, undisturbed)

@@ -1,0 +1,79 @@
+"""Workers killed while they solve: the others go on, or the study ends in words and resumes."""
+
+import pytest
+from chaos import (
+    SMALL,
+    assert_same_bits,
+    complaint,
+    keys_on_disk,
+    resumed,
+    run,
+    solved_before,
+    stored,
+)
+from cluster import Cluster
+
+pytestmark = pytest.mark.chaos
+
+
+def test_a_process_killed(folder, undisturbed):
+    command = run(folder, "--workers", "2", "--processes", *SMALL)
+    command.wait_for_shards(3)
+    command.workers()[0].kill()
+    assert command.end() == 0, command.said
+    assert_same_bits(stored(folder), undisturbed)
+
+
+def test_every_process_killed_again_and_again(folder, undisturbed):
+    """A batch that ends its workers is given up after a few: here none is the batch's fault."""
+    command = run(folder, "--workers", "2", "--processes", "--batch-seconds", "1")
+    command.wait_until_it_solves()
+    while not command.ended:
+        for worker in command.workers():
+            worker.kill()
+        command.pause()
+    assert command.end() == 1, command.said
+    assert "worker" in complaint(command.said)
+    goes_on(folder, undisturbed)
+
+
+def test_a_worker_of_a_cluster_killed(folder, undisturbed):
+    with Cluster(folder) as cluster:
+        cluster.add(3)
+        command = run(folder, "--scheduler", cluster.address, *SMALL)
+        command.wait_for_shards(3)
+        cluster.workers[0].kill()
+        assert command.end() == 0, command.said
+    assert_same_bits(stored(folder), undisturbed)
+
+
+def test_every_worker_of_a_cluster_killed(folder, undisturbed):
+    """It says so, and goes on with a worker that comes later."""
+    with Cluster(folder) as cluster:
+        cluster.add(3)
+        command = run(folder, "--scheduler", cluster.address, *SMALL)
+        command.wait_for_shards(3)
+        for worker in cluster.workers:
+            worker.kill()
+        command.wait_until(lambda: "no worker" in command.said)
+        cluster.add()
+        assert command.end() == 0, command.said
+    assert_same_bits(stored(folder), undisturbed)
+
+
+def test_the_scheduler_killed(folder, undisturbed):
+    with Cluster(folder) as cluster:
+        cluster.add(3)
+        command = run(folder, "--scheduler", cluster.address, *SMALL)
+        command.wait_for_shards(3)
+        cluster.scheduler.kill()
+        assert command.end() == 1, command.said
+    assert "scheduler" in complaint(command.said)
+    goes_on(folder, undisturbed)
+
+
+def goes_on(folder, undisturbed):
+    before = len(keys_on_disk(folder))
+    runs, said = resumed(folder)
+    assert solved_before(said) == before
+    assert_same_bits(runs, undisturbed)

@@ -1,0 +1,81 @@
+"""What the command line tells of finished runs, and what it removes."""
+
+import subprocess
+import sys
+
+import pytest
+
+STUDY = """
+title: Small
+impact: {base: paper}
+discretisation: {nodes: 11, points: 3}
+duration: 1 ms
+sampling: {method: grid, parameters: {velocity: [1.0, 2.0, 3.0]}}
+responses: [peak_force]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies" / "small.yaml").write_text(STUDY)
+    (tmp_path / "studies" / "gone.yaml").write_text(STUDY)
+    return tmp_path
+
+
+def impactlab(*args, cwd, said=""):
+    command = [sys.executable, "-m", "impactlab", *args]
+    return subprocess.run(command, cwd=cwd, input=said, capture_output=True, text=True, timeout=120)
+
+
+def test_status_and_clean(folder):
+    assert "0 of 3 runs" in impactlab("status", "studies/small.yaml", cwd=folder).stdout
+    for name in ("small", "gone"):
+        assert impactlab("run", f"studies/{name}.yaml", cwd=folder).returncode == 0
+    (folder / "studies" / "small.yaml").write_text(STUDY.replace("3.0]", "3.0, 4.0]"))
+    told = impactlab("status", "studies/small.yaml", cwd=folder).stdout
+    assert "3 of 4 runs solved, 1 left" in told
+    assert "nobody" in told
+    assert "Nothing to remove" in impactlab("clean", cwd=folder).stdout
+    (folder / "studies" / "gone.yaml").unlink()
+    (shard,) = folder.glob("results/gone/shards/*/*.nc")
+    (kept,) = folder.glob("results/small/shards/*/*.nc")
+    refused = impactlab("clean", cwd=folder, said="n\n")
+    assert "its study is gone" in refused.stdout
+    assert shard.exists()
+    assert impactlab("clean", "--yes", cwd=folder).returncode == 0
+    assert not shard.exists()
+    assert kept.exists()
+
+
+def test_clean_does_not_take_a_wrong_folder_for_studies_that_are_gone(folder):
+    impactlab("run", "studies/small.yaml", cwd=folder)
+    done = impactlab("clean", "results", "--yes", cwd=folder)
+    assert done.returncode == 1
+    assert "no study files" in done.stderr
+    assert list(folder.glob("results/small/shards/*/*.nc"))
+
+
+HOLD = """
+import sys
+from pathlib import Path
+from impactlab.study.lock import held
+with held(Path("results/small/shards")):
+    print("held", flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_a_second_process_on_a_study_says_so(folder):
+    command = [sys.executable, "-c", HOLD]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, cwd=folder, **pipes) as first:
+        assert first.stdout.readline() == "held\n"
+        second = impactlab("run", "studies/small.yaml", cwd=folder)
+        assert second.returncode == 1
+        assert f"process {first.pid} on " in second.stderr
+        assert "Traceback" not in second.stderr
+        told = impactlab("status", "studies/small.yaml", cwd=folder).stdout
+        assert f"process {first.pid}" in told
+        first.stdin.close()
+    assert impactlab("run", "studies/small.yaml", cwd=folder).returncode == 0
