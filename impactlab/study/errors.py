@@ -31,12 +31,20 @@ class Problem:
     value: Any = _NOTHING
 
     def __str__(self) -> str:
-        """`file: key = value: reason`, without the parts that do not apply."""
-        if not self.key:
-            return f"{self.file}: {self.reason}"
-        if self.value is _NOTHING:
-            return f"{self.file}: {self.key}: {self.reason}"
-        return f"{self.file}: {self.key} = {_shown(self.value)}: {self.reason}"
+        """`file: key = value: reason` on one line, without the parts that do not apply."""
+        shown = "" if self.value is _NOTHING else f" = {_shown(self.value)}"
+        key = f"{self.key}{shown}: " if self.key else ""
+        return printable(f"{self.file}: {key}{self.reason}")
+
+
+def printable(text: str) -> str:
+    """The text with escapes in the place of what steers a terminal, or breaks the line."""
+    if text.isprintable():
+        return text
+    return "".join(
+        letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+        for letter in text
+    )
 
 
 def _shown(value: object) -> str:
