@@ -57,9 +57,12 @@ def _shown(value: object) -> str:
 def dotted(path: Iterable[object]) -> str:
     """Keys and positions as one path; what does not print as it is comes as its repr."""
     return ".".join(
-        str(step) if str(step).isprintable() and len(str(step)) <= 60 else _SHORT.repr(step)
-        for step in path
+        str(step) if _plain(str(step)) else _SHORT.repr(step) for step in path
     )
+
+
+def _plain(step: str) -> bool:
+    return step.isprintable() and 0 < len(step) <= 60
 
 
 def unknown(kind: str, word: object, choices: Iterable[str]) -> str:

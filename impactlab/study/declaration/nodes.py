@@ -97,6 +97,8 @@ def _check_kind(node: Node, path: Key) -> None:
     tag = str(node.tag)
     if tag.removeprefix(_CORE) not in _TAGS:
         raise Refused(path, f"has the tag {dotted([tag.replace(_CORE, '!!')])}: take it out")
+    if isinstance(node, ScalarNode) and not _whole_letters(node.value):
+        raise Refused(path, "holds half of a character (\\ud800 to \\udfff): write it out")
     number = tag.removeprefix(_CORE) in ("int", "float")
     if number and len(node.value) > _DIGITS:
         raise Refused(path, f"is a number of {len(node.value):,} characters")
@@ -104,3 +106,8 @@ def _check_kind(node: Node, path: Key) -> None:
         for key, _ in node.value:
             if not isinstance(key, ScalarNode):
                 raise Refused(path, "a key must be a word, not a list or a mapping")
+
+
+def _whole_letters(text: str) -> bool:
+    """Whether it is text: the escapes of YAML can give halves of characters."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in text)
