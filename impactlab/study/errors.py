@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from typing import Any
 
 _NOTHING = object()
+_LONGEST = 1000
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
@@ -34,7 +35,12 @@ class Problem:
         """`file: key = value: reason` on one line, without the parts that do not apply."""
         shown = "" if self.value is _NOTHING else f" = {_shown(self.value)}"
         key = f"{self.key}{shown}: " if self.key else ""
-        return printable(f"{self.file}: {key}{self.reason}")
+        return printable(f"{self.file}: {key}{_cut(self.reason)}")
+
+
+def _cut(reason: str) -> str:
+    """A parser may quote as much as the file holds."""
+    return reason if len(reason) <= _LONGEST else f"{reason[:_LONGEST]} ..."
 
 
 def printable(text: str) -> str:
