@@ -54,10 +54,39 @@ VALID = {
 }
 """A sound file of each kind."""
 
-_WORDS = (
-    "all auto true null paper hertz velocity peak_force grid sobol morris uniform fixed 345 mPa "
-    "12ms 1e400 nan inf 0x10 1_000 <b> =1+1 ../../etc/passwd {{7*7}} $x_y$ %s \\ [red] 5e-324 %"
-).split()
+_WORDS = [
+    "all",
+    "auto",
+    "true",
+    "null",
+    "paper",
+    "hertz",
+    "velocity",
+    "peak_force",
+    "grid",
+    "sobol",
+    "morris",
+    "uniform",
+    "fixed",
+    "345",
+    "mPa",
+    "12ms",
+    "1e400",
+    "nan",
+    "inf",
+    "0x10",
+    "1_000",
+    "<b>",
+    "=1+1",
+    "../../etc/passwd",
+    "{{7*7}}",
+    "$x_y$",
+    "%s",
+    "\\",
+    "[red]",
+    "5e-324",
+    "%",
+]
 _VERBATIM = (
     ".nan -.inf .inf 1e400 -1e400 0x7fffffffffffffff 0o17 1_000 2020-01-01 2020-02-30 "
     "2001-12-14t21:59:43.10-05:00 12:30:45 ~ yes !!binary aGk= !!set {a} !!str 1 !!int x !!float x "
@@ -70,8 +99,6 @@ _TOKENS = [
     *("1" + "0" * 400, "0x" + "f" * 300, "9" * 5000, "0x" + "f" * 5000, "1." + "9" * 900),
     *("[" * 60 + "]" * 60, "&b [" + "1, " * 50 + "1]", "[*b, *b, *b, *b]", '"' + "x" * 3000 + '"'),
 ]
-
-
 
 
 class Verbatim(str):
@@ -97,14 +124,20 @@ _LEAVES = st.one_of(
     st.sampled_from([0, 1, 2, 3, 64, 10**7, 10**12, 2**53, 1e-300, 1e300, -1, 0.5]),
     st.text(max_size=12),
     st.sampled_from(_WORDS),
-    st.builds("{} {}".format, st.floats(width=32), st.sampled_from("m mm MPa kg s m/s 1 %".split())),
+    st.builds(
+        "{} {}".format,
+        st.floats(width=32),
+        st.sampled_from(["m", "mm", "MPa", "kg", "s", "m/s", "1", "%"]),
+    ),
     st.sampled_from(_TOKENS).map(Verbatim),
 )
 _VALUES = st.recursive(
     _LEAVES,
-    lambda inner: st.lists(inner, max_size=3)
-    | st.lists(st.tuples(st.text(max_size=6) | st.sampled_from(_WORDS), inner), max_size=3).map(
-        lambda pairs: Pairs(map(list, pairs))
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.lists(st.tuples(st.text(max_size=6) | st.sampled_from(_WORDS), inner), max_size=3).map(
+            lambda pairs: Pairs(map(list, pairs))
+        )
     ),
     max_leaves=5,
 )

@@ -62,9 +62,7 @@ def _shown(value: object) -> str:
 
 def dotted(path: Iterable[object]) -> str:
     """Keys and positions as one path; what does not print as it is comes as its repr."""
-    return ".".join(
-        str(step) if _plain(str(step)) else _SHORT.repr(step) for step in path
-    )
+    return ".".join(str(step) if _plain(str(step)) else _SHORT.repr(step) for step in path)
 
 
 def _plain(step: str) -> bool:

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 
 from impactlab.dataset import ANALYSES
 from impactlab.kernels import BEAM_MODELS
-from impactlab.model.parameters import PARAMETERS, Value, flatten
+from impactlab.model.parameters import Value, flatten
 from impactlab.study.declaration.methods import Grid, Sample, Sobol
+from impactlab.study.declaration.plausible import doubts, ends_of, stated_at
 from impactlab.study.declaration.schema import StudyForm
 from impactlab.study.errors import Problem, unknown
-from impactlab.study.plausible import doubts, ends_of
 from impactlab.study.possible import refused_corner
 
 _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
@@ -122,18 +122,18 @@ def _physics(form: StudyForm) -> Findings:
     base = form.impact, form.discretisation.discretisation
     for doubt in doubts(ends_of(base, form.sampling)):
         if doubt.impossible:
-            yield _stated_at(doubt.name, form), doubt.reason
+            yield stated_at(doubt.name, form.sampling), doubt.reason
 
 
 def _scheme_of_the_model(form: StudyForm) -> Findings:
     """Each model of the beam is asked for a scheme that it has."""
     base = flatten(form.impact, form.discretisation.discretisation)
-    given = {name: (base[name],) for name in ("scheme", "beam_model")}
+    given: dict[str, tuple[Value, ...]] = {name: (base[name],) for name in ("scheme", "beam_model")}
     given |= {name: words for name, words in _words(form.sampling).items() if name in given}
     others = [name for name in BEAM_MODELS if name in given["beam_model"] and name not in _FIBRES]
     if others and "semi_implicit" in given["scheme"]:
         reason = f"semi_implicit is for {' and '.join(_FIBRES)}: {others[0]} has leapfrog alone"
-        yield _stated_at("scheme", form), reason
+        yield stated_at("scheme", form.sampling), reason
 
 
 def _words(sampling: Grid | Sample) -> dict[str, tuple[Value, ...]]:
@@ -141,12 +141,6 @@ def _words(sampling: Grid | Sample) -> dict[str, tuple[Value, ...]]:
     if isinstance(sampling, Sample):
         return {name: (value,) for name, value in sampling.fixed.items()}
     return dict(sampling.parameters)
-
-
-def _stated_at(name: str, form: StudyForm) -> str:
-    """The key at which a study states a parameter, or would state it."""
-    varied = name in form.sampling.parameters
-    return f"sampling.parameters.{name}" if varied else ".".join(PARAMETERS[name].path)
 
 
 _CHECKS: tuple[tuple[Callable[[StudyForm], Findings], set[str]], ...] = (

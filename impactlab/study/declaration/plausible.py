@@ -13,7 +13,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from impactlab.model.parameters import Value, flatten
+from impactlab.model.parameters import PARAMETERS, Value, flatten
 from impactlab.study.declaration.distributions import Distribution
 from impactlab.study.declaration.methods.sampling import Sampling
 from impactlab.study.possible import Base
@@ -53,7 +53,9 @@ class _Limits:
 HEAVIEST = 23e3
 """Osmium in kg/m3; what is heavier stands for a body that does not move, and carries no wave."""
 _DENSITY = _Limits(0.1, 10.0, HEAVIEST, inf, "kg/m3", "solids have 10 (foam) to 22,600 (osmium)")
-_STIFFNESS = _Limits(1e3, 1e6, 1.3e12, 1e15, "Pa", "solids have 1 MPa (rubber) to 1.2 TPa (diamond)")
+_STIFFNESS = _Limits(
+    1e3, 1e6, 1.3e12, 1e15, "Pa", "solids have 1 MPa (rubber) to 1.2 TPa (diamond)"
+)
 _STRENGTH = _Limits(1e3, 1e5, 1e11, 1e15, "Pa", "solids yield from 0.1 MPa on; mPa is not MPa")
 LIMITS: dict[str, _Limits] = {
     "sphere_density": _DENSITY,
@@ -90,6 +92,12 @@ def ends_of(base: Base, sampling: Sampling) -> Ends:
             low, high = given.quantile(_TAILS).tolist()
             found[name] = (low, high) if low > 0 else found.get(name, (high, high))
     return found  # type: ignore[return-value]
+
+
+def stated_at(name: str, sampling: Sampling) -> str:
+    """The key at which a study states a parameter, or would state it."""
+    varied = name in sampling.parameters
+    return f"sampling.parameters.{name}" if varied else ".".join(PARAMETERS[name].path)
 
 
 def _number(value: Value) -> bool:
