@@ -5,6 +5,7 @@
 #              its kernels, and what a second thread brings; both schemes' cost and error;
 #              the bootstrap of Sobol indices: wants an idle machine
 # make mutants the tests' own test: faults seeded into the kernels, and what catches each
+# make chaos   what damaged files and killed processes do, in thousands (20 minutes at most)
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
 PYTHON ?= python3
@@ -22,7 +23,7 @@ IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
 
-.PHONY: study paper test lint pytest bench mutants coverage constraints unlock clean
+.PHONY: study paper test lint pytest chaos bench mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -47,7 +48,10 @@ lint: $(MADE)-dev
 	$(IN_VENV) snakemake --lint
 
 pytest: $(MADE)-dev
-	$(IN_VENV) python -m pytest $(PYTEST_ARGS)
+	$(IN_VENV) python -m pytest -m 'not chaos' $(PYTEST_ARGS)
+
+chaos: $(MADE)-dev
+	$(IN_VENV) timeout 1200 python -m pytest -m chaos $(PYTEST_ARGS)
 
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py

@@ -10,11 +10,11 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
 
-from impactlab.study.declaration.nodes import Constructor, Refused, check_size
+from impactlab.study.declaration.nodes import BoundedComposer, Constructor, RefusedError, check_size
 from impactlab.study.errors import Problem, StudyError
 
 LARGEST = 256 * 1024
-"""Bytes in a study file, and nodes (keys, values) in it once its aliases are followed."""
+"""Bytes in a study file, at most."""
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,100}")
 
 
@@ -72,7 +72,7 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
     """
     try:
         data = _parsed(text)
-    except Refused as error:
+    except RefusedError as error:
         raise StudyError(Problem(file, error.key, str(error))) from None
     except MarkedYAMLError as error:
         mark = error.problem_mark
@@ -90,11 +90,11 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
 def _parsed(text: str) -> Any:
     """Nothing is made of a text before it is known how much it stands for."""
     yaml = YAML(typ="safe", pure=True)
-    yaml.Constructor = Constructor
+    yaml.Composer, yaml.Constructor = BoundedComposer, Constructor
     root = yaml.compose(text)
     if root is None:
         return None
-    check_size(root, LARGEST)
+    check_size(root)
     return yaml.constructor.construct_document(root)
 
 
