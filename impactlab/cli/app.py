@@ -58,8 +58,10 @@ def main() -> None:
         print("impactlab: interrupted", file=sys.stderr)
         sys.exit(130)
     except (ValueError, OSError) as error:
+        from impactlab.study.errors import printable
+
         logger = logging.getLogger("impactlab")
-        logger.error("%s", error)
+        logger.error("%s", "\n".join(map(printable, str(error).split("\n"))))
         logger.debug("it came from here", exc_info=True)
         sys.exit(1)
 

@@ -26,9 +26,10 @@ RESULTS = Path("results")
 
 def results_file(study: str, name: str) -> Path:
     """results/STUDY/NAME. Raises ValueError where a study's name or a link leads elsewhere."""
-    from impactlab.study.declaration.reading import read_name
+    from impactlab.study.declaration.reading import check_name
 
-    folder = RESULTS / read_name(Path(f"{study}.yaml"))
+    check_name(study, f"study {study!r}")
+    folder = RESULTS / study
     for place in (folder, *(folder.iterdir() if folder.is_dir() else ())):
         if place.is_symlink() and not place.resolve().is_relative_to(RESULTS.resolve()):
             raise ValueError(

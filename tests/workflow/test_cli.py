@@ -340,3 +340,57 @@ def test_an_interrupted_study_goes_on(folder, how):
     impactlab("run", "studies/slow.yaml", cwd=folder)
     fresh = xr.load_dataset(Path(folder) / "results" / "slow" / "runs.nc")
     assert fresh.drop_attrs().identical(first.drop_attrs())
+
+
+def test_a_dry_run_tells_the_cost_and_leaves_nothing(folder):
+    study = STUDY.replace("nodes: [11, 21, 41]", "nodes: [11, 21, 1000001]")
+    (folder / "studies" / "long.yaml").write_text(study)
+    before = sorted(folder.rglob("*"))
+    told = impactlab("run", "--dry-run", "--workers", 2, "studies/small.yaml", cwd=folder).stdout
+    for words in (
+        "runs           9",
+        "of one core",
+        "on 2 workers",
+        "memory",
+        "disk",
+        "nodes = 41",
+    ):
+        assert words in told
+    assert "beyond bearing" not in told
+    told = impactlab("run", "--dry-run", "studies/long.yaml", cwd=folder).stdout
+    assert "beyond bearing: studies/long.yaml: sampling.parameters.nodes: about" in told
+    assert sorted(folder.rglob("*")) == before
+
+
+def test_a_month_is_not_begun_unless_it_is_forced(folder, monkeypatch, capsys):
+    (folder / "studies" / "long.yaml").write_text(STUDY.replace("1 ms", "10000 years"))
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr("sys.argv", ["impactlab", "run", "studies/long.yaml"])
+    with pytest.raises(SystemExit):
+        main()
+    said = capsys.readouterr().err
+    assert "studies/long.yaml: duration: about" in said
+    assert "--force runs it all the same" in said
+    assert not (folder / "results").exists()
+    monkeypatch.setattr("sys.argv", ["impactlab", "run", "--force", "studies/long.yaml"])
+    monkeypatch.setattr("impactlab.study.execution.execute", lambda *_, **__: xr.Dataset())
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 0
+    assert (folder / "results" / "long" / "runs.nc").exists()
+
+
+def test_a_dry_run_of_a_study_whose_discretisation_is_sought_seeks_nothing(folder):
+    study = STUDY.replace("{nodes: 21, points: 3}", "auto").replace("    nodes: [11, 21, 41]\n", "")
+    (folder / "studies" / "sought.yaml").write_text(study)
+    told = impactlab("run", "--dry-run", "studies/sought.yaml", cwd=folder).stdout
+    assert "auto: to be found by trials" in told
+    assert not (folder / "results").exists()
+
+
+def test_a_dry_run_of_a_design_is_that_of_its_study(folder):
+    impactlab("design", "studies/small.yaml", cwd=folder)
+    stored = impactlab("run", "--dry-run", "results/small/design.nc", cwd=folder).stdout
+    told = impactlab("run", "--dry-run", "studies/small.yaml", cwd=folder).stdout
+    assert stored.splitlines()[0] == told.splitlines()[0] == "runs           9"
+    assert sorted(each.name for each in (folder / "results/small").iterdir()) == ["design.nc"]

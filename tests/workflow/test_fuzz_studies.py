@@ -112,9 +112,9 @@ def test_some_damaged_files(kind, tmp_path):
 
 @pytest.mark.chaos
 @pytest.mark.parametrize("kind", [*VALID, "raw"])
-def test_many_damaged_files(kind, tmp_path, record_property):
+def test_many_damaged_files(kind, tmp_path):
     ends = fuzz(kind, MANY, tmp_path, at=1)
-    record_property("ends", dict(ends))
+    print(kind, dict(ends))
     assert ends.total() >= MANY
     assert kind == "raw" or len(ends) > 1  # some are sound: damage is not all that is drawn
 

@@ -15,7 +15,8 @@ from impactlab.study.errors import Problem, StudyError
 
 LARGEST = 256 * 1024
 """Bytes in a study file, at most."""
-_NAME = re.compile(r"[A-Za-z0-9_-]{1,100}")
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,99}")
+"""Of a folder; one that begins with "-" would be taken for an option."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +43,18 @@ def read_name(path: Path) -> str:
     """
     if path.suffix != ".yaml":
         raise StudyError(Problem(str(path), "", "a study file's name ends in .yaml"))
-    if not _NAME.fullmatch(path.stem):
-        reason = "its name becomes that of a folder: letters, digits, _ and - only, at most 100"
-        raise StudyError(Problem(str(path), "", reason))
+    check_name(path.stem, str(path))
     return path.stem
+
+
+def check_name(name: str, file: str) -> None:
+    """Raises StudyError, naming the file, unless a study can have this name."""
+    if not _NAME.fullmatch(name):
+        reason = (
+            "its name becomes that of a folder: letters, digits, _ and - only, no - first, "
+            "at most 100"
+        )
+        raise StudyError(Problem(file, "", reason))
 
 
 def read_text(path: Path) -> str:
