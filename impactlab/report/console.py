@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from impactlab.dataset import RESPONSES, marks, reasons, remarked
-from impactlab.study.errors import Problem
-from impactlab.study.estimate import Estimate
 from impactlab.study.words import amount, time
 from impactlab.verification.outcome import Outcome, gravest_first
+
+if TYPE_CHECKING:
+    from impactlab.study.errors import Problem
+    from impactlab.study.estimate import Estimate
 
 
 def print_responses(run: Any) -> None:
