@@ -61,8 +61,10 @@ def main() -> None:
     try:
         app()
     except (ValueError, OSError) as error:
+        from impactlab.study.errors import printable
+
         logger = logging.getLogger("impactlab")
-        logger.error("%s", error)
+        logger.error("%s", "\n".join(map(printable, str(error).split("\n"))))
         logger.debug("it came from here", exc_info=True)
         sys.exit(1)
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.options import RESULTS, StudyFile
+from impactlab.cli.options import StudyFile, results_file
 from impactlab.cli.settling import settled
 
 
@@ -23,5 +23,6 @@ def design(
     from impactlab.study.netcdf import write_netcdf
     from impactlab.study.sampling import design as sampled
 
-    path = output or RESULTS / study.stem / "design.nc"
-    write_netcdf(sampled(settled(read_study(study), path.with_name("resolution.nc"))), path)
+    declared = read_study(study)
+    path = output or results_file(declared.name, "design.nc")
+    write_netcdf(sampled(settled(declared, path.with_name("resolution.nc"))), path)

@@ -24,6 +24,21 @@ StoredFiles = Annotated[
 RESULTS = Path("results")
 
 
+def results_file(study: str, name: str) -> Path:
+    """results/STUDY/NAME. Raises ValueError where a study's name or a link leads elsewhere."""
+    from impactlab.study.declaration.reading import check_name
+
+    check_name(study, f"study {study!r}")
+    folder = RESULTS / study
+    for place in (folder, *(folder.iterdir() if folder.is_dir() else ())):
+        if place.is_symlink() and not place.resolve().is_relative_to(RESULTS.resolve()):
+            raise ValueError(
+                f"{place}: is a link to {place.resolve()}, outside {RESULTS}/: take it out, or say "
+                "with --output where the results are to go"
+            )
+    return folder / name
+
+
 def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
     """The names of a list "a,b"; none of "". Raises ValueError naming the option."""
     from impactlab.study.errors import unknown

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_at_once
-from impactlab.cli.options import RESULTS, StudyFile, chosen, given
+from impactlab.cli.options import StudyFile, chosen, given, results_file
 
 
 def recommend(
@@ -44,7 +44,7 @@ def recommend(
     from impactlab.study.netcdf import write_netcdf
 
     declared = read_impacts(study)
-    path = output or RESULTS / study.stem / "resolution.nc"
+    path = output or results_file(declared.name, "resolution.nc")
     stop_at_once()
     wishes = declared.auto or Auto()
     if tolerance:

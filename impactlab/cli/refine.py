@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 from pathlib import Path
 from typing import Annotated
 
@@ -37,7 +36,7 @@ def refine(
     from impactlab.study.netcdf import read_netcdf, write_netcdf
 
     solved, path = read_netcdf(runs), output or runs.with_name("refinement.nc")
-    signal.signal(signal.SIGINT, stop_at_once)
+    stop_at_once()
     engine = Engine("threads", workers)
     solve = partial(execute, shards_folder=runs.with_name("shards"), engine=engine)
     write_netcdf(refined(solved, solve, base_samples), path)

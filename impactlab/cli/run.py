@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_at_once
-from impactlab.cli.options import RESULTS
+from impactlab.cli.options import results_file
+from impactlab.cli.planning import allowed
 from impactlab.cli.settling import settled
 
 
@@ -28,6 +29,12 @@ def run(
     batch_seconds: Annotated[
         float, typer.Option(min=0.001, hidden=True, help="Of a task, about.")
     ] = 1.0,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Tell runs, time, memory and disk, and solve nothing.")
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Also what takes a month of one core, or all memory.")
+    ] = False,
 ) -> None:
     """Solve the runs of a study that have not been solved yet.
 
@@ -41,14 +48,16 @@ def run(
     from impactlab.study.execution import execute
     from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.study.sampling import design as sampled
+    from impactlab.study.sampling.doubling import declared
     from impactlab.study.slurm import read_profile
 
-    if design_file.suffix == ".nc":
-        samples = read_netcdf(design_file)
-    else:
-        evidence = (output or RESULTS / design_file.stem / "runs.nc").with_name("resolution.nc")
-        samples = sampled(settled(read_study(design_file), evidence))
-    path = output or RESULTS / samples.attrs["study"] / "runs.nc"
+    stored = read_netcdf(design_file) if design_file.suffix == ".nc" else None
+    study = read_study(design_file) if stored is None else declared(stored, design_file)
+    path = output or results_file(study.name, "runs.nc")
+    evidence = path.with_name("resolution.nc")
+    if not allowed(study, path, workers, dry_run=dry_run, force=force):
+        return
+    samples = sampled(settled(study, evidence)) if stored is None else stored
     profile = read_profile(cluster) if cluster else None
     engine = Engine(
         "processes" if processes else "threads", workers, scheduler, profile, batch_seconds

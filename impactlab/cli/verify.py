@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.options import RESULTS
+from impactlab.cli.options import results_file
 
 
 def verify(
@@ -35,8 +35,10 @@ def verify(
     if study.suffix == ".nc":
         findings = read_netcdf(study)
     else:
-        findings = check(read_verification(study))
-        write_netcdf(findings, output or RESULTS / study.stem / "findings.nc")
+        declared = read_verification(study)
+        path = output or results_file(declared.name, "findings.nc")
+        findings = check(declared)
+        write_netcdf(findings, path)
     outcomes = unpacked(findings)
     print_outcomes(outcomes)
     if said := failure(outcomes):

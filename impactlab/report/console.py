@@ -12,9 +12,12 @@ from rich.markup import escape
 from rich.table import Table
 
 from impactlab.dataset import RESPONSES, marks, reasons, remarked
+from impactlab.study.words import amount, time
 from impactlab.verification.outcome import Outcome, gravest_first
 
 if TYPE_CHECKING:
+    from impactlab.study.errors import Problem
+    from impactlab.study.estimate import Estimate
     from impactlab.study.status import Status
 
 
@@ -63,6 +66,33 @@ def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
     for row in rows:
         table.add_row(*map(escape, row))
     Console().print(table)
+
+
+def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable[Problem]) -> None:
+    """What a study costs, a line each; and why it is not solved unless it is forced.
+
+    room: free bytes of disk.
+    """
+    at = ", ".join(f"{name} = {_short(value)}" for name, value in cost.largest_run.items())
+    lines = {
+        "runs": f"{cost.runs:,}",
+        "cost": f"about {time(cost.seconds)} of one core, most of it by {cost.slow}",
+        "wall": f"about {time(cost.wall(workers))} on {workers} workers",
+        "memory": f"about {amount(cost.memory)}",
+        "disk": f"about {amount(cost.disk)}, of {amount(room)} that are free",
+        "largest run": f"about {time(cost.largest)}" + f" ({at})" * bool(at),
+    }
+    if cost.auto:
+        lines["discretisation"] = "auto: to be found by trials; the default stands in its place"
+    console = Console(soft_wrap=True)
+    for name, words in lines.items():
+        console.print(f"{name:15s}{words}", markup=False, highlight=False)
+    for problem in problems:
+        console.print(f"beyond bearing: {problem}", markup=False, highlight=False)
+
+
+def _short(value: Any) -> str:
+    return value if isinstance(value, str) else f"{value:.4g}"
 
 
 def print_outcomes(outcomes: Iterable[Outcome]) -> None:

@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from typing import Any
 
 _NOTHING = object()
+_LONGEST = 1000
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
@@ -31,12 +32,25 @@ class Problem:
     value: Any = _NOTHING
 
     def __str__(self) -> str:
-        """`file: key = value: reason`, without the parts that do not apply."""
-        if not self.key:
-            return f"{self.file}: {self.reason}"
-        if self.value is _NOTHING:
-            return f"{self.file}: {self.key}: {self.reason}"
-        return f"{self.file}: {self.key} = {_shown(self.value)}: {self.reason}"
+        """`file: key = value: reason` on one line, without the parts that do not apply."""
+        shown = "" if self.value is _NOTHING else f" = {_shown(self.value)}"
+        key = f"{self.key}{shown}: " if self.key else ""
+        return printable(f"{self.file}: {key}{_cut(self.reason)}")
+
+
+def _cut(reason: str) -> str:
+    """A parser may quote as much as the file holds."""
+    return reason if len(reason) <= _LONGEST else f"{reason[:_LONGEST]} ..."
+
+
+def printable(text: str) -> str:
+    """The text with escapes in the place of what steers a terminal, or breaks the line."""
+    if text.isprintable():
+        return text
+    return "".join(
+        letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+        for letter in text
+    )
 
 
 def _shown(value: object) -> str:
@@ -48,10 +62,11 @@ def _shown(value: object) -> str:
 
 def dotted(path: Iterable[object]) -> str:
     """Keys and positions as one path; what does not print as it is comes as its repr."""
-    return ".".join(
-        str(step) if str(step).isprintable() and len(str(step)) <= 60 else _SHORT.repr(step)
-        for step in path
-    )
+    return ".".join(str(step) if _plain(str(step)) else _SHORT.repr(step) for step in path)
+
+
+def _plain(step: str) -> bool:
+    return step.isprintable() and 0 < len(step) <= 60
 
 
 def unknown(kind: str, word: object, choices: Iterable[str]) -> str:

@@ -5,13 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from impactlab.dataset import ANALYSES
+from impactlab.kernels import BEAM_MODELS
+from impactlab.model.parameters import Value, flatten
 from impactlab.study.declaration.methods import Grid, Sample, Sobol
+from impactlab.study.declaration.plausible import doubts, ends_of, stated_at
 from impactlab.study.declaration.schema import StudyForm
 from impactlab.study.errors import Problem, unknown
 from impactlab.study.possible import refused_corner
 
 _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
 """Parameters that move the places at which profiles are given."""
+
+
+_FIBRES = ("euler_bernoulli", "elastic")
+"""Models of the beam that have both schemes in time."""
 
 
 def problems(form: StudyForm, file: str, sound: set[str]) -> list[Problem]:
@@ -110,6 +117,32 @@ def _corners(form: StudyForm) -> Findings:
         yield f"sampling.parameters.{name}", f"{values}: {found.name} {found.reason}"
 
 
+def _physics(form: StudyForm) -> Findings:
+    """No impact is beyond what sphere and beam can be."""
+    base = form.impact, form.discretisation.discretisation
+    for doubt in doubts(ends_of(base, form.sampling)):
+        if doubt.impossible:
+            yield stated_at(doubt.name, form.sampling), doubt.reason
+
+
+def _scheme_of_the_model(form: StudyForm) -> Findings:
+    """Each model of the beam is asked for a scheme that it has."""
+    base = flatten(form.impact, form.discretisation.discretisation)
+    given: dict[str, tuple[Value, ...]] = {name: (base[name],) for name in ("scheme", "beam_model")}
+    given |= {name: words for name, words in _words(form.sampling).items() if name in given}
+    others = [name for name in BEAM_MODELS if name in given["beam_model"] and name not in _FIBRES]
+    if others and "semi_implicit" in given["scheme"]:
+        reason = f"semi_implicit is for {' and '.join(_FIBRES)}: {others[0]} has leapfrog alone"
+        yield stated_at("scheme", form.sampling), reason
+
+
+def _words(sampling: Grid | Sample) -> dict[str, tuple[Value, ...]]:
+    """All values that parameters have, of those that a sample cannot draw."""
+    if isinstance(sampling, Sample):
+        return {name: (value,) for name, value in sampling.fixed.items()}
+    return dict(sampling.parameters)
+
+
 _CHECKS: tuple[tuple[Callable[[StudyForm], Findings], set[str]], ...] = (
     (_mass_and_density, {"impact", "sampling"}),
     (_one_mesh_for_profiles, {"store", "sampling"}),
@@ -118,4 +151,6 @@ _CHECKS: tuple[tuple[Callable[[StudyForm], Findings], set[str]], ...] = (
     (_nothing_to_find, {"discretisation", "responses", "sampling"}),
     (_answers_to_grow_by, {"analyses", "responses", "sampling"}),
     (_corners, {"impact", "discretisation", "sampling"}),
+    (_physics, {"impact", "discretisation", "sampling"}),
+    (_scheme_of_the_model, {"impact", "discretisation", "sampling"}),
 )

@@ -10,12 +10,13 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
 
-from impactlab.study.errors import Problem, StudyError, dotted
+from impactlab.study.declaration.nodes import BoundedComposer, Constructor, RefusedError, check_size
+from impactlab.study.errors import Problem, StudyError
 
 LARGEST = 256 * 1024
-"""Bytes in a study file, and values in it once its aliases are followed."""
-_DEEPEST = 20
-_NAME = re.compile(r"[A-Za-z0-9_-]{1,100}")
+"""Bytes in a study file, at most."""
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,99}")
+"""Of a folder; one that begins with "-" would be taken for an option."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +43,18 @@ def read_name(path: Path) -> str:
     """
     if path.suffix != ".yaml":
         raise StudyError(Problem(str(path), "", "a study file's name ends in .yaml"))
-    if not _NAME.fullmatch(path.stem):
-        reason = "its name becomes that of a folder: letters, digits, _ and - only, at most 100"
-        raise StudyError(Problem(str(path), "", reason))
+    check_name(path.stem, str(path))
     return path.stem
+
+
+def check_name(name: str, file: str) -> None:
+    """Raises StudyError, naming the file, unless a study can have this name."""
+    if not _NAME.fullmatch(name):
+        reason = (
+            "its name becomes that of a folder: letters, digits, _ and - only, no - first, "
+            "at most 100"
+        )
+        raise StudyError(Problem(file, "", reason))
 
 
 def read_text(path: Path) -> str:
@@ -70,37 +79,33 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
 
     file: named in errors. Raises StudyError when it is no such thing.
     """
-    data = _parsed(text, file)
-    if not isinstance(data, dict):
-        raise StudyError(Problem(file, "", "holds no keys such as `title: ...`"))
-    _check_size(data, file)
-    return data
-
-
-def _parsed(text: str, file: str) -> Any:
     try:
-        return YAML(typ="safe", pure=True).load(text)
+        data = _parsed(text)
+    except RefusedError as error:
+        raise StudyError(Problem(file, error.key, str(error))) from None
     except MarkedYAMLError as error:
         mark = error.problem_mark
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise StudyError(Problem(file, "", f"is not YAML: {where}{error.problem}")) from None
+        raise _no_yaml(file, f"{where}{error.problem}") from None
     except RecursionError:
-        raise StudyError(Problem(file, "", "is not YAML: nests too deeply")) from None
+        raise _no_yaml(file, "nests too deeply") from None
     except Exception as error:  # a hostile text can end the parser in any way
-        words = (str(error).splitlines() or [""])[0] or type(error).__name__
-        raise StudyError(Problem(file, "", f"is not YAML: {words}")) from None
+        raise _no_yaml(file, str(error) or type(error).__name__) from None
+    if not isinstance(data, dict):
+        raise StudyError(Problem(file, "", "holds no keys such as `title: ...`"))
+    return data
 
 
-def _check_size(data: Any, file: str) -> None:
-    """Counts what stands behind aliases each time: they let a short text grow without end."""
-    visited = 0
-    waiting: list[tuple[tuple[object, ...], Any]] = [((), data)]
-    while waiting:
-        path, node = waiting.pop()
-        visited += 1
-        if visited + len(waiting) > LARGEST or len(path) > _DEEPEST:
-            raise StudyError(Problem(file, dotted(path[:3]), "holds too much, or nests too deeply"))
-        if isinstance(node, dict):
-            waiting += [((*path, key), child) for key, child in node.items()]
-        elif isinstance(node, list):
-            waiting += [((*path, at), child) for at, child in enumerate(node)]
+def _parsed(text: str) -> Any:
+    """Nothing is made of a text before it is known how much it stands for."""
+    yaml = YAML(typ="safe", pure=True)
+    yaml.Composer, yaml.Constructor = BoundedComposer, Constructor
+    root = yaml.compose(text)
+    if root is None:
+        return None
+    check_size(root)
+    return yaml.constructor.construct_document(root)
+
+
+def _no_yaml(file: str, words: str) -> StudyError:
+    return StudyError(Problem(file, "", f"is not YAML: {(words.splitlines() or [''])[0]}"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -17,15 +18,24 @@ def doubled(small: xr.Dataset) -> xr.Dataset:
     It is drawn by the text of the study that the design holds. Raises ValueError when it is of
     another method, or when this version of impactlab draws other runs from that text.
     """
-    name = str(small.attrs["study"])
-    study = study_of_text(name, str(small.attrs["study_text"]))
+    study = declared(small, Path(f"{small.attrs['study']}.yaml"))
     if not isinstance(study.sampling, Sobol):
-        raise ValueError(f"study {name!r}: only a sample of method sobol can be extended")
+        raise ValueError(f"study {study.name!r}: only a sample of method sobol can be extended")
     twice = {"base_samples": 2 * int(small.attrs["base_samples"])}
-    study = replace(study, sampling=study.sampling.model_copy(update=twice))
-    large = design(_settled(study, small))
+    large = design(replace(study, sampling=study.sampling.model_copy(update=twice)))
     _check_nested(small, large)
     return large
+
+
+def declared(design: xr.Dataset, file: Path) -> Study | FunctionStudy:
+    """The study that a design holds the text of, with the discretisation that was found for it.
+
+    file: named in errors. Raises ValueError where it is no design, or its text no study.
+    """
+    if absent := {"study", "study_text", "varied"} - design.attrs.keys():
+        raise ValueError(f"{file}: is no design of a study: it has no attribute {min(absent)}")
+    name, text = str(design.attrs["study"]), str(design.attrs["study_text"])
+    return replace(_settled(study_of_text(name, text), design), path=file)
 
 
 def _settled(study: Study | FunctionStudy, small: xr.Dataset) -> Study | FunctionStudy:

@@ -1,12 +1,19 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from impactlab.kernels import BEAM_MODELS, SCHEMES
-from impactlab.model.cost import node_steps
+from impactlab.kernels.contact.history import make_pair
+from impactlab.kernels.leapfrog import discretise
+from impactlab.kernels.section import make_section
+from impactlab.model.cost import node_steps, work
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.paper import paper_impact
+from impactlab.simulate import case_table
 
 PAPER: dict[str, Any] = {
     "beam_span": 0.78,
@@ -37,3 +44,31 @@ def test_columns_are_many_runs_at_once() -> None:
     one, other = node_steps(columns)
     assert one == pytest.approx(node_steps(PAPER))
     assert other == pytest.approx(2 * one)
+
+
+def test_a_light_sphere_asks_for_small_steps() -> None:
+    """Of Hertz's spring at the depth that takes all energy; by hand."""
+    light = case_table(
+        replace(paper_impact(2.0), sphere=replace(paper_impact().sphere, mass=1e-12)),
+        Discretisation(nodes=21),
+        duration=1e-3,
+    )
+    stiffness = 4 / 3 * 0.035**0.5 / (0.91 / 208e9 + 0.91 / 210e9)
+    depth = (1.25 * 1e-12 * 4.0 / stiffness) ** 0.4
+    step = 2.0 / (1.5 * stiffness * depth**0.5 / 1e-12) ** 0.5
+    assert work(light)[0] == pytest.approx(1e-3 / (0.9 * step) * (0.5 * 21 + 20), rel=1e-3)
+    assert work(light)[0] > 1e4 * node_steps(light)[0]
+
+
+@pytest.mark.parametrize("model", BEAM_MODELS)
+@pytest.mark.parametrize(("nodes", "mass"), [(21, None), (101, None), (21, 1e-8)])
+def test_steps_are_about_as_many_as_the_kernel_takes(
+    model: str, nodes: int, mass: float | None
+) -> None:
+    impact = replace(paper_impact(2.0), beam_model=model, contact="hertz")
+    impact = replace(impact, sphere=replace(impact.sphere, mass=mass))
+    case = case_table(impact, Discretisation(nodes=nodes), duration=1e-2)
+    pair, section = make_pair(case[0]), make_section(case[0])
+    _, steps = discretise(case[0], pair, section)
+    rate = 0.5 * nodes * (1.0, 1.0, 3.0, 4.0, 4.0)[BEAM_MODELS.index(model)] + 20.0
+    assert 0.3 < work(case)[0] / rate / steps < 3.0

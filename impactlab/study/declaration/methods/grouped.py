@@ -12,14 +12,17 @@ from impactlab.study.declaration.form import Names, at_key
 from impactlab.study.declaration.methods.sample import Sample
 from impactlab.study.errors import unknown
 
-_NAME = re.compile(r"[A-Za-z0-9_-]{1,60}")
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
+"""No formula in a table, no label that a legend leaves out."""
 
 
 def _named(data: Any) -> Any:
     if not isinstance(data, dict):
         raise ValueError("expected a mapping such as {steel: [beam_density, beam_yield_stress]}")
     if odd := [name for name in data if not isinstance(name, str) or not _NAME.fullmatch(name)]:
-        raise ValueError(f"{odd[0]!r} cannot name a group: letters, digits, _ and - only")
+        raise ValueError(
+            f"{odd[0]!r} cannot name a group: letters, digits, _ and - only, no _ or - first"
+        )
     return data
 
 

@@ -1,0 +1,47 @@
+"""What a run will cost is told, and asked for twice where it is much, before anything is made."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from impactlab.study.declaration import FunctionStudy, Study
+
+
+def allowed(
+    study: Study | FunctionStudy, output: Path, workers: int, *, dry_run: bool, force: bool
+) -> bool:
+    """Whether to go on: not after a dry run, which prints what the study costs.
+
+    output: where the runs go. What is hardly meant is logged.
+    Raises StudyError where the study is wrong or, without `force`, beyond bearing.
+    """
+    from impactlab.report.console import print_estimate
+    from impactlab.study.bearable import free, remarks, unbearable
+    from impactlab.study.errors import StudyError
+    from impactlab.study.estimate import estimate
+
+    study = _found(study, output.with_name("resolution.nc"))
+    cost = estimate(study, workers)
+    for remark in remarks(study):
+        logging.getLogger("impactlab").warning("%s", remark)
+    problems = unbearable(cost, output.parent)
+    if dry_run:
+        print_estimate(cost, workers, free(output.parent), problems)
+    elif problems and not force:
+        raise StudyError(*problems)
+    return not dry_run
+
+
+def _found(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy:
+    """The study, with the discretisation that trials have found for it, where they have."""
+    from impactlab.steering.resolving import fits, resolved
+    from impactlab.study.declaration import FunctionStudy
+    from impactlab.study.netcdf import read_netcdf
+
+    if isinstance(study, FunctionStudy) or study.auto is None or not evidence.exists():
+        return study
+    found = read_netcdf(evidence)
+    return resolved(study, found) if fits(found, study) else study

@@ -1,0 +1,148 @@
+"""What the runs of a study will cost, before anything is drawn or solved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from impactlab.dataset import HISTORIES, PROFILES, RESPONSES
+from impactlab.model.cost import memory, work
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.paper import paper_impact
+from impactlab.model.parameters import PARAMETERS
+from impactlab.simulate import case_table
+from impactlab.study.declaration import FunctionStudy, Sobol, Study
+from impactlab.study.declaration.plausible import stated_at
+from impactlab.study.looking import costliest, looked_at, tabled
+
+Array = np.ndarray[Any, Any]
+A_SECOND = 3e8
+"""Node-steps of a core; half of it or twice is possible."""
+_NUMBER = 8
+_HELD = 3
+"""Times that all answers are in memory: as they came, in order, and labelled."""
+_KEPT = 2
+"""Times that they are on disk: in shards, and in runs.nc."""
+_ITSELF = 4e8
+"""Bytes of the program and its compiler."""
+_FUNCTION = 1e-6
+"""Seconds of a test function."""
+_USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES = 10_000, 0.012, 1000
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a study costs: core-seconds, bytes of memory and of disk.
+
+    runs: all, or the most that a growing sample may come to. largest: seconds of the largest run;
+    largest_run: what is varied, there. slow and large: the keys that drive time and room. auto:
+    whether the discretisation is still to be found, and the default stands in its place.
+    """
+
+    file: str
+    runs: int
+    seconds: float
+    memory: float
+    disk: float
+    largest: float
+    largest_run: Mapping[str, Any]
+    slow: str
+    large: str
+    auto: bool = False
+
+    def wall(self, workers: int) -> float:
+        """Seconds on so many cores: at least those of the largest run."""
+        return max(self.seconds / workers, self.largest)
+
+
+def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
+    """The cost of a study on so many workers of this machine, within a factor of about three.
+
+    Where there are many runs, some are drawn (always the same ones) and looked at; the largest is
+    sought among the ends. What trials of `auto` and the analysis take is not in it. Raises
+    StudyError where a drawn run is impossible.
+    """
+    until = study.sampling.until if isinstance(study.sampling, Sobol) else None
+    runs = max(study.runs, until.runs if until else 0)
+    if isinstance(study, FunctionStudy):
+        room = runs * float(_NUMBER * (len(study.sampling.varied) + 2))
+        return _estimate(study, runs, np.full(1, _FUNCTION), room, 0.0, {})
+    looked = looked_at(study)
+    cases = tabled(study, looked)
+    largest = costliest(study, looked, work(cases))
+    end = tabled(study, {name: [value] for name, value in largest.items()})[:1]
+    every = np.concatenate([cases, end])
+    return _estimate(
+        study,
+        runs,
+        work(every) / A_SECOND,
+        runs * float(_NUMBER * _values(study, end)),
+        workers * float(memory(every).max()) + runs * cases.dtype.itemsize,
+        largest,
+        slow=_key(study, _slow(end, runs)),
+        large=_key(study, _large(study, end, runs)),
+    )
+
+
+def _estimate(
+    study: Study | FunctionStudy,
+    runs: int,
+    seconds: Array,
+    answers: float,
+    working: float,
+    largest_run: Mapping[str, Any],
+    slow: str = "sampling",
+    large: str = "sampling",
+) -> Estimate:
+    """seconds: of runs looked at, the largest one last; answers, working: bytes."""
+    others = seconds[:-1] if seconds.size > 1 else seconds
+    return Estimate(
+        file=str(study.path),
+        runs=runs,
+        seconds=max(float(others.mean()) * runs, float(seconds[-1])),
+        memory=_ITSELF + _HELD * answers + working,
+        disk=_KEPT * answers,
+        largest=float(seconds[-1]),
+        largest_run=largest_run,
+        slow=slow,
+        large=large,
+        auto=isinstance(study, Study) and study.auto is not None,
+    )
+
+
+def _values(study: Study, case: Array) -> int:
+    """Numbers kept of a run: its parameters, responses, histories and profiles."""
+    store = study.store
+    history = len(HISTORIES) * store.samples * store.histories
+    profile = len(PROFILES) * int(case["nodes"][0] * case["points"][0]) * store.profiles
+    return len(study.sampling.varied) + len(RESPONSES) + 2 + history + profile
+
+
+def _slow(case: Array, runs: int) -> dict[str, float]:
+    """How much less time each would take at the paper's value, by parameter or key."""
+    usual = case_table(paper_impact(), Discretisation(), duration=_USUAL_DURATION)
+    gains = {"sampling": runs / _USUAL_RUNS}
+    for name in (*PARAMETERS, "duration"):
+        changed = case.copy()
+        changed[name] = usual[name]
+        gains[name] = float((work(case) / work(changed))[0])
+    return gains
+
+
+def _large(study: Study, case: Array, runs: int) -> dict[str, float]:
+    """How much less room each would take at its usual value, by parameter or key."""
+    gains = {"sampling": runs / _USUAL_RUNS}
+    if study.store.histories:
+        gains["store.samples"] = study.store.samples / _USUAL_SAMPLES
+    for name in ("nodes", "points"):
+        gains[name] = float(case[name][0]) / getattr(Discretisation(), name)
+    return gains
+
+
+def _key(study: Study, gains: Mapping[str, float]) -> str:
+    """Where in the file the largest of them stands."""
+    name = max(gains, key=gains.__getitem__)
+    return stated_at(name, study.sampling) if name in PARAMETERS else name

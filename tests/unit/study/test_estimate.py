@@ -1,0 +1,127 @@
+"""What a study costs is told before anything runs, and beyond a month asked for twice."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from impactlab.model.cost import memory, work
+from impactlab.study.bearable import MOST_TIME, unbearable
+from impactlab.study.declaration import study_of_text
+from impactlab.study.estimate import A_SECOND, Estimate, estimate
+from impactlab.study.sampling import design
+from impactlab.study.solvers import SOLVERS
+
+GRID = """
+title: A grid
+impact: {base: paper}
+discretisation: {nodes: NODES}
+duration: DURATION
+sampling: {method: grid, parameters: {PARAMETERS}}
+STORE
+"""
+NODES = {"nodes": [11, 101, 201], "velocity": [1.0, 2.0]}
+SAMPLE = """
+title: A sample
+impact: {base: paper}
+duration: 1 ms
+sampling:
+  method: sobol
+  base_samples: 1024
+  until: {interval: 0.02, runs: 20000}
+  parameters:
+    beam_depth: {distribution: uniform, low: 20 mm, high: 30 mm}
+    velocity: {distribution: lognormal, median: 1, geometric_standard_deviation: 1.2}
+"""
+
+
+def grid(parameters, nodes=201, duration="1 ms", store=""):
+    given = ", ".join(f"{name}: {list(values)}" for name, values in parameters.items())
+    text = GRID.replace("PARAMETERS", given).replace("NODES", str(nodes))
+    return study_of_text("some", text.replace("DURATION", duration).replace("STORE", store))
+
+
+def test_a_small_grid_costs_the_sum_of_its_runs():
+    study = grid(NODES)
+    cases = SOLVERS["impact"].cases(design(study))
+    found = estimate(study, workers=2)
+    assert found.runs == 6
+    assert found.seconds == pytest.approx(work(cases).sum() / A_SECOND, rel=0.2)
+    assert found.largest == pytest.approx(work(cases).max() / A_SECOND)
+    assert found.largest_run["nodes"] == 201
+    assert found.wall(2) == max(found.seconds / 2, found.largest)
+
+
+def test_runs_that_are_looked_at_stand_for_all(monkeypatch):
+    study = grid({"nodes": range(11, 211, 2), "beam_depth": np.linspace(0.02, 0.03, 50).tolist()})
+    sampled = estimate(study, 1)
+    monkeypatch.setattr("impactlab.study.looking._MOST", 10_000)
+    whole = estimate(study, 1)
+    assert sampled.runs == whole.runs == 5000
+    assert sampled.seconds == pytest.approx(whole.seconds, rel=0.1)
+    assert sampled.largest == whole.largest
+    assert estimate(study, 1) == whole
+
+
+def test_a_growing_sample_costs_what_it_may_come_to():
+    study = study_of_text("some", SAMPLE)
+    found = estimate(study, 1)
+    assert found.runs == 20_000
+    fewer = replace(study, sampling=study.sampling.model_copy(update={"until": None}))
+    less = estimate(fewer, 1)
+    assert less.runs == 1024 * 6
+    assert found.seconds == pytest.approx(less.seconds * 20_000 / 6144, rel=0.1)
+
+
+def test_room_is_that_of_the_answers():
+    study = grid(NODES, store="store: {histories: true, samples: 50000}")
+    cases = SOLVERS["impact"].cases(design(study))
+    found = estimate(study, workers=2)
+    answers = 8 * 6 * 50_000 * 5  # five histories of eight bytes a number
+    assert found.disk / 2 == pytest.approx(answers, rel=0.01)
+    assert found.memory > 3 * answers + 2 * memory(cases).max()
+    assert found.large == "store.samples"
+
+
+@pytest.mark.parametrize(
+    ("study", "key"),
+    [
+        (grid({"velocity": [1.0]}, nodes=10_000_001), "discretisation.nodes"),
+        (grid({"nodes": [11, 1_000_001]}), "sampling.parameters.nodes"),
+        (grid({"velocity": [1.0]}, duration="100 years"), "duration"),
+        (grid({"sphere_mass": [1e-17]}, duration="100 s"), "sampling.parameters.sphere_mass"),
+        (grid({"courant": [1e-12]}), "sampling.parameters.courant"),
+        (
+            grid({"beam_span": [1e-6], "beam_depth": [1e-7]}, duration="1 s"),
+            "sampling.parameters.beam_span",
+        ),
+    ],
+)
+def test_what_takes_more_than_a_month_is_told_at_the_key_that_drives_it(study, key, tmp_path):
+    found = estimate(study, 1)
+    assert found.seconds > MOST_TIME
+    problem = unbearable(found, tmp_path)[0]
+    assert problem.key == key
+    assert "above the 30 days" in str(problem)
+
+
+def test_more_room_than_there_is_is_told(tmp_path):
+    frugal = Estimate("a.yaml", 1, 1.0, 1e6, 1e6, 1.0, {}, "nodes", "store.samples")
+    assert unbearable(frugal, tmp_path / "not" / "made") == []
+    (greedy,) = unbearable(replace(frugal, memory=1e18), tmp_path)
+    assert greedy.key == "store.samples"
+    assert "of memory" in greedy.reason
+    (greedy,) = unbearable(replace(frugal, disk=1e18), Path("relative/folder"))
+    assert "1,000 PB of disk" in greedy.reason
+
+
+def test_a_function_costs_next_to_nothing():
+    ranges = ", ".join(f"x{at}: {{distribution: uniform, low: 0, high: 1}}" for at in (1, 2, 3))
+    sampling = f"{{method: delta, samples: 1000000, parameters: {{{ranges}}}}}"
+    text = f"title: F\nfunction: ishigami\nsampling: {sampling}"
+    found = estimate(study_of_text("some", text), 2)
+    assert found.seconds < 10
+    assert found.disk < 1e9
