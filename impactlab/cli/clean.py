@@ -16,9 +16,9 @@ def clean(
     results: Annotated[Path, typer.Option(help="Where results land.")] = RESULTS,
     yes: Annotated[bool, typer.Option("--yes", help="Remove without asking.")] = False,
 ) -> None:
-    """Remove solved runs that no study of a folder asks for any more, after asking.
+    """Remove solved runs that no study asks for any more.
 
-    What a changed study still asks for stays, and so do runs.nc and the reports.
+    It asks first. What a changed study still asks for stays, and so do runs.nc and the reports.
     """
     from contextlib import ExitStack
 

@@ -15,7 +15,7 @@ def status(
     study: StudyFile,
     results: Annotated[Path, typer.Option(help="Where results land.")] = RESULTS,
 ) -> None:
-    """Tell how many runs are solved, failed and left, their size, and whether one is at work.
+    """Tell how far a study is: runs solved, failed and left.
 
     Nothing is changed; a study may be at work meanwhile.
     """
