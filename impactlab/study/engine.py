@@ -16,7 +16,10 @@ from impactlab.study.slurm import Profile, slurm_cluster
 _LOOPBACK = "127.0.0.1:0"
 _SETTINGS = {
     "distributed.admin.low-level-log-length": 10,  # of 1000 messages kept, cases and all
-    "distributed.worker.profile.enabled": False,  # takes 4 % of the time
+    # what looks after itself many times a second, and takes some percent of the time
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.system-monitor.interval": "10s",
+    "distributed.admin.tick.interval": "1s",
 }
 """Of the dask that is started here."""
 
