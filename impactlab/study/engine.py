@@ -16,8 +16,15 @@ from distributed import Client, LocalCluster, Security
 from impactlab.study.slurm import Profile, slurm_cluster
 
 _LOOPBACK = "127.0.0.1:0"
-_FORGETFUL = {"distributed.admin.low-level-log-length": 10}
-"""dask keeps the last messages, cases and all: 1000 by default."""
+_TALKERS = ("distributed", "distributed.client", "tornado.application")
+_SETTINGS = {
+    "distributed.admin.low-level-log-length": 10,  # of 1000 messages kept, cases and all
+    # what looks after itself many times a second, and takes some percent of the time
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.system-monitor.interval": "10s",
+    "distributed.admin.tick.interval": "1s",
+}
+"""Of the dask that is started here."""
 
 
 @dataclass(frozen=True)
@@ -39,9 +46,9 @@ class Engine:
     @contextmanager
     def client(self) -> Iterator[Client]:
         """A dask client for the time of a study. Raises OSError when no scheduler answers."""
-        for name in ("distributed", "distributed.client"):  # what matters is raised, too
+        for name in _TALKERS:  # what matters is raised, too
             logging.getLogger(name).setLevel(logging.CRITICAL)
-        with dask.config.set(_FORGETFUL), self._clients() as client:
+        with dask.config.set(_SETTINGS), self._clients() as client:
             yield client
 
     def _clients(self) -> AbstractContextManager[Client]:

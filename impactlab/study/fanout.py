@@ -32,6 +32,7 @@ _LOOK_AGAIN = 1.0
 _MOMENT = 0.01
 """Seconds between looks at what has finished: short beside a task, of which more are waiting."""
 _KEPT = "Finished runs are kept: the same command goes on from there."
+_GONE = f"the dask scheduler is gone. {_KEPT}"
 
 
 def solve_batch(solver: str, cases: Array, form: Form, version: str) -> Result:
@@ -133,11 +134,7 @@ def _threads(client: Client) -> int:
     try:
         return sum(client.nthreads().values())
     except OSError as error:
-        raise _gone(error) from error
-
-
-def _gone(error: BaseException) -> ConnectionError:
-    return ConnectionError(f"the dask scheduler is gone ({error}). {_KEPT}")
+        raise ConnectionError(_GONE) from error
 
 
 def _next(queue: as_completed) -> tuple[Task, Result]:
@@ -147,9 +144,9 @@ def _next(queue: as_completed) -> tuple[Task, Result]:
     except KilledWorker as error:
         raise OSError(f"a batch of runs ended every dask worker that took it: {error}") from error
     except CommClosedError as error:
-        raise _gone(error) from error
+        raise ConnectionError(_GONE) from error
     except (ImportError, RuntimeError) as error:
         raise OSError(f"a dask worker failed: {error}. {_KEPT}") from error
     if isinstance(result, CancelledError | asyncio.CancelledError):
-        raise _gone(result)
+        raise ConnectionError(_GONE) from result
     return future, result

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import os
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from uuid import uuid4
 
@@ -18,36 +20,43 @@ _CACHE = 1_000_000
 """Bytes of a variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
 
 
-def write_netcdf(dataset: xr.Dataset, path: Path, *, compress: bool = True) -> None:
-    """Write under a temporary name, then rename: readers see all of a file or none of it.
+@contextmanager
+def whole(path: Path, size: int) -> Iterator[Path]:
+    """A temporary name to write to, renamed in the end: readers see all of a file or none of it.
 
-    compress: large variables, which takes longer. Raises OSError, naming the file and the space
-    left, when the disk does not take it; an older file then stays as it was.
+    size: about what is written, in bytes. Raises OSError, naming the file and the space left, when
+    the disk does not take it; an older file then stays as it was.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{path.name}.{uuid4().hex}")
-    large = {
-        str(name): {"zlib": True, "complevel": 1}
-        for name, values in dataset.data_vars.items()
-        if compress and values.dtype.kind == "f" and values.size > 10_000
-    }
-    set_chunk_cache(_CACHE)
     try:
-        dataset.to_netcdf(unfinished, engine="netcdf4", encoding=large)
+        yield unfinished
         with unfinished.open("rb") as handle:
             os.fsync(handle.fileno())
         unfinished.replace(path)
     except (OSError, RuntimeError) as error:  # HDF5 does not tell a full disk from others
-        raise OSError(_unwritten(dataset, path, error)) from error
+        raise OSError(_unwritten(path, size, error)) from error
     finally:
         unfinished.unlink(missing_ok=True)
 
 
-def _unwritten(dataset: xr.Dataset, path: Path, error: Exception) -> str:
-    free, needed = shutil.disk_usage(path.parent).free, dataset.nbytes
+def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
+    """Write all of it or nothing; large variables are compressed. Raises OSError: see whole."""
+    large = {
+        str(name): {"zlib": True, "complevel": 1}
+        for name, values in dataset.data_vars.items()
+        if values.dtype.kind == "f" and values.size > 10_000
+    }
+    set_chunk_cache(_CACHE)
+    with whole(path, dataset.nbytes) as unfinished:
+        dataset.to_netcdf(unfinished, engine="netcdf4", encoding=large)
+
+
+def _unwritten(path: Path, size: int, error: Exception) -> str:
+    free = shutil.disk_usage(path.parent).free
     said = f"{path}: could not be written ({error}); {decimal(free)} are free on its disk"
-    if free < needed:
-        return f"{said}, {decimal(needed)} are needed: make room, then run the same command again"
+    if free < size:
+        return f"{said}, {decimal(size)} are needed: make room, then run the same command again"
     return said
 
 

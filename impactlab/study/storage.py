@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.study.netcdf import write_netcdf
-from impactlab.study.shard import DAMAGE, KEY, Columns, pack, unpack
+from impactlab.study.shard import DAMAGE, KEY, Columns, read_shard, write_shard
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
@@ -106,7 +105,7 @@ class Shards:
         columns: of each name, a row a key.
         """
         path = self.folder / f"{hashlib.sha256(keys.tobytes()).hexdigest()[:32]}.nc"
-        write_netcdf(pack(keys, columns, _claim(path)), path, compress=False)
+        write_shard(path, keys, columns)
         self._noted(path)
         if len(self._small) >= _MANY or sum(self._small.values()) >= _SMALL:
             self.merge()
@@ -142,12 +141,7 @@ def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
 
 def _sound(path: Path) -> tuple[Array, Columns] | None:
     try:
-        return unpack(path, _claim(path))
+        return read_shard(path)
     except DAMAGE as error:
         log.warning("%s is damaged, and its runs will be solved again (%s)", path, error)
         return None
-
-
-def _claim(path: Path) -> str:
-    """What the place of a file says of its content."""
-    return f"{path.parent.name}/{path.name}"

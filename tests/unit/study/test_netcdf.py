@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from impactlab.study.netcdf import read_netcdf, write_netcdf
+from impactlab.study.storage import Form, Shards
 
 
 def noise(size):
@@ -40,10 +41,19 @@ def tiny_disk(tmp_path):
     subprocess.run(["umount", "--lazy", str(folder)], check=True)
 
 
-@pytest.mark.parametrize("compress", [True, False])
-def test_a_full_disk_is_told_and_the_older_file_stays(tiny_disk, compress):
-    write_netcdf(noise(1000), tiny_disk / "x.nc", compress=compress)
+def test_a_full_disk_is_told_and_the_older_file_stays(tiny_disk):
+    write_netcdf(noise(1000), tiny_disk / "x.nc")
     with pytest.raises(OSError, match=r"x\.nc: could not be written .* are free .* needed"):
-        write_netcdf(noise(1_000_000), tiny_disk / "x.nc", compress=compress)
+        write_netcdf(noise(1_000_000), tiny_disk / "x.nc")
     assert read_netcdf(tiny_disk / "x.nc").identical(noise(1000))
     assert [path.name for path in tiny_disk.iterdir()] == ["x.nc"]
+
+
+def test_a_shard_on_a_full_disk_is_told_and_the_others_stay(tiny_disk):
+    shards = Shards(tiny_disk, Form(0, False), "version")
+    keys = np.array([bytes([at]) * 16 for at in range(200)], dtype="S16")
+    shards.write(keys[:2], {"status": np.zeros(2)})
+    with pytest.raises(OSError, match=r"\.nc: could not be written .* are free .* needed"):
+        shards.write(keys, {"contact_force": np.zeros((200, 1000))})
+    ((kept, _),) = Shards(tiny_disk, Form(0, False), "version").recover()
+    assert kept.tobytes() == keys[:2].tobytes()
