@@ -41,7 +41,8 @@ class Engine:
     @contextmanager
     def client(self) -> Iterator[Client]:
         """A dask client for the time of a study. Raises OSError when no scheduler answers."""
-        logging.getLogger("distributed").setLevel(logging.ERROR)
+        for name in ("distributed", "distributed.client"):  # what goes wrong is raised, and told
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         with dask.config.set(_SETTINGS), self._clients() as client:
             yield client
 

@@ -107,9 +107,10 @@ def _result(future: Task) -> tuple[Columns, float]:
     try:
         columns, seconds = future.result()
     except KilledWorker as error:
-        raise OSError(f"a batch of runs ended every dask worker that took it: {error}") from error
+        said = "a batch of runs ended every dask worker that took it (too little memory?)"
+        raise OSError(f"{said}: {error} {_KEPT}") from error
     except (CancelledError, CommClosedError) as error:
-        raise ConnectionError(f"the dask scheduler is gone ({error}). {_KEPT}") from error
+        raise ConnectionError(f"the dask scheduler is gone. {_KEPT}") from error
     except (ImportError, RuntimeError) as error:
         raise OSError(f"a dask worker failed: {error}. {_KEPT}") from error
     return columns, seconds
