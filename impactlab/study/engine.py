@@ -46,7 +46,7 @@ class Engine:
     @contextmanager
     def client(self) -> Iterator[Client]:
         """A dask client for the time of a study. Raises OSError when no scheduler answers."""
-        for name in _TALKERS:  # what matters is raised, too
+        for name in _TALKERS:  # what goes wrong is raised, and told
             logging.getLogger(name).setLevel(logging.CRITICAL)
         with dask.config.set(_SETTINGS), self._clients() as client:
             yield client

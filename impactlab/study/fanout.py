@@ -142,11 +142,12 @@ def _next(queue: as_completed) -> tuple[Task, Result]:
     try:
         future, result = next(queue)
     except KilledWorker as error:
-        raise OSError(f"a batch of runs ended every dask worker that took it: {error}") from error
-    except CommClosedError as error:
+        said = "a batch of runs ended every dask worker that took it (too little memory?)"
+        raise OSError(f"{said}: {error} {_KEPT}") from error
+    except (CancelledError, CommClosedError) as error:
         raise ConnectionError(_GONE) from error
     except (ImportError, RuntimeError) as error:
         raise OSError(f"a dask worker failed: {error}. {_KEPT}") from error
-    if isinstance(result, CancelledError | asyncio.CancelledError):
+    if isinstance(result, CancelledError | asyncio.CancelledError):  # returned, not raised
         raise ConnectionError(_GONE) from result
     return future, result

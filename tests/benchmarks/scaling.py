@@ -1,10 +1,10 @@
 """What a study costs beside its kernels, and what memory: `make scaling`, with --full a million.
 
-Each line is a process of its own, so that its peak memory is its own. `short` and `long` (runs of 1 and
-8 ms) compare processor time with that of the kernels alone, over cases that are already there, measured right before and
-after it: other programs weigh on wall time, hardly on this. `throughput` is what two threads give
-in times one, in wall time: it wants an idle machine. `floor` is what the labelled runs themselves
-take: design and answers.
+Each line is a process of its own, so that its peak memory is its own. `short` and `long` (runs of
+1 and 8 ms) compare processor time with that of the kernels alone, over cases that are there
+already, measured right before and after: other programs weigh on wall time, hardly on this.
+`throughput` is what two threads give in times one, in wall time: it wants an idle machine. `floor`
+is what the labelled runs themselves take: design and answers.
 """
 
 from __future__ import annotations
