@@ -174,7 +174,6 @@ rule runs:
         "impactlab --log {log} run {input.design} --output {output} --workers {threads}"
 
 
-# It shares the shards of the runs: the grid that they used is not solved again.
 rule refinement:
     input:
         code=code(*SOLVER, "study/**/*.py", "steering/refining.py"),

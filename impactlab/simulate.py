@@ -177,9 +177,11 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
 
 
 def answer_variables(
-    answers: Columns, responses: tuple[str, ...], dims: tuple[str, ...]
-) -> dict[str, tuple[tuple[str, ...], np.ndarray[Any, Any]]]:
+    answers: Mapping[str, Any], responses: tuple[str, ...], dims: tuple[str, ...]
+) -> dict[str, tuple[tuple[str, ...], Any]]:
     """The answers as data variables on `dims` (for one run: none), the asked responses only.
+
+    answers: arrays of numpy or dask, by name.
 
     `status` keeps the bits that matter to these responses; `remarks` are of the run as a whole.
     """

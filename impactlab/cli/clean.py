@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.options import RESULTS
+from impactlab.cli.options import REFINEMENT, RESULTS, SHARDS, TRIALS
 from impactlab.cli.settling import settled_before
 
 
@@ -29,7 +29,7 @@ def clean(
         raise FileNotFoundError(f"{folder}: no study files (*.yaml) there: nothing was removed")
     with ExitStack() as locks:
         found: dict[Path, str] = {}
-        for shards in sorted(results.glob("*/shards")):
+        for shards in _folders(results):
             locks.enter_context(held(shards))
             found |= _stale(folder / f"{shards.parent.name}.yaml", shards)
         if not found:
@@ -41,14 +41,22 @@ def clean(
                 path.unlink()
 
 
+def _folders(results: Path) -> list[Path]:
+    return sorted(
+        path for kind in (SHARDS, TRIALS, REFINEMENT) for path in results.glob(f"*/{kind}")
+    )
+
+
 def _stale(file: Path, shards: Path) -> dict[Path, str]:
     """What can go of one study's shards; nothing while its discretisation has to be found."""
     from impactlab.study.declaration import read_study
     from impactlab.study.sampling import design
     from impactlab.study.sampling.stages import stages
-    from impactlab.study.stale import stale
+    from impactlab.study.stale import outdated, stale
 
     if not file.exists():
         return stale(shards, ())
+    if shards.name != SHARDS:
+        return outdated(shards)
     declared = settled_before(read_study(file), shards.with_name("resolution.nc"))
     return {} if declared is None else stale(shards, list(stages(design(declared))))

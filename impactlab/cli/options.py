@@ -22,6 +22,8 @@ StoredFiles = Annotated[
     ),
 ]
 RESULTS = Path("results")
+SHARDS, TRIALS, REFINEMENT = "shards", "trials", "refinement"
+"""Folders beside a study's results: its own runs, those behind `auto`, those on finer grids."""
 
 
 def results_file(study: str, name: str) -> Path:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_at_once
-from impactlab.cli.options import StudyFile, chosen, given, results_file
+from impactlab.cli.options import TRIALS, StudyFile, chosen, given, results_file
 
 
 def recommend(
@@ -55,6 +55,6 @@ def recommend(
     if asked := chosen("--responses", responses, declared.responses):
         wishes = wishes.model_copy(update={"responses": asked})
     engine = Engine("threads", workers)
-    found = recommended(declared, path.with_name("trials"), engine, wishes)
+    found = recommended(declared, path.with_name(TRIALS), engine, wishes)
     write_netcdf(found, path)
     print_recommendation(found)

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_at_once
-from impactlab.cli.options import RunsFile
+from impactlab.cli.options import REFINEMENT, RunsFile
 
 
 def refine(
@@ -38,5 +38,5 @@ def refine(
     solved, path = read_netcdf(runs), output or runs.with_name("refinement.nc")
     stop_at_once()
     engine = Engine("threads", workers)
-    solve = partial(execute, shards_folder=runs.with_name("shards"), engine=engine)
+    solve = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
     write_netcdf(refined(solved, solve, base_samples), path)

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_at_once
-from impactlab.cli.options import results_file
+from impactlab.cli.options import SHARDS, results_file
 from impactlab.cli.planning import allowed
 from impactlab.cli.settling import settled
 
@@ -45,7 +45,7 @@ def run(
 
     from impactlab.study.declaration import read_study
     from impactlab.study.engine import Engine
-    from impactlab.study.execution import execute
+    from impactlab.study.execution import execute, executed
     from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.study.sampling import design as sampled
     from impactlab.study.sampling.doubling import declared
@@ -62,11 +62,13 @@ def run(
     engine = Engine(
         "processes" if processes else "threads", workers, scheduler, profile, batch_seconds
     )
-    solve = partial(execute, shards_folder=path.parent / "shards", engine=engine)
+    shards = path.parent / SHARDS
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse as analysed
         from impactlab.steering.extending import extended
 
+        solve = partial(execute, shards_folder=shards, engine=engine)
         write_netcdf(extended(samples, solve, analysed), path)
     else:
-        write_netcdf(solve(samples), path)
+        with executed(samples, shards, engine) as runs:
+            write_netcdf(runs, path)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from impactlab.cli.interrupt import stop_at_once
+from impactlab.cli.options import TRIALS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +31,7 @@ def settled(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStu
     if found is None:
         stop_at_once()
         engine = Engine("threads", os.cpu_count() or 1)
-        found = recommend(study, evidence.with_name("trials"), engine)
+        found = recommend(study, evidence.with_name(TRIALS), engine)
         write_netcdf(found, evidence)
     print_recommendation(found)
     return resolved(study, found)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.options import RESULTS, StudyFile
+from impactlab.cli.options import RESULTS, SHARDS, StudyFile
 from impactlab.cli.settling import settled_before
 
 
@@ -31,7 +31,7 @@ def status(
         print(f"{study.stem}: its discretisation is auto and was not found yet: nothing is solved")
         return
     for stage in stages(design(declared)):
-        found = status_of(stage, folder / "shards")
+        found = status_of(stage, folder / SHARDS)
         if found.done < found.runs:
             break
     print_status(study.stem, found)

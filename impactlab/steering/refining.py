@@ -21,7 +21,7 @@ def refined(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr.Data
     """The first base samples on the grid of the runs and on others, everything else the same.
 
     runs: a Sobol sample of impacts, as in runs.nc. solve: makes the runs of a design; it is given
-    the grid of the runs, too, whose answers lie among its shards as a rule. count: base samples to
+    the grid of the runs, too. count: base samples to
     solve again; None: see `base_samples`.
 
     Returns runs on (run, grid), SI units, with the attributes of a Sobol sample of so many

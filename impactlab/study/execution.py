@@ -4,60 +4,72 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import dask
 import numpy as np
 import xarray as xr
 
+from impactlab.study.answers import Answers
 from impactlab.study.engine import Engine
 from impactlab.study.fanout import solved
+from impactlab.study.ledger import Ledger
 from impactlab.study.lock import held
 from impactlab.study.progress import Progress
 from impactlab.study.shard import Columns
 from impactlab.study.solvers import SOLVERS, solver_of
 from impactlab.study.storage import Shards
-from impactlab.study.table import Table
 from impactlab.study.work import Work
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
 
 
-def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Dataset:
-    """Solve what of the design has not been solved yet, and return all of it as runs.nc holds it.
+@contextmanager
+def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterator[xr.Dataset]:
+    """Solve what of the design has not been solved yet; within, all of it as runs.nc holds it.
 
     design: see impactlab.study.sampling.design. Every finished batch is in `shards_folder`
-    before it is counted, so that an interrupted study goes on from there. Held in memory: what is
-    returned, and some 40 bytes a run.
+    before it is counted, so that an interrupted study goes on from there. Answers are read from
+    there, too, when they are computed, a column at a time: held in memory are some 40 bytes a run,
+    and no other process works in the folder meanwhile.
 
     Raises ValueError when the model refuses a run; OSError when the disk is full, when no
-    scheduler answers or its workers fail; BlockingIOError when another process is at work in
-    `shards_folder`.
+    scheduler answers or its workers fail, or when a shard is damaged while it is read;
+    BlockingIOError when another process is at work in `shards_folder`.
     """
     name = solver_of(design)
     solver = SOLVERS[name]
     with held(shards_folder):
         work = Work.of(design)
-        shards = Shards(shards_folder, work.form, solver.VERSION)
-        table = Table(work.keys, solver.columns(design))
-        for keys, columns in shards.recover():
-            table.fill(keys, columns)
-        missing = table.missing()
+        shards, ledger = Shards(shards_folder, work.form, solver.VERSION), Ledger(work.keys)
+        for keys in shards.recover():
+            ledger.mark(ledger.find(keys)[1])
+        missing = ledger.missing()
         log.info("%d runs, %d of them solved before", work.size, work.size - missing.size)
-        for keys, columns in _followed(work, missing, engine):
-            shards.write(keys, columns)
-            table.fill(keys, columns)
+        for runs, columns in _followed(work, missing, engine):
+            shards.write(work.keys[runs], columns)
+            ledger.mark(runs)
         shards.merge()
-        return solver.labelled(design, table.columns())
+        answers = Answers(shards, ledger).columns(solver.columns(design))
+        with dask.config.set(scheduler="synchronous"):  # HDF5 is not for two threads
+            yield solver.labelled(design, answers)
+
+
+def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Dataset:
+    """As `executed`, all of it in memory."""
+    with executed(design, shards_folder, engine) as runs:
+        return runs.load()
 
 
 def _followed(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, Columns]]:
-    """Keys and answers of the missing runs as they come in; a bar tells how far they are."""
+    """Numbers and answers of the missing runs as they come in; a bar tells how far they are."""
     if not missing.size:
         return
     bits = SOLVERS[work.solver].failures(work.design)
     with Progress(total=work.size, done=work.size - missing.size) as progress:
         for runs, columns in solved(work, missing, engine):
-            yield work.keys[runs], columns
+            yield runs, columns
             progress.advance(runs.size, int(np.count_nonzero(columns["status"] & bits)))

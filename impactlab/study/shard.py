@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+import json
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -18,15 +19,16 @@ Columns = dict[str, Array]
 """Answers by name, each of shape (runs, ...)."""
 KEY = np.dtype("S16")
 """Of the key of a run."""
+KEYS = "key"
+"""The column of keys."""
 DAMAGE = (OSError, RuntimeError, ValueError, TypeError, LookupError, AttributeError)
 """What read_shard raises on a file that is no sound shard: HDF5 knows many ways to stumble."""
-_DIMS = {"key": ("byte",)} | {name: entry.dims for name, entry in (HISTORIES | PROFILES).items()}
+_DIMS = {KEYS: ("byte",)} | {name: entry.dims for name, entry in (HISTORIES | PROFILES).items()}
 
 
 def write_shard(path: Path, keys: Array, columns: Columns) -> None:
     """Write all of it or nothing. Raises OSError, naming the file, when the disk is full."""
-    table = np.frombuffer(keys.tobytes(), dtype=np.uint8).reshape(-1, KEY.itemsize)
-    arrays = {"key": table} | columns
+    arrays = {KEYS: _bytes(keys)} | columns
     size = sum(values.nbytes for values in arrays.values())
     with whole(path, size) as unfinished, Dataset(unfinished, "w") as file:
         for name, values in arrays.items():
@@ -35,28 +37,36 @@ def write_shard(path: Path, keys: Array, columns: Columns) -> None:
                 if dim not in file.dimensions:
                     file.createDimension(dim, length)
             file.createVariable(name, values.dtype, dims, fill_value=False)[:] = values
-        file.setncattr("checksum", _checksum(arrays, path))
+        checksums = {name: _checksum(path, name, values) for name, values in arrays.items()}
+        file.setncattr("checksums", json.dumps(checksums))
 
 
-def read_shard(path: Path) -> tuple[Array, Columns]:
-    """Keys and answers of a file. Raises one of DAMAGE where its checksum does not hold.
+def read_shard(path: Path, names: Collection[str] = ()) -> Columns:
+    """The columns of a file, keys under KEYS; only those of these names, if any are given.
 
-    The checksum covers folder and name, so that a sound shard in another's place is found, too.
+    Raises one of DAMAGE where a checksum of theirs does not hold. It covers folder and name, so
+    that a sound shard in another's place is found, too.
     """
     with Dataset(path) as file:
         file.set_auto_maskandscale(False)
-        arrays = {name: variable[:] for name, variable in file.variables.items()}
-        checksum = file.getncattr("checksum")
-    if _checksum(arrays, path) != checksum:
-        raise ValueError("its checksum does not hold")
-    keys = np.frombuffer(arrays.pop("key").tobytes(), dtype=KEY)
-    return keys, arrays
+        checksums = json.loads(file.getncattr("checksums"))
+        if checksums.keys() != file.variables.keys():
+            raise ValueError("it lacks a column, or has one too many")
+        arrays = {name: file[name][:] for name in names or checksums}
+    for name, values in arrays.items():
+        if _checksum(path, name, values) != checksums[name]:
+            raise ValueError(f"the checksum of its column {name} does not hold")
+    if KEYS in arrays:
+        arrays[KEYS] = np.frombuffer(arrays[KEYS].tobytes(), dtype=KEY)
+    return arrays
 
 
-def _checksum(arrays: Mapping[str, Array], path: Path) -> str:
-    digest = hashlib.sha256(f"{path.parent.name}/{path.name}".encode())
-    for name in sorted(arrays):
-        values = arrays[name]
-        digest.update(f"{name} {values.shape} {values.dtype}".encode())
-        digest.update(np.ascontiguousarray(values).data)
+def _bytes(keys: Array) -> Array:
+    return np.frombuffer(keys.tobytes(), dtype=np.uint8).reshape(-1, KEY.itemsize)
+
+
+def _checksum(path: Path, name: str, values: Array) -> str:
+    head = f"{path.parent.name}/{path.name} {name} {values.shape} {values.dtype}"
+    digest = hashlib.sha256(head.encode())
+    digest.update(np.ascontiguousarray(values).data)
     return digest.hexdigest()

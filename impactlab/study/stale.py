@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.study.solvers import SOLVERS
-from impactlab.study.storage import DAMAGED, Shards
+from impactlab.study.storage import DAMAGED, Form, Shards
 from impactlab.study.work import Work
 
 Array = np.ndarray[Any, Any]
@@ -39,18 +39,33 @@ def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, st
     return found
 
 
+def outdated(folder: Path) -> dict[Path, str]:
+    """As stale, of runs beside a study's own, all responses kept: those of another solver.
+
+    Which of the others would be asked for again, only a search tells.
+    """
+    current = {Shards(folder, Form(0, False), each.VERSION).folder for each in SOLVERS.values()}
+    reasons = {path: _beyond_asking(path, current) for path in _beside(folder)}
+    return {path: reason for path, reason in reasons.items() if reason}
+
+
 def _beside(shards_folder: Path) -> Iterable[Path]:
     return sorted(path for path in shards_folder.glob("*/*") if path.is_file())
 
 
-def _reason(path: Path, wanted: dict[Path, list[Array]]) -> str:
+def _reason(path: Path, wanted: Mapping[Path, list[Array]]) -> str:
     """Why a file can go; "" where it has to stay."""
+    if reason := _beyond_asking(path, wanted):
+        return reason
+    keys = Shards.keys(path)
+    asked = any(np.isin(keys, each).any() for each in wanted[path.parent])
+    return OTHER_RUNS if keys.size and not asked else ""
+
+
+def _beyond_asking(path: Path, current: Collection[Path]) -> str:
+    """Why no study can ask for what is in a file; current: folders of the solvers of today."""
     if path.name.startswith("."):
         return UNFINISHED
     if path.name.endswith(DAMAGED):
         return SET_ASIDE
-    if path.parent not in wanted:
-        return OTHER_SOLVER
-    keys = Shards.keys(path)
-    asked = any(np.isin(keys, each).any() for each in wanted[path.parent])
-    return OTHER_RUNS if keys.size and not asked else ""
+    return "" if path.parent in current else OTHER_SOLVER

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from impactlab.study.ledger import Ledger
 from impactlab.study.lock import holder
 from impactlab.study.solvers import SOLVERS
 from impactlab.study.storage import Shards
-from impactlab.study.table import Table
 from impactlab.study.work import Work
 
 
@@ -38,15 +38,15 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
     work = Work.of(design)
     solver = SOLVERS[work.solver]
     shards = Shards(shards_folder, work.form, solver.VERSION)
-    table = Table(work.keys, ["status"])
-    for keys, columns in shards.read():
-        table.fill(keys, columns)
-    left = table.left()
-    bits = table.columns().get("status", np.zeros(0, dtype=np.int32))
+    ledger, bits = Ledger(work.keys), np.zeros(work.size, dtype=np.int32)
+    for keys, columns in shards.read("status"):
+        asked, runs = ledger.find(keys)
+        ledger.mark(runs)
+        bits[runs] = columns["status"][asked]
     return Status(
         runs=work.size,
-        done=work.size - left,
-        failed=int(np.count_nonzero(bits & solver.failures(design))),
+        done=work.size - ledger.left(),
+        failed=int(np.count_nonzero(ledger.spread(bits) & solver.failures(design))),
         age=_age(shards.files()),
         size=disk_size(shards_folder.rglob("*")),
         holder=holder(shards_folder),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import logging
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.study.shard import DAMAGE, KEY, Columns, read_shard, write_shard
+from impactlab.study.shard import DAMAGE, KEY, KEYS, Columns, read_shard, write_shard
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
@@ -69,10 +69,13 @@ class Shards:
         self.folder = folder / hashlib.sha256(f"{version} {form}".encode()).hexdigest()[:16]
         self._small: dict[Path, int] = {}
 
-    def read(self) -> Iterator[tuple[Array, Columns]]:
-        """Keys and answers of every sound shard; a damaged one is named in the log."""
+    def read(self, *names: str) -> Iterator[tuple[Array, Columns]]:
+        """Keys and answers of every sound shard; a damaged one is named in the log.
+
+        names: of the columns to read and check; all without any.
+        """
         for path in self.files():
-            if found := _sound(path):
+            if found := _sound(path, names):
                 yield found
 
     @staticmethod
@@ -85,17 +88,18 @@ class Shards:
         """All shards, sound or not."""
         return sorted(self.folder.glob("*.nc"))
 
-    def recover(self) -> Iterator[tuple[Array, Columns]]:
-        """As read, by the one process that writes here: tidies up what a crash left behind.
+    def recover(self) -> Iterator[Array]:
+        """Keys of every sound shard, for the one process that writes here, which tidies up.
 
-        A damaged shard is renamed, for a person to look at; what was not written to its end goes.
+        All of a shard is checked. A damaged one is renamed, for a person to look at; what was not
+        written to its end goes.
         """
         for unfinished in self.folder.glob(".*"):
             unfinished.unlink()
         for path in self.files():
             if found := _sound(path):
                 self._noted(path)
-                yield found
+                yield found[0]
             else:
                 path.replace(path.with_name(path.name + DAMAGED))
 
@@ -139,9 +143,10 @@ def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
     )
 
 
-def _sound(path: Path) -> tuple[Array, Columns] | None:
+def _sound(path: Path, names: Collection[str] = ()) -> tuple[Array, Columns] | None:
     try:
-        return read_shard(path)
+        columns = read_shard(path, (KEYS, *names) if names else ())
+        return columns.pop(KEYS), columns
     except DAMAGE as error:
         log.warning("%s is damaged, and its runs will be solved again (%s)", path, error)
         return None

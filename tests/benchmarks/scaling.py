@@ -26,7 +26,7 @@ from rich.table import Table
 import impactlab as il
 from impactlab.model.parameters import flatten
 from impactlab.study.engine import Engine
-from impactlab.study.execution import execute
+from impactlab.study.execution import executed
 from impactlab.study.netcdf import write_netcdf
 from impactlab.study.solvers import impact
 from impactlab.study.work import Work
@@ -78,8 +78,8 @@ def measured(what: str, runs: int, threads: int) -> dict[str, object]:
         before = kernels(Work.of(asked))
     with tempfile.TemporaryDirectory() as folder:
         wall, processor = time.perf_counter(), time.process_time()
-        solved = execute(asked, Path(folder), Engine(workers=threads))
-        write_netcdf(solved, Path(folder) / "runs.nc")
+        with executed(asked, Path(folder), Engine(workers=threads)) as solved:
+            write_netcdf(solved, Path(folder) / "runs.nc")
         line["wall_s"] = time.perf_counter() - wall
         line["processor_s"] = time.process_time() - processor
     line["peak_MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3

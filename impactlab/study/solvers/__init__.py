@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -47,8 +48,11 @@ class Solver(Protocol):
         """The answers by name, a row a run, `status` among them; the same bits in any batch."""
         ...
 
-    def labelled(self, design: xr.Dataset, answers: Columns) -> xr.Dataset:
-        """The answers in the design's order, under its labels and with provenance."""
+    def labelled(self, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
+        """The answers in the design's order, under its labels and with provenance.
+
+        answers: as solve gives them, arrays of numpy or, not read yet, of dask.
+        """
         ...
 
 

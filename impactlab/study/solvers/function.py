@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,7 @@ def solve(cases: Array, form: Form) -> Columns:
     return {VALUE: value, "status": np.zeros(cases.size, dtype=np.int32)}
 
 
-def labelled(design: xr.Dataset, answers: Columns) -> xr.Dataset:
+def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """`value` and `status` on the design's dimensions."""
     dims, shape = run_shape(design)
     title = FUNCTIONS[str(design.attrs["function"])].TITLE

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -70,7 +71,7 @@ def solve(cases: np.ndarray[Any, Any], form: Form) -> Columns:
     return solve_cases(cases, samples=form.samples, profiles=form.profiles).columns()
 
 
-def labelled(design: xr.Dataset, answers: Columns) -> xr.Dataset:
+def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """The answers of a design's runs, in its order, under its labels and with provenance."""
     dims, shape = run_shape(design)
     flat = answer_variables(answers, _responses(design), ("run",))

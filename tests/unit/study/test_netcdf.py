@@ -55,5 +55,5 @@ def test_a_shard_on_a_full_disk_is_told_and_the_others_stay(tiny_disk):
     shards.write(keys[:2], {"status": np.zeros(2)})
     with pytest.raises(OSError, match=r"\.nc: could not be written .* are free .* needed"):
         shards.write(keys, {"contact_force": np.zeros((200, 1000))})
-    ((kept, _),) = Shards(tiny_disk, Form(0, False), "version").recover()
+    (kept,) = Shards(tiny_disk, Form(0, False), "version").recover()
     assert kept.tobytes() == keys[:2].tobytes()

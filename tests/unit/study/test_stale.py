@@ -2,7 +2,15 @@
 
 from impactlab.study.engine import Engine
 from impactlab.study.execution import execute
-from impactlab.study.stale import NO_STUDY, OTHER_RUNS, OTHER_SOLVER, SET_ASIDE, UNFINISHED, stale
+from impactlab.study.stale import (
+    NO_STUDY,
+    OTHER_RUNS,
+    OTHER_SOLVER,
+    SET_ASIDE,
+    UNFINISHED,
+    outdated,
+    stale,
+)
 
 
 def test_what_is_asked_for_stays(small_design, tmp_path):
@@ -29,3 +37,12 @@ def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path,
     expected = {unfinished: UNFINISHED, damaged: SET_ASIDE}
     assert stale(tmp_path, [small_design(3.0)]) == expected
     assert str(shard) in caplog.text
+
+
+def test_of_runs_beside_a_study_only_those_of_another_solver_can_go(small_design, tmp_path):
+    execute(small_design(1.0), tmp_path, Engine())
+    assert outdated(tmp_path) == {}
+    (shard,) = tmp_path.glob("*/*.nc")
+    other = shard.parent.with_name("0" * 16)
+    shard.parent.rename(other)
+    assert outdated(tmp_path) == {other / shard.name: OTHER_SOLVER}
