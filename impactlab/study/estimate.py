@@ -22,8 +22,10 @@ Array = np.ndarray[Any, Any]
 A_SECOND = 3e8
 """Node-steps of a core; half of it or twice is possible."""
 _NUMBER = 8
-_HELD = 3
-"""Times that all answers are in memory: as they came, in order, and labelled."""
+_HELD = 2
+"""Times that answers are in memory: read, and in order. One column, or all of a growing sample."""
+_A_RUN = 60.0
+"""Bytes of a run in memory beside: its key, place and cost."""
 _KEPT = 2
 """Times that they are on disk: in shards, and in runs.nc."""
 _ITSELF = 4e8
@@ -69,18 +71,20 @@ def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
     runs = max(study.runs, until.runs if until else 0)
     if isinstance(study, FunctionStudy):
         room = runs * float(_NUMBER * (len(study.sampling.varied) + 2))
-        return _estimate(study, runs, np.full(1, _FUNCTION), room, 0.0, {})
+        return _estimate(study, runs, np.full(1, _FUNCTION), room, room, 0.0, {})
     looked = looked_at(study)
     cases = tabled(study, looked)
     largest = costliest(study, looked, work(cases))
     end = tabled(study, {name: [value] for name, value in largest.items()})[:1]
     every = np.concatenate([cases, end])
+    answers = runs * float(_NUMBER * _values(study, end))
     return _estimate(
         study,
         runs,
         work(every) / A_SECOND,
-        runs * float(_NUMBER * _values(study, end)),
-        workers * float(memory(every).max()) + runs * cases.dtype.itemsize,
+        answers,
+        answers if until else runs * float(_NUMBER * _widest(study, end)),
+        workers * float(memory(every).max()),
         largest,
         slow=_key(study, _slow(end, runs)),
         large=_key(study, _large(study, end, runs)),
@@ -92,18 +96,22 @@ def _estimate(
     runs: int,
     seconds: Array,
     answers: float,
+    held: float,
     working: float,
     largest_run: Mapping[str, Any],
     slow: str = "sampling",
     large: str = "sampling",
 ) -> Estimate:
-    """seconds: of runs looked at, the largest one last; answers, working: bytes."""
+    """seconds: of runs looked at, the largest one last; answers, held, working: bytes.
+
+    held: of the answers that are in memory together.
+    """
     others = seconds[:-1] if seconds.size > 1 else seconds
     return Estimate(
         file=str(study.path),
         runs=runs,
         seconds=max(float(others.mean()) * runs, float(seconds[-1])),
-        memory=_ITSELF + _HELD * answers + working,
+        memory=_ITSELF + _HELD * (held + _parameters(study, runs)) + runs * _A_RUN + working,
         disk=_KEPT * answers,
         largest=float(seconds[-1]),
         largest_run=largest_run,
@@ -119,6 +127,18 @@ def _values(study: Study, case: Array) -> int:
     history = len(HISTORIES) * store.samples * store.histories
     profile = len(PROFILES) * int(case["nodes"][0] * case["points"][0]) * store.profiles
     return len(study.sampling.varied) + len(RESPONSES) + 2 + history + profile
+
+
+def _widest(study: Study, case: Array) -> int:
+    """Numbers of a run in its widest column."""
+    store = study.store
+    profile = int(case["nodes"][0] * case["points"][0]) * store.profiles
+    return max(1, store.samples * store.histories, profile)
+
+
+def _parameters(study: Study | FunctionStudy, runs: int) -> float:
+    """Bytes of what is varied."""
+    return runs * float(_NUMBER * len(study.sampling.varied))
 
 
 def _slow(case: Array, runs: int) -> dict[str, float]:

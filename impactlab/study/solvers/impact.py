@@ -10,7 +10,7 @@ import xarray as xr
 
 from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 from impactlab.kernels.jit import SOURCES_HASH
-from impactlab.model.cost import node_steps
+from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
@@ -55,8 +55,8 @@ def cases(design: xr.Dataset, runs: np.ndarray[Any, Any]) -> np.ndarray[Any, Any
 
 
 def cost(cases: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Node-steps, and what comes with any run."""
-    found: np.ndarray[Any, Any] = node_steps(cases) + _OF_ANY_RUN
+    """Node-steps of the paper's beam, and what comes with any run."""
+    found: np.ndarray[Any, Any] = work(cases) + _OF_ANY_RUN
     return found
 
 

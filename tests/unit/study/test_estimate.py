@@ -11,7 +11,7 @@ import pytest
 from impactlab.model.cost import memory, work
 from impactlab.study.bearable import MOST_TIME, unbearable
 from impactlab.study.declaration import study_of_text
-from impactlab.study.estimate import A_SECOND, Estimate, estimate
+from impactlab.study.estimate import _ITSELF, A_SECOND, Estimate, estimate
 from impactlab.study.sampling import design
 from impactlab.study.solvers import SOLVERS
 
@@ -46,7 +46,7 @@ def grid(parameters, nodes=201, duration="1 ms", store=""):
 
 def test_a_small_grid_costs_the_sum_of_its_runs():
     study = grid(NODES)
-    cases = SOLVERS["impact"].cases(design(study))
+    cases = SOLVERS["impact"].cases(design(study), np.arange(6))
     found = estimate(study, workers=2)
     assert found.runs == 6
     assert found.seconds == pytest.approx(work(cases).sum() / A_SECOND, rel=0.2)
@@ -78,11 +78,12 @@ def test_a_growing_sample_costs_what_it_may_come_to():
 
 def test_room_is_that_of_the_answers():
     study = grid(NODES, store="store: {histories: true, samples: 50000}")
-    cases = SOLVERS["impact"].cases(design(study))
+    cases = SOLVERS["impact"].cases(design(study), np.arange(6))
     found = estimate(study, workers=2)
     answers = 8 * 6 * 50_000 * 5  # five histories of eight bytes a number
     assert found.disk / 2 == pytest.approx(answers, rel=0.01)
-    assert found.memory > 3 * answers + 2 * memory(cases).max()
+    of_the_kernels = 2 * memory(cases).max()
+    assert found.memory - _ITSELF == pytest.approx(2 * answers / 5 + of_the_kernels, rel=0.01)
     assert found.large == "store.samples"
 
 
