@@ -19,7 +19,7 @@ def allowed(
     Raises StudyError where the study is wrong or, without `force`, beyond bearing.
     """
     from impactlab.report.console import print_estimate
-    from impactlab.study.bearable import free, remarks, unbearable
+    from impactlab.study.bearable import remarks, room, unbearable
     from impactlab.study.errors import StudyError
     from impactlab.study.estimate import estimate
 
@@ -29,7 +29,7 @@ def allowed(
         logging.getLogger("impactlab").warning("%s", remark)
     problems = unbearable(cost, output.parent)
     if dry_run:
-        print_estimate(cost, workers, free(output.parent), problems)
+        print_estimate(cost, workers, room(output.parent), problems)
     elif problems and not force:
         raise StudyError(*problems)
     return not dry_run

@@ -71,7 +71,7 @@ def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
 def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable[Problem]) -> None:
     """What a study costs, a line each; and why it is not solved unless it is forced.
 
-    room: free bytes of disk.
+    room: bytes of disk that it may take.
     """
     at = ", ".join(f"{name} = {_short(value)}" for name, value in cost.largest_run.items())
     lines = {
@@ -79,7 +79,7 @@ def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable
         "cost": f"about {time(cost.seconds)} of one core, most of it by {cost.slow}",
         "wall": f"about {time(cost.wall(workers))} on {workers} workers",
         "memory": f"about {amount(cost.memory)}",
-        "disk": f"about {amount(cost.disk)}, of {amount(room)} that are free",
+        "disk": f"about {amount(cost.disk)}, of {amount(room)} that it may take",
         "largest run": f"about {time(cost.largest)}" + f" ({at})" * bool(at),
     }
     if cost.auto:

@@ -12,6 +12,7 @@ from impactlab.study.declaration import FunctionStudy, Study
 from impactlab.study.declaration.plausible import doubts, ends_of, stated_at
 from impactlab.study.errors import Problem
 from impactlab.study.estimate import Estimate
+from impactlab.study.status import disk_size
 from impactlab.study.words import amount, time
 
 MOST_TIME = 30 * 86400.0
@@ -34,21 +35,21 @@ def unbearable(cost: Estimate, folder: Path) -> list[Problem]:
     """
     return [
         Problem(cost.file, key, f"{reason}; see --dry-run, and --force runs it all the same")
-        for key, reason in _beyond(cost, free(folder))
+        for key, reason in _beyond(cost, room(folder))
     ]
 
 
-def _beyond(cost: Estimate, room: float) -> Iterator[tuple[str, str]]:
+def _beyond(cost: Estimate, disk: float) -> Iterator[tuple[str, str]]:
     if cost.seconds > MOST_TIME:
         limit = f"above the {time(MOST_TIME)} that a study may take"
         yield cost.slow, f"about {time(cost.seconds)} of one core for {cost.runs:,} runs, {limit}"
     if cost.memory > MEMORY_LIMIT:
         yield cost.large, f"about {amount(cost.memory)} of memory, of {amount(MEMORY_LIMIT)}"
-    if cost.disk > room:
-        yield cost.large, f"about {amount(cost.disk)} of disk, of {amount(room)} that are free"
+    if cost.disk > disk:
+        yield cost.large, f"about {amount(cost.disk)} of disk, of {amount(disk)} that it may take"
 
 
-def free(folder: Path) -> float:
-    """Bytes that are free where the folder is, or would be made."""
+def room(folder: Path) -> float:
+    """Bytes that a study may take: those free on the disk of its folder, and what it holds there."""
     there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
-    return float(disk_usage(there).free)
+    return float(disk_usage(there).free + disk_size(folder.rglob("*")))

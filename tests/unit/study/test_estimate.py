@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace as Namespace
 
 import numpy as np
 import pytest
 
 from impactlab.model.cost import memory, work
-from impactlab.study.bearable import MOST_TIME, unbearable
+from impactlab.study.bearable import MOST_TIME, room, unbearable
 from impactlab.study.declaration import study_of_text
 from impactlab.study.estimate import _ITSELF, A_SECOND, Estimate, estimate
 from impactlab.study.sampling import design
@@ -117,6 +118,16 @@ def test_more_room_than_there_is_is_told(tmp_path):
     assert "of memory" in greedy.reason
     (greedy,) = unbearable(replace(frugal, disk=1e18), Path("relative/folder"))
     assert "1,000 PB of disk" in greedy.reason
+
+
+def test_what_a_study_has_on_disk_already_is_no_more_to_be_found(tmp_path, monkeypatch):
+    monkeypatch.setattr("impactlab.study.bearable.disk_usage", lambda path: Namespace(free=1000))
+    (tmp_path / "shards").mkdir()
+    (tmp_path / "shards" / "some.nc").write_bytes(bytes(500))
+    assert room(tmp_path) == 1500
+    resumed = Estimate("a.yaml", 1, 1.0, 1e6, 1400, 1.0, {}, "nodes", "store.samples")
+    assert unbearable(resumed, tmp_path) == []
+    assert unbearable(resumed, tmp_path / "fresh")
 
 
 def test_a_function_costs_next_to_nothing():
