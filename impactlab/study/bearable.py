@@ -50,6 +50,6 @@ def _beyond(cost: Estimate, disk: float) -> Iterator[tuple[str, str]]:
 
 
 def room(folder: Path) -> float:
-    """Bytes that a study may take: those free on the disk of its folder, and what it holds there."""
+    """Bytes that a study may take: those free on the disk of its folder, and its own there."""
     there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
     return float(disk_usage(there).free + disk_size(folder.rglob("*")))
