@@ -19,7 +19,7 @@ def listening():
 
 @pytest.mark.parametrize("kind", ["threads", "processes"])
 def test_scheduler_workers_and_dashboard_listen_on_the_loopback_alone(kind):
-    assert listening() == set()
+    before = listening()
     with Engine(kind, workers=2).client() as client:
         client.wait_for_workers(2 if kind == "processes" else 1, timeout=60)
-        assert listening() == {"127.0.0.1"}
+        assert "127.0.0.1" in listening() <= before | {"127.0.0.1"}
