@@ -27,7 +27,7 @@ def run(
         Path | None, typer.Option(help="Slurm jobs as in this file; see profiles/slurm.")
     ] = None,
     batch_seconds: Annotated[
-        float, typer.Option(min=0.001, hidden=True, help="Of a task, about.")
+        float, typer.Option(min=0.001, help="Of a task, about; more for hundreds of threads.")
     ] = 1.0,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Tell runs, time, memory and disk, and solve nothing.")
