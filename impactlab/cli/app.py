@@ -15,6 +15,7 @@ from impactlab.cli.clean import clean
 from impactlab.cli.design import design
 from impactlab.cli.figures import figures
 from impactlab.cli.index import index
+from impactlab.cli.interrupt import stop_quietly
 from impactlab.cli.paper import paper
 from impactlab.cli.predict import predict
 from impactlab.cli.recommend import recommend
@@ -76,7 +77,8 @@ def configure(
         bool, typer.Option(help="Log details, the place of an error included.")
     ] = False,
 ) -> None:
-    """Set up logging for every command."""
+    """Set up logging and Ctrl-C for every command."""
+    stop_quietly()
     logger = logging.getLogger("impactlab")
     logger.setLevel(logging.DEBUG if debug else logging.INFO)
     handlers: list[logging.Handler] = [logging.StreamHandler()]

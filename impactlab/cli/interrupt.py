@@ -8,6 +8,18 @@ import sys
 from multiprocessing import active_children
 from typing import NoReturn
 
+_INTERRUPTED = b"impactlab: interrupted\n"
+
+
+def stop_without_more() -> None:
+    """From here on, Ctrl-C ends the process: nothing is begun, and imports lose exceptions."""
+    signal.signal(signal.SIGINT, _stop_without_more)
+
+
+def stopped() -> None:
+    """From here on, Ctrl-C does nothing: the process ends by itself, its work done or put away."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
 
 def stop_quietly() -> None:
     """From here on, Ctrl-C ends the command in one line; what is half done is put away."""
@@ -25,8 +37,13 @@ def stop_at_once() -> None:
     signal.signal(signal.SIGINT, _stop_at_once)
 
 
+def _stop_without_more(number: int, frame: object) -> NoReturn:
+    os.write(sys.stderr.fileno(), _INTERRUPTED)
+    os._exit(130)
+
+
 def _stop(number: int, frame: object) -> NoReturn:
-    os.write(sys.stderr.fileno(), b"impactlab: interrupted\n")
+    os.write(sys.stderr.fileno(), _INTERRUPTED)
     raise SystemExit(130)
 
 

@@ -25,7 +25,7 @@ def interrupted(folder, moments, to_all, *engine):
     """What a study says that is interrupted at a drawn moment."""
     command = run(folder, "--workers", "2", *engine, *SMALL)
     command.wait_until_it_solves()
-    time.sleep(moments.uniform(0, 2))
+    time.sleep(moments.uniform(0, 0.6))
     workers = command.others()
     (os.killpg if to_all else os.kill)(command.process.pid, signal.SIGINT)
     assert command.end() == 130, command.said

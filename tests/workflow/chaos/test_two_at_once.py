@@ -28,8 +28,8 @@ def another(folder, *options):
 
 
 def test_the_second_one_says_who_is_at_work(folder, undisturbed):
-    first = run(folder, *SMALL)
-    first.wait_for_shards(2)
+    first = run(folder, "--workers", "1", *SMALL)
+    first.wait_until_it_solves()
     second = another(folder)
     assert second.end() == 1, second.said
     assert str(first.process.pid) in complaint(second.said)
