@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.filesize import decimal
 from rich.markup import escape
-from rich.table import Table
+from rich.table import Column, Table
 
 from impactlab.dataset import RESPONSES, marks, reasons, remarked
 from impactlab.study.words import amount, time
@@ -123,12 +123,13 @@ def print_status(name: str, found: Status) -> None:
 
 def print_files(reasons_of: Mapping[Path, str]) -> None:
     """One line a file that can go: its size and why; then their size in all."""
-    table = Table("file", "size", "why")
+    table = Table(Column("file", overflow="fold"), "size", "why")
     for path, reason in reasons_of.items():
         table.add_row(escape(str(path)), decimal(path.stat().st_size), reason)
     Console().print(table)
     total = sum(path.stat().st_size for path in reasons_of)
-    print(f"{len(reasons_of)} files, {decimal(total)}")
+    files = "1 file" if len(reasons_of) == 1 else f"{len(reasons_of)} files"
+    print(f"{files}, {decimal(total)}")
 
 
 def age_text(seconds: float) -> str:

@@ -47,9 +47,8 @@ def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterato
         shards, ledger = Shards(shards_folder, work.form, solver.VERSION), Ledger(work.keys)
         for keys in shards.recover():
             ledger.mark(ledger.find(keys)[1])
-        missing = ledger.missing()
-        log.info("%d runs, %d of them solved before", work.size, work.size - missing.size)
-        for runs, columns in _followed(work, missing, engine):
+        log.info("%s", _found(ledger))
+        for runs, columns in _followed(work, ledger, engine):
             shards.write(work.keys[runs], columns)
             ledger.mark(runs)
         shards.merge()
@@ -64,12 +63,21 @@ def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Datas
         return runs.load()
 
 
-def _followed(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, Columns]]:
+def _found(ledger: Ledger) -> str:
+    """What there is to do."""
+    before = ledger.distinct - ledger.missing().size
+    repeats = ledger.size - ledger.distinct
+    runs = f"{ledger.distinct} runs" + f" ({repeats} more are equal to one of them)" * bool(repeats)
+    return f"{runs}, {before} of them solved before"
+
+
+def _followed(work: Work, ledger: Ledger, engine: Engine) -> Iterator[tuple[Array, Columns]]:
     """Numbers and answers of the missing runs as they come in; a bar tells how far they are."""
+    missing, total = ledger.missing(), ledger.distinct
     if not missing.size:
         return
     bits = SOLVERS[work.solver].failures(work.design)
-    with Progress(total=work.size, done=work.size - missing.size) as progress:
+    with Progress(total=total, done=total - missing.size) as progress:
         for runs, columns in solved(work, missing, engine):
             yield runs, columns
             progress.advance(runs.size, int(np.count_nonzero(columns["status"] & bits)))

@@ -26,6 +26,11 @@ class Ledger:
         """The number of runs."""
         return int(self._keys.size)
 
+    @property
+    def distinct(self) -> int:
+        """The number of runs that are equal to none before them."""
+        return self.size - int(self._repeats.size)
+
     def find(self, keys: Array) -> tuple[Array, Array]:
         """Which of the keys are the design's, shape (keys,), and the first run of each of those."""
         places = np.searchsorted(self._keys, keys, sorter=self._order)

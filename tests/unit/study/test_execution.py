@@ -118,8 +118,10 @@ def test_interrupted_studies_go_on(tmp_path, solved, monkeypatch):
     assert resumed.drop_attrs().identical(fresh.drop_attrs())
 
 
-def test_equal_runs_are_solved_once(tmp_path, solved):
+def test_equal_runs_are_solved_once(tmp_path, solved, caplog):
+    caplog.set_level("INFO")
     runs = execute(design(velocities=(1.0, 1.0)), tmp_path, Engine())
+    assert "2 runs (2 more are equal to one of them), 0 of them solved before" in caplog.text
     assert sum(solved) == 2
     np.testing.assert_array_equal(runs["peak_force"][0], runs["peak_force"][1])
 

@@ -26,6 +26,7 @@ def test_the_first_of_equal_runs_stands_for_all():
     ledger = Ledger(keys(7, 3, 7, 3, 7))
     assert ledger.missing().tolist() == [0, 1]
     assert ledger.left() == 5
+    assert ledger.distinct == 2
     ledger.mark(ledger.find(keys(3))[1])
     assert ledger.left() == 3
     values = np.array([[7.0, 70.0], [3.0, 30.0], [0, 0], [0, 0], [0, 0]])
