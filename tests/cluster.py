@@ -15,12 +15,12 @@ SOON = {"DASK_DISTRIBUTED__COMM__TIMEOUTS__TCP": "12s"}
 class Cluster:
     """`dask scheduler` and `dask worker`s; ended at the end of a `with`."""
 
-    def __init__(self, folder, host="127.0.0.1", **env):
+    def __init__(self, folder, host="127.0.0.1", protocol="tcp", **env):
         self._folder, self._env = folder, os.environ | env
         self.workers = []
         file = folder / "scheduler.json"
-        options = ("--host", host, "--port", "0", "--no-dashboard", "--scheduler-file", file)
-        self.scheduler = self._started("scheduler", *options)
+        options = ("--host", host, "--port", "0", "--protocol", protocol, "--no-dashboard")
+        self.scheduler = self._started("scheduler", *options, "--scheduler-file", file)
         deadline = time.monotonic() + 60
         while not (file.exists() and file.read_text()):
             assert time.monotonic() < deadline, self.said

@@ -1,7 +1,6 @@
 """A study on schedulers and workers of their own: the same bits as in threads."""
 
 import os
-import re
 import subprocess
 import sys
 import time
@@ -9,6 +8,7 @@ from contextlib import ExitStack
 
 import pytest
 import xarray as xr
+from cluster import Cluster
 
 STUDY = """
 title: Spread
@@ -42,45 +42,6 @@ def folder(tmp_path):
     return tmp_path
 
 
-@pytest.fixture
-def started():
-    """Starts processes, and ends them."""
-    with ExitStack() as all_of_them:
-
-        def start(*command, env=None):
-            process = subprocess.Popen(
-                command, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-            )
-            all_of_them.callback(process.wait)
-            all_of_them.callback(process.kill)
-            return process
-
-        yield start
-
-
-@pytest.fixture
-def scheduler(started, tmp_path):
-    """Starts a scheduler that listens on a host, and returns its address."""
-
-    def start(host, protocol="tcp", env=None):
-        file = tmp_path / "scheduler.json"
-        options = ["--host", host, "--port", "0", "--protocol", protocol]
-        options += ["--dashboard-address", f"{host}:0", "--scheduler-file", str(file)]
-        started(sys.executable, "-m", "distributed.cli.dask_scheduler", *options, env=env)
-        deadline = time.monotonic() + 60
-        while not file.exists() and time.monotonic() < deadline:
-            time.sleep(0.05)
-        time.sleep(0.2)
-        return re.search(rf"{protocol}://[\d.]+:\d+", file.read_text())[0]
-
-    return start
-
-
-def worker(address):
-    options = ["--nthreads", "1", "--no-nanny", "--no-dashboard"]
-    return sys.executable, "-m", "distributed.cli.dask_worker", address, *options
-
-
 def solved(folder, *options, env=None):
     done = impactlab("run", "studies/spread.yaml", *options, cwd=folder, env=env)
     assert done.returncode == 0, done.stderr
@@ -91,11 +52,10 @@ def solved(folder, *options, env=None):
     return dataset
 
 
-def test_three_workers_on_loopback(folder, scheduler, started):
-    address = scheduler("127.0.0.1")
-    for _ in range(3):
-        started(*worker(address))
-    assert solved(folder, "--scheduler", address).identical(solved(folder))
+def test_three_workers_on_loopback(folder):
+    with Cluster(folder) as cluster:
+        cluster.add(3)
+        assert solved(folder, "--scheduler", cluster.address).identical(solved(folder))
 
 
 @pytest.fixture
@@ -128,16 +88,16 @@ def namespaces():
         yield names
 
 
-def test_three_workers_in_networks_of_their_own(folder, scheduler, started, namespaces):
-    address = scheduler(f"{NETWORK}.254")
-    for name in namespaces:
-        started("ip", "netns", "exec", name, *worker(address))
-    assert solved(folder, "--scheduler", address).identical(solved(folder))
+def test_three_workers_in_networks_of_their_own(folder, namespaces):
+    with Cluster(folder, f"{NETWORK}.254") as cluster:
+        for name in namespaces:
+            cluster.add(inside=("ip", "netns", "exec", name))
+        assert solved(folder, "--scheduler", cluster.address).identical(solved(folder))
 
 
 @pytest.fixture
 def tls(tmp_path):
-    """An environment in which dask asks for certificates, made for this test."""
+    """The environment with which dask asks for certificates, made for this test."""
     key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
     command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1"]
     command += ["-subj", "/CN=127.0.0.1", "-keyout", str(key), "-out", str(certificate)]
@@ -148,16 +108,17 @@ def tls(tmp_path):
     settings = {"REQUIRE_ENCRYPTION": "True", "TLS__CA_FILE": str(certificate)}
     for who in ("SCHEDULER", "WORKER", "CLIENT"):
         settings |= {f"TLS__{who}__KEY": str(key), f"TLS__{who}__CERT": str(certificate)}
-    return os.environ | {f"DASK_DISTRIBUTED__COMM__{name}": v for name, v in settings.items()}
+    return {f"DASK_DISTRIBUTED__COMM__{name}": value for name, value in settings.items()}
 
 
-def test_certificates_of_dask_are_asked_for(folder, scheduler, started, tls):
-    address = scheduler("127.0.0.1", protocol="tls", env=tls)
-    started(*worker(address), env=tls)
-    refused = impactlab("run", "studies/spread.yaml", "--scheduler", address, cwd=folder)
-    assert refused.returncode == 1
-    assert "Traceback" not in refused.stderr
-    assert solved(folder, "--scheduler", address, env=tls).sizes["velocity"] == 200
+def test_certificates_of_dask_are_asked_for(folder, tls):
+    with Cluster(folder, protocol="tls", **tls) as cluster:
+        cluster.add()
+        to_it = ("--scheduler", cluster.address)
+        refused = impactlab("run", "studies/spread.yaml", *to_it, cwd=folder)
+        assert refused.returncode == 1
+        assert "Traceback" not in refused.stderr
+        assert solved(folder, *to_it, env=os.environ | tls).sizes["velocity"] == 200
 
 
 def test_slurm_jobs_as_a_shell_would_run_them(folder):
