@@ -89,10 +89,11 @@ def test_balances_of_hundreds_of_impacts():
     """Exact in an elastic beam; in one that yields, as good as the run says of itself."""
     seen = Counter()
 
-    @settings(FIXED, max_examples=300)
+    @settings(FIXED, max_examples=300 // len(LAWS))
     @given(VALUES, st.floats(0.3e-3, 6e-3))
-    def check(values, duration):
-        found = audit(*with_values(il.paper_impact(), il.Discretisation(), values), duration)
+    def check(law, values, duration):
+        impact = il.paper_impact(contact=law)
+        found = audit(*with_values(impact, il.Discretisation(), values), duration)
         run = found.run
         if run.status.item() & NO_ANSWER:
             seen["no answer"] += 1
@@ -101,13 +102,14 @@ def test_balances_of_hundreds_of_impacts():
         seen["yields" if yields else "stays elastic"] += 1
         assert abs(found.momentum) < 1e-9
         # few nodes and long steps are drawn, too: the run must say so itself
-        assert abs(found.energy) < (0.01 + 5 * run.energy_error.item() if yields else 1e-7)
+        assert abs(found.energy) < (0.01 + 5 * run.energy_error.item() if yields else 1e-9)
         assert run.plastic_dissipation.item() >= 0
         assert run.plastic_dissipation.item() == pytest.approx(found.plastic, rel=1e-9)
         created = bool(run.remarks.item() & 1)
         assert (run.contact_dissipation.item() < -1e-9 * found.brought) <= created
-        assert created <= (values["contact"] == "stronge")
+        assert created <= (law == "stronge")
 
-    check()
+    for law in LAWS:
+        check(law)
     assert min(seen["yields"], seen["stays elastic"]) >= 50, seen
     assert seen["no answer"] < 30, seen
