@@ -25,19 +25,14 @@ _INCREMENTS = 1_000_000
 
 
 def _hardening(material: Material) -> Iterator[str]:
-    isotropic = material.isotropic_hardening_modulus
-    kinematic = material.kinematic_hardening_modulus
-    if kinematic == 0.0:
-        yield "*PLASTIC"
-        yield from curve(material, isotropic)
-    elif isotropic == 0.0:
-        yield "*PLASTIC, HARDENING=KINEMATIC"
-        yield from curve(material, kinematic)
-    else:
-        yield "*PLASTIC, HARDENING=COMBINED"
-        yield from curve(material, kinematic)
-        yield "*CYCLIC HARDENING"
-        yield from curve(material, isotropic)
+    if material.kinematic_hardening_modulus > 0.0:
+        raise ValueError(
+            f"deck: kinematic_hardening_modulus = {material.kinematic_hardening_modulus!r} Pa, but "
+            "CalculiX 2.20 softens such a material where it should harden: write the deck for "
+            "Abaqus, or with elastic materials"
+        )
+    yield "*PLASTIC"
+    yield from curve(material, material.isotropic_hardening_modulus)
 
 
 def _sections(_: Case) -> Iterator[str]:

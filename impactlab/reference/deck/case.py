@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from impactlab.model.checks import instance, positive
@@ -9,6 +10,8 @@ from impactlab.model.impact import Impact
 from impactlab.reference import hertz
 from impactlab.reference.solid.mesh import Mesh
 
+_SAME = 1e-9
+"""Relative difference of lengths that are the same."""
 _SAMPLES = 60
 """Intervals in the contact duration of an elastic half-space."""
 
@@ -19,7 +22,8 @@ class Case:
 
     plastic: whether the materials yield.
 
-    Raises ValueError naming the field where impact, mesh or a time is none.
+    Raises ValueError naming the field where impact, mesh or a time is none, and when the mesh is
+    that of other bodies.
     """
 
     impact: Impact
@@ -37,6 +41,22 @@ class Case:
                 f"deck.interval = {self.interval!r} s: must not be above the duration "
                 f"({self.duration!r} s)"
             )
+        self._check_sizes()
+
+    def _check_sizes(self) -> None:
+        """The mesh's extents are those of the impact's bodies."""
+        beam, nodes = self.impact.beam, self.mesh.nodes
+        for name, meshed, wanted in (
+            ("beam's span", 2.0 * nodes[self.mesh.support, 0].max(), beam.span),
+            ("beam's width", 2.0 * nodes[self.mesh.support, 1].max(), beam.width),
+            ("beam's depth", -nodes[:, 2].min(), beam.depth),
+            ("sphere's radius", 0.5 * nodes[:, 2].max(), self.impact.sphere.radius),
+        ):
+            if not math.isclose(meshed, wanted, rel_tol=_SAME):
+                raise ValueError(
+                    f"deck.mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in "
+                    "the impact: make the mesh from this impact (quarter_mesh)"
+                )
 
 
 def usual_interval(impact: Impact, duration: float) -> float:

@@ -20,7 +20,7 @@ def materials(case: Case, hardening: Hardening) -> Iterator[str]:
     """Both bodies' materials. hardening: the program's cards for plasticity, in MPa."""
     for name, material, density in (
         ("BEAM", case.impact.beam.material, case.impact.beam.material.density),
-        ("SPHERE", case.impact.sphere.material, sphere_density(case)),
+        ("SPHERE", case.impact.sphere.material, _sphere_density(case)),
     ):
         yield f"*MATERIAL, NAME={name}_STEEL"
         yield "*DENSITY"
@@ -31,7 +31,7 @@ def materials(case: Case, hardening: Hardening) -> Iterator[str]:
             yield from hardening(material)
 
 
-def sphere_density(case: Case) -> float:
+def _sphere_density(case: Case) -> float:
     """In kg/m3: that which gives the sphere of the mesh the mass of the impact."""
     quarter = element_volumes(case.mesh)[case.mesh.body == SPHERE].sum()
     return float(case.impact.sphere.total_mass / 4.0 / quarter)

@@ -38,7 +38,8 @@ def write_deck(
     half-space). plastic: False leaves the materials elastic, without which CalculiX 2.20 does not
     get through a contact (docs/decks.md). The same arguments give the same text.
 
-    Raises ValueError naming the argument that is not valid, or the path that cannot be written.
+    Raises ValueError naming the argument that is not valid, the path that cannot be written, or
+    what the program cannot do right: kinematic hardening in CalculiX.
     """
     chosen = FLAVOURS[one_of("deck", "flavour", flavour, tuple(FLAVOURS))]
     case = Case(
@@ -48,10 +49,10 @@ def write_deck(
         interval=usual_interval(impact, duration) if interval is None else interval,
         plastic=plastic,
     )
+    text = "".join(f"{line}\n" for line in _lines(case, chosen))
     path = Path(path)
     try:
-        with path.open("w", encoding="ascii", newline="\n") as file:
-            file.writelines(f"{line}\n" for line in _lines(case, chosen))
+        path.write_text(text, encoding="ascii", newline="\n")
     except OSError as error:
         raise ValueError(f"deck: cannot write {path}: {error.strerror}") from error
     return path
