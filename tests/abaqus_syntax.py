@@ -1,7 +1,8 @@
-"""What the Abaqus Keywords Guide (2016) says of the keywords that a deck uses, as a checker.
+"""What Abaqus asks of the keywords that a deck uses, as a checker.
 
-Only what stands there for explicit dynamics; a keyword or parameter that is not listed is a
-complaint.
+Only what holds for explicit dynamics; a keyword or parameter that is not listed is a complaint.
+Source: the Keywords Guide, of which *CONTACT PAIR, *SECTION CONTROLS, *PLASTIC and *CYCLIC
+HARDENING were read (2016, 2017); the rest is as recalled.
 """
 
 from __future__ import annotations
@@ -134,7 +135,7 @@ NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 
 
 def complaints(path: Path) -> list[str]:
-    """What the guide would not allow, a sentence each; empty for a sound deck."""
+    """What Abaqus would not take, a sentence each; empty for a sound deck."""
     deck = cards(path)
     found = [
         f"line {n}: {len(line)} characters"
