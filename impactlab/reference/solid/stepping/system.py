@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from impactlab.model.impact import Impact
@@ -100,9 +102,7 @@ def _inverse(mass: Floats, mesh: Mesh) -> Floats:
 
 def _share_forces(groups: list[Group]) -> tuple[list[Group], Floats]:
     """The groups with their forces in one array, and that array by node: (8 elements, 3)."""
-    from dataclasses import replace
-
-    ends = np.cumsum([0] + [len(group.forces) for group in groups])
+    ends = np.cumsum([0, *(len(group.forces) for group in groups)])
     every = np.zeros((ends[-1], 24))
     shared = [
         replace(group, forces=every[start:end])
