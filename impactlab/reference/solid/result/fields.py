@@ -39,7 +39,7 @@ def _mises(group: Group) -> Floats:
 
 
 def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, float]:
-    """Answers about PEEQ, by the names of dataset.RESPONSES; strain: the largest of each element."""
+    """Answers about PEEQ, by the names of dataset.RESPONSES; strain: each element's largest."""
     points = mesh.nodes[mesh.elements, 0]
     beam = mesh.body == BEAM
     remote = beam & (points.mean(axis=1) > impact.beam.depth)

@@ -46,7 +46,7 @@ _CAUSES = {
 
 
 def energy_error(energies: list[Energies], impact: Impact) -> float:
-    """Largest imbalance of energy over the initial kinetic energy, 1; NaN where it is not finite."""
+    """Largest imbalance of energy over the initial kinetic energy; NaN where it is not finite."""
     first = 0.5 * impact.sphere.total_mass * impact.velocity**2
     balances = np.array([entry.balance for entry in energies] or [np.nan])
     error = float(np.max(np.abs(balances - first)) / first)

@@ -13,7 +13,7 @@ _TINY = 1e-12
 
 
 def critical_step(system: System) -> float:
-    """2/omega of the fastest mode in s (Lanczos, to about 1 %). `system` must be at rest, unstrained.
+    """2/omega of the fastest mode in s, by Lanczos, of a system that is not yet strained.
 
     The elements' own forces are what the eigenvalue is taken of, so no estimate stands between.
     """

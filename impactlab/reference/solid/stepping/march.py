@@ -33,6 +33,7 @@ class March:
     """A system on its way. history: what it has left so far."""
 
     def __init__(self, system: System, impact: Impact) -> None:
+        """At first touch."""
         self.system, self.impact, self.history = system, impact, History()
         self._step = SAFETY * critical_step(system)
         self._volumes = np.empty(system.mesh.elements.shape)
