@@ -61,7 +61,9 @@ class March:
 
     def _advance(self, end: float) -> None:
         """Steps until `end` (s), then a checkpoint."""
-        steps = max(math.ceil((end - self._time) / self._dt), 1)
+        steps = math.ceil((end - self._time) / self._dt)
+        if steps <= 0:
+            return
         for _ in range(steps - 1):
             self._take()
         before = self.system.v.copy()

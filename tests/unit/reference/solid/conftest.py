@@ -11,9 +11,7 @@ from impactlab.reference.solid.elements.lanes import SCRATCH, W
 from impactlab.reference.solid.mesh.beam import brick
 from impactlab.reference.solid.stepping.groups import _group, metal
 
-STEEL = Material(
-    density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11
-)
+STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
 KINDS = {"one_point": one_point, "full": full}
 
 

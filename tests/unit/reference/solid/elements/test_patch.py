@@ -93,7 +93,8 @@ def test_a_stress_turns_with_the_body_and_nothing_else_happens(make_body, distor
     turned = six(rotation @ tensor @ rotation.T)
     largest = np.abs(stress).max()
     np.testing.assert_allclose(
-        body.stress(), np.broadcast_to(turned[:, None, None], body.stress().shape),
+        body.stress(),
+        np.broadcast_to(turned[:, None, None], body.stress().shape),
         atol=2e-4 * largest,
     )
     np.testing.assert_allclose(forces, before @ rotation.T, atol=3e-4 * np.abs(before).max())

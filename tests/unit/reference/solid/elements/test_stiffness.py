@@ -29,7 +29,10 @@ def stiffness(body):
 
 def bent(make_body, kind, cells, moment, axis=2):
     """Curvature (1/m) at the middle of a bar under end moments (N m) about y or z."""
-    lines = [np.linspace(0.0, size, count + 1) for size, count in zip((LENGTH, WIDTH, DEPTH), cells, strict=True)]
+    lines = [
+        np.linspace(0.0, size, count + 1)
+        for size, count in zip((LENGTH, WIDTH, DEPTH), cells, strict=True)
+    ]
     body = make_body(*brick(*lines), kind)
     nodes = body.x
     K = stiffness(body)
@@ -89,7 +92,7 @@ def test_full_elements_keep_their_volume_without_locking(make_body):
     rubber = Material(density=1.0, youngs_modulus=3e6, poissons_ratio=0.4999, yield_stress=2e6)
     side = np.array([-1.0, 1.0])
     body = make_body(*brick(side, side, side), "full", rubber)
-    x, y, z = body.x.T
+    x, _, z = body.x.T
     u = 1e-6 * np.stack([x * z, 0 * x, 0 * x], axis=1)  # dilates above, contracts below
     work = np.sum(u * body.move_to(body.x + u)) / 2
     G = 3e6 / (2 * 1.4999)

@@ -49,7 +49,10 @@ def test_one_step_beyond_yield_in_shear():
 
 
 def test_a_return_goes_straight_to_the_surfaces_centre():
-    trial, back = np.array([5e8, -3e8, -2e8, 1e8, -4e8, 2e8]), np.array([4e7, 1e7, -5e7, 3e7, 0.0, 6e7])
+    trial, back = (
+        np.array([5e8, -3e8, -2e8, 1e8, -4e8, 2e8]),
+        np.array([4e7, 1e7, -5e7, 3e7, 0.0, 6e7]),
+    )
     s, _, _, along = radial_return(tuple(trial), tuple(back), 0.0, metal(steel()))
     kept = (np.array(s) - back) / (trial - back)
     np.testing.assert_allclose(kept, kept[0], rtol=1e-13)
@@ -60,7 +63,9 @@ def test_a_return_goes_straight_to_the_surfaces_centre():
 @pytest.mark.parametrize(("isotropic", "kinematic"), [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9)])
 def test_cycles_along_one_axis_follow_the_fibre(isotropic, kinematic):
     """A deviator along x is a fibre of modulus 3 G: stress 3/2 s_xx against strain e_xx."""
-    turns = np.concatenate([np.linspace(a, b, 60)[1:] for a, b in ((0, 6), (6, -7), (-7, 8), (8, 0))])
+    turns = np.concatenate(
+        [np.linspace(a, b, 60)[1:] for a, b in ((0, 6), (6, -7), (-7, 8), (8, 0))]
+    )
     strains = 1e-3 * np.concatenate([[0.0], turns])
     material = steel(isotropic, kinematic)
     fibre = fibre_stresses(steel(isotropic, kinematic, modulus=3 * G), strains)
