@@ -9,9 +9,10 @@ import pytest
 import xarray as xr
 
 from impactlab.model.paper import paper_impact
-from impactlab.reference.solid import quarter_mesh, solve_on
+from impactlab.reference.solid import estimate, quarter_mesh, solve_on
 from impactlab.reference.solid.mesh import BEAM, SPHERE
 from impactlab.reference.solid.stepping.critical import critical_step
+from impactlab.reference.solid.stepping.march import SAFETY
 from impactlab.reference.solid.stepping.masses import nodal_masses
 from impactlab.reference.solid.stepping.parts import Parts
 from impactlab.reference.solid.stepping.system import System
@@ -59,6 +60,18 @@ def test_the_critical_step_leaves_the_system_as_it_was(mesh):
     for name in ("x", "v", "forces"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
     assert not any(group.state.any() for group in one.groups)
+
+
+def test_the_estimate_of_memory_and_steps_holds(mesh):
+    cost = estimate(mesh, IMPACT, duration=1e-3)
+    with Parts(1) as parts:
+        system = System(mesh, IMPACT, parts)
+        steps = 1e-3 / (SAFETY * critical_step(system))
+    arrays = [value for value in vars(system).values() if isinstance(value, np.ndarray)]
+    arrays += [part for group in system.groups for part in (group.nodes, group.state)]
+    held = sum(array.nbytes for array in arrays)
+    assert held < cost.memory_bytes < 2.5 * held
+    assert cost.steps == pytest.approx(steps, rel=0.15)
 
 
 def test_the_same_bits_for_any_number_of_threads(mesh):
