@@ -33,7 +33,7 @@ from impactlab.reference.solid.elements.vectors import (
     times,
 )
 from impactlab.reference.solid.jit import compiled, inlined
-from impactlab.reference.solid.material.plasticity import Metal, Six
+from impactlab.reference.solid.material.plasticity import Metal
 from impactlab.reference.solid.types import Array
 
 POINTS = 8
@@ -117,7 +117,14 @@ def _point(
     state[WORK * W + lane] += size * work
     state[DISSIPATED * W + lane] += size * dissipated
     T = ((S[0], S[5], S[4]), (S[5], S[1], S[3]), (S[4], S[3], S[2]))
-    _add(s, lane, at, times(0.125, apply(T, C1)), times(0.125, apply(T, C2)), times(0.125, apply(T, C3)))
+    _add(
+        s,
+        lane,
+        at,
+        times(0.125, apply(T, C1)),
+        times(0.125, apply(T, C2)),
+        times(0.125, apply(T, C3)),
+    )
 
 
 @inlined

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from impactlab.model.impact import Impact
@@ -23,6 +25,7 @@ class System:
     """
 
     def __init__(self, mesh: Mesh, impact: Impact, parts: Parts) -> None:
+        """At first touch: the sphere moving at the impact's velocity, the beam at rest."""
         self.mesh, self.parts = mesh, parts
         self.x, self.v = mesh.nodes.copy(), np.zeros_like(mesh.nodes)
         self.groups, self.forces = _share_forces(make_groups(mesh, impact))
@@ -100,9 +103,7 @@ def _inverse(mass: Floats, mesh: Mesh) -> Floats:
 
 def _share_forces(groups: list[Group]) -> tuple[list[Group], Floats]:
     """The groups with their forces in one array, and that array by node: (8 elements, 3)."""
-    from dataclasses import replace
-
-    ends = np.cumsum([0] + [len(group.forces) for group in groups])
+    ends = np.cumsum([0, *(len(group.forces) for group in groups)])
     every = np.zeros((ends[-1], 24))
     shared = [
         replace(group, forces=every[start:end])
