@@ -12,7 +12,8 @@ from pathlib import Path
 import numba
 import pytest
 
-from impactlab.kernels import cache, jit
+from impactlab.compiled import cache
+from impactlab.kernels import jit
 
 SOURCES, OTHERS = 64 * "a", 64 * "b"
 

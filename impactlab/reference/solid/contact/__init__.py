@@ -1,0 +1,1 @@
+"""Contact of matched surface nodes without friction, by impulses: no penalty stiffness."""

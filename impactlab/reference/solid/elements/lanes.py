@@ -1,0 +1,38 @@
+"""Elements go through the arithmetic in blocks of W, one a lane, so that processors do many at once.
+
+A block's numbers lie in rows of W in one flat array: `s`, a thread's scratch, or `state`, what the
+elements remember. One array each: a compiler sees that rows do not overlap.
+"""
+
+from __future__ import annotations
+
+from impactlab.reference.solid.jit import inlined
+from impactlab.reference.solid.types import Array
+
+W = 16
+"""Lanes of a block."""
+X, V = 0, 24
+"""First rows of the nodes' positions and velocities in `s`: node 0's x, y, z, node 1's ..."""
+F = 48
+"""First row of the nodes' forces in `s`."""
+SCRATCH = 48 + 24 + 63
+"""Rows of `s`."""
+
+
+@inlined
+def gather(s: Array, nodes: Array, x: Array, v: Array) -> None:
+    """Positions and velocities of a block's nodes (nodes: (8 W,)) into its lanes."""
+    for corner in range(8):
+        for lane in range(W):
+            node = nodes[corner * W + lane]
+            for axis in range(3):
+                s[(X + 3 * corner + axis) * W + lane] = x[node, axis]
+                s[(V + 3 * corner + axis) * W + lane] = v[node, axis]
+
+
+@inlined
+def scatter(s: Array, forces: Array, block: int) -> None:
+    """A block's nodal forces into forces, (elements, 24)."""
+    for lane in range(W):
+        for row in range(24):
+            forces[block * W + lane, row] = s[(F + row) * W + lane]

@@ -1,0 +1,48 @@
+"""How far contact and plastic flow will reach: estimates that the mesh is laid out by.
+
+Both are checked while a run goes: a contact at the patch's rim stops it, and elements that are not
+fully integrated yield by the same law.
+"""
+
+from __future__ import annotations
+
+import math
+
+from impactlab.model.impact import Impact
+from impactlab.reference import hertz
+
+_HARDNESS = 2.8
+"""Mean pressure of a fully plastic contact over the yield stress (Tabor)."""
+_MARGIN = 1.25
+"""Patch over the estimated contact radius."""
+
+
+def contact_radius(impact: Impact) -> float:
+    """Largest contact radius in m to expect: of an elastic and of a plastic half-space.
+
+    Hertz: a = sqrt(R delta_m). Plastic: F = pi a^2 p with a^2 = 2 R delta takes up m v^2/2 at
+    a^4 = 2 R m v^2/(pi p), p = 2.8 of the softer body's yield stress. A beam gives way and stays
+    below the larger one.
+    """
+    radius, mass = hertz.effective_radius(impact), impact.sphere.total_mass
+    modulus = hertz.effective_modulus(impact)
+    depth = hertz.maximum_indentation(mass, impact.velocity, modulus, radius)
+    softer = min(impact.sphere.material.yield_stress, impact.beam.material.yield_stress)
+    pressure = _HARDNESS * softer
+    plastic = math.pow(2.0 * radius * mass * impact.velocity**2 / (math.pi * pressure), 0.25)
+    return max(math.sqrt(radius * depth), plastic)
+
+
+def patch_size(impact: Impact, element_size: float) -> float:
+    """Half the side of the square of matched nodes in m: a whole number of elements, at least 3."""
+    return element_size * max(math.ceil(_MARGIN * contact_radius(impact) / element_size), 3)
+
+
+def bending_yields(impact: Impact) -> bool:
+    """Whether the beam may yield in bending: an infinite beam whose middle moves at `velocity`.
+
+    M = v sqrt(rho A EI) there, the yield moment at v = sigma_y/sqrt(3 rho E).
+    """
+    steel = impact.beam.material
+    limit = steel.yield_stress / math.sqrt(3.0 * steel.density * steel.youngs_modulus)
+    return impact.velocity > limit

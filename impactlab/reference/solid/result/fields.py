@@ -1,0 +1,56 @@
+"""Stresses and plastic strains of the elements at the end of a run."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from impactlab.model.impact import Impact
+from impactlab.reference.solid.elements import point
+from impactlab.reference.solid.mesh import BEAM, Mesh
+from impactlab.reference.solid.mesh.mesh import Floats
+from impactlab.reference.solid.stepping.groups import Group
+
+PLASTIC_ZONE_STRAIN = 1e-5
+"""PEEQ from which on a section counts as plastic, as in the beam models."""
+
+
+def fields(groups: list[Group], count: int) -> dict[str, Floats]:
+    """Of each element, (count,): means over its integration points, and the largest PEEQ.
+
+    equivalent_plastic_strain, largest_equivalent_plastic_strain, plastic_strain (along the beam):
+    1. von_mises_stress: Pa.
+    """
+    names = ("equivalent_plastic_strain", "largest_equivalent_plastic_strain", "plastic_strain")
+    result = {name: np.full(count, np.nan) for name in (*names, "von_mises_stress")}
+    for group in groups:
+        strain = group.points(point.PEEQ)
+        result[names[0]][group.elements] = strain.mean(axis=0)
+        result[names[1]][group.elements] = strain.max(axis=0)
+        result[names[2]][group.elements] = group.points(point.ALONG).mean(axis=0)
+        result["von_mises_stress"][group.elements] = _mises(group)
+    return result
+
+
+def _mises(group: Group) -> Floats:
+    """Von Mises stress in Pa, mean over the integration points."""
+    s = np.stack([group.points(point.STRESS + row) for row in range(6)])
+    squares = np.sum(s[:3] ** 2, axis=0) + 2.0 * np.sum(s[3:] ** 2, axis=0)
+    return np.asarray(np.sqrt(1.5 * squares).mean(axis=0))
+
+
+def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, float]:
+    """Answers about PEEQ, by the names of dataset.RESPONSES; strain: the largest of each element."""
+    points = mesh.nodes[mesh.elements, 0]
+    beam = mesh.body == BEAM
+    remote = beam & (points.mean(axis=1) > impact.beam.depth)
+    return {
+        "peak_plastic_strain": float(strain[beam].max()),
+        "remote_plastic_strain": float(strain[remote].max(initial=0.0)),
+        "plastic_zone_length": _length(points[beam & (strain > PLASTIC_ZONE_STRAIN)]),
+    }
+
+
+def _length(along: Floats) -> float:
+    """Length in m of whole beam that elements with these x of their nodes (e, 8) take up."""
+    cuts = np.unique(np.round(np.stack([along.min(axis=1), along.max(axis=1)], axis=1), 12), axis=0)
+    return float(2.0 * np.sum(cuts[:, 1] - cuts[:, 0]))

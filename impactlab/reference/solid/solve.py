@@ -1,0 +1,69 @@
+"""The door to the 3-D model: one impact on one mesh, and everything that it answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from impactlab.model.checks import integer, positive
+from impactlab.model.impact import Impact
+from impactlab.reference.solid.mesh import Mesh, quarter_mesh
+from impactlab.reference.solid.result.dataset import to_dataset
+from impactlab.reference.solid.stepping.march import March
+from impactlab.reference.solid.stepping.parts import Parts
+from impactlab.reference.solid.stepping.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def solve(
+    impact: Impact,
+    *,
+    element_size: float,
+    duration: float,
+    patch: float | None = None,
+    samples: int = 2001,
+    threads: int = 1,
+    progress: Callable[[float, float], None] | None = None,
+) -> xr.Dataset:
+    """Solve one impact on the mesh that quarter_mesh makes of element_size and patch (m).
+
+    The rest, and what is returned and raised, as in solve_on.
+    """
+    mesh = quarter_mesh(impact, element_size=element_size, patch=patch)
+    return solve_on(
+        mesh, impact, duration=duration, samples=samples, threads=threads, progress=progress
+    )
+
+
+def solve_on(
+    mesh: Mesh,
+    impact: Impact,
+    *,
+    duration: float,
+    samples: int = 2001,
+    threads: int = 1,
+    progress: Callable[[float, float], None] | None = None,
+) -> xr.Dataset:
+    """Solve one impact on `mesh`; contact law and model of the beam in `impact` play no part.
+
+    duration: simulated time in s. samples: length of `time`, equally spaced. threads: the answers
+    are the same to the last bit for any number. progress: called a hundred times a run with the
+    simulated time (s) and the share done.
+
+    Returns a Dataset with the histories and responses of impactlab.dataset that a 3-D model has
+    (`status` says why one is NaN), energies on `checkpoint`, plastic strains and von Mises stress on
+    `element`, displacements on `node`, and the mesh as coordinates. A run that was interrupted by
+    Ctrl-C, or stopped because it diverged or its elements were squeezed flat, gives what it has
+    computed until then, and the attribute `stopped` says why.
+
+    Raises ValueError when a number is not valid, and PatchTooSmallError (a ValueError) when the
+    contact leaves the patch of matched nodes.
+    """
+    positive("solve", "duration", duration)
+    samples = integer("solve", "samples", samples, 2)
+    with Parts(integer("solve", "threads", threads, 1)) as parts:
+        system = System(mesh, impact, parts)
+        history = March(system, impact).run(duration, progress)
+    return to_dataset(system, impact, history, samples)

@@ -1,0 +1,138 @@
+"""The march through time: steps, checkpoints, and reasons to stop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from impactlab.model.impact import Impact
+from impactlab.reference.solid.mesh.mesh import Floats
+from impactlab.reference.solid.stepping.critical import critical_step
+from impactlab.reference.solid.stepping.history import Energies, History, Moment
+from impactlab.reference.solid.stepping.shapes import corner_volumes
+from impactlab.reference.solid.stepping.system import System
+
+Progress = Callable[[float, float], None]
+"""Called at checkpoints with the simulated time in s and the share done."""
+
+SAFETY = 0.9
+"""Time step over the largest stable one."""
+CHECKPOINTS = 100
+"""Checks on energies and elements in a run."""
+_FLAT = 0.1
+"""Volume at an element's corner, over that at the start, from which on it is too distorted."""
+
+
+class PatchTooSmallError(ValueError):
+    """Sphere and beam touch where their nodes are not matched."""
+
+
+class March:
+    """A system on its way. history: what it has left so far."""
+
+    def __init__(self, system: System, impact: Impact) -> None:
+        self.system, self.impact, self.history = system, impact, History()
+        self._step = SAFETY * critical_step(system)
+        self._volumes = np.empty(system.mesh.elements.shape)
+        self._shortest = corner_volumes(system.mesh.elements, system.x, self._volumes)
+        self._dt = self._step
+        self._kick = 0.5 * self._step  # from rest at time 0 to the middle of the first step
+        self._time, self._lost = 0.0, 0.0
+        self._sphere, self._velocity = 0.0, impact.velocity
+
+    def run(self, duration: float, progress: Progress | None = None) -> History:
+        """March on to `duration` (s), or until something is wrong or Ctrl-C is pressed.
+
+        Raises PatchTooSmallError when the contact leaves the matched patch.
+        """
+        try:
+            for checkpoint in range(1, CHECKPOINTS + 1):
+                self._advance(duration * checkpoint / CHECKPOINTS)
+                if progress:
+                    progress(self._time, checkpoint / CHECKPOINTS)
+                if self.history.stopped:
+                    break
+        except KeyboardInterrupt:
+            self.history.stopped = f"interrupted at {self._time:.4g} s"
+        return self.history
+
+    def _advance(self, end: float) -> None:
+        """Steps until `end` (s), then a checkpoint."""
+        steps = max(math.ceil((end - self._time) / self._dt), 1)
+        for _ in range(steps - 1):
+            self._take()
+        before = self.system.v.copy()
+        worked = self._works()
+        self._take()
+        self.history.energies.append(self._energies(before, worked))
+        self.history.stopped = self._wrong()
+
+    def _take(self) -> None:
+        """One step, from positions at its beginning to those at its end."""
+        system, mesh = self.system, self.system.mesh
+        at = (mesh.pole, mesh.axis_node, mesh.top_node)
+        pole, axis, top = mesh.nodes[at, 2] - system.x[at, 2]
+        system.move(self._kick, self._dt)
+        if system.beyond:
+            raise PatchTooSmallError(self._needed())
+        force = 4.0 * system.impulse / self._kick
+        mass = self.impact.sphere.total_mass
+        self._velocity += self._kick * (self.impact.gravity - force / mass)
+        moment = Moment(self._time, force, self._sphere, pole, axis, top, self._velocity)
+        self.history.moments.append(moment)
+        self._lost += system.lost
+        self._sphere += self._dt * self._velocity
+        self._time += self._dt
+        system.strain(self._dt)
+        self._kick = self._dt
+
+    def _works(self) -> Floats:
+        """Sums over the elements: work, dissipated, against hourglassing (J)."""
+        return np.sum(
+            [
+                [group.row(row).sum() for row in (kind.WORK, kind.DISSIPATED, kind.HOURGLASS_WORK)]
+                for group in self.system.groups
+                for kind in [group.kind]
+            ],
+            axis=0,
+        )
+
+    def _energies(self, before: Floats, worked: Floats) -> Energies:
+        """At the last step's beginning; kinetic by the velocities half a step before and after."""
+        moment, system = self.history.moments[-1], self.system
+        kinetic = 0.5 * float(np.sum(system.mass[:, None] * before * system.v))
+        gravity = self.impact.sphere.total_mass * self.impact.gravity * moment.sphere
+        work, plastic, hourglass = (4.0 * worked).tolist()
+        return Energies(
+            moment.time, 4.0 * kinetic, work, plastic, hourglass, 4.0 * self._lost, gravity
+        )
+
+    def _wrong(self) -> str:
+        """Why to stop here, or "". Steps are shortened with the elements."""
+        system = self.system
+        if not math.isfinite(self.history.energies[-1].balance):
+            return f"diverged before {self._time:.4g} s"
+        volumes = np.empty_like(self._volumes)
+        shortest = corner_volumes(system.mesh.elements, system.x, volumes)
+        ratio = np.min(volumes / self._volumes, axis=1)
+        worst = int(np.argmin(ratio))
+        if ratio[worst] < _FLAT:
+            place = 1e3 * system.mesh.nodes[system.mesh.elements[worst]].mean(axis=0)
+            return (
+                f"an element at x, y, z = {place.round(2).tolist()} mm was squeezed to "
+                f"{ratio[worst]:.2g} of its corner volume at {self._time:.4g} s: take larger "
+                "elements or a lower velocity"
+            )
+        shorter = self._step * min(1.0, shortest / self._shortest)
+        self._kick, self._dt = 0.5 * (self._dt + shorter), shorter
+        return ""
+
+    def _needed(self) -> str:
+        mesh = self.system.mesh
+        needed = 1.5 * mesh.patch
+        return (
+            f"at {self._time:.4g} s the contact has grown beyond the matched patch of "
+            f"{1e3 * mesh.patch:.4g} mm: take patch = {needed:.4g} m or more"
+        )
