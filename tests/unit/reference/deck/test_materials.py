@@ -1,0 +1,156 @@
+"""Plasticity: what the cards say, and what CalculiX makes of them in a bar pulled and pushed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import calculix
+import decks
+import numpy as np
+import pytest
+
+E, NU, YIELD, ISOTROPIC, KINEMATIC = 210e3, 0.3, 345.0, 4e3, 9e3  # MPa
+KINDS = [(0.0, 0.0), (ISOTROPIC, 0.0), (0.0, KINEMATIC), (ISOTROPIC, KINEMATIC)]
+
+
+def hardening(impact, isotropic, kinematic):
+    """The impact with a beam that hardens by these moduli in MPa."""
+    steel = replace(
+        impact.beam.material,
+        isotropic_hardening_modulus=isotropic * 1e6,
+        kinematic_hardening_modulus=kinematic * 1e6,
+    )
+    return replace(impact, beam=replace(impact.beam, material=steel))
+
+
+def material(deck, name):
+    """The cards of one material."""
+    start = deck.index(decks.named(deck, "MATERIAL", NAME=name))
+    kinds = ("DENSITY", "ELASTIC", "PLASTIC", "CYCLIC HARDENING")
+    end = next(i for i in range(start + 1, len(deck)) if deck[i].keyword not in kinds)
+    return deck[start:end]
+
+
+@pytest.mark.parametrize("flavour", ["abaqus", "calculix"])
+def test_elasticity_in_mpa_and_no_plasticity_unless_wanted(written, flavour):
+    deck = written(flavour, plastic=False)
+    cards = material(deck, "BEAM_STEEL")
+    assert [card.keyword for card in cards] == ["MATERIAL", "DENSITY", "ELASTIC"]
+    assert [card.data for card in cards[1:]] == [[["7.8e-09"]], [["210000", "0.3"]]]
+    assert decks.named(material(deck, "SPHERE_STEEL"), "ELASTIC").data == [["208000", "0.3"]]
+
+
+@pytest.mark.parametrize(
+    ("moduli", "parameters", "data"),
+    [
+        (KINDS[0], {}, [[345, 0]]),
+        (KINDS[1], {}, [[345, 0], [40345, 10]]),
+        (KINDS[2], {"HARDENING": "KINEMATIC"}, [[345, 0], [90345, 10]]),
+        (
+            KINDS[3],
+            {"HARDENING": "COMBINED", "DATA TYPE": "PARAMETERS", "NUMBER BACKSTRESSES": "1"},
+            [[345, 9000, 0]],
+        ),
+    ],
+)
+def test_abaqus_cards(written, impact, moduli, parameters, data):
+    cards = material(written("abaqus", hardening(impact, *moduli)), "BEAM_STEEL")
+    plastic = decks.named(cards, "PLASTIC")
+    assert plastic.parameters == parameters
+    assert decks.numbers(plastic).tolist() == data
+    cyclic = [card for card in cards if card.keyword == "CYCLIC HARDENING"]
+    both = all(moduli)
+    assert [decks.numbers(card).tolist() for card in cyclic] == both * [[[345, 0], [40345, 10]]]
+
+
+def pulled_and_pushed(strains, isotropic, kinematic):
+    """Stress (MPa) at each strain, by the return mapping of one dimension in small steps."""
+    stresses, plastic, back, size, last = [], 0.0, 0.0, YIELD, 0.0
+    for strain in strains:
+        for now in np.linspace(last, strain, 200):
+            trial = E * (now - plastic) - back
+            over = max(abs(trial) - size, 0.0) / (E + isotropic + kinematic)
+            plastic += over * np.sign(trial)
+            back += kinematic * over * np.sign(trial)
+            size += isotropic * over
+        stresses.append(E * (strain - plastic))
+        last = strain
+    return np.array(stresses)
+
+
+BAR = """*NODE
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 1., 1., 0.
+4, 0., 1., 0.
+5, 0., 0., 1.
+6, 1., 0., 1.
+7, 1., 1., 1.
+8, 0., 1., 1.
+*NSET, NSET=END
+5, 6, 7, 8
+*ELEMENT, TYPE=C3D8, ELSET=BAR
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*SOLID SECTION, ELSET=BAR, MATERIAL=BEAM_STEEL
+*BOUNDARY
+1, 1, 3
+2, 2, 3
+3, 3, 3
+4, 1, 1
+4, 3, 3
+5, 1, 2
+6, 2, 2
+8, 1, 1
+"""
+STEP = """*STEP, INC=1000
+*STATIC, DIRECT
+0.05, 1.
+*BOUNDARY
+END, 3, 3, {}
+*EL PRINT, ELSET=BAR
+S
+*END STEP
+"""
+
+
+def pulled(folder, cards, strains):
+    """Stress (MPa) of CalculiX's bar of this material at the end of each step."""
+    deck = folder / "bar.inp"
+    steps = "".join(STEP.format(strain) for strain in strains)
+    deck.write_text(BAR + "\n".join(text(cards)) + "\n" + steps)
+    found = calculix.run(deck)
+    assert found.code == 0
+    times, rows = found.table("stresses")
+    ends = [np.flatnonzero(np.isclose(times, step + 1))[-1] for step in range(len(strains))]
+    return rows[ends, :, 4].mean(axis=1)
+
+
+def text(cards):
+    """Cards as they stood in the deck."""
+    for card in cards:
+        words = [f"{k}={v}" for k, v in card.parameters.items()]
+        yield ", ".join([f"*{card.keyword}", *words])
+        yield from (", ".join(line) for line in card.data)
+
+
+@calculix.needed
+@pytest.mark.parametrize("modulus", [0.0, ISOTROPIC])
+def test_calculix_hardens_as_the_fibres_do(tmp_path, written, impact, modulus):
+    cards = material(written("calculix", hardening(impact, modulus, 0.0)), "BEAM_STEEL")
+    strains = [0.006, -0.004, 0.005]
+    expected = pulled_and_pushed(strains, modulus, 0.0)
+    np.testing.assert_allclose(pulled(tmp_path, cards, strains), expected, rtol=0.01)
+
+
+@calculix.needed
+def test_calculix_softens_with_kinematic_hardening(tmp_path, written, impact):
+    """So the decks refuse it."""
+    cards = material(written("abaqus", hardening(impact, 0.0, KINEMATIC)), "BEAM_STEEL")
+    assert pulled(tmp_path, cards, [0.003, 0.006])[1] < YIELD
+
+
+def test_kinematic_hardening_is_refused_for_calculix_unless_elastic(written, impact):
+    this = hardening(impact, 0.0, KINEMATIC)
+    with pytest.raises(ValueError, match=r"kinematic_hardening_modulus = 9000000000\.0 Pa"):
+        written("calculix", this)
+    assert written("calculix", this, plastic=False)
