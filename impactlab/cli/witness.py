@@ -75,7 +75,7 @@ def witness(
     case = _case(study, velocity, contact)
     plan = _plan(case, element_size, patch, duration)
     folder = output or results_file(case.name, WITNESS)
-    problems = plan.problems(workers)
+    problems = [] if deck and plan.mesh else plan.problems(workers)
     if dry_run or not problems or force:
         print_plan(plan, workers, problems)
     if dry_run:

@@ -82,7 +82,7 @@ def _mesh(cells: PolyCollection) -> str:
     if values is None:
         return words.counted(len(paths), "cell")
     at = int(np.argmax(values))
-    x, y = paths[at].vertices[:-1].mean(axis=0)  # type: ignore[index]
+    x, y = np.mean(np.asarray(paths[at].vertices)[:-1], axis=0)
     coloured = words.counted(len(paths), "coloured cell")
     place = f"{_number(x)}, {_number(y)}"
     return f"{coloured}, the largest value at {place} ({_number(values[at])})"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -57,7 +59,7 @@ def _draw(ax: Axes, solid: xr.Dataset, beams: xr.Dataset, name: str) -> None:
         values = beams[name].sel(beam_model=model)
         if np.isfinite(values).any():
             label = words.values(beams["beam_model"], [at])[0]
-            look = {"color": style.COLOURS[at], "linestyle": style.LINES[at]}
+            look: dict[str, Any] = {"color": style.COLOURS[at], "linestyle": style.LINES[at]}
             ax.plot(time(beams["time"]), unit(values), label=label, zorder=3, **look)
     scales.linear(ax, "x", ticks=4)
     scales.linear(ax, "y")

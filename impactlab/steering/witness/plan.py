@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import count
+from itertools import takewhile
 
 from distributed.system import MEMORY_LIMIT
 
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
 from impactlab.reference.solid import Cost, Mesh, estimate, quarter_mesh
-from impactlab.reference.solid.mesh.cost import FULL_SECONDS
+from impactlab.reference.solid.mesh.cost import FULL_SECONDS, ONE_POINT_SECONDS
 from impactlab.reference.solid.mesh.extent import contact_radius, patch_size
 from impactlab.steering.witness.beams import first_contact
 from impactlab.steering.witness.case import Case
@@ -28,8 +28,8 @@ _LONG = 2.0
 """Durations over the usual one from which on it is the duration that makes a run long."""
 _BYTES = 1000
 """Of an element and its share of the nodes, about."""
-_SMALLEST = 1e-3
-"""Element size over the sphere's radius down to which one is sought that meshes at all."""
+_FEWEST = 2.0
+"""Elements over the contact's radius, at the least, of a size that is chosen."""
 
 
 @dataclass(frozen=True)
@@ -72,11 +72,11 @@ class Plan:
             needed = f"{amount(self.cost.memory_bytes)} of memory, of {amount(MEMORY_LIMIT)}"
             yield size, f"about {needed}, for {elements}"
         elif self.seconds(workers) > MOST_TIME:
-            long = self.duration > _LONG * self.usual_duration
-            option = f"--duration {1e3 * self.duration:g} ms" if long else size
+            lasting = self.duration > _LONG * self.usual_duration
+            option = f"--duration {1e3 * self.duration:g} ms" if lasting else size
             told = f"{self.cost.steps:,} steps of {elements}"
-            limit = f"above the {time(MOST_TIME)} that a run may take"
-            yield option, f"about {time(self.seconds(workers))}, {limit}, for {told}"
+            long = time(self.seconds(workers))
+            yield option, f"about {long}, above the hour that a run may take, for {told}"
 
 
 def planned(
@@ -125,33 +125,33 @@ def _at_least(impact: Impact, size: float, patch: float | None, duration: float)
     half = patch or patch_size(impact, size)
     largest = max(beam.depth / 6.0, size)
     far = beam.span / 2.0 * beam.width / 2.0 * beam.depth / largest**3
-    elements = int(2.0 * (half / size) ** 3 + far)
+    near = 2.0 * (half / size) ** 3
+    elements = int(near + far)
     steps = int(duration * math.sqrt(steel.youngs_modulus / steel.density) / size) + 1
-    return Cost(elements, steps, steps * elements * FULL_SECONDS, elements * _BYTES)
+    seconds = steps * (near * FULL_SECONDS + far * ONE_POINT_SECONDS)
+    return Cost(elements, steps, seconds, elements * _BYTES)
 
 
 def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
-    """The finest size that keeps within USUAL_TIME; the coarsest that there is where none does."""
-    found = math.nan
-    for size in _sizes(impact.sphere.radius / 10.0):
-        try:
-            cost, mesh = _cost(impact, size, patch, duration)
-        except ValueError:  # too coarse for sphere and beam
-            if size < _SMALLEST * impact.sphere.radius:
-                raise
-            continue
-        if not math.isnan(found) and (mesh is None or cost.cpu_seconds > USUAL_TIME):
-            break
-        found = size
-    return found
+    """The finest size that keeps within USUAL_TIME; the coarsest that makes sense if none does."""
+    beam = impact.beam
+    fits = min(impact.sphere.radius, beam.width, beam.span) / 10.0
+    coarsest, *finer = _sizes(min(contact_radius(impact) / _FEWEST, fits))
+    within = takewhile(lambda size: _quick(impact, size, patch, duration), finer)
+    return min([coarsest, *within])
 
 
-def _sizes(largest: float) -> Iterator[float]:
-    """1, 2 and 5 times powers of ten in m, downwards from `largest`."""
-    for power in count(math.floor(math.log10(largest)), -1):
-        for digit in (5, 2, 1):
-            if (size := float(f"{digit}e{power}")) <= largest:
-                yield size
+def _quick(impact: Impact, size: float, patch: float | None, duration: float) -> bool:
+    if _at_least(impact, size, patch, duration).cpu_seconds > USUAL_TIME:
+        return False  # no mesh is made of what is known to be large
+    return _cost(impact, size, patch, duration)[0].cpu_seconds <= USUAL_TIME
+
+
+def _sizes(largest: float) -> list[float]:
+    """1, 2 and 5 times powers of ten in m, downwards from `largest` over three decades."""
+    first = math.floor(math.log10(largest))
+    sizes = [float(f"{digit}e{first - down}") for down in range(4) for digit in (5, 2, 1)]
+    return [size for size in sizes if size <= largest]
 
 
 def _two_digits(value: float) -> float:
