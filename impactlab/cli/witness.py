@@ -141,8 +141,7 @@ def _solve(plan: Plan, workers: int, folder: Path) -> None:
     found = compared(solid, others)
     write_csv(found, folder / "comparison.csv")
     print_comparison(found)
-    if not interrupted:
-        draw_witness(solid, others, folder / "figures", plan.case.name)
+    draw_witness(solid, others, folder / "figures", plan.case.name)
     _end(solid, folder, interrupted)
 
 

@@ -62,7 +62,8 @@ def print_comparison(found: xr.Dataset) -> None:
         which = words.listing([name for name, given in UNLIKE.items() if given == why])
         console.print(f"not compared: {which}: {why}", markup=False)
     for reason, lacking in _missing(found).items():
-        console.print(f"missing ({', '.join(lacking)}): {reason}", markup=False)
+        who = "all models" if lacking == [*map(_named, models)] else ", ".join(lacking)
+        console.print(f"missing ({who}): {reason}", markup=False)
 
 
 def _missing(found: xr.Dataset) -> dict[str, list[str]]:

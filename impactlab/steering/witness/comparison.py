@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import RESPONSES, attributes, reasons
+from impactlab.dataset import RESPONSES, attributes, reasons, status_bits
 from impactlab.study.netcdf import whole
 
 SOLID = "solid"
@@ -34,13 +34,13 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
     """
     names = [name for name in RESPONSES if name in solid]
     models = [SOLID, *beams["beam_model"].values.tolist()]
-    value = np.array([[solid[name].item(), *beams[name].values] for name in names], dtype=float)
+    value = np.array([[*_held(solid, name), *_held(beams, name)] for name in names])
     with np.errstate(divide="ignore", invalid="ignore"):
         difference = value / value[:, :1] - 1.0
     difference[~np.isfinite(difference)] = np.nan
     difference[:, 0] = np.nan
     difference[[name in UNLIKE or name in COUNTS for name in names]] = np.nan
-    status = [solid["status"].item(), *beams["status"].values.tolist()]
+    status = [*np.atleast_1d(solid["status"]), *beams["status"].values]
     return xr.Dataset(
         {
             "value": (("response", "model"), value),
@@ -53,6 +53,13 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
             "units": ("response", [attributes(name)["units"] for name in names]),
         },
     )
+
+
+def _held(runs: xr.Dataset, name: str) -> list[float]:
+    """A response of each run, NaN where the status says that it does not hold."""
+    sound = (runs["status"] & status_bits([name])) == 0
+    values: list[float] = np.atleast_1d(runs[name].where(sound).values).astype(float).tolist()
+    return values
 
 
 def write_csv(found: xr.Dataset, path: Path) -> None:
