@@ -15,6 +15,8 @@ import pytest
 from numpy.typing import NDArray
 
 CCX = shutil.which("ccx")
+_LONGEST = 500
+"""Seconds that a run may take: many times what it needs."""
 
 
 def needed(test: Callable[..., None]) -> Callable[..., None]:
@@ -55,6 +57,7 @@ def run(deck: Path, threads: int = 1) -> Run:
         capture_output=True,
         text=True,
         check=False,
+        timeout=_LONGEST,
     )
     printed = deck.with_suffix(".dat")
     return Run(done.returncode, done.stdout, printed.read_text() if printed.exists() else "")

@@ -60,7 +60,7 @@ def _slope(case: Case) -> float:
 def _step(case: Case) -> Iterator[str]:
     yield f"*STEP, INC={_INCREMENTS}"
     yield "*DYNAMIC, DIRECT"
-    yield values(case.interval, case.duration)
+    yield values(case.time_between, case.duration)
     yield from conditions.gravity(case)
     yield f"*NODE PRINT, NSET={sets.TRACKED}"
     yield "U, V"

@@ -18,9 +18,10 @@ _SAMPLES = 60
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """An impact on its mesh for `duration` (s), with results every `interval` (s).
+    """An impact on its mesh for `duration` (s).
 
-    plastic: whether the materials yield.
+    interval: time between results in s (None: a 60th of the contact duration of an elastic
+    half-space). plastic: whether the materials yield.
 
     Raises ValueError naming the field where impact, mesh or a time is none, and when the mesh is
     that of other bodies.
@@ -29,19 +30,37 @@ class Case:
     impact: Impact
     mesh: Mesh
     duration: float
-    interval: float
+    interval: float | None
     plastic: bool
 
     def __post_init__(self) -> None:
         instance("deck", "impact", self.impact, Impact)
         instance("deck", "mesh", self.mesh, Mesh)
         positive("deck", "duration", self.duration)
+        self._check_interval()
+        self._check_sizes()
+
+    @property
+    def time_between(self) -> float:
+        """Between results, in s."""
+        if self.interval is not None:
+            return self.interval
+        contact = hertz.contact_duration(
+            self.impact.sphere.total_mass,
+            self.impact.velocity,
+            hertz.effective_modulus(self.impact),
+            hertz.effective_radius(self.impact),
+        )
+        return min(contact / _SAMPLES, self.duration)
+
+    def _check_interval(self) -> None:
+        if self.interval is None:
+            return
         if positive("deck", "interval", self.interval) > self.duration:
             raise ValueError(
                 f"deck.interval = {self.interval!r} s: must not be above the duration "
                 f"({self.duration!r} s)"
             )
-        self._check_sizes()
 
     def _check_sizes(self) -> None:
         """The mesh's extents are those of the impact's bodies."""
@@ -57,14 +76,3 @@ class Case:
                     f"deck.mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in "
                     "the impact: make the mesh from this impact (quarter_mesh)"
                 )
-
-
-def usual_interval(impact: Impact, duration: float) -> float:
-    """Results often enough to see the contact come and go, in s."""
-    contact = hertz.contact_duration(
-        impact.sphere.total_mass,
-        impact.velocity,
-        hertz.effective_modulus(impact),
-        hertz.effective_radius(impact),
-    )
-    return min(contact / _SAMPLES, duration)

@@ -10,7 +10,7 @@ from impactlab.model.impact import Impact
 from impactlab.reference.deck import conditions
 from impactlab.reference.deck.abaqus import ABAQUS
 from impactlab.reference.deck.calculix import CALCULIX
-from impactlab.reference.deck.case import Case, usual_interval
+from impactlab.reference.deck.case import Case
 from impactlab.reference.deck.flavour import Flavour
 from impactlab.reference.deck.geometry import geometry
 from impactlab.reference.deck.header import header
@@ -42,13 +42,7 @@ def write_deck(
     what the program cannot do right: kinematic hardening in CalculiX.
     """
     chosen = FLAVOURS[one_of("deck", "flavour", flavour, tuple(FLAVOURS))]
-    case = Case(
-        impact=impact,
-        mesh=mesh,
-        duration=duration,
-        interval=usual_interval(impact, duration) if interval is None else interval,
-        plastic=plastic,
-    )
+    case = Case(impact=impact, mesh=mesh, duration=duration, interval=interval, plastic=plastic)
     text = "".join(f"{line}\n" for line in _lines(case, chosen))
     path = Path(path)
     try:

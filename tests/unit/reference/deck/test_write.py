@@ -68,6 +68,14 @@ def test_duration_and_interval_are_the_step(written):
     assert decks.named(calculix, "DYNAMIC").data == [["5e-06", "0.0002"]]
 
 
+def test_interval_is_a_60th_of_the_contact_or_the_duration(written):
+    modulus = 208e9 * 210e9 / (418e9 * 0.91)
+    deepest = (15.0 * 1.5 * 0.99**2 / (16.0 * modulus * 0.035**0.5)) ** 0.4
+    for duration, expected in ((1e-3, 2.9433 * deepest / 0.99 / 60.0), (1e-6, 1e-6)):
+        (step,) = decks.named(written("calculix", duration=duration), "DYNAMIC").data
+        assert float(step[0]) == pytest.approx(expected, rel=1e-4)
+
+
 @both
 def test_header_says_what_it_is(tmp_path, impact, mesh, flavour):
     text = write_deck(tmp_path / "d.inp", impact, mesh, flavour=flavour, duration=1e-4).read_text()
@@ -81,7 +89,7 @@ def test_header_says_what_it_is(tmp_path, impact, mesh, flavour):
         "mass of the sphere: 1.5 kg",
         "span of the beam: 0.1 m",
         "a quarter of the whole",
-        {"abaqus": "Not run", "calculix": "CalculiX 2.20 crashes"}[flavour],
+        {"abaqus": "Never run", "calculix": "CalculiX 2.20 crashes"}[flavour],
     ):
         assert words in head
     assert "contact law" not in head
@@ -92,6 +100,8 @@ def test_header_says_what_it_is(tmp_path, impact, mesh, flavour):
     [
         ({"flavour": "ansys"}, "deck.flavour = 'ansys': must be one of abaqus, calculix"),
         ({"duration": 0.0}, "deck.duration = 0.0: must be above zero"),
+        ({"duration": "long"}, "deck.duration = 'long': must be a finite number"),
+        ({"impact": None}, "deck.impact = None: must be a Impact"),
         ({"interval": 1.0}, "deck.interval = 1.0 s: must not be above the duration"),
         ({"mesh": None}, "deck.mesh = None: must be a Mesh"),
         ({"path": "no/such/folder/deck.inp"}, "cannot write no/such/folder/deck.inp: No such"),
