@@ -58,6 +58,9 @@ def witness(
     deck: Annotated[
         str, typer.Option(help="abaqus or calculix: write its input deck, and solve nothing.")
     ] = "",
+    elastic: Annotated[
+        bool, typer.Option("--elastic", help="Of a deck: nothing yields (CalculiX needs it).")
+    ] = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Tell elements, time and memory, and solve nothing.")
     ] = False,
@@ -82,8 +85,10 @@ def witness(
         return
     if problems and not force:
         raise ValueError("\n".join(problems))
+    if elastic and not deck:
+        raise ValueError("--elastic: is of a deck; say which one with --deck")
     if deck:
-        _write_deck(plan, deck, folder)
+        _write_deck(plan, deck, folder, plastic=not elastic)
     else:
         _solve(plan, workers, folder)
 
@@ -115,13 +120,20 @@ def _plan(case: Case, element_size: str, patch: str, duration: str) -> Plan:
     )
 
 
-def _write_deck(plan: Plan, flavour: str, folder: Path) -> None:
+def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
     from impactlab.reference.deck import write_deck
 
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{flavour}.inp"
-    mesh = plan.solved_mesh()
-    print(write_deck(path, plan.case.impact, mesh, flavour=flavour, duration=plan.duration))
+    write_deck(
+        path,
+        plan.case.impact,
+        plan.solved_mesh(),
+        flavour=flavour,
+        duration=plan.duration,
+        plastic=plastic,
+    )
+    print(path)
 
 
 def _solve(plan: Plan, workers: int, folder: Path) -> None:

@@ -101,7 +101,8 @@ def test_a_dry_run_tells_the_cost_and_leaves_nothing(impactlab, tmp_path):
         (["--velocity", "-1"], ["velocity", "above zero"]),
         (["--contact", "glue"], ["contact", "glue", "hertz"]),
         (["studies/none.yaml"], ["studies/none.yaml"]),
-        ([*COARSE, "--patch", "2 mm", "--velocity", "9"], ["--patch", "beyond", "patch = 0.003 m"]),
+        ([*COARSE, "--patch", "2 mm", "--velocity", "9"], ["--patch", "beyond", "take patch = "]),
+        ([*COARSE, "--elastic"], ["--elastic", "--deck"]),
         ([*COARSE, "--deck", "nastran"], ["nastran", "abaqus", "calculix"]),
     ],
 )
@@ -120,6 +121,9 @@ def test_a_deck_is_written_and_nothing_solved(impactlab, tmp_path):
     (file,) = (tmp_path / "results" / "paper" / "witness").iterdir()
     assert str(file.relative_to(tmp_path)) in said
     assert file.read_text().startswith("*HEADING")
+    assert "*PLASTIC" in file.read_text()
+    impactlab("witness", *COARSE, "--deck", "calculix", "--elastic")
+    assert "*PLASTIC" not in file.read_text()
 
 
 def test_a_run_that_goes_wrong_keeps_what_it_has(impactlab, tmp_path, undrawn, monkeypatch):

@@ -40,7 +40,7 @@ def plot(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     above = figure.add_subplot(grid[0, :])
     side, top = figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1])
     reach = _ENLARGED * 1e3 * float(solid["patch"])
-    _draw(above, solid, 1, width=0.15)
+    _draw(above, solid, 1, width=min(0.15, 0.15e3 * float(solid["element_size"])))
     _draw(side, solid, 1, width=0.4)
     _draw(top, solid, 2, width=0.4)
     above.autoscale_view()
