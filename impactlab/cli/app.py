@@ -26,6 +26,7 @@ from impactlab.cli.simulate import simulate
 from impactlab.cli.status import status
 from impactlab.cli.studies import studies
 from impactlab.cli.verify import verify
+from impactlab.cli.witness import witness
 
 _COMMANDS = (
     simulate,
@@ -41,6 +42,7 @@ _COMMANDS = (
     figures,
     report,
     paper,
+    witness,
     index,
     clean,
 )

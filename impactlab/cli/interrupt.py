@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from multiprocessing import active_children
 from typing import NoReturn
 
 _INTERRUPTED = b"impactlab: interrupted\n"
+_STOPPING = b"impactlab: stopping to keep what is computed; Ctrl-C again ends at once\n"
 
 
 def stop_without_more() -> None:
@@ -35,6 +38,27 @@ def stop_at_once() -> None:
     quiet = "ignore::UserWarning:multiprocessing.resource_tracker"
     os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (os.getenv("PYTHONWARNINGS"), quiet)))
     signal.signal(signal.SIGINT, _stop_at_once)
+
+
+@contextmanager
+def stop_kept() -> Iterator[Callable[[], bool]]:
+    """Within, a first Ctrl-C only asks to stop, and what is given tells whether it was asked.
+
+    A second one ends the command in one line.
+    """
+    asked = False
+
+    def ask(number: int, frame: object) -> None:
+        nonlocal asked
+        asked = True
+        os.write(sys.stderr.fileno(), _STOPPING)
+        stop_quietly()
+
+    signal.signal(signal.SIGINT, ask)
+    try:
+        yield lambda: asked
+    finally:
+        stop_quietly()
 
 
 def _stop_without_more(number: int, frame: object) -> NoReturn:

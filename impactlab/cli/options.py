@@ -24,6 +24,8 @@ StoredFiles = Annotated[
 RESULTS = Path("results")
 SHARDS, TRIALS, REFINEMENT = "shards", "trials", "refinement"
 """Folders beside a study's results: its own runs, those behind `auto`, those on finer grids."""
+WITNESS = "witness"
+"""Folder of the 3-D model beside a study's results."""
 
 
 def results_file(study: str, name: str) -> Path:

@@ -7,6 +7,7 @@ from itertools import groupby
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -21,7 +22,12 @@ _PANELS, _CURVES = 5, 3
 def alt(figure: Figure) -> str:
     """Each panel in a sentence: where its bars are longest, or the ranges of its curves."""
     curves = list(data.drawn(figure))
-    told = [*_drawn(curves), *_maps(figure), *_remarks(figure, {one.panel for one in curves})]
+    told = [
+        *_drawn(curves),
+        *_maps(figure),
+        *_meshes(figure),
+        *_remarks(figure, {one.panel for one in curves}),
+    ]
     shown = " ".join(told[:_PANELS])
     more = len(told) - _PANELS
     return f"{shown} And {words.counted(more, 'more panel')}." if more > 0 else shown
@@ -62,6 +68,24 @@ def _maps(figure: Figure) -> Iterator[str]:
             row, column = np.unravel_index(int(cells.argmax()), cells.shape)
             where = f"row {row + 1}, column {column + 1}"
             yield f"{_title(ax)}: largest in {where} ({_number(float(cells[row, column]))})."
+
+
+def _meshes(figure: Figure) -> Iterator[str]:
+    for ax in figure.axes:
+        for cells in ax.collections:
+            if type(cells) is PolyCollection:  # and no area below a curve, which is a subclass
+                yield f"{_title(ax)}: {_mesh(cells)}."
+
+
+def _mesh(cells: PolyCollection) -> str:
+    paths, values = cells.get_paths(), cells.get_array()
+    if values is None:
+        return words.counted(len(paths), "cell")
+    at = int(np.argmax(values))
+    x, y = np.mean(np.asarray(paths[at].vertices)[:-1], axis=0)
+    coloured = words.counted(len(paths), "coloured cell")
+    place = f"{_number(x)}, {_number(y)}"
+    return f"{coloured}, the largest value at {place} ({_number(values[at])})"
 
 
 def _cells(ax: Axes) -> NDArray[np.float64]:

@@ -98,7 +98,7 @@ def test_the_expected_impact_without_correction_is_hertz():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("element_size", "tolerance"),
-    [(0.5e-3, 0.015), pytest.param(0.25e-3, 0.01, marks=pytest.mark.slow)],
+    [(0.5e-3, 0.015), pytest.param(0.25e-3, 0.01, marks=pytest.mark.long)],
 )
 def test_a_sphere_on_a_large_block_is_hertz(element_size, tolerance):
     impact = hertz_impact()

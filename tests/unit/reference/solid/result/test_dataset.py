@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import numba
 import numpy as np
 import pytest
 
 import impactlab as il
 from impactlab.dataset import HISTORIES, RESPONSES, STATUS_FLAGS
 from impactlab.reference.solid import quarter_mesh, solve_on
+
+pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
 
 
 @pytest.fixture(scope="module")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pytest
 
@@ -14,6 +15,7 @@ from impactlab.reference.solid.stepping.march import March
 from impactlab.reference.solid.stepping.parts import Parts
 from impactlab.reference.solid.stepping.system import System
 
+pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
 IMPACT = paper_impact()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pytest
 import xarray as xr
@@ -17,6 +18,7 @@ from impactlab.reference.solid.stepping.masses import nodal_masses
 from impactlab.reference.solid.stepping.parts import Parts
 from impactlab.reference.solid.stepping.system import System
 
+pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
 IMPACT = paper_impact()
 
 

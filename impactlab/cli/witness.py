@@ -1,0 +1,195 @@
+"""The 3-D model beside the beam models."""
+
+from __future__ import annotations
+
+import logging
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from impactlab.cli.interrupt import stop_kept
+from impactlab.cli.options import WITNESS, given, results_file
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from impactlab.steering.witness.case import Case
+    from impactlab.steering.witness.plan import Plan
+
+
+def witness(
+    study: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[STUDY]",
+            help="A study file: its base, fixed values. Default: the paper's case.",
+        ),
+    ] = None,
+    velocity: Annotated[str, typer.Option(help="Impact velocity. Default: the study's.")] = "",
+    contact: Annotated[
+        str, typer.Option(help="Contact law of the beam models. Default: the study's.")
+    ] = "",
+    element_size: Annotated[
+        str,
+        typer.Option(
+            help="Of the elements about the contact, such as '0.5 mm'. Default: what takes about a "
+            "minute on two cores."
+        ),
+    ] = "",
+    patch: Annotated[
+        str,
+        typer.Option(
+            help="Half the side of the square in which sphere and beam may touch. Default: an "
+            "estimate."
+        ),
+    ] = "",
+    duration: Annotated[
+        str,
+        typer.Option(
+            help="Simulated time, such as '0.45 ms'. Default: what the first contact needs."
+        ),
+    ] = "",
+    workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
+    output: Annotated[
+        Path | None, typer.Option(help="A folder. Default: results/NAME/witness.")
+    ] = None,
+    deck: Annotated[
+        str, typer.Option(help="abaqus or calculix: write its input deck, and solve nothing.")
+    ] = "",
+    elastic: Annotated[
+        bool, typer.Option("--elastic", help="Of a deck: nothing yields (CalculiX needs it).")
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Tell elements, time and memory, and solve nothing.")
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Also what takes hours, or all memory.")
+    ] = False,
+) -> None:
+    """Solve one impact with 3-D finite elements, beside the beam models.
+
+    What they answer is compared in a table; fields, histories and figures are kept. Ctrl-C keeps
+    what was computed until then.
+    """
+    from impactlab.report.witness import print_plan
+
+    case = _case(study, velocity, contact)
+    plan = _plan(case, element_size, patch, duration)
+    folder = output or results_file(case.name, WITNESS)
+    problems = [] if deck and plan.mesh else plan.problems(workers)
+    if dry_run or not problems or force:
+        print_plan(plan, workers, problems)
+    if dry_run:
+        return
+    if problems and not force:
+        raise ValueError("\n".join(problems))
+    if elastic and not deck:
+        raise ValueError("--elastic: is of a deck; say which one with --deck")
+    if deck:
+        _write_deck(plan, deck, folder, plastic=not elastic)
+    else:
+        _solve(plan, workers, folder)
+
+
+def _case(study: Path | None, velocity: str, contact: str) -> Case:
+    """What is solved; of a study that varies what this takes one value of, that is said."""
+    from impactlab.steering.witness.case import case_of, paper_case
+    from impactlab.study.declaration import read_impacts
+
+    case = case_of(read_impacts(study)) if study else paper_case()
+    speed = given("--velocity", velocity, "m s-1") if velocity else None
+    case = case.with_impact(speed, contact or None)
+    if case.held:
+        told = ", ".join(f"{name} = {value}" for name, value in case.held.items())
+        logging.getLogger("impactlab").info(
+            "%s varies what a witness has one value of: here %s", case.file, told
+        )
+    return case
+
+
+def _plan(case: Case, element_size: str, patch: str, duration: str) -> Plan:
+    from impactlab.steering.witness.plan import planned
+
+    return planned(
+        case,
+        element_size=given("--element-size", element_size, "m") if element_size else None,
+        patch=given("--patch", patch, "m") if patch else None,
+        duration=given("--duration", duration, "s") if duration else None,
+    )
+
+
+def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
+    from impactlab.reference.deck import write_deck
+
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{flavour}.inp"
+    write_deck(
+        path,
+        plan.case.impact,
+        plan.solved_mesh(),
+        flavour=flavour,
+        duration=plan.duration,
+        plastic=plastic,
+    )
+    print(path)
+
+
+def _solve(plan: Plan, workers: int, folder: Path) -> None:
+    """Answers are on disk before anything is made of them."""
+    from impactlab.figures.witness.drawings import draw_witness
+    from impactlab.report.witness import print_comparison
+    from impactlab.steering.witness.beams import beams
+    from impactlab.steering.witness.comparison import compared, write_csv
+    from impactlab.study.netcdf import write_netcdf
+    from impactlab.study.vtu import write_vtu
+
+    solid, interrupted = _marched(plan, workers)
+    write_netcdf(solid, folder / "witness.nc")
+    write_vtu(solid, folder / "witness.vtu")
+    others = beams(plan.case.impact, plan.case.discretisation, float(solid["duration"]))
+    write_netcdf(others, folder / "beams.nc")
+    found = compared(solid, others)
+    write_csv(found, folder / "comparison.csv")
+    print_comparison(found)
+    draw_witness(solid, others, folder / "figures", plan.case.name)
+    _end(solid, folder, interrupted)
+
+
+def _marched(plan: Plan, workers: int) -> tuple[xr.Dataset, bool]:
+    """The 3-D run, and whether it was broken off by Ctrl-C: at a checkpoint, to keep it whole."""
+    from impactlab.reference.solid import PatchTooSmallError, solve_on
+    from impactlab.study.progress import share_done
+
+    with stop_kept() as asked_to_stop, share_done("3-D model") as show:
+
+        def progress(time: float, share: float) -> None:
+            show(share)
+            if asked_to_stop():
+                raise KeyboardInterrupt
+
+        try:
+            solid = solve_on(
+                plan.solved_mesh(),
+                plan.case.impact,
+                duration=plan.duration,
+                threads=workers,
+                progress=progress,
+            )
+        except PatchTooSmallError as error:
+            raise ValueError(f"--patch: {error}") from None
+        return solid, asked_to_stop()
+
+
+def _end(solid: xr.Dataset, folder: Path, interrupted: bool) -> None:
+    """Where the answers lie; exit code 130 where broken off, 1 where the run went wrong."""
+    stopped = str(solid.attrs.get("stopped", ""))
+    log = logging.getLogger("impactlab")
+    if interrupted:
+        log.warning("%s: %s holds what was computed until then", stopped, folder)
+        raise typer.Exit(130)
+    if stopped:
+        log.error("%s; %s holds what was computed until then", stopped, folder)
+        raise typer.Exit(1)
+    print(f"{folder}: witness.nc, witness.vtu (for ParaView), beams.nc, comparison.csv, figures/")

@@ -1,0 +1,66 @@
+"""Contact force and mid-span deflection of the 3-D model beside those of the beam models."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from impactlab.figures import scales, style
+from impactlab.figures.reading import words
+from impactlab.figures.reading.units import display
+
+TITLE = "The 3-D model beside the beam models"
+_PANELS = {
+    "contact_force": "contact force",
+    "midspan_deflection": "deflection at mid-span",
+    "indentation": "indentation",
+}
+_SOLID = "3-D"
+
+
+def caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
+    """What is shown, and what the quantities are in each model."""
+    velocity = words.number(float(solid["velocity"]))
+    size = words.number(1e3 * float(solid["element_size"]))
+    law = str(beams["contact"].item())
+    return (
+        f"Contact force, deflection of the beam's axis at mid-span and indentation (approach of "
+        f"the sphere's centre of mass and that axis) at {velocity} m/s: of the 3-D model with "
+        f"elements of {size} mm about the contact, and of beam models with the contact law "
+        f"{law}. Downwards is positive."
+    )
+
+
+@style.paper
+def plot(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
+    """A panel a quantity, a curve a model; the 3-D model's is black and below the others."""
+    figure, axes = style.panels(len(_PANELS), columns=len(_PANELS), height=55)
+    for ax, (name, label) in zip(axes, _PANELS.items(), strict=True):
+        _draw(ax, solid, beams, name)
+        time, unit = display(solid["time"]), display(solid[name])
+        ax.set(
+            xlabel=words.axis("time since first touch", time.symbol),
+            ylabel=words.axis(label, unit.symbol),
+        )
+    style.legend(figure)
+    return figure
+
+
+def _draw(ax: Axes, solid: xr.Dataset, beams: xr.Dataset, name: str) -> None:
+    time, unit = display(solid["time"]), display(solid[name])
+    ax.plot(
+        time(solid["time"]), unit(solid[name]), label=_SOLID, color="black", linewidth=1.8, zorder=2
+    )
+    for at, model in enumerate(beams["beam_model"].values.tolist()):
+        values = beams[name].sel(beam_model=model)
+        if np.isfinite(values).any():
+            label = words.values(beams["beam_model"], [at])[0]
+            look: dict[str, Any] = {"color": style.COLOURS[at], "linestyle": style.LINES[at]}
+            ax.plot(time(beams["time"]), unit(values), label=label, zorder=3, **look)
+    scales.linear(ax, "x", ticks=4)
+    scales.linear(ax, "y")
+    ax.set_xlim(0.0, float(time(solid["time"])[-1]))

@@ -1,0 +1,113 @@
+"""What a 3-D run will be and cost, before anything is solved."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from impactlab.reference.solid import estimate, quarter_mesh
+from impactlab.steering.witness import plan as plans
+from impactlab.steering.witness.case import case_of, paper_case
+from impactlab.steering.witness.plan import USUAL_TIME, planned
+from impactlab.study.declaration import read_impacts
+
+STUDY = """
+title: Some
+impact: {base: paper, velocity: 3 m/s}
+discretisation: {nodes: 21, points: 3}
+duration: 0.5 ms
+sampling:
+  method: sobol
+  base_samples: 16
+  parameters:
+    beam_depth: {distribution: fixed, value: 30 mm}
+    contact: {distribution: fixed, value: hertz}
+    sphere_radius: {distribution: uniform, low: 30 mm, high: 40 mm}
+    velocity: {distribution: uniform, low: 1 m/s, high: 2 m/s}
+responses: [peak_force]
+"""
+
+
+@pytest.fixture
+def quick():
+    """The paper's case with few nodes for its beam models."""
+    case = paper_case()
+    return replace(case, discretisation=replace(case.discretisation, nodes=41))
+
+
+def test_a_study_gives_its_base_and_fixed_values_and_says_what_it_varies(tmp_path):
+    path = tmp_path / "some.yaml"
+    path.write_text(STUDY)
+    case = case_of(read_impacts(path))
+    assert (case.name, case.file, case.longest) == ("some", str(path), 0.5e-3)
+    assert (case.impact.beam.depth, case.impact.contact, case.impact.velocity) == (0.03, "hertz", 3)
+    assert case.held == {"sphere_radius": 0.035, "velocity": 3.0}
+    other = case.with_impact(5.0, None)
+    assert other.impact.velocity == 5.0
+    assert other.held == {"sphere_radius": 0.035}
+
+
+def test_the_papers_case_takes_its_duration_and_about_a_minute(quick):
+    found = planned(quick)
+    assert found.duration == 0.45e-3  # as in the paper
+    assert found.cost.cpu_seconds <= USUAL_TIME
+    finer = quarter_mesh(quick.impact, element_size=found.element_size / 2.5)
+    assert estimate(finer, quick.impact, duration=found.duration).cpu_seconds > USUAL_TIME
+    assert not found.problems(workers=1)
+
+
+def test_a_smaller_contact_takes_smaller_elements(quick):
+    small = replace(quick.impact, sphere=replace(quick.impact.sphere, radius=0.005))
+    found = planned(replace(quick, impact=small), duration=5e-5)
+    assert found.element_size < found.contact_radius / 2
+
+
+def test_duration_ends_with_the_study_at_the_latest(quick):
+    assert planned(replace(quick, longest=0.3e-3), element_size=2e-3).duration == 0.3e-3
+    unfinished = planned(replace(quick, longest=0.1e-3), element_size=2e-3)
+    assert unfinished.duration == 0.1e-3
+    assert np.isnan(unfinished.first_contact)
+
+
+def test_what_does_not_fit_memory_is_told_without_a_mesh(quick, monkeypatch):
+    monkeypatch.setattr(plans, "quarter_mesh", None)
+    found = planned(quick, element_size=1e-6)
+    (problem,) = found.problems(workers=2)
+    assert "--element-size 0.001 mm: about" in problem
+    assert "of memory" in problem
+    assert "--force" in problem
+
+
+def test_the_floor_of_the_cost_lies_below_the_cost(quick):
+    for size in (2e-3, 1e-3, 5e-4):
+        mesh = quarter_mesh(quick.impact, element_size=size)
+        cost = estimate(mesh, quick.impact, duration=1e-3)
+        floor = plans._at_least(quick.impact, size, None, 1e-3)
+        assert floor.elements < cost.elements
+        assert floor.cpu_seconds < cost.cpu_seconds
+
+
+@pytest.mark.parametrize(
+    ("given", "option"),
+    [
+        ({"duration": 3.0}, "--duration 3000 ms"),
+        ({"element_size": 2.5e-4}, "--element-size 0.25 mm"),
+    ],
+)
+def test_hours_are_told_at_what_drives_them(quick, given, option, monkeypatch):
+    monkeypatch.setattr(plans, "MOST_TIME", 100.0)
+    (problem,) = planned(quick, **({"element_size": 2e-3} | given)).problems(workers=1)
+    assert option in problem
+    assert "steps of" in problem
+    assert not planned(quick, element_size=2e-3).problems(workers=1)
+
+
+@pytest.mark.parametrize("name", ["element_size", "patch", "duration"])
+def test_numbers_that_make_no_sense_are_refused(quick, name):
+    with pytest.raises(ValueError, match=rf"witness\.{name} = -1.0: must be above zero"):
+        planned(quick, **{name: -1.0})
+
+
+def test_a_patch_that_does_not_fit_is_refused(quick):
+    with pytest.raises(ValueError, match="to fit on beam and sphere"):
+        planned(quick, patch=0.05)

@@ -1,0 +1,174 @@
+"""The command `impactlab witness` as a person uses it, on coarse meshes and for moments."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import subprocess
+import sys
+from functools import partial
+
+import meshio
+import pytest
+import xarray as xr
+
+from impactlab.cli import main
+from impactlab.reference.solid import solve
+from impactlab.steering.witness.case import paper_case
+
+COARSE = ("--element-size", "2 mm", "--duration", "0.05 ms")
+STUDY = """
+title: Some
+impact: {base: paper}
+discretisation: {nodes: 21, points: 3}
+duration: 0.05 ms
+sampling: {method: grid, parameters: {velocity: [1, 2], contact: [hertz]}}
+responses: [peak_force]
+"""
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Figures take their time."""
+    monkeypatch.setattr("impactlab.figures.witness.drawings.draw_witness", lambda *_: None)
+
+
+@pytest.fixture
+def impactlab(tmp_path, monkeypatch, capsys):
+    """Runs the command line in this process; (exit code, what it printed)."""
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies" / "some.yaml").write_text(STUDY)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
+
+    def run(*args):
+        monkeypatch.setattr("sys.argv", ["impactlab", *args])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        logging.getLogger("impactlab").handlers.clear()
+        printed = capsys.readouterr()
+        return ended.value.code or 0, printed.out + printed.err
+
+    return run
+
+
+def test_the_papers_case_is_solved_compared_drawn_and_kept(impactlab, tmp_path):
+    code, said = impactlab("witness", *COARSE, "--workers", "1")
+    assert code == 0, said
+    folder = tmp_path / "results" / "paper" / "witness"
+    solid = xr.load_dataset(folder / "witness.nc")
+    alone = solve(paper_case().impact, element_size=2e-3, duration=5e-5)
+    assert solid["contact_force"].values.tolist() == alone["contact_force"].values.tolist()
+    assert f"number_of_contacts{1:>18}" in said
+    assert "missing (all models): the duration ends before the first contact does" in said
+    read = meshio.read(folder / "witness.vtu")
+    (stress,) = read.cell_data["von_mises_stress"]
+    assert stress.ravel().tolist() == solid["von_mises_stress"].values.tolist()
+    assert (folder / "figures" / "mesh.svg").exists()
+    assert xr.load_dataset(folder / "beams.nc").sizes["beam_model"] == 3
+    assert (folder / "comparison.csv").read_text().startswith("response,units,model,value")
+
+
+def test_a_study_gives_the_case_and_options_change_it(impactlab, tmp_path, undrawn):
+    asked = ("studies/some.yaml", "--velocity", "3 m/s", "--output", "here")
+    code, said = impactlab("witness", *asked, *COARSE)
+    assert code == 0, said
+    assert "some.yaml varies what a witness has one value of: here contact = stronge" in said
+    beams = xr.load_dataset(tmp_path / "here" / "beams.nc")
+    assert beams["velocity"] == xr.load_dataset(tmp_path / "here" / "witness.nc")["velocity"] == 3
+    assert beams["nodes"] == 21
+    assert not (tmp_path / "results").exists()
+
+
+def test_a_dry_run_tells_the_cost_and_leaves_nothing(impactlab, tmp_path):
+    code, said = impactlab("witness", "studies/some.yaml", "--dry-run", "--workers", "3", *COARSE)
+    assert code == 0
+    for words in ("elements       10,134", "on 3 threads", "some.yaml, at 0.99 m/s"):
+        assert words in said
+    code, said = impactlab("witness", "--dry-run", "--element-size", "1 um")
+    assert code == 0
+    assert "beyond bearing: the paper's case: --element-size 0.001 mm: about" in said
+    assert [path.name for path in tmp_path.iterdir()] == ["studies"]
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (["--element-size", "1 um"], ["--element-size 0.001 mm", "of memory", "--force"]),
+        (["--element-size", "3 kg"], ["--element-size = '3 kg'", "length"]),
+        (["--element-size", "2 mm", "--duration", "1 h"], ["--duration 3.6e+06 ms", "--force"]),
+        (["--patch", "50 mm"], ["patch", "to fit on beam and sphere"]),
+        (["--velocity", "-1"], ["velocity", "above zero"]),
+        (["--contact", "glue"], ["contact", "glue", "hertz"]),
+        (["studies/none.yaml"], ["studies/none.yaml"]),
+        ([*COARSE, "--patch", "2 mm", "--velocity", "9"], ["--patch", "beyond", "take patch = "]),
+        ([*COARSE, "--elastic"], ["--elastic", "--deck"]),
+        ([*COARSE, "--deck", "nastran"], ["nastran", "abaqus", "calculix"]),
+    ],
+)
+def test_mistakes_end_in_one_message_and_leave_no_answers(impactlab, tmp_path, args, words):
+    code, said = impactlab("witness", *args)
+    assert code == 1
+    assert "Traceback" not in said
+    for word in words:
+        assert word in said, said
+    assert not list(tmp_path.glob("results/**/*.*"))
+
+
+def test_a_deck_is_written_and_nothing_solved(impactlab, tmp_path):
+    code, said = impactlab("witness", *COARSE, "--deck", "calculix")
+    assert code == 0, said
+    (file,) = (tmp_path / "results" / "paper" / "witness").iterdir()
+    assert str(file.relative_to(tmp_path)) in said
+    assert file.read_text().startswith("*HEADING")
+    assert "\n*PLASTIC" in file.read_text()
+    impactlab("witness", *COARSE, "--deck", "calculix", "--elastic")
+    assert "\n*PLASTIC" not in file.read_text()
+
+
+def test_a_run_that_goes_wrong_keeps_what_it_has(impactlab, tmp_path, undrawn, monkeypatch):
+    from impactlab.reference import solid as package
+
+    whole = package.solve_on
+    stopped = {"stopped": "an element was squeezed flat"}
+    monkeypatch.setattr(package, "solve_on", lambda *a, **k: whole(*a, **k).assign_attrs(stopped))
+    code, said = impactlab("witness", *COARSE)
+    assert code == 1
+    assert "squeezed flat; results/paper/witness holds what was computed until then" in said
+    assert (tmp_path / "results" / "paper" / "witness" / "witness.nc").exists()
+
+
+def test_ctrl_c_keeps_what_was_computed(tmp_path):
+    command = [sys.executable, "-c", PRESSED, "witness", "--element-size", "2 mm"]
+    # a shell starts its background jobs deaf to Ctrl-C, and these tests may run in one
+    hear = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=300, preexec_fn=hear
+    )
+    assert done.returncode == 130, done.stderr
+    assert "Traceback" not in done.stderr
+    stopping, kept = done.stderr.splitlines()
+    assert stopping.startswith("impactlab: stopping to keep what is computed")
+    assert kept.startswith("WARNING: interrupted at ")
+    assert kept.endswith("results/paper/witness holds what was computed until then")
+    solid = xr.load_dataset(tmp_path / "results" / "paper" / "witness" / "witness.nc")
+    assert 1e-6 < solid["duration"] < 0.1e-3
+    beams = xr.load_dataset(tmp_path / "results" / "paper" / "witness" / "beams.nc")
+    assert beams["duration"] == solid["duration"]
+
+
+PRESSED = """
+import os, signal
+import impactlab.figures.witness.drawings as drawings
+from impactlab.cli import main
+from impactlab.reference.solid.stepping.march import March
+drawings.draw_witness = lambda *_: None
+advance = March._advance
+def pressed(self, end):
+    advance(self, end)
+    if end > 4e-5:
+        os.kill(os.getpid(), signal.SIGINT)
+March._advance = pressed
+main()
+"""
+"""The command line, with Ctrl-C pressed once in the middle of a run."""
