@@ -11,6 +11,8 @@ PART, BEAM_TOP, SPHERE_BOTTOM = "Structure", "BeamTop", "SphereBottom"
 """Names of the whole model and of the two surfaces that may touch."""
 BOSSAK = -0.3
 """Bossak's parameter: Kratos' own choice; it damps what a step cannot resolve."""
+RESIDUAL_RATIO = 1e-5
+"""Residual over that at a step's beginning, at which the step has converged."""
 _CONTACT = "PenaltyContactFrictionless"
 _MODULE = "KratosMultiphysics.ContactStructuralMechanicsApplication"
 
@@ -47,9 +49,9 @@ def _solver(time_step: float) -> dict[str, Any]:
         "compute_reactions": False,
         "reform_dofs_at_each_step": True,
         "convergence_criterion": "contact_residual_criterion",
-        "residual_relative_tolerance": 1e-5,
+        "residual_relative_tolerance": RESIDUAL_RATIO,
         "residual_absolute_tolerance": 1e-3,
-        "max_iteration": 20,
+        "max_iteration": 10,
         "contact_settings": {"mortar_type": _CONTACT, "fancy_convergence_criterion": False},
         "linear_solver_settings": {
             "solver_type": "amgcl",
