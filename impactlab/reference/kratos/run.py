@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -20,6 +19,9 @@ from impactlab.reference.solid.mesh.mesh import Floats
 from impactlab.reference.solid.stepping.masses import nodal_masses
 
 Progress = Callable[[float, float], None]
+
+_HALVINGS = 5
+"""How often a step that does not converge is cut in half."""
 
 
 class Run:
@@ -67,15 +69,26 @@ class Run:
         return self.history
 
     def _take(self) -> None:
-        """One step; it is kept if it converged."""
-        analysis = self._analysis
-        analysis.time = analysis._GetSolver().AdvanceInTime(analysis.time)
-        analysis.InitializeSolutionStep()
-        if not (analysis.SolveSolutionStep() or self._balanced()):
-            self.history.stopped = f"Newton's iterations did not converge at {analysis.time:.4g} s"
-            return
-        analysis.FinalizeSolutionStep()
-        self.history.moments.append(self._moment(analysis.time))
+        """One step, or as much of it as converges: what is left falls to the steps that follow."""
+        analysis, before = self._analysis, self._analysis.time
+        analysis.time = analysis._GetSolver().AdvanceInTime(before)
+        for _ in range(1 + _HALVINGS):
+            analysis.InitializeSolutionStep()
+            if analysis.SolveSolutionStep() or self._balanced():
+                analysis.FinalizeSolutionStep()
+                self.history.moments.append(self._moment(analysis.time))
+                return
+            analysis.time = 0.5 * (before + analysis.time)
+            self._begin_again()
+        self.history.stopped = f"Newton's iterations did not converge after {before:.4g} s"
+
+    def _begin_again(self) -> None:
+        """Back to where the step began, to end at the analysis' time."""
+        part = self.part
+        part.OverwriteSolutionStepData(1, 0)
+        part.ReduceTimeStep(part, self._analysis.time)
+        displacement = self.engine.variable("DISPLACEMENT")
+        self.engine.core.VariableUtils().UpdateCurrentPosition(part.Nodes, displacement)
 
     def _balanced(self) -> bool:
         """Whether forces balance, though Kratos' set of touching nodes does not settle.
@@ -88,15 +101,18 @@ class Run:
     def _moment(self, now: float) -> Moment:
         down = -readings.vectors(self.engine, self.part, "DISPLACEMENT")[:, 2]
         speed = -readings.vectors(self.engine, self.part, "VELOCITY")[:, 2]
+        iterations = self.engine.variable("NL_ITERATION_NUMBER")
         mesh = self.mesh
         self._check_patch(down)
         return Moment(
-            now,
-            readings.contact_force(self.engine, self.part),
-            float(self._sphere @ down),
-            *(float(down[node]) for node in (mesh.pole, mesh.axis_node, mesh.top_node)),
-            float(self._sphere @ speed),
-            float(self.part.ProcessInfo[self.engine.variable("NL_ITERATION_NUMBER")]),
+            time=now,
+            force=readings.contact_force(self.engine, self.part),
+            sphere=float(self._sphere @ down),
+            pole=float(down[mesh.pole]),
+            axis=float(down[mesh.axis_node]),
+            top=float(down[mesh.top_node]),
+            velocity=float(self._sphere @ speed),
+            iterations=float(self.part.ProcessInfo[iterations]),
         )
 
     def _check_patch(self, down: Floats) -> None:
@@ -108,8 +124,8 @@ class Run:
             )
 
 
-def _shares(mesh: Mesh, impact: Impact) -> Any:
+def _shares(mesh: Mesh, impact: Impact) -> Floats:
     """Each node's share of the sphere's mass, (n,): 0 in the beam."""
     mass = nodal_masses(mesh, impact)
     mass[np.setdiff1d(np.arange(mass.size), mesh.elements[mesh.body == SPHERE])] = 0.0
-    return mass / mass.sum()
+    return np.asarray(mass / mass.sum())
