@@ -2,6 +2,7 @@
 # make paper   the figures and statements of the paper, in results/paper
 # make test    the checks and the tests
 # make chaos   what crashes, full disks, lost workers and hostile files must not do (20 minutes)
+# make kratos  the 3-D model against Kratos Multiphysics, in a coarse case (2 minutes)
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings; both schemes' cost and error;
 #              the bootstrap of Sobol indices: wants an idle machine
@@ -25,7 +26,7 @@ IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
 
-.PHONY: study paper test lint pytest chaos bench scaling mutants coverage constraints unlock clean
+.PHONY: study paper test lint pytest chaos kratos bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -55,6 +56,9 @@ pytest: $(MADE)-dev
 chaos: $(MADE)-dev
 	$(IN_VENV) python -m pytest -m chaos $(PYTEST_ARGS)
 
+kratos: $(MADE)-dev $(MADE)-kratos
+	$(IN_VENV) python -m pytest -m kratos $(PYTEST_ARGS)
+
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
@@ -69,7 +73,7 @@ mutants: $(MADE)-dev
 
 # Compiled kernels hide from coverage: here they run as plain Python, on the small cases only.
 coverage: $(MADE)-dev
-	$(IN_VENV) NUMBA_DISABLE_JIT=1 python -m pytest tests/unit -m 'not slow and not chaos' \
+	$(IN_VENV) NUMBA_DISABLE_JIT=1 python -m pytest tests/unit -m 'not slow and not chaos and not kratos' \
 	  --cov --cov-report=term-missing:skip-covered $(PYTEST_ARGS)
 
 # Newest versions for every Python and platform; needs uv (https://docs.astral.sh/uv).
