@@ -73,7 +73,7 @@ def witness(
     What they answer is compared in a table; fields, histories and figures are kept. Ctrl-C keeps
     what was computed until then.
     """
-    from impactlab.report.witness import print_plan
+    from impactlab.report.solid import print_plan
 
     case = _case(study, velocity, contact)
     plan = _plan(case, element_size, patch, duration)
@@ -138,8 +138,8 @@ def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> Non
 
 def _solve(plan: Plan, workers: int, folder: Path) -> None:
     """Answers are on disk before anything is made of them."""
-    from impactlab.figures.witness.drawings import draw_witness
-    from impactlab.report.witness import print_comparison
+    from impactlab.figures.solid.drawings import draw_witness
+    from impactlab.report.solid import print_comparison
     from impactlab.steering.witness.beams import beams
     from impactlab.steering.witness.comparison import compared, write_csv
     from impactlab.study.netcdf import write_netcdf

@@ -30,7 +30,7 @@ responses: [peak_force]
 @pytest.fixture
 def undrawn(monkeypatch):
     """Figures take their time."""
-    monkeypatch.setattr("impactlab.figures.witness.drawings.draw_witness", lambda *_: None)
+    monkeypatch.setattr("impactlab.figures.solid.drawings.draw_witness", lambda *_: None)
 
 
 @pytest.fixture
@@ -159,7 +159,7 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path):
 
 PRESSED = """
 import os, signal
-import impactlab.figures.witness.drawings as drawings
+import impactlab.figures.solid.drawings as drawings
 from impactlab.cli import main
 from impactlab.reference.solid.stepping.march import March
 drawings.draw_witness = lambda *_: None

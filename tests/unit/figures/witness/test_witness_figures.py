@@ -8,9 +8,9 @@ from made_solid import DEPTH_OF_STRAIN, beam_models, solid
 from matplotlib.collections import PolyCollection
 
 from impactlab.figures.alt import alt
-from impactlab.figures.witness import histories, mesh, plastic_strain
-from impactlab.figures.witness.drawings import draw_witness
-from impactlab.figures.witness.planes import faces
+from impactlab.figures.solid import histories, mesh, plastic_strain
+from impactlab.figures.solid.drawings import draw_witness
+from impactlab.figures.solid.planes import faces
 
 
 def area(polygons):

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import scales, style
 from impactlab.figures.reading import words
-from impactlab.figures.witness import planes
+from impactlab.figures.solid import planes
 
 TITLE = "Plastic strain about the contact"
 THRESHOLD = 1e-5

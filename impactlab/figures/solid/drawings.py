@@ -8,7 +8,7 @@ from pathlib import Path
 import xarray as xr
 
 from impactlab.figures.draw import Drawing, draw
-from impactlab.figures.witness import histories, mesh, plastic_strain
+from impactlab.figures.solid import histories, mesh, plastic_strain
 
 _FILES = {"mesh": mesh, "plastic_strain": plastic_strain, "histories": histories}
 

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from impactlab.figures import scales, style
 from impactlab.figures.reading import words
-from impactlab.figures.witness import planes
+from impactlab.figures.solid import planes
 
 TITLE = "Mesh of the 3-D model"
 _COLOURS = {"beam": "#DCE9F2", "sphere": "#F7E3D4", "fully integrated": "#9CC4DD"}
