@@ -12,8 +12,6 @@ from impactlab.reference.solid import Cost, estimate, quarter_mesh
 from impactlab.study.solid.cases import SOLID_CASE, impact_of, is_solid, kernel_cases
 
 Array = np.ndarray[Any, Any]
-A_SECOND = 3e8
-"""Node-steps of a core."""
 
 
 def work(cases: Array) -> Array:
@@ -21,7 +19,7 @@ def work(cases: Array) -> Array:
     found = np.zeros(cases.size)
     solid = is_solid(cases)
     found[~solid] = cost.work(kernel_cases(cases))
-    found[solid] = [A_SECOND * of_solid(case).cpu_seconds for case in cases[solid]]
+    found[solid] = [cost.A_SECOND * of_solid(case).cpu_seconds for case in cases[solid]]
     _, first = np.unique(cases.view(f"V{cases.dtype.itemsize}"), return_index=True)
     again = np.ones(cases.size, dtype=bool)
     again[first] = False
