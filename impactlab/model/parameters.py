@@ -56,9 +56,7 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter("velocity", "m s-1", "impact velocity", ("impact", "velocity")),
         Parameter("gravity", "m s-2", "gravity on the sphere", ("impact", "gravity")),
         Parameter("contact", "1", "contact law", ("impact", "contact"), choices=LAWS),
-        Parameter(
-            "beam_model", "1", "model of the beam", ("impact", "beam_model"), choices=MODELS
-        ),
+        Parameter("beam_model", "1", "model of the beam", ("impact", "beam_model"), choices=MODELS),
         Parameter("sphere_radius", "m", "radius of the sphere", ("impact", "sphere", "radius")),
         Parameter("sphere_mass", "kg", "mass of the sphere", ("impact", "sphere", "mass")),
         *_material("sphere")[:4],
