@@ -239,7 +239,7 @@ def _table(
     """The records of as many runs as the columns in the impact are long, or one for all."""
     if anywhere(np.equal(impact.beam_model, SOLID)):
         raise ValueError(
-            f"Impact.beam_model = {SOLID!r}: is no model of these kernels: use `impactlab witness`, "
+            f"Impact.beam_model = {SOLID!r}: is no model of the kernels: use `impactlab witness`, "
             "impactlab.reference.solid.solve, or a study of the method grid"
         )
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}

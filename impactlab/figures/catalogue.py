@@ -30,6 +30,8 @@ from impactlab.figures import (
     sobol_second_order,
     surrogate_validation,
     time_step_convergence,
+    witness,
+    witness_parts,
 )
 from impactlab.figures.index_bars import IndexBars
 from impactlab.figures.index_convergence import IndexConvergence
@@ -64,6 +66,8 @@ def _named(*files: FigureFile) -> dict[str, FigureFile]:
 
 _ANSWERS: dict[str, FigureFile] = _named(
     contact_laws,
+    witness,
+    witness_parts,
     first_contact,
     force_history,
     displacement_history,

@@ -29,7 +29,7 @@ _TOLERANCE = 0.01
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Whether the nodes are refined and the runs, all of beams, say what their cost follows from."""
+    """Whether the nodes are refined and all runs are of beams whose cost is known."""
     known = _AXIS.applies(runs) and all(name in runs.coords for name in _INPUTS)
     return known and set(np.ravel(runs["beam_model"].values).tolist()) <= set(BEAM_MODELS)
 

@@ -13,8 +13,8 @@ from impactlab.model.impact import SOLID
 
 SAYS = "The displacements of sphere and beam agree with a 3-D finite-element model, slightly off."
 TEST = (
-    "d = max over time of |w(beam) − w(3-D)|, over the largest |w(3-D)|, on the finest grids; U: the "
-    "same of each model's own finest two grids, three times as at first order. d + U ≤ 10 % is "
+    "d = max over time of |w(beam) − w(3-D)|, over the largest |w(3-D)|, on the finest grids; U: "
+    "three times the same between each model's own two finest grids. d + U ≤ 10 % is "
     "“agrees”, and d − U > 0 “slightly off”. The paper gives no number: 10 % is ours."
 )
 LIMIT = 0.10

@@ -11,8 +11,8 @@ from impactlab.analysis.claims.witness import BEAMS
 SAYS = "The contact duration against the velocity agrees with a 3-D finite-element model."
 TEST = (
     "|t(beam)/t(3-D) − 1| ± U ≤ 5 %, t: duration of the first contact, U: the numerical "
-    "uncertainties of both. The paper gives no number: 5 % is ours, about what its figure can show, "
-    "so that a case which holds does so under a reading."
+    "uncertainties of both. The paper gives no number: 5 % is ours, about what its figure shows: "
+    "a case that holds does so under a reading."
 )
 LIMIT = 0.05
 

@@ -58,8 +58,8 @@ WITHOUT_LIMIT = (
         "element_size",
         "peak_plastic_strain",
         _solid_and_yielding,
-        "in the contact of a solid that does not harden, plastic strain gathers beneath the edge of "
-        "the dent: its peak grows as the elements shrink",
+        "in the contact of a solid, plastic strain gathers at the edge of the dent: its peak grows "
+        "as the elements shrink",
     ),
 )
 """Every such response there is, a line each."""

@@ -37,7 +37,7 @@ def memory(cases: Array) -> Array:
 
 
 def of_solid(case: Any) -> Cost:
-    """Elements, steps, seconds and bytes of one run of the 3-D model; nothing where no mesh fits."""
+    """Elements, steps, seconds and bytes of one 3-D run; nothing where no mesh fits."""
     return _of_bytes(case.tobytes())
 
 

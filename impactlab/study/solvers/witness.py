@@ -73,7 +73,7 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
 
 
 def _spread(values: Array, where: Array) -> Array:
-    """Rows of (cases, ...): those given where `where` holds, NaN (or 0 of whole numbers) elsewhere."""
+    """Rows of (cases, ...): those given where `where` holds, else NaN (0 of whole numbers)."""
     missing = np.nan if values.dtype.kind == "f" else 0
     rows = np.full((where.size, *values.shape[1:]), missing, dtype=values.dtype)
     rows[where] = values
