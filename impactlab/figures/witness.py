@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -11,7 +13,6 @@ from impactlab.figures import scales, style
 from impactlab.figures.reading import missing, witness, words
 from impactlab.figures.reading.contents import usable
 from impactlab.figures.reading.units import display
-from impactlab.model.impact import SOLID
 
 TITLE = "The beam models and the 3-D witness"
 _NAMES = (
@@ -20,6 +21,8 @@ _NAMES = (
 )
 """What is drawn first, as far as it is there."""
 _MOST = 3
+_LEAST, _ROOM = 2.0, 2.0
+"""Least half-height of a panel of differences in %; its most, in times the largest difference."""
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -32,7 +35,8 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Above: each model on its finest grid. Below: its difference from the 3-D "
         "finite-element model, in parts of that; bars: the numerical uncertainty of both models "
-        "together, left out where nothing bounds it. Markers are shifted sideways a little. "
+        "together, left out where nothing bounds it and cut at the panel's edge. Markers are "
+        "shifted sideways a little. "
         f"{missing.note(runs, _drawn(runs))}".strip()
     )
 
@@ -51,7 +55,9 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             scales.at(ax, "x", runs["velocity"].values)
         below.set_xlabel(words.axis(words.parameter("velocity"), "m/s"))
     axes[len(names)].set_ylabel(words.axis("difference from the 3-D model", "%"))
-    style.legend(figure, "Model of the beam", [_label(model) for model in witness.models(runs)])
+    style.legend(
+        figure, "Model of the beam", [witness.label(model) for model in witness.models(runs)]
+    )
     return figure
 
 
@@ -59,12 +65,7 @@ def _drawn(runs: xr.Dataset) -> list[str]:
     return [name for name in _NAMES if name in witness.asked(runs)][:_MOST]
 
 
-def _label(model: str) -> str:
-    parts = model.split("_")
-    return "3-D solid" if model == SOLID else "-".join(part.capitalize() for part in parts)
-
-
-def _look(at: int) -> dict[str, object]:
+def _look(at: int) -> dict[str, Any]:
     """The witness black, the others in the colours of all figures, each with its own marker."""
     colour = "black" if at == 0 else style.COLOURS[at - 1]
     return {"color": colour, "marker": style.MARKERS[at], "linestyle": style.LINES[at]}
@@ -75,7 +76,7 @@ def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
     for at, model in enumerate(witness.models(runs)):
         values = unit(witness.side(runs, analysis, name, model).value)
         if np.isfinite(values).any():
-            ax.plot(runs["velocity"].values, values, label=_label(model), **_look(at))
+            ax.plot(runs["velocity"].values, values, label=witness.label(model), **_look(at))
     ax.set_title(words.sentence(words.response(name)), loc="left")
     ax.set_ylabel(words.axis(words.response(name), unit.symbol))
     if not ax.lines:
@@ -95,12 +96,13 @@ def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) ->
         shift = 1.0 + 0.04 * (at - 0.5 * (len(others) + 1))
         if np.isfinite(gap.value).any():
             speed = shift * runs["velocity"].values
-            marks = ax.errorbar(speed, 100.0 * gap.value, yerr=bars, **_look(at))
-            marks.set_label(_label(model))
-            for part in (*marks.lines[1], *marks.lines[2]):
-                part.set_linewidth(0.8)
+            look = {"elinewidth": 0.8, "label": witness.label(model)} | _look(at)
+            ax.errorbar(speed, 100.0 * gap.value, yerr=bars, **look)
     if not ax.containers:
         style.remark(ax, "no finite values")
         return
     ax.axhline(0.0, label="_guide", **style.GUIDE)
     scales.linear(ax, "y")
+    largest = max(_LEAST, *(np.nanmax(abs(np.asarray(line.get_ydata()))) for line in ax.lines))
+    low, high = ax.get_ylim()
+    ax.set_ylim(max(low, -_ROOM * largest), min(high, _ROOM * largest))

@@ -27,12 +27,12 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Left: force against indentation (to mid-depth) as the contact law has it and as the 3-D "
         "solid answers, elastic and yielding. Right: by how much each effect changes the answer of "
-        "the paper's beam (Euler-Bernoulli); bars: the numerical uncertainty of all runs that it is "
-        "made of, left out where nothing bounds it. Shear and rotary inertia: Timoshenko's beam over "
-        "Euler-Bernoulli's. 3-D elasticity of the contact: the elastic solid over the elastic "
+        "the paper's beam (Euler-Bernoulli); bars: the numerical uncertainty of all runs that it "
+        "is made of, left out where nothing bounds it. Shear and rotary inertia: Timoshenko's beam "
+        "over Euler-Bernoulli's. 3-D elasticity of the contact: the elastic solid over the elastic "
         "Timoshenko beam under Hertz's law; what the local compliance through the depth and the "
-        "waves in the sphere do. Contact law in yielding: what yielding does to the solid over what "
-        f"it does under Stronge's law. {_finding(runs, analysis)} "
+        "waves in the sphere do. Contact law in yielding: what yielding does to the solid over "
+        f"what it does under the contact law. {_finding(runs, analysis)} "
         f"{missing.note(runs, parts.NAMES)}".strip()
     )
 

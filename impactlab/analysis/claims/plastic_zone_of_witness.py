@@ -11,8 +11,8 @@ SAYS = "At 0.99 m/s the plastic zone reaches 1.52 mm from the centre (3-D finite
 TEST = (
     "Half of the length of beam in which any element of the 3-D model has a PEEQ above 1e-5 at the "
     "end, at any depth; U: its numerical uncertainty, and at least the size of an element, in "
-    "which the length is counted. 1.52 mm lies within it. Which strain the paper's zone ends at is not "
-    "said: this is a reading."
+    "which the length is counted. 1.52 mm lies within it. Which strain the paper's zone ends at is "
+    "not said: this is a reading."
 )
 PRINTED = 1.52e-3
 

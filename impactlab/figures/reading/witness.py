@@ -41,6 +41,11 @@ def models(runs: xr.Dataset) -> list[str]:
     return [SOLID, *(name for name in listed if name != SOLID)]
 
 
+def label(model: str) -> str:
+    """A model of the beam in words."""
+    return "3-D solid" if model == SOLID else "-".join(map(str.capitalize, model.split("_")))
+
+
 def asked(runs: xr.Dataset) -> list[str]:
     """The responses, but for the check of the numerics."""
     return [name for name in responses(runs) if name != "energy_error"]
@@ -54,7 +59,8 @@ def side(runs: xr.Dataset, analysis: xr.Dataset, name: str, model: str) -> Side:
             values = values.isel({dim: int(pick(runs[dim].values))})
     found = values.values.astype(float)
     axis = "element_size" if model == SOLID else "nodes"
-    return Side(found, abs(found) * _share(analysis, name, model, axis))
+    width: Array = abs(found) * _share(analysis, name, model, axis)
+    return Side(found, width)
 
 
 def difference(ours: Side, witness: Side) -> Side:
