@@ -96,7 +96,7 @@ def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) ->
         shift = 1.0 + 0.04 * (at - 0.5 * (len(others) + 1))
         if np.isfinite(gap.value).any():
             speed = shift * runs["velocity"].values
-            look = {"elinewidth": 0.8, "label": witness.label(model)} | _look(at)
+            look: dict[str, Any] = {"elinewidth": 0.8, "label": witness.label(model)} | _look(at)
             ax.errorbar(speed, 100.0 * gap.value, yerr=bars, **look)
     if not ax.containers:
         style.remark(ax, "no finite values")

@@ -20,9 +20,9 @@ def sections(
 ) -> tuple[list[Section], list[Section]]:
     """What stands before the section on convergence, and what after it.
 
-    A grid: what was run, how the runs ended, a 3-D witness; results. A sample: what was varied,
-    distributions, scatters, indices, ranking; failures, numerical uncertainty. indices: name of the file of all
-    indices, "" where there is none.
+    A grid: what was run, how the runs ended, what a 3-D witness says; results. A sample: what was
+    varied, distributions, scatters, indices, ranking; failures, numerical uncertainty. indices:
+    name of the file of all indices, "" where there is none.
     """
     if not is_sample(runs):
         found = witness.sections(runs, analysis)
