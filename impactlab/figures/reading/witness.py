@@ -68,7 +68,7 @@ def difference(ours: Side, witness: Side) -> Side:
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where(witness.value != 0.0, ours.value / witness.value, np.nan)
         shares = [abs(each.uncertainty / each.value) for each in (ours, witness)]
-    return Side(ratio - 1.0, abs(ratio) * sum(shares))
+    return Side(ratio - 1.0, np.asarray(abs(ratio) * (shares[0] + shares[1])))
 
 
 def _share(analysis: xr.Dataset, name: str, model: str, axis: str) -> Array:
