@@ -418,6 +418,6 @@ def test_the_solid_model_is_solved_elsewhere():
     impact = replace(IMPACT, beam_model="solid")
     with pytest.raises(ValueError, match=r"'solid': .*`impactlab witness`"):
         il.simulate(impact, GRID, duration=1e-4)
+    varied = {"beam_model": ["elastic", "solid"]}
     with pytest.raises(ValueError, match=r"'solid': .*`impactlab witness`"):
-        varied = {"beam_model": ["elastic", "solid"]}
         il.simulate_many(IMPACT, GRID, duration=1e-4, varied=varied)
