@@ -1,6 +1,7 @@
 # studies/NAME.yaml -> design.nc -> runs.nc -> analysis.nc -> figures/ -> report.html, and one index.
 # A study of checks: studies/NAME.yaml -> findings.nc -> figures/ -> report.html, then the verdict.
-# The studies of the paper's figures, fig*.yaml, also -> results/paper: figures and claims.
+# Those of the paper's figures and its 3-D witness, fig*.yaml and witness.yaml, also -> results/paper:
+# figures and claims.
 # Only these: snakemake --cores all paper
 # All committed studies: snakemake --cores all. Some: snakemake --cores all --config studies=smoke,sobol
 import os
@@ -57,10 +58,16 @@ def evidence(wildcards, input):
     return " ".join(f"--{name} {file}" for name, file in known.items() if file)
 
 
+def is_solid(study):
+    """Whether some of its runs are of the 3-D model."""
+    return has_key(study, r"\bsolid\b")
+
+
 def solving(wildcards):
     """Sources of the runs; the analysis is one where it decides how many there are."""
     deciding = ("analysis/**/*.py", "steering/*.py") if has_key(wildcards.study, r"\buntil\s*:") else ()
-    return code(*SOLVER, "study/**/*.py", *deciding)
+    solid = ("reference/hertz.py", "reference/solid/**/*.py") if is_solid(wildcards.study) else ()
+    return code(*SOLVER, "study/**/*.py", *deciding, *solid)
 
 
 def stored(wildcards):
@@ -85,7 +92,7 @@ CHECKING = ("study/checking.py", "study/declaration/**/*.py", "study/storage.py"
 FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcome", "stored"))
 REPORTING = ("report/**/*.py", "report/templates/*")
 STUDIES = asked_studies(config.get("studies"))
-PAPER = [path.stem for path in sorted(Path("studies").glob("fig*.yaml"))]
+PAPER = [*(path.stem for path in sorted(Path("studies").glob("fig*.yaml"))), "witness"]
 VERIFICATIONS = [study for study in STUDIES if lists_checks(study)]
 
 

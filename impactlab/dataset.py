@@ -22,6 +22,8 @@ from impactlab.model.parameters import PARAMETERS
 if TYPE_CHECKING:
     import xarray as xr
 
+_STOPPED = 256
+"""Beside the kernels' bits: the 3-D model alone has it."""
 FAILURES: dict[str, tuple[int, str]] = {
     "diverged": (status.DIVERGED, "the run diverged; every response is missing"),
     "first_contact_unfinished": (
@@ -47,6 +49,11 @@ FAILURES: dict[str, tuple[int, str]] = {
     "energy_out_of_balance": (
         status.ENERGY_OUT_OF_BALANCE,
         "energy is out of balance by more than 5 %: take more nodes or a smaller courant",
+    ),
+    "stopped": (
+        _STOPPED,
+        "the 3-D model stopped before its time, or had no room for its contact (see the log); "
+        "every response is missing",
     ),
 }
 """Reasons for a missing response, by name: (bit in `status`, in words)."""
@@ -190,6 +197,7 @@ _FIELDS = (
 ANALYSES: dict[str, str] = {
     "convergence_in_nodes": "a grid that varies `nodes` over at least 3 values",
     "convergence_in_time_step": "a grid that varies `courant` over at least 3 values",
+    "convergence_in_element_size": "a grid that varies `element_size` over at least 3 values",
     "convergence_in_points": "a grid that varies `points` over at least 2 values",
     "sensitivity": "a sample (any method but grid)",
     "surrogate": "a sample (any method but grid)",
@@ -224,7 +232,7 @@ def attributes(name: str) -> dict[str, Any]:
     entry = VARIABLES[name] if name in VARIABLES else PARAMETERS[name]
     attrs: dict[str, Any] = {"units": entry.units, "long_name": entry.long_name}
     if isinstance(entry, Variable) and entry.missing:
-        attrs["missing_because"] = f"diverged energy_out_of_balance {entry.missing}"
+        attrs["missing_because"] = f"diverged energy_out_of_balance stopped {entry.missing}"
     if isinstance(entry, Variable) and entry.comment:
         attrs["comment"] = entry.comment
     return attrs
@@ -257,7 +265,7 @@ def contact_attributes(laws: Iterable[str]) -> dict[str, str]:
 
 def status_bits(responses: Iterable[str]) -> int:
     """The status bits that take these responses away: the whole run's, and each one's own."""
-    bits = status.DIVERGED | status.ENERGY_OUT_OF_BALANCE
+    bits = status.DIVERGED | status.ENERGY_OUT_OF_BALANCE | _STOPPED
     for name in responses:
         if reason := RESPONSES[name].missing:
             bits |= STATUS_FLAGS[reason][0]

@@ -17,9 +17,9 @@ from impactlab.kernels.leapfrog import run_all
 from impactlab.kernels.quadrature import rule_points
 from impactlab.kernels.responses import RESPONSE
 from impactlab.model.checks import integer, positive
-from impactlab.model.columns import column
+from impactlab.model.columns import anywhere, column
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
+from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import Value, flatten, with_values
 
 if TYPE_CHECKING:
@@ -237,6 +237,11 @@ def _table(
     impact: Impact, discretisation: Discretisation, duration: float, runs: int
 ) -> np.ndarray[Any, Any]:
     """The records of as many runs as the columns in the impact are long, or one for all."""
+    if anywhere(np.equal(impact.beam_model, SOLID)):
+        raise ValueError(
+            f"Impact.beam_model = {SOLID!r}: is no model of the kernels: use `impactlab witness`, "
+            "impactlab.reference.solid.solve, or a study of the method grid"
+        )
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
     values["sphere_mass"] = impact.sphere.total_mass
     for name, words in _NUMBERED.items():

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis import failures, sensitivity, surrogate
-from impactlab.analysis.convergence import nodes, points, time_step
+from impactlab.analysis.convergence import element_size, nodes, points, time_step
 from impactlab.analysis.numerical import numerical
 from impactlab.dataset import ANALYSES
 
@@ -27,6 +27,7 @@ _MODULES: dict[str, Analysis] = {
     "failures": failures,
     "convergence_in_nodes": nodes,
     "convergence_in_time_step": time_step,
+    "convergence_in_element_size": element_size,
     "convergence_in_points": points,
     "sensitivity": sensitivity,
     "surrogate": surrogate,

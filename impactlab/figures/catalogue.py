@@ -12,6 +12,7 @@ from impactlab.figures import (
     contact_laws,
     convergence_cost,
     displacement_history,
+    element_size_convergence,
     failure_map,
     failure_shares,
     first_contact,
@@ -29,6 +30,8 @@ from impactlab.figures import (
     sobol_second_order,
     surrogate_validation,
     time_step_convergence,
+    witness,
+    witness_parts,
 )
 from impactlab.figures.index_bars import IndexBars
 from impactlab.figures.index_convergence import IndexConvergence
@@ -63,6 +66,8 @@ def _named(*files: FigureFile) -> dict[str, FigureFile]:
 
 _ANSWERS: dict[str, FigureFile] = _named(
     contact_laws,
+    witness,
+    witness_parts,
     first_contact,
     force_history,
     displacement_history,
@@ -75,6 +80,7 @@ _ANSWERS: dict[str, FigureFile] = _named(
     parameter_effects,
     nodes_convergence,
     time_step_convergence,
+    element_size_convergence,
     points_convergence,
     convergence_cost,
     response_distributions,

@@ -29,8 +29,9 @@ _TOLERANCE = 0.01
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Whether the nodes are refined and the runs say what their cost follows from."""
-    return _AXIS.applies(runs) and all(name in runs.coords for name in _INPUTS)
+    """Whether the nodes are refined and all runs are of beams whose cost is known."""
+    known = _AXIS.applies(runs) and all(name in runs.coords for name in _INPUTS)
+    return known and set(np.ravel(runs["beam_model"].values).tolist()) <= set(BEAM_MODELS)
 
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:

@@ -117,9 +117,9 @@ def relative_difference(
 
 
 def finest(runs: xr.Dataset, dim: str) -> int:
-    """Where on the axis the finest value is: many nodes, a small courant."""
+    """Where on the axis the finest value is: many nodes, a small courant or element size."""
     values = runs[dim].values
-    return int(np.argmin(values) if dim == "courant" else np.argmax(values))
+    return int(np.argmin(values) if dim in ("courant", "element_size") else np.argmax(values))
 
 
 def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray | None:

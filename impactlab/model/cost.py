@@ -8,6 +8,9 @@ import numpy as np
 
 from impactlab.kernels import BEAM_MODELS, SCHEMES
 
+A_SECOND = 3e8
+"""Node-steps of a core; half of it or twice is possible."""
+
 
 def node_steps(cases: Any) -> Any:
     """Estimated cost of a run, or of each: half the nodes times the time steps.

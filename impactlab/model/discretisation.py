@@ -24,6 +24,8 @@ class Discretisation:
     "semi_implicit" (with nodes^2, from 17 nodes on; see kernels/semi_implicit.py). courant: time
     step over the scheme's largest, in (0, 1]: over the critical one of leapfrog; over half of the
     time in which a bar wave crosses a spacing, unless the contact allows less, of semi_implicit.
+    element_size: of the "solid" model alone, which needs it and nothing else of these: of its
+    elements about the contact, in m.
 
     The two schemes tend to the same answers, but for what does not converge anyway: the peak
     plastic strain of a perfectly plastic beam depends on the time step, too.
@@ -36,6 +38,7 @@ class Discretisation:
     rule: str = "lobatto"
     scheme: str = "leapfrog"
     courant: float = 0.9
+    element_size: float | None = None
 
     def __post_init__(self) -> None:
         for field, least in (("nodes", 5), ("points", 2)):  # 21.0, as YAML may give it, is 21
@@ -47,6 +50,8 @@ class Discretisation:
             )
         one_of("Discretisation", "rule", self.rule, RULES)
         one_of("Discretisation", "scheme", self.scheme, SCHEMES)
+        if self.element_size is not None:
+            positive("Discretisation", "element_size", self.element_size)
         few = np.less(self.nodes, _LEAST_FILTERED)
         if anywhere(few & np.equal(self.scheme, "semi_implicit")):
             raise ValueError(

@@ -10,6 +10,11 @@ from impactlab.model.beam import Beam
 from impactlab.model.checks import instance, not_negative, one_of, positive
 from impactlab.model.sphere import Sphere
 
+SOLID = "solid"
+"""The word for the 3-D model of beam and sphere (impactlab.reference.solid), no kernel's."""
+MODELS = (*BEAM_MODELS, SOLID)
+"""Names of all models of the beam."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Impact:
@@ -19,7 +24,8 @@ class Impact:
     (impactlab.kernels.contact.LAWS). gravity: acts on the sphere alone, in m/s2. beam_model:
     "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
     "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one degree
-    of freedom) or "rigid" (the beam does not move).
+    of freedom), "rigid" (the beam does not move) or "solid" (3-D finite elements of both bodies,
+    in which `contact` plays no part).
 
     Raises ValueError naming the field when a value is not physical or a name is unknown.
     """
@@ -37,4 +43,4 @@ class Impact:
         positive("Impact", "velocity", self.velocity)
         not_negative("Impact", "gravity", self.gravity)
         one_of("Impact", "contact", self.contact, LAWS)
-        one_of("Impact", "beam_model", self.beam_model, BEAM_MODELS)
+        one_of("Impact", "beam_model", self.beam_model, MODELS)

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
+from impactlab.kernels import RULES, SCHEMES
 from impactlab.kernels.contact import LAWS
 from impactlab.model.columns import Column
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
+from impactlab.model.impact import MODELS, Impact
 
 Value = float | int | str
 
@@ -56,9 +56,7 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter("velocity", "m s-1", "impact velocity", ("impact", "velocity")),
         Parameter("gravity", "m s-2", "gravity on the sphere", ("impact", "gravity")),
         Parameter("contact", "1", "contact law", ("impact", "contact"), choices=LAWS),
-        Parameter(
-            "beam_model", "1", "model of the beam", ("impact", "beam_model"), choices=BEAM_MODELS
-        ),
+        Parameter("beam_model", "1", "model of the beam", ("impact", "beam_model"), choices=MODELS),
         Parameter("sphere_radius", "m", "radius of the sphere", ("impact", "sphere", "radius")),
         Parameter("sphere_mass", "kg", "mass of the sphere", ("impact", "sphere", "mass")),
         *_material("sphere")[:4],
@@ -88,12 +86,18 @@ PARAMETERS: dict[str, Parameter] = {
             "time step over the scheme's largest",
             ("discretisation", "courant"),
         ),
+        Parameter(
+            "element_size",
+            "m",
+            "size of the solid elements about the contact",
+            ("discretisation", "element_size"),
+        ),
     )
 }
 
 
 def flatten(impact: Impact, discretisation: Discretisation) -> dict[str, Value]:
-    """Every parameter's value by name; sphere_mass is left out where it follows from density."""
+    """Every parameter's value by name; what is None is left out (sphere_mass, element_size)."""
     roots = {"impact": impact, "discretisation": discretisation}
     values = {name: _get(roots, entry.path) for name, entry in PARAMETERS.items()}
     return {name: value for name, value in values.items() if value is not None}

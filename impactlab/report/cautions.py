@@ -17,6 +17,7 @@ from impactlab.report import numerical
 _JUDGED = {
     "nodes_summary": "Not converged in nodes somewhere in the grid",
     "time_step_summary": "Not converged in the time step somewhere in the grid",
+    "element_size_summary": "Not converged in the element size somewhere in the grid",
     "points_summary": "Not converged in integration points somewhere in the grid",
     "sensitivity_verdict": "Sensitivity indices not usable as they stand",
 }

@@ -124,6 +124,7 @@ _RULES = (
 _AXES: dict[str, tuple[str, _Table, str]] = {
     "nodes": ("Convergence in nodes along the span", _refined, _ORDERS),
     "time_step": ("Convergence in the time step at fixed nodes", _refined, _ORDERS),
+    "element_size": ("Convergence in the size of the solid elements", _refined, _ORDERS),
     "points": ("Convergence in integration points over the depth", _points, _RULES),
 }
 """Caption and table of each axis, and how to read it."""

@@ -11,7 +11,7 @@ from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import is_sample
 from impactlab.figures.reading.measures import asked
 from impactlab.figures.scatter import scatters
-from impactlab.report import answers, inputs, outcome, sensitivity
+from impactlab.report import answers, inputs, outcome, sensitivity, witness
 from impactlab.report.section import Section
 
 
@@ -20,13 +20,14 @@ def sections(
 ) -> tuple[list[Section], list[Section]]:
     """What stands before the section on convergence, and what after it.
 
-    A grid: what was run, how the runs ended; results. A sample: what was varied, distributions,
-    scatters, indices, ranking; failures, numerical uncertainty. indices: name of the file of all
-    indices, "" where there is none.
+    A grid: what was run, how the runs ended, what a 3-D witness says; results. A sample: what was
+    varied, distributions, scatters, indices, ranking; failures, numerical uncertainty. indices:
+    name of the file of all indices, "" where there is none.
     """
     if not is_sample(runs):
-        return [_runs(runs), _outcome(runs, analysis)], [_results(runs)]
-    found = [
+        found = witness.sections(runs, analysis)
+        return [_runs(runs), _outcome(runs, analysis), *found], [_results(runs)]
+    of_sample = [
         _runs(runs),
         _results(runs, ["response_distributions"]),
         _scatter(runs),
@@ -34,7 +35,7 @@ def sections(
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         *sensitivity.last(runs, analysis),
     ]
-    return found, []
+    return of_sample, []
 
 
 def figures(names: list[str]) -> Section:

@@ -25,7 +25,11 @@ _RUNS = 10_000
 
 
 class Batches:
-    """Cuts runs into consecutive batches, sized when they are asked for."""
+    """Cuts runs into batches, sized when they are asked for: consecutive, after the costly ones.
+
+    A run that is a task of its own comes first, the costliest of all ahead: none is left to one
+    worker while the others idle.
+    """
 
     def __init__(self, runs: Array, cost: Array, values: int, seconds: float = 1.0) -> None:
         """runs: their numbers, out of those that `cost` holds, in a solver's unit.
@@ -33,7 +37,8 @@ class Batches:
         values: stored numbers a run; seconds: of a batch, long beside what dask and the disk take
         for one.
         """
-        self._runs, self._costs = runs, cost
+        alone = np.where(cost[runs] > _SPEED * seconds, cost[runs], 0.0)
+        self._runs, self._costs = runs[np.argsort(-alone, kind="stable")], cost
         self._wished = seconds
         self._most = max(1, min(_RUNS, _VALUES // values))
         self._at, self._left = 0, float(cost[runs].sum())

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from impactlab.dataset import HISTORIES, PROFILES, RESPONSES
-from impactlab.model.cost import memory, work
+from impactlab.model.cost import A_SECOND
 from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import SOLID
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS
-from impactlab.simulate import case_table
 from impactlab.study.declaration import FunctionStudy, Sobol, Study
 from impactlab.study.declaration.plausible import stated_at
-from impactlab.study.looking import costliest, looked_at, tabled
+from impactlab.study.declaration.solid import asks_for_solid
+from impactlab.study.looking import costliest, costs, looked_at, table, tabled
+from impactlab.study.solid.cases import is_solid
 
 Array = np.ndarray[Any, Any]
-A_SECOND = 3e8
-"""Node-steps of a core; half of it or twice is possible."""
 _NUMBER = 8
 _HELD = 2
 """Times that answers are in memory: read, and in order. One column, or all of a growing sample."""
@@ -33,6 +33,7 @@ _ITSELF = 4e8
 _FUNCTION = 1e-6
 """Seconds of a test function."""
 _USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES = 10_000, 0.012, 1000
+_USUAL_SIZE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -72,21 +73,21 @@ def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
     if isinstance(study, FunctionStudy):
         room = runs * float(_NUMBER * (len(study.sampling.varied) + 2))
         return _estimate(study, runs, np.full(1, _FUNCTION), room, room, 0.0, {})
-    looked = looked_at(study)
+    looked, priced = looked_at(study), costs(study)
     cases = tabled(study, looked)
-    largest = costliest(study, looked, work(cases))
+    work = priced.work(cases)
+    largest = costliest(study, looked, work)
     end = tabled(study, {name: [value] for name, value in largest.items()})[:1]
-    every = np.concatenate([cases, end])
     answers = runs * float(_NUMBER * _values(study, end))
     return _estimate(
         study,
         runs,
-        work(every) / A_SECOND,
+        np.append(work, priced.work(end)) / A_SECOND,
         answers,
         answers if until else runs * float(_NUMBER * _widest(study, end)),
-        workers * float(memory(every).max()),
+        workers * float(priced.memory(np.append(cases, end)).max()),
         largest,
-        slow=_key(study, _slow(end, runs)),
+        slow=_key(study, _slow(study, end, runs)),
         large=_key(study, _large(study, end, runs)),
     )
 
@@ -141,11 +142,15 @@ def _parameters(study: Study | FunctionStudy, runs: int) -> float:
     return runs * float(_NUMBER * len(study.sampling.varied))
 
 
-def _slow(case: Array, runs: int) -> dict[str, float]:
+def _slow(study: Study, case: Array, runs: int) -> dict[str, float]:
     """How much less time each would take at the paper's value, by parameter or key."""
-    usual = case_table(paper_impact(), Discretisation(), duration=_USUAL_DURATION)
+    work, impact = costs(study).work, paper_impact()
+    if asks_for_solid(study) and is_solid(case).all():
+        impact = replace(impact, beam_model=SOLID)
+    grid = Discretisation(element_size=_USUAL_SIZE)
+    usual = table(study)(impact, grid, duration=_USUAL_DURATION, varied={})
     gains = {"sampling": runs / _USUAL_RUNS}
-    for name in (*PARAMETERS, "duration"):
+    for name in usual.dtype.names or ():
         changed = case.copy()
         changed[name] = usual[name]
         gains[name] = float((work(case) / work(changed))[0])

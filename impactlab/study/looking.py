@@ -2,21 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol
 
 import numpy as np
 
-from impactlab.model.cost import work
+from impactlab.model import cost as beam_cost
 from impactlab.model.parameters import Value, with_values
 from impactlab.simulate import case_table
 from impactlab.study.declaration import Grid, Sample, Study
+from impactlab.study.declaration.solid import asks_for_solid
 from impactlab.study.errors import Problem, StudyError
+from impactlab.study.solid import cases as solid_cases
+from impactlab.study.solid import cost as solid_cost
 
 Array = np.ndarray[Any, Any]
 _MOST = 4096
 _TAIL = 1e-3
 """Of a distribution, on either side: left out."""
+
+
+class Costs(Protocol):
+    """What tells the costs of a table of cases."""
+
+    def work(self, cases: Array) -> Array:
+        """Time of each run, in node-steps of the paper's beam."""
+        ...
+
+    def memory(self, cases: Array) -> Array:
+        """Bytes that each run takes."""
+        ...
+
+
+def costs(study: Study) -> Costs:
+    """Of the runs of a study."""
+    return solid_cost if asks_for_solid(study) else beam_cost
+
+
+def table(study: Study) -> Callable[..., Array]:
+    """What makes the table of its cases: simulate.case_table, or as that."""
+    return solid_cases.table if asks_for_solid(study) else case_table
 
 
 def looked_at(study: Study) -> dict[str, Array]:
@@ -36,10 +61,10 @@ def looked_at(study: Study) -> dict[str, Array]:
 
 
 def tabled(study: Study, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
-    """The kernels' table of these runs. Raises StudyError where one of them is impossible."""
+    """The table of cases of these runs. Raises StudyError where one of them is impossible."""
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
     try:
-        return case_table(*base, duration=study.duration, varied=columns)
+        return table(study)(*base, duration=study.duration, varied=columns)
     except ValueError as error:
         reason = f"gives runs that are impossible ({error}): take bounded distributions"
         raise StudyError(Problem(str(study.path), "sampling.parameters", reason)) from None
@@ -51,7 +76,7 @@ def costliest(study: Study, looked: Mapping[str, Array], cost: Array) -> dict[st
     for name in found:
         ends = _ends(study, name)
         columns = {key: [value] * len(ends) for key, value in found.items()} | {name: ends}
-        found[name] = ends[int(np.argmax(work(tabled(study, columns))))]
+        found[name] = ends[int(np.argmax(costs(study).work(tabled(study, columns))))]
     return found
 
 

@@ -38,7 +38,7 @@ from impactlab.model.parameters import PARAMETERS
 
 TABLE = RESPONSES | HISTORIES | PROFILES | COORDINATES | PARAMETERS
 BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
-WHOLE_RUN = {"diverged", "energy_out_of_balance"}
+WHOLE_RUN = {"diverged", "energy_out_of_balance", "stopped"}
 
 
 @pytest.mark.parametrize("name", TABLE)

@@ -12,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from impactlab.model.impact import SOLID
+
 _HARDENING = ("beam_isotropic_hardening_modulus", "beam_kinematic_hardening_modulus")
 
 
@@ -29,11 +31,19 @@ class WithoutLimit(NamedTuple):
 
 
 def _perfectly_plastic_and_yielding(runs: xr.Dataset, largest: xr.DataArray) -> xr.DataArray:
-    """Runs that do not state a hardening modulus may harden."""
-    found = largest > 0
+    """Runs of beams; those that do not state a hardening modulus may harden."""
+    found = (largest > 0) & ~xr.DataArray(_is_solid(runs))
     for name in _HARDENING:
         found = found & (runs.coords[name] == 0 if name in runs.coords else False)
     return found
+
+
+def _solid_and_yielding(runs: xr.Dataset, largest: xr.DataArray) -> xr.DataArray:
+    return (largest > 0) & _is_solid(runs)
+
+
+def _is_solid(runs: xr.Dataset) -> xr.DataArray | bool:
+    return runs.coords["beam_model"] == SOLID if "beam_model" in runs.coords else False
 
 
 WITHOUT_LIMIT = (
@@ -43,6 +53,13 @@ WITHOUT_LIMIT = (
         _perfectly_plastic_and_yielding,
         "in a beam that does not harden, plastic strain gathers at the node that is struck: its "
         "peak grows with the nodes, up to twice as much with each halving of the spacing",
+    ),
+    WithoutLimit(
+        "element_size",
+        "peak_plastic_strain",
+        _solid_and_yielding,
+        "in the contact of a solid, plastic strain gathers at the edge of the dent: its peak grows "
+        "as the elements shrink",
     ),
 )
 """Every such response there is, a line each."""

@@ -12,7 +12,7 @@ import xarray as xr
 from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import design_dims
 
-_FINEST = ("nodes", "points")
+_LARGE, _SMALL = ("nodes", "points"), ("courant", "element_size")
 MOST_CURVES = 6
 MOST_PANELS = 6
 
@@ -115,8 +115,8 @@ def _rank(dim: str, prefer: Sequence[str]) -> int:
 
 def _held(coordinate: xr.DataArray) -> int:
     """The finest numerics; the middle of other numbers; the first of names."""
-    if coordinate.name == "courant":
+    if coordinate.name in _SMALL:
         return int(np.argmin(coordinate.values))
-    if coordinate.name in _FINEST:
+    if coordinate.name in _LARGE:
         return int(np.argmax(coordinate.values))
     return coordinate.size // 2 if coordinate.dtype.kind in "if" else 0

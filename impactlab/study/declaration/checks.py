@@ -10,6 +10,7 @@ from impactlab.model.parameters import Value, flatten
 from impactlab.study.declaration.methods import Grid, Sample, Sobol
 from impactlab.study.declaration.plausible import doubts, ends_of, stated_at
 from impactlab.study.declaration.schema import StudyForm
+from impactlab.study.declaration.solid import solid_problems
 from impactlab.study.errors import Problem, unknown
 from impactlab.study.possible import refused_corner
 
@@ -74,6 +75,7 @@ def _runs_for_the_analyses(form: StudyForm) -> Findings:
     possible = {
         "convergence_in_nodes": counts.get("nodes", 0) >= 3,
         "convergence_in_time_step": counts.get("courant", 0) >= 3,
+        "convergence_in_element_size": counts.get("element_size", 0) >= 3,
         "convergence_in_points": counts.get("points", 0) >= 2,
         "sensitivity": not grid,
         "surrogate": not grid,
@@ -153,4 +155,5 @@ _CHECKS: tuple[tuple[Callable[[StudyForm], Findings], set[str]], ...] = (
     (_corners, {"impact", "discretisation", "sampling"}),
     (_physics, {"impact", "discretisation", "sampling"}),
     (_scheme_of_the_model, {"impact", "discretisation", "sampling"}),
+    (solid_problems, {"impact", "discretisation", "sampling", "responses", "store"}),
 )

@@ -10,6 +10,7 @@ import xarray as xr
 from impactlab.dataset import described
 from impactlab.model.parameters import flatten, with_values
 from impactlab.study.declaration import Grid, Sample, Study
+from impactlab.study.declaration.solid import asks_for_solid
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.possible import Base, Refusal, check_alone, refused_run
 from impactlab.study.sampling.columns import columns, coordinates, declared_attributes, grid
@@ -70,7 +71,7 @@ def _impossible(study: Study, found: Refusal) -> StudyError:
 
 def _attributes(study: Study) -> dict[str, Any]:
     return declared_attributes(study) | {
-        "solver": "impact",
+        "solver": "witness" if asks_for_solid(study) else "impact",
         "histories": int(study.store.histories),
         "profiles": int(study.store.profiles),
         "history_samples": study.store.samples,

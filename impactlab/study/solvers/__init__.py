@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.study.shard import Columns
-from impactlab.study.solvers import function, impact
+from impactlab.study.solvers import function, impact, witness
 from impactlab.study.storage import Form
 
 Array = np.ndarray[Any, Any]
@@ -56,7 +56,7 @@ class Solver(Protocol):
         ...
 
 
-SOLVERS: dict[str, Solver] = {"impact": impact, "function": function}
+SOLVERS: dict[str, Solver] = {"impact": impact, "function": function, "witness": witness}
 """By the name that designs hold in their attribute `solver`."""
 
 

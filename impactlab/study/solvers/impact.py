@@ -51,7 +51,7 @@ def cases(design: xr.Dataset, runs: np.ndarray[Any, Any]) -> np.ndarray[Any, Any
     """
     varied = {name: flattened(design, name, runs) for name in varied_names(design)}
     duration = design["duration"].item()
-    return case_table(*_base(design), duration=duration, varied=varied, first_run=int(runs[0]))
+    return case_table(*base(design), duration=duration, varied=varied, first_run=int(runs[0]))
 
 
 def cost(cases: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
@@ -87,7 +87,7 @@ def _responses(design: xr.Dataset) -> tuple[str, ...]:
     return tuple(str(name) for name in np.atleast_1d(design.attrs["responses"]))
 
 
-def _base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
+def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
     """The impact and the discretisation of what is not varied."""
     varied = varied_names(design)
     stated = [name for name in PARAMETERS if name in design and name not in varied]
@@ -100,5 +100,5 @@ def _answer_coordinates(design: xr.Dataset, form: Form) -> dict[str, Any]:
     if form.samples:
         coordinates |= sample_coordinates(design["duration"].item(), form.samples)
     if form.profiles:
-        coordinates |= profile_coordinates(*_base(design))
+        coordinates |= profile_coordinates(*base(design))
     return coordinates

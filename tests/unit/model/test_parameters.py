@@ -22,7 +22,7 @@ HARDENING = {"beam_isotropic_hardening_modulus": 2e9, "beam_kinematic_hardening_
 
 def another(name):
     """A value that the base does not have."""
-    given = OTHER_NAMES | OTHER_COUNTS | HARDENING | {"sphere_mass": 2.5}
+    given = OTHER_NAMES | OTHER_COUNTS | HARDENING | {"sphere_mass": 2.5, "element_size": 2e-3}
     return given[name] if name in given else 0.9 * flatten(*BASE)[name]
 
 
@@ -62,7 +62,7 @@ def test_flatten_gives_the_papers_values():
     assert values["sphere_youngs_modulus"] == 208e9
     assert values["beam_youngs_modulus"] == 210e9
     assert values["rule"] == "lobatto"
-    assert set(PARAMETERS) - set(values) == {"sphere_mass"}
+    assert set(PARAMETERS) - set(values) == {"sphere_mass", "element_size"}
 
 
 @pytest.mark.parametrize("name", PARAMETERS)
@@ -77,7 +77,8 @@ def test_all_values_at_once_come_back():
     changed = with_values(*BASE, OTHERS)
     assert flatten(*changed) == OTHERS
     back = flatten(*with_values(*changed, flatten(*BASE)))
-    assert back == flatten(*BASE) | {"sphere_mass": 2.5}  # what was stated stays stated
+    stated = {"sphere_mass": 2.5, "element_size": 2e-3}
+    assert back == flatten(*BASE) | stated  # what was stated stays stated
 
 
 def test_nothing_changes_nothing():

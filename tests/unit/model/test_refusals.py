@@ -43,6 +43,7 @@ REFUSED = {
     ("Discretisation", "rule"): ["simpson", "Lobatto", None, 0],
     ("Discretisation", "scheme"): ["newmark", "semi-implicit", "Leapfrog", "", None, 0],
     ("Discretisation", "courant"): [0, -0.5, 1.0001, 2, NAN, INFINITE, "0.9", None],
+    ("Discretisation", "element_size"): [0, -1e-3, NAN, INFINITE, "1 mm", True],
 }
 ALLOWED = {
     ("Material", "poissons_ratio"): [0, 0.0, 0.4999],
@@ -54,6 +55,8 @@ ALLOWED = {
     ("Discretisation", "nodes"): [5, 7, 1201],
     ("Discretisation", "points"): [2, 3, 64],
     ("Discretisation", "courant"): [1, 1.0, 1e-6],
+    ("Discretisation", "element_size"): [None, 1e-3],
+    ("Impact", "beam_model"): ["solid"],
 }
 
 

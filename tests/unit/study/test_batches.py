@@ -36,6 +36,13 @@ def test_the_first_tasks_measure_and_the_last_are_small():
     assert (seconds <= np.maximum(left / 4, 0.05) + 0.001).all()  # to a run
 
 
+def test_dear_runs_come_first_the_dearest_ahead():
+    cost = np.array([3e7, 6e9, 3e7, 9e9, 3e7])
+    batches = Batches(np.arange(5), cost, 20)
+    assert [batches.take(2).tolist() for _ in range(2)] == [[3], [1]]
+    assert np.concatenate([batches.take(2) for _ in range(3)]).tolist() == [0, 2, 4]
+
+
 def test_a_dear_run_is_a_task_of_its_own():
     taken, _ = simulated(np.full(7, 3e10), 3e8, workers=2)
     assert [runs.size for runs in taken] == [1] * 7

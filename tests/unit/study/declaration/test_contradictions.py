@@ -103,5 +103,7 @@ def test_an_analysis_asked_for_by_name_must_be_possible(problems, read, grid, sa
     assert read(grid({"analyses": "all"})).analyses
     assert read(sample({"analyses": ["sensitivity"]})).analyses == ("sensitivity",)
     several = {"nodes": [11, 21, 41], "courant": [0.2, 0.4, 0.8], "points": [3, 5]}
+    several |= {"beam_model": ["solid"], "element_size": ["1 mm", "2 mm", "3 mm"]}
     asked = {"analyses": [entry for entry in ANALYSES if entry.startswith("convergence")]}
+    asked |= {"responses": ["peak_force"]}
     read(grid({"sampling.parameters": several} | asked))

@@ -70,7 +70,9 @@ def test_a_grid_has_a_dimension_for_each_varied_parameter(designed):
 def test_what_is_not_varied_is_a_scalar_coordinate(designed):
     grid = designed(GRID)
     scalars = {name for name, coordinate in grid.coords.items() if coordinate.ndim == 0}
-    assert scalars == PARAMETERS.keys() - {"rule", "velocity", "sphere_mass"} | {"duration"}
+    assert scalars == PARAMETERS.keys() - {"rule", "velocity", "sphere_mass", "element_size"} | {
+        "duration"
+    }
     assert grid["nodes"].item() == 51
     assert grid["duration"].item() == 0.012
     assert grid["beam_depth"].item() == paper_impact().beam.depth

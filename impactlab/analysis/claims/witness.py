@@ -1,0 +1,89 @@
+"""Numbers of the 3-D witness and of the beam models beside it, each with its uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.claims.claim import Data, Number, UnknownError
+from impactlab.analysis.claims.curves import BEAM
+from impactlab.analysis.claims.evidence import answers, number, runs_of
+from impactlab.analysis.convergence.uncertainty import numerical_uncertainty
+from impactlab.dataset import RESPONSES
+from impactlab.model.impact import SOLID
+
+STUDY = "witness"
+"""Of the first contact."""
+VELOCITY = 0.99
+"""The paper's, in m/s."""
+BEAMS = {BEAM: "Euler-Bernoulli beam", "timoshenko": "Timoshenko beam"}
+"""The beam models that are held against the witness, the paper's first."""
+
+
+def velocities(data: Data, study: str = STUDY) -> list[float]:
+    """Rising, in m/s; the paper's alone where the study is not solved, to be judged as such."""
+    if study not in data or "velocity" not in data[study].dims:
+        return [VELOCITY]
+    return sorted(float(speed) for speed in data[study]["velocity"].values)
+
+
+def beam(data: Data, response: str, velocity: float, model: str = BEAM) -> Number:
+    """A beam model's answer, its uncertainty from the nodes. Raises UnknownError without one."""
+    runs = _chosen(data, "element_size")
+    return _known(number(runs, response, velocity=velocity, beam_model=model))
+
+
+def solid(data: Data, response: str, velocity: float, least: float = 0.0) -> Number:
+    """The 3-D model's answer, its uncertainty from the element sizes, but not below `least`.
+
+    Raises UnknownError where a run is missing or nothing bounds the error.
+    """
+    runs = _chosen(data, "nodes")
+    values = answers(runs, response, velocity=velocity, beam_model=SOLID).sortby("element_size")
+    sizes = values["element_size"].values.astype(float)
+    found = values.values.astype(float)
+    width = max(float(numerical_uncertainty(found, sizes).amounts[0]), least)
+    entry = RESPONSES[response]
+    return _known(Number(f"{entry.long_name} of the 3-D model", found[0], entry.units, width))
+
+
+def smallest_element(data: Data) -> float:
+    """In m. Raises UnknownError where the study is not there or does not vary it."""
+    return float(_chosen(data, "nodes")["element_size"].min())
+
+
+def histories(data: Data, variable: str, model: str) -> Iterator[xr.DataArray]:
+    """A history at the paper's velocity on each grid of the model, finest first, (time,)."""
+    refined, other = ("element_size", "nodes") if model == SOLID else ("nodes", "element_size")
+    runs = _chosen(data, other)
+    if variable not in runs:
+        raise UnknownError(f"the study {STUDY} keeps no histories")
+    chosen = runs[variable].sel(velocity=VELOCITY, beam_model=model).compute()
+    for value in np.sort(chosen[refined].values)[:: 1 if model == SOLID else -1]:
+        curve = chosen.sel({refined: value})
+        if not np.isfinite(curve.values).all():
+            raise UnknownError(f"the {variable.replace('_', ' ')} of a run is missing")
+        yield curve
+
+
+def difference(ours: Number, theirs: Number, name: str) -> Number:
+    """Ours over theirs, minus one, with the uncertainty of both."""
+    ratio = ours.value / theirs.value
+    share = ours.uncertainty / abs(ours.value) + theirs.uncertainty / abs(theirs.value)
+    return Number(name, ratio - 1.0, "1", ratio * share)
+
+
+def _chosen(data: Data, other: str) -> xr.Dataset:
+    """The runs, with any one value of the refinement that the model does not know."""
+    runs = runs_of(data, STUDY)
+    if missing := [name for name in ("nodes", "element_size") if name not in runs.dims]:
+        raise UnknownError(f"the study {STUDY} does not vary {missing[0]}: nothing tells the error")
+    return runs.isel({other: 0})
+
+
+def _known(found: Number) -> Number:
+    if not np.isfinite(found.uncertainty):
+        raise UnknownError(f"nothing bounds the numerical error of the {found.name}")
+    return found

@@ -1,0 +1,101 @@
+"""The table of cases of a study in which some runs are of the 3-D model.
+
+A record is that of the kernels (kernels.case.CASE) with the size of the solid elements. What a run
+does not depend on is zero in it, so that runs which differ in that alone are one case.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from impactlab.kernels import BEAM_MODELS
+from impactlab.kernels.case import CASE
+from impactlab.model.checks import positive
+from impactlab.model.columns import column
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import SOLID, Impact
+from impactlab.model.paper import paper_impact
+from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.simulate import case_table
+
+Array = np.ndarray[Any, Any]
+
+SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
+"""Record type of the table."""
+SOLID_MODEL = len(BEAM_MODELS)
+"""In the place of the number of a kernel's model."""
+_BEAM_MODELS_ONLY = (
+    *("contact", "shear_coefficient"),
+    *("nodes", "points", "rule", "scheme", "courant"),
+)
+"""Fields that the 3-D model does not know."""
+
+
+def table(
+    impact: Impact,
+    discretisation: Discretisation,
+    *,
+    duration: float,
+    varied: Mapping[str, Any],
+    first_run: int = 0,
+) -> Array:
+    """One record a run, each run checked; arguments as those of simulate.case_table.
+
+    Raises ValueError naming the run and its field when the model refuses a value, or a run of the
+    3-D model has no element_size.
+    """
+    models = np.asarray(varied.get("beam_model", [impact.beam_model]))
+    sizes = varied.get("element_size", [discretisation.element_size])
+    plain = dict(varied)
+    if "beam_model" in plain:
+        plain["beam_model"] = np.where(models == SOLID, BEAM_MODELS[0], models)
+    elif impact.beam_model == SOLID:
+        impact = replace(impact, beam_model=BEAM_MODELS[0])
+    known = case_table(impact, discretisation, duration=duration, varied=plain, first_run=first_run)
+    cases = np.zeros(known.size, dtype=SOLID_CASE)
+    for name in CASE.names or ():
+        cases[name] = known[name]
+    solid = np.broadcast_to(models == SOLID, cases.shape)
+    if solid.any():
+        cases["element_size"][solid] = np.broadcast_to(_sizes(sizes), cases.shape)[solid]
+        cases["beam_model"][solid] = SOLID_MODEL
+        for name in _BEAM_MODELS_ONLY:
+            cases[name][solid] = 0
+    return cases
+
+
+def _sizes(sizes: Any) -> Array:
+    if any(size is None for size in sizes):
+        raise ValueError("Discretisation.element_size: is required for the solid model")
+    return np.asarray(positive("Discretisation", "element_size", column(sizes)))
+
+
+def is_solid(cases: Array) -> Array:
+    """Which are of the 3-D model, (cases,)."""
+    return np.asarray(cases["beam_model"] == SOLID_MODEL)
+
+
+def kernel_cases(cases: Array) -> Array:
+    """The cases of the models of the beam as the kernels take them."""
+    beams = cases[~is_solid(cases)]
+    found = np.zeros(beams.size, dtype=CASE)
+    for name in CASE.names or ():
+        found[name] = beams[name]
+    return found
+
+
+def impact_of(case: Any) -> Impact:
+    """The impact of a record of the 3-D model."""
+    values = {name: case[name].item() for name in _IMPACT}
+    return with_values(paper_impact(), Discretisation(), values | {"beam_model": SOLID})[0]
+
+
+_IMPACT = [
+    name
+    for name, entry in PARAMETERS.items()
+    if entry.path[0] == "impact" and name not in (*_BEAM_MODELS_ONLY, "beam_model")
+]

@@ -1,0 +1,52 @@
+"""What runs of the 3-D model cost, in the unit of the kernels' node-steps."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from impactlab.model import cost
+from impactlab.reference.solid import Cost, estimate, quarter_mesh
+from impactlab.study.solid.cases import SOLID_CASE, impact_of, is_solid, kernel_cases
+
+Array = np.ndarray[Any, Any]
+
+
+def work(cases: Array) -> Array:
+    """Estimated time of each run, in node-steps; of a run that is listed again, nothing."""
+    found = np.zeros(cases.size)
+    solid = is_solid(cases)
+    found[~solid] = cost.work(kernel_cases(cases))
+    found[solid] = [cost.A_SECOND * of_solid(case).cpu_seconds for case in cases[solid]]
+    _, first = np.unique(cases.view(f"V{cases.dtype.itemsize}"), return_index=True)
+    again = np.ones(cases.size, dtype=bool)
+    again[first] = False
+    found[again] = 0.0
+    return found
+
+
+def memory(cases: Array) -> Array:
+    """Estimated bytes that each run takes."""
+    found = np.zeros(cases.size)
+    solid = is_solid(cases)
+    found[~solid] = cost.memory(kernel_cases(cases))
+    found[solid] = [float(of_solid(case).memory_bytes) for case in cases[solid]]
+    return found
+
+
+def of_solid(case: Any) -> Cost:
+    """Elements, steps, seconds and bytes of one 3-D run; nothing where no mesh fits."""
+    return _of_bytes(case.tobytes())
+
+
+@lru_cache(maxsize=4096)
+def _of_bytes(record: bytes) -> Cost:
+    case = np.frombuffer(record, dtype=SOLID_CASE)[0]
+    impact = impact_of(case)
+    try:
+        mesh = quarter_mesh(impact, element_size=case["element_size"].item())
+    except ValueError:  # the run will say so in its status
+        return Cost(0, 0, 0.0, 0)
+    return estimate(mesh, impact, duration=case["duration"].item())
