@@ -62,4 +62,5 @@ def test_what_two_nodes_lose_when_they_meet_is_counted(two):
 def test_a_pair_on_the_rim_is_told_of_when_it_touches(two):
     pairs, mass, x, v = two
     assert not closed(pairs, mass, x.copy(), v.copy(), np.zeros(2), (False, True))[2]
+    x[2, 2] = 0.0  # both overlap
     assert closed(pairs, mass, x, v, np.zeros(2), (True, False))[2]
