@@ -53,8 +53,8 @@ def solve_on(
     simulated time (s) and the share done.
 
     Returns a Dataset with the histories and responses of impactlab.dataset that a 3-D model has
-    (`status` says why one is NaN), energies on `checkpoint`, plastic strains and von Mises stress on
-    `element`, displacements on `node`, and the mesh as coordinates. A run that was interrupted by
+    (`status` says why one is NaN), energies on `checkpoint`, plastic strains and von Mises stress
+    on `element`, displacements on `node`, and the mesh as coordinates. A run interrupted by
     Ctrl-C, or stopped because it diverged or its elements were squeezed flat, gives what it has
     computed until then, and the attribute `stopped` says why.
 

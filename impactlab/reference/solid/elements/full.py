@@ -33,7 +33,7 @@ from impactlab.reference.solid.elements.vectors import (
     times,
 )
 from impactlab.reference.solid.jit import compiled, inlined
-from impactlab.reference.solid.material.plasticity import Metal, Six
+from impactlab.reference.solid.material.plasticity import Metal
 from impactlab.reference.solid.types import Array
 
 POINTS = 8

@@ -1,4 +1,4 @@
-"""Elements go through the arithmetic in blocks of W, one a lane, so that processors do many at once.
+"""Elements go through the arithmetic in blocks of W, one a lane: processors do several at once.
 
 A block's numbers lie in rows of W in one flat array: `s`, a thread's scratch, or `state`, what the
 elements remember. One array each: a compiler sees that rows do not overlap.

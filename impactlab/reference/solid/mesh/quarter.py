@@ -42,7 +42,8 @@ def quarter_mesh(
     size = positive("mesh", "element_size", element_size)
     if positive("mesh", "ratio", ratio) <= 1.0:
         raise ValueError(f"mesh.ratio = {ratio!r}: must be above 1")
-    largest = max(positive("mesh", "coarsest", coarsest or impact.beam.depth / 6.0), size)
+    given = impact.beam.depth / 6.0 if coarsest is None else coarsest
+    largest = max(positive("mesh", "coarsest", given), size)
     half = _patch(impact, size, patch)
     depth = size * max(round(half / size), 2)
     sphere = quarter_sphere(impact.sphere.radius, size, half, depth, ratio, largest)

@@ -26,6 +26,8 @@ _OWN = {
     "displacement": ("m", "displacement of the nodes at the end (z upwards)"),
     "von_mises_stress": ("Pa", "von Mises stress at the end, mean of the element"),
     "largest_equivalent_plastic_strain": ("1", "largest PEEQ of an element's integration points"),
+    "one_point_plastic_strain": ("1", "largest PEEQ in elements with one integration point"),
+    "node_offset": ("1", "largest slide of matched nodes in touch, over the element size"),
     "kinetic_energy": ("J", "kinetic energy of beam and sphere"),
     "strain_work": ("J", "work of the stresses, kept and dissipated"),
     "plastic_work": ("J", "work dissipated by plastic flow"),
@@ -65,6 +67,7 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
     variables = {
         **{name: ((), value) for name, value in answers.items()},
         "status": ((), np.int32(status)),
+        "node_offset": ((), history.offset),
         **_histories(history, samples),
         **_energies(history.energies),
         **{name: (("element",), values) for name, values in own.items()},

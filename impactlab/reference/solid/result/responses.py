@@ -27,6 +27,8 @@ def responses(history: History, impact: Impact, pause: float) -> tuple[dict[str,
     answers |= _of_deflection(time, axis)
     answers |= _of_rebound(touches, time, velocity, axis, impact)
     answers["permanent_indentation"] = _left(touches, time, (top - axis) + (sphere - pole))
+    if np.isnan(answers["maximum_indentation"]):  # the force may go on rising with it
+        answers["peak_force"] = answers["time_of_peak_force"] = np.nan
     reasons = [name for name, value in _CAUSES.items() if np.isnan(answers[value])]
     if not error <= _IMBALANCE:
         reasons = ["diverged" if np.isnan(error) else "energy_out_of_balance"]
@@ -46,7 +48,7 @@ _CAUSES = {
 
 
 def energy_error(energies: list[Energies], impact: Impact) -> float:
-    """Largest imbalance of energy over the initial kinetic energy, 1; NaN where it is not finite."""
+    """Largest imbalance of energy over the initial kinetic energy; NaN where it is not finite."""
     first = 0.5 * impact.sphere.total_mass * impact.velocity**2
     balances = np.array([entry.balance for entry in energies] or [np.nan])
     error = float(np.max(np.abs(balances - first)) / first)
@@ -75,8 +77,7 @@ def _impulse(time: Floats, force: Floats) -> float:
 
 def _of_indentation(time: Floats, indentation: Floats) -> dict[str, float]:
     at, largest = peak(time, indentation)
-    growing = at >= time[-1]
-    return {"maximum_indentation": np.nan if growing else largest}
+    return {"maximum_indentation": np.nan if at >= time[-1] else largest}
 
 
 def _of_deflection(time: Floats, axis: Floats) -> dict[str, float]:

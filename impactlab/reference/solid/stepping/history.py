@@ -50,11 +50,15 @@ class Energies(NamedTuple):
 
 @dataclass
 class History:
-    """moments: one a step. energies: one a checkpoint. stopped: why before its time, else ""."""
+    """moments: one a step. energies: one a checkpoint. stopped: why before its time, else "".
+
+    offset: largest distance by which matched nodes that touched had slid, over the element size.
+    """
 
     moments: list[Moment] = field(default_factory=list)
     energies: list[Energies] = field(default_factory=list)
     stopped: str = ""
+    offset: float = 0.0
 
     def table(self) -> Floats:
         """The moments, (7, steps)."""

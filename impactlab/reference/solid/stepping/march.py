@@ -33,6 +33,7 @@ class March:
     """A system on its way. history: what it has left so far."""
 
     def __init__(self, system: System, impact: Impact) -> None:
+        """At first touch."""
         self.system, self.impact, self.history = system, impact, History()
         self._step = SAFETY * critical_step(system)
         self._volumes = np.empty(system.mesh.elements.shape)
@@ -60,13 +61,16 @@ class March:
 
     def _advance(self, end: float) -> None:
         """Steps until `end` (s), then a checkpoint."""
-        steps = max(math.ceil((end - self._time) / self._dt), 1)
+        steps = math.ceil((end - self._time) / self._dt)
+        if steps <= 0:
+            return
         for _ in range(steps - 1):
             self._take()
         before = self.system.v.copy()
         worked = self._works()
         self._take()
         self.history.energies.append(self._energies(before, worked))
+        self.history.offset = max(self.history.offset, self._offset())
         self.history.stopped = self._wrong()
 
     def _take(self) -> None:
@@ -109,6 +113,13 @@ class March:
             moment.time, 4.0 * kinetic, work, plastic, hourglass, 4.0 * self._lost, gravity
         )
 
+    def _offset(self) -> float:
+        """Largest distance across z of nodes that touch, over the size of their elements."""
+        mesh = self.system.mesh
+        apart = self.system.x[mesh.pairs[:, 0]] - self.system.x[mesh.pairs[:, 1]]
+        touching = apart[apart[:, 2] <= 0.0, :2]
+        return float(np.max(np.hypot(*touching.T), initial=0.0)) / mesh.element_size
+
     def _wrong(self) -> str:
         """Why to stop here, or "". Steps are shortened with the elements."""
         system = self.system
@@ -130,8 +141,13 @@ class March:
         return ""
 
     def _needed(self) -> str:
-        mesh = self.system.mesh
-        needed = 1.5 * mesh.patch
+        """Work up to a contact radius grows with its fourth power at the least (a plastic one)."""
+        mesh, first = self.system.mesh, self.impact.velocity**2
+        needed = (
+            1.1
+            * mesh.patch
+            * (first / (first - min(self._velocity, 0.999 * first**0.5) ** 2)) ** 0.25
+        )
         return (
             f"at {self._time:.4g} s the contact has grown beyond the matched patch of "
             f"{1e3 * mesh.patch:.4g} mm: take patch = {needed:.4g} m or more"

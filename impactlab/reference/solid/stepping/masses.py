@@ -22,7 +22,9 @@ def nodal_masses(mesh: Mesh, impact: Impact) -> Floats:
         impact.sphere.total_mass / 4.0 / ball if ball > 0.0 else 0.0,
     )
     each = np.repeat(density * volumes / 8.0, 8)
-    return np.bincount(mesh.elements.ravel(), weights=each, minlength=len(mesh.nodes))
+    return np.asarray(
+        np.bincount(mesh.elements.ravel(), weights=each, minlength=len(mesh.nodes)), dtype=float
+    )
 
 
 def element_volumes(mesh: Mesh) -> Floats:

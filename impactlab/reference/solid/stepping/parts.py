@@ -14,6 +14,7 @@ class Parts:
     """
 
     def __init__(self, threads: int) -> None:
+        """With that many threads, at least 1."""
         self.threads = threads
         self._pool = ThreadPoolExecutor(max(threads - 1, 1))
 

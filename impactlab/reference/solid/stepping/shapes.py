@@ -1,4 +1,4 @@
-"""How far elements are from where they began: their shortest edge, and how flat they have become."""
+"""How far elements are from where they began: their shortest edge, and how flat they are."""
 
 from __future__ import annotations
 

@@ -25,6 +25,7 @@ class System:
     """
 
     def __init__(self, mesh: Mesh, impact: Impact, parts: Parts) -> None:
+        """At first touch: the sphere moving at the impact's velocity, the beam at rest."""
         self.mesh, self.parts = mesh, parts
         self.x, self.v = mesh.nodes.copy(), np.zeros_like(mesh.nodes)
         self.groups, self.forces = _share_forces(make_groups(mesh, impact))

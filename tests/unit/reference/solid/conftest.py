@@ -1,0 +1,79 @@
+"""A body of hexahedra in a test's hands: it moves the nodes, and gets the forces that answer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from impactlab.model.material import Material
+from impactlab.reference.solid.elements import full, one_point, point
+from impactlab.reference.solid.elements.lanes import SCRATCH, W
+from impactlab.reference.solid.mesh.beam import brick
+from impactlab.reference.solid.stepping.groups import _group, metal
+
+STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
+KINDS = {"one_point": one_point, "full": full}
+
+
+class Body:
+    """x: (n, 3), where the nodes are. group: the elements."""
+
+    def __init__(self, nodes, elements, kind, steel=STEEL):
+        self.x, self.elements = nodes.copy(), elements
+        self.kind = KINDS[kind]
+        whole = kind == "full"
+        self.group = _group(elements, np.arange(len(elements)), whole, metal(steel))
+        self._scratch = np.zeros(SCRATCH * W)
+
+    def move_to(self, x, dt=1.0):
+        """The nodal forces (n, 3) after a straight way to x in one step."""
+        group, v = self.group, (x - self.x) / dt
+        self.x = np.ascontiguousarray(x)
+        group.kernel(
+            (0, group.blocks),
+            group.nodes,
+            self.x,
+            v,
+            dt,
+            group.metal,
+            group.state,
+            group.forces,
+            self._scratch,
+        )
+        return self.forces()
+
+    def forces(self):
+        result = np.zeros_like(self.x)
+        each = self.group.forces[: len(self.elements)].reshape(-1, 8, 3)
+        np.add.at(result, self.elements, each)
+        return result
+
+    def deviators(self):
+        """(6, points, elements)"""
+        return np.stack([self.group.points(point.STRESS + row) for row in range(6)])
+
+    def stress(self):
+        """(6, points, elements): xx, yy, zz, yz, zx, xy."""
+        stress = self.deviators()
+        stress[:3] += self.group.row(self.kind.MEAN)
+        return stress
+
+
+@pytest.fixture
+def make_body():
+    return Body
+
+
+@pytest.fixture(params=list(KINDS))
+def kind(request):
+    return request.param
+
+
+@pytest.fixture
+def distorted():
+    """27 hexahedra with inner nodes out of place: nodes, elements, whether a node is inside."""
+    line = np.linspace(0.0, 1.0, 4)
+    nodes, elements = brick(line, 1.3 * line, 0.7 * line)
+    inside = np.all((nodes > 1e-9) & (nodes < np.array([1.0, 1.3, 0.7]) - 1e-9), axis=1)
+    shift = np.random.default_rng(1).uniform(-0.07, 0.07, nodes.shape)
+    return nodes + shift * inside[:, None], elements, inside
