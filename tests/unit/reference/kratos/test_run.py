@@ -27,7 +27,7 @@ def stubborn(kratos: Engine, failures: set[int]) -> Engine:
     return replace(kratos, analysis=Stubborn)
 
 
-def history(impact: Impact, failures: set[int], duration: float = 24e-6) -> History:
+def history(impact: Impact, failures: set[int], duration: float = 26e-6) -> History:
     mesh = quarter_mesh(impact, element_size=2e-3, ratio=2.0, coarsest=30e-3)
     kratos = stubborn(engine(1), failures)
     return Run(kratos, mesh, impact, duration=duration, time_step=8e-6, penalty=1e15).go()
@@ -42,7 +42,7 @@ def _no_balance(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_step_is_cut_in_half_and_the_others_go_on(impact: Impact) -> None:
     smooth, cut = history(impact, set()).table(), history(impact, {1}).table()
     assert (1e6 * smooth[0]).tolist() == pytest.approx([0.0, 8.0, 16.0, 24.0])
-    assert (1e6 * cut[0]).tolist() == pytest.approx([0.0, 8.0, 12.0, 20.0])
+    assert (1e6 * cut[0]).tolist() == pytest.approx([0.0, 8.0, 12.0, 20.0, 28.0])
     force, sphere = 1, 2
     for row in (force, sphere):
         assert cut[row, 2] == pytest.approx(0.5 * (smooth[row, 1] + smooth[row, 2]), rel=0.1)
