@@ -9,7 +9,7 @@ from impactlab.analysis.claims.claim import Data, Judgement, Number, Verdict, at
 
 SAYS = "At 0.99 m/s the plastic zone reaches 1.52 mm from the centre (3-D finite elements)."
 TEST = (
-    "|r − 1.52 mm| ≤ U; U: the numerical uncertainty of r, and at least the size of an element. The "
+    "|r − 1.52 mm| ≤ U; U: numerical uncertainty of r, and at least the size of an element. The "
     "paper does not say at which strain its zone ends, so that there are two readings of r: on the "
     "struck surface, where PEEQ falls to 0.2 % along the beam (means of elements, lines between "
     "them); and at any depth, half of the length of beam in which an element has a PEEQ above 1e-5."
