@@ -33,7 +33,9 @@ def runs_of(first, name):
 
 
 def analysed(runs):
-    return xr.merge([nodes.analysis(runs), element_size.analysis(runs)], join="exact")
+    return xr.merge(
+        [nodes.analysis(runs), element_size.analysis(runs)], join="exact", compat="equals"
+    )
 
 
 @pytest.fixture(scope="module")
