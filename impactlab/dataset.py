@@ -204,6 +204,16 @@ ANALYSES: dict[str, str] = {
 }
 """Names of the analyses (modules of impactlab.analysis), and what runs each one needs."""
 
+WITNESS: dict[str, Variable] = {
+    "plastic_zone_radius": Variable(
+        "plastic_zone_radius",
+        (),
+        "m",
+        "distance from the centre of the impact to which the struck surface has a PEEQ above 0.2 %",
+        comment="of the 3-D model alone: NaN for models of the beam",
+    )
+}
+"""What comes with the runs of the 3-D model beside the responses, by name."""
 HISTORIES: dict[str, Variable] = {entry.name: entry for entry in _TIME}
 """Answers on `time`, by name."""
 PROFILES: dict[str, Variable] = {entry.name: entry for entry in _FIELDS}
@@ -216,7 +226,7 @@ COORDINATES: dict[str, Variable] = {
     "duration": Variable("duration", (), "s", "simulated time"),
     "run": Variable("run", ("run",), "1", "number of the run"),
 }
-VARIABLES = RESPONSES | HISTORIES | PROFILES | COORDINATES
+VARIABLES = RESPONSES | WITNESS | HISTORIES | PROFILES | COORDINATES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
 

@@ -11,7 +11,7 @@ from impactlab.analysis.claims.claim import Data, Number, UnknownError
 from impactlab.analysis.claims.curves import BEAM
 from impactlab.analysis.claims.evidence import answers, number, runs_of
 from impactlab.analysis.convergence.uncertainty import numerical_uncertainty
-from impactlab.dataset import RESPONSES
+from impactlab.dataset import RESPONSES, WITNESS
 from impactlab.model.impact import SOLID
 
 STUDY = "witness"
@@ -41,12 +41,14 @@ def solid(data: Data, response: str, velocity: float, least: float = 0.0) -> Num
     Raises UnknownError where a run is missing or nothing bounds the error.
     """
     runs = _chosen(data, "nodes")
+    if response not in runs:
+        raise UnknownError(f"the runs of the study {STUDY} do not tell the {response}")
     values = answers(runs, response, velocity=velocity, beam_model=SOLID).sortby("element_size")
     sizes = values["element_size"].values.astype(float)
     found = values.values.astype(float)
     width = max(float(numerical_uncertainty(found, sizes).amounts[0]), least)
-    entry = RESPONSES[response]
-    return _known(Number(f"{entry.long_name} of the 3-D model", found[0], entry.units, width))
+    entry = (RESPONSES | WITNESS)[response]
+    return _known(Number(f"{entry.long_name} (3-D)", found[0], entry.units, width))
 
 
 def smallest_element(data: Data) -> float:

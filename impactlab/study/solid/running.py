@@ -11,6 +11,7 @@ import xarray as xr
 from impactlab.dataset import FAILURES, HISTORIES, RESPONSES
 from impactlab.model.impact import Impact
 from impactlab.reference.solid import PatchTooSmallError, quarter_mesh, solve
+from impactlab.reference.solid.result.zone import surface_reach
 from impactlab.study.solid.cases import impact_of
 
 log = logging.getLogger(__name__)
@@ -43,7 +44,8 @@ def answers(case: Any, samples: int) -> dict[str, Any]:
         return given | {"status": int(run["status"]) | STOPPED}
     found = {name: float(run[name]) for name in RESPONSES if name in run}
     histories = _histories(run, case["duration"].item(), samples)
-    return given | found | histories | {"status": int(run["status"])}
+    own = {"plastic_zone_radius": surface_reach(run)}
+    return given | found | own | histories | {"status": int(run["status"])}
 
 
 def _solved(impact: Impact, size: float, duration: float) -> xr.Dataset:

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from impactlab.dataset import WITNESS, described
 from impactlab.kernels.jit import SOURCES_HASH
 from impactlab.reference.solid.jit import SOURCES_HASH as SOLID_HASH
 from impactlab.simulate import solve as solve_cases
-from impactlab.study.design import flattened, varied_names
+from impactlab.study.design import flattened, run_shape, varied_names
 from impactlab.study.shard import Columns
 from impactlab.study.solid import cost as costs
 from impactlab.study.solid.cases import is_solid, kernel_cases, table
@@ -27,8 +28,8 @@ VERSION = hashlib.sha256(f"{SOURCES_HASH} {SOLID_HASH}".encode()).hexdigest()
 
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:
-    """As of the models of the beam."""
-    return impact.columns(design)
+    """As of the models of the beam, and what the 3-D model alone tells."""
+    return (*impact.columns(design), *WITNESS)
 
 
 def failures(design: xr.Dataset) -> int:
@@ -61,6 +62,7 @@ def solve(cases: Array, form: Form) -> Columns:
     solid = is_solid(cases)
     found = solve_cases(kernel_cases(cases), samples=form.samples).columns()
     columns = {name: _spread(values, ~solid) for name, values in found.items()}
+    columns |= {name: np.full(cases.size, np.nan) for name in WITNESS}
     for at in np.flatnonzero(solid):
         for name, value in answers(cases[at], form.samples).items():
             columns[name][at] = value
@@ -69,7 +71,9 @@ def solve(cases: Array, form: Form) -> Columns:
 
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """The answers of a design's runs, in its order, under its labels and with provenance."""
-    return impact.labelled(design, answers)
+    dims, shape = run_shape(design)
+    own = {name: (dims, answers[name].reshape(shape)) for name in WITNESS}
+    return described(impact.labelled(design, answers).assign(own))
 
 
 def _spread(values: Array, where: Array) -> Array:

@@ -62,6 +62,8 @@ def test_each_model_answers_as_it_does_alone(solved):
     np.testing.assert_allclose(there["contact_force"], force, rtol=2e-3)
     assert there["contact_force"][-1] > 100.0
     assert there["midspan_curvature"].isnull().all()
+    assert solved["plastic_zone_radius"].sel(beam_model="timoshenko").isnull().all()
+    assert (solved["plastic_zone_radius"].sel(beam_model="solid") >= 0).all()
 
 
 def test_what_a_model_does_not_know_is_nothing_to_it(study, solved):
