@@ -25,7 +25,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Three-dimensional model alone; elements beyond the contact keep their largest size. "
         f"{refinement.CAPTION} {_AXIS.plan(chosen).note(chosen)} "
-        f"{missing.note(chosen, _AXIS.names(chosen))}".strip()
+        f"{missing.note(runs, _AXIS.names(chosen))}".strip()
     )
 
 

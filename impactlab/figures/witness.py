@@ -54,7 +54,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             scales.logarithmic(ax, "x", runs["velocity"].values)
             scales.at(ax, "x", runs["velocity"].values)
         below.set_xlabel(words.axis(words.parameter("velocity"), "m/s"))
-    axes[len(names)].set_ylabel(words.axis("difference from the 3-D model", "%"))
+    axes[len(names)].set_ylabel(words.wrapped_axis("difference from the 3-D model", "%", 24))
     style.legend(
         figure, "Model of the beam", [witness.label(model) for model in witness.models(runs)]
     )

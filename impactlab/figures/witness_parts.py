@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import scales, style
 from impactlab.figures.reading import missing, parts, words
+from impactlab.figures.reading.contents import usable
 from impactlab.figures.reading.units import display
 from impactlab.model.impact import SOLID
 
@@ -51,14 +52,16 @@ def _curves(ax: Axes, runs: xr.Dataset) -> None:
     finest = {"nodes": int(np.argmax(runs["nodes"].values))} if "nodes" in runs.dims else {}
     if "element_size" in runs.dims:
         finest["element_size"] = int(np.argmin(runs["element_size"].values))
-    chosen = runs[list(_HISTORIES)].isel(finest)
-    force, depth = (display(chosen[name]) for name in _HISTORIES)
+    chosen = xr.Dataset({name: usable(runs, name) for name in _HISTORIES}).isel(finest)
+    force, depth = (display(runs[name]) for name in _HISTORIES)
     softest = float(runs["beam_yield_stress"].min())
     for at, (model, label) in enumerate(_LABELS.items()):
         for stress in np.sort(runs["beam_yield_stress"].values):
             run = chosen.sel(beam_model=model, beam_yield_stress=stress)
             pushed = np.flatnonzero(run["contact_force"].values > 0.0)
-            first = slice(0, int(pushed[-1]) + 2 if pushed.size else 0)
+            if not pushed.size:
+                continue
+            first = slice(0, int(pushed[-1]) + 2)
             what = "yielding" if stress == softest else "elastic"
             ax.plot(
                 depth(run["indentation"].values[first]),
@@ -67,6 +70,8 @@ def _curves(ax: Axes, runs: xr.Dataset) -> None:
                 linestyle=style.LINES[0 if stress == softest else 1],
                 label=f"{label}, {what}",
             )
+    if not ax.lines:
+        style.remark(ax, "no finite values")
     ax.set_xlabel(words.axis("indentation", depth.symbol))
     ax.set_ylabel(words.axis("contact force", force.symbol))
     scales.linear(ax, "x")
@@ -78,10 +83,12 @@ def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
         found = parts.effects(runs, analysis, name).values()
         shares = np.array([float(each.value) for each in found])
         widths = np.array([float(each.uncertainty) for each in found])
+        there = np.flatnonzero(np.isfinite(shares))
+        bars = np.where(np.isfinite(widths), widths, np.nan)
         marks = ax.errorbar(
-            100.0 * shares,
-            np.arange(shares.size) + 0.24 * (at - 0.5),
-            xerr=100.0 * np.where(np.isfinite(widths), widths, np.nan),
+            100.0 * shares[there],
+            there + 0.24 * (at - 0.5),
+            xerr=100.0 * bars[there],
             linestyle="",
             color=style.COLOURS[1 + at],
             marker=style.MARKERS[1 + at],

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import samples
+import witnesses
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -45,6 +46,21 @@ EXPECTED = {
     "shear_study": {"shear", "parameter_effects"},
     "discretisation_study": {"nodes_convergence", "points_convergence", "convergence_cost"},
     "time_step_study": {"time_step_convergence"},
+    "witness_study": {
+        "witness",
+        "contact_duration",
+        "parameter_effects",
+        "nodes_convergence",
+        "element_size_convergence",
+    },
+    "parts_study": {
+        "witness_parts",
+        "first_contact",
+        "force_history",
+        "force_indentation",
+        "nodes_convergence",
+        "element_size_convergence",
+    },
     "sobol_study": {
         "response_distributions",
         "sobol_indices",
@@ -86,6 +102,18 @@ def sample_study() -> tuple[xr.Dataset, xr.Dataset]:
     """Nine parameters with long names, eight responses, failures, and every index there is."""
     runs = samples.sample(400, failures=9)
     return runs, samples.indices(runs)
+
+
+@pytest.fixture
+def witness_study() -> tuple[xr.Dataset, xr.Dataset]:
+    """Beam models beside a 3-D witness at three velocities."""
+    return witnesses.against_velocity()
+
+
+@pytest.fixture
+def parts_study() -> tuple[xr.Dataset, xr.Dataset]:
+    """The same with and without yielding."""
+    return witnesses.taken_apart()
 
 
 @pytest.fixture(scope="module")

@@ -4,53 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import xarray as xr
+import witnesses
 
-from impactlab.analysis.convergence import element_size, nodes
-from impactlab.dataset import described
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.reading import parts, witness
 from impactlab.report.witness import sections
 
-SPEEDS = [0.5, 1.0, 5.0]
-MODELS = ["euler_bernoulli", "timoshenko", "solid"]
-FACTORS = xr.DataArray([1.05, 0.98, 1.0], {"beam_model": MODELS})
-SIZES = xr.DataArray([1e-3, 5e-4, 2.5e-4], {"element_size": [1e-3, 5e-4, 2.5e-4]})
-NODES = xr.DataArray([101, 201, 401], {"nodes": [101, 201, 401]})
-
-
-def runs_of(first, name):
-    """A response `first` a model, with errors of second order: 1 % on the finest grids."""
-    solid = FACTORS["beam_model"] == "solid"
-    refined = xr.where(solid, (SIZES / 2.5e-4) ** 2, (400.0 / (NODES - 1)) ** 2)
-    force = FACTORS * first * (1.0 + 0.01 * refined)
-    duration = 1e-4 * FACTORS**-1 * first * (1.0 + 0.01 * refined)
-    found = xr.Dataset({"peak_force": force, "contact_duration": duration})
-    found["status"] = xr.zeros_like(force, dtype=np.int32)
-    attrs = {"responses": [*found.data_vars][:2], "method": "grid", "study": "planted"}
-    varied = [name, "beam_model", "nodes", "element_size"]
-    return described(found.assign_attrs(attrs | {"varied": varied}))
-
-
-def analysed(runs):
-    return xr.merge(
-        [nodes.analysis(runs), element_size.analysis(runs)], join="exact", compat="equals"
-    )
+SPEEDS = np.array(witnesses.SPEEDS)
 
 
 @pytest.fixture(scope="module")
 def study():
-    speeds = xr.DataArray(SPEEDS, {"velocity": SPEEDS})
-    runs = runs_of(1e4 * speeds, "velocity")
-    return runs, analysed(runs)
+    return witnesses.against_velocity()
 
 
 def test_each_side_is_the_finest_with_its_own_uncertainty(study):
     beam = witness.side(*study, "peak_force", "euler_bernoulli")
     solid = witness.side(*study, "peak_force", "solid")
-    assert beam.value == pytest.approx(1.05e4 * 1.01 * np.array(SPEEDS))
-    assert solid.value == pytest.approx(1e4 * 1.01 * np.array(SPEEDS))
-    assert solid.uncertainty == pytest.approx(1.25 * 0.01e4 * np.array(SPEEDS), rel=1e-3)
+    assert beam.value == pytest.approx(1.05e4 * 1.01 * SPEEDS)
+    assert solid.value == pytest.approx(1e4 * 1.01 * SPEEDS)
+    assert solid.uncertainty == pytest.approx(1.25 * 0.01e4 * SPEEDS, rel=1e-3)
     gap = witness.difference(beam, solid)
     assert gap.value == pytest.approx(0.05)
     assert gap.uncertainty == pytest.approx(1.05 * 2 * 1.25 * 0.01 / 1.01, rel=1e-3)
@@ -61,7 +34,7 @@ def test_the_figure_has_values_above_and_differences_below(study):
     force, _, below, _ = figure.axes
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["3-D solid", "Euler-Bernoulli", "Timoshenko"]
-    assert np.asarray(force.lines[0].get_ydata()) == pytest.approx(10.1 * np.array(SPEEDS))
+    assert np.asarray(force.lines[0].get_ydata()) == pytest.approx(10.1 * SPEEDS)
     drawn = [np.asarray(marks.lines[0].get_ydata()) for marks in below.containers]
     assert drawn == [pytest.approx([5.0] * 3), pytest.approx([-2.0] * 3)]
     assert CATALOGUE["element_size_convergence"].applies(*study)
@@ -71,7 +44,7 @@ def test_the_figure_has_values_above_and_differences_below(study):
 def test_a_missing_run_leaves_a_gap_and_is_counted(study):
     runs = study[0].copy(deep=True)
     runs["status"].loc[{"velocity": 5.0, "beam_model": "solid", "element_size": 2.5e-4}] = 256
-    analysis = analysed(runs)
+    analysis = witnesses.analysed(runs)
     assert np.isnan(witness.side(runs, analysis, "peak_force", "solid").value[-1])
     assert "3-D model stopped" in CATALOGUE["witness"].caption(runs, analysis)
     CATALOGUE["witness"].plot(runs, analysis)
@@ -84,8 +57,8 @@ def test_it_needs_the_solid_beside_others_at_three_velocities(study):
     assert witness.applies(runs)
     assert not witness.applies(runs.isel(velocity=slice(2)))
     assert not witness.applies(runs.sel(beam_model=["solid"]))
-    assert not witness.applies(runs.sel(beam_model=MODELS[:2]))
-    assert not CATALOGUE["witness"].applies(runs.sel(beam_model=MODELS[:2]), analysis)
+    assert not witness.applies(runs.sel(beam_model=witnesses.MODELS[:2]))
+    assert not CATALOGUE["witness"].applies(runs.sel(beam_model=witnesses.MODELS[:2]), analysis)
 
 
 def test_the_table_says_value_uncertainty_and_difference(study):
@@ -99,14 +72,7 @@ def test_the_table_says_value_uncertainty_and_difference(study):
 
 @pytest.fixture(scope="module")
 def taken_apart():
-    """Yielding lowers the force of the beams by 10 %, that of the solid by 20 %."""
-    stress = {"beam_yield_stress": [345e6, 20e9]}
-    solid = FACTORS["beam_model"] == "solid"
-    first = xr.where(solid, xr.DataArray([0.8, 1.0], stress), xr.DataArray([0.9, 1.0], stress))
-    runs = runs_of(first, "beam_yield_stress")
-    time = xr.DataArray(np.linspace(0.0, 1.0, 5), dims="time")
-    history = runs["peak_force"] * time
-    return runs.assign(contact_force=history, indentation=1e-5 * history), analysed(runs)
+    return witnesses.taken_apart()
 
 
 def test_the_effects_multiply_to_the_whole(taken_apart):
