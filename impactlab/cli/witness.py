@@ -68,7 +68,7 @@ def witness(
         bool, typer.Option("--force", help="Also what takes hours, or all memory.")
     ] = False,
 ) -> None:
-    """Solve one impact with 3-D finite elements, beside the beam models.
+    """Hold the beam models against 3-D finite elements, in one impact.
 
     What they answer is compared in a table; fields, histories and figures are kept. Ctrl-C keeps
     what was computed until then.
