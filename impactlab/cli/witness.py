@@ -68,7 +68,7 @@ def witness(
         bool, typer.Option("--force", help="Also what takes hours, or all memory.")
     ] = False,
 ) -> None:
-    """Hold the beam models against 3-D finite elements, in one impact.
+    """Hold the beam models against 3-D finite elements.
 
     What they answer is compared in a table; fields, histories and figures are kept. Ctrl-C keeps
     what was computed until then.
