@@ -73,7 +73,7 @@ mutants: $(MADE)-dev
 
 # Compiled kernels hide from coverage: here they run as plain Python, on the small cases only.
 coverage: $(MADE)-dev
-	$(IN_VENV) NUMBA_DISABLE_JIT=1 python -m pytest tests/unit -m 'not slow and not chaos and not kratos' \
+	$(IN_VENV) NUMBA_DISABLE_JIT=1 python -m pytest tests/unit -m 'not slow and not long and not chaos and not kratos' \
 	  --cov --cov-report=term-missing:skip-covered $(PYTEST_ARGS)
 
 # Newest versions for every Python and platform; needs uv (https://docs.astral.sh/uv).
