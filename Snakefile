@@ -1,7 +1,6 @@
 # studies/NAME.yaml -> design.nc -> runs.nc -> analysis.nc -> figures/ -> report.html, and one index.
 # A study of checks: studies/NAME.yaml -> findings.nc -> figures/ -> report.html, then the verdict.
-# Those of the paper's figures and its 3-D witness, fig*.yaml and witness.yaml, also -> results/paper:
-# figures and claims.
+# Those of the paper's figures, fig*.yaml, and of its 3-D witness also -> results/paper: figures, claims.
 # Only these: snakemake --cores all paper
 # All committed studies: snakemake --cores all. Some: snakemake --cores all --config studies=smoke,sobol
 import os
@@ -92,7 +91,7 @@ CHECKING = ("study/checking.py", "study/declaration/**/*.py", "study/storage.py"
 FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcome", "stored"))
 REPORTING = ("report/**/*.py", "report/templates/*")
 STUDIES = asked_studies(config.get("studies"))
-PAPER = [*(path.stem for path in sorted(Path("studies").glob("fig*.yaml"))), "witness"]
+PAPER = [*(path.stem for path in sorted(Path("studies").glob("fig*.yaml"))), "witness", "witness_mesh"]
 VERIFICATIONS = [study for study in STUDIES if lists_checks(study)]
 
 

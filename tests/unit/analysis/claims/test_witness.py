@@ -69,6 +69,14 @@ def test_a_limit_within_the_uncertainty_is_open(witness: Any) -> None:
     assert verdicts(duration_of_witness.judge(witness(gap=0.05, error=0.01))) == [UNKNOWN] * 4
 
 
+def test_finer_meshes_take_over_at_the_papers_velocity(witness: Any) -> None:
+    data = witness(gap=0.01, error=0.02)
+    finer = witness(gap=0.01, error=1e-4)["witness"].isel(nodes=0).sel(velocity=0.99)
+    data["witness_mesh"] = finer.sel(beam_model=["solid"])
+    coarse = [UNKNOWN, UNKNOWN]
+    assert verdicts(force_of_witness.judge(data)) == [HOLDS, READING, *coarse]
+
+
 def test_the_contact_duration(witness: Any) -> None:
     assert verdicts(duration_of_witness.judge(witness(gap=0.03))) == [READING] * 4
     assert verdicts(duration_of_witness.judge(witness(gap=0.08))) == [FAILS] * 4
