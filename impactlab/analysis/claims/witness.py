@@ -40,7 +40,8 @@ def beam(data: Data, response: str, velocity: float, model: str = BEAM) -> Numbe
 def solid(data: Data, response: str, velocity: float, least: float = 0.0) -> Number:
     """The 3-D model's answer, its uncertainty from the element sizes, but not below `least`.
 
-    At the paper's velocity it is that of the study MESHES, where that is solved. Raises UnknownError where a run is missing or nothing bounds the error.
+    At the paper's velocity it is that of the study MESHES, where that is solved. Raises
+    UnknownError where a run is missing or nothing bounds the error.
     """
     runs = _solids(data, velocity)
     if response not in runs:
