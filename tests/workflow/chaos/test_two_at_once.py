@@ -27,16 +27,6 @@ def another(folder, *options):
     return Command("run", study, "--output", output, *options, cwd=elsewhere)
 
 
-def test_the_second_one_says_who_is_at_work(folder, undisturbed):
-    first = run(folder, "--workers", "1", *SMALL)
-    first.wait_until_it_solves()
-    second = another(folder)
-    assert second.end() == 1, second.said
-    assert str(first.process.pid) in complaint(second.said)
-    assert first.end() == 0, first.said
-    assert_same_bits(stored(folder), undisturbed)
-
-
 def test_both_started_at_the_same_moment(folder, undisturbed):
     both = [run(folder, *SMALL), another(folder, *SMALL)]
     codes = sorted(command.end() for command in both)
@@ -59,12 +49,13 @@ def test_a_dead_process_holds_up_nobody(folder, how, undisturbed):
 
 
 def test_a_stopped_process_is_still_at_work(folder, undisturbed):
-    """Ctrl-Z keeps the study; it goes on when it is let."""
+    """Ctrl-Z keeps the study, and a second one says who has it; it goes on when it is let."""
     first = run(folder, *SMALL)
     first.wait_for_shards(2)
     first.send(signal.SIGSTOP)
     second = another(folder)
     assert second.end() == 1, second.said
+    assert str(first.process.pid) in complaint(second.said)
     first.send(signal.SIGCONT)
     assert first.end() == 0, first.said
     runs, said = resumed(folder)
