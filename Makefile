@@ -54,7 +54,7 @@ pytest: $(MADE)-dev
 	$(IN_VENV) python -m pytest -n auto $(PYTEST_ARGS)
 
 chaos: $(MADE)-dev
-	$(IN_VENV) python -m pytest -m chaos $(PYTEST_ARGS)
+	$(IN_VENV) python -m pytest -n 2 --dist loadgroup -m chaos $(PYTEST_ARGS)
 
 kratos: $(MADE)-dev $(MADE)-kratos
 	$(IN_VENV) python -m pytest -m kratos $(PYTEST_ARGS)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from impactlab.model.checks import instance, positive
-from impactlab.model.columns import Column, column
 from impactlab.model.material import Material
 
 
@@ -34,12 +32,7 @@ class Sphere:
         """Mass in kg: the stated one, else density times volume."""
         if self.mass is not None:
             return self.mass
-        mass: float = self.material.density * 4.0 / 3.0 * math.pi * _cubed(self.radius)
+        # not **3: numpy's power of a column is not Python's to the last bit
+        cube = self.radius * self.radius * self.radius
+        mass: float = self.material.density * 4.0 / 3.0 * math.pi * cube
         return mass
-
-
-def _cubed(radius: Any) -> Any:
-    """Of a column value by value: numpy's power is not Python's to the last bit."""
-    if isinstance(radius, Column):
-        return column([value**3 for value in radius.tolist()])
-    return radius**3

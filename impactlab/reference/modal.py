@@ -90,14 +90,22 @@ def solve(
 
 
 def solve_with(
-    table: BeamModes, impact: Impact, duration: float, step: float | None
+    table: BeamModes,
+    impact: Impact,
+    duration: float,
+    step: float | None,
+    compliance: float = 0.0,
 ) -> ModalSolution:
-    """The impact on the beam that has these modes; the rest as in solve."""
+    """The impact on the beam that has these modes; the rest as in solve.
+
+    compliance: of the contact, in m/N, beyond Hertz's half-spaces; negative where the bodies end.
+    """
     if impact.contact != "hertz":
         raise ValueError(f"Impact.contact = {impact.contact!r}: the modal series needs 'hertz'")
     largest = _default_step(impact) if step is None else positive("modal", "step", step)
     steps = max(math.ceil(positive("modal", "duration", duration) / largest), 4)
-    return _solution(table, march(impact, table, duration / steps, steps), duration, impact)
+    path = march(impact, table, duration / steps, steps, compliance)
+    return _solution(table, path, duration, impact)
 
 
 def _solution(modes: BeamModes, path: Path, duration: float, impact: Impact) -> ModalSolution:

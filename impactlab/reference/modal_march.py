@@ -36,12 +36,15 @@ class Path:
     v: Floats
 
 
-def march(impact: Impact, modes: BeamModes, h: float, steps: int) -> Path:
-    """The histories over that many steps of `h` (s) from first touch, under Hertz contact."""
+def march(impact: Impact, modes: BeamModes, h: float, steps: int, compliance: float = 0.0) -> Path:
+    """The histories over that many steps of `h` (s) from first touch, under Hertz contact.
+
+    compliance: see modal.solve_with.
+    """
     move, k = _motion(impact, modes, h), contact_stiffness(impact)
     bodies = move.fall.size
     approach = np.concatenate(([1.0], -np.ones(bodies - 1)))
-    flexibility = modes.residual_flexibility - float(approach @ move.position[3])
+    flexibility = modes.residual_flexibility + compliance - float(approach @ move.position[3])
     force, indentation = np.zeros(steps + 1), np.zeros(steps + 1)
     y, v = np.zeros((steps + 1, bodies)), np.zeros((steps + 1, bodies))
     v[0, 0] = impact.velocity
@@ -95,18 +98,19 @@ def _mode_motion(modes: BeamModes, h: float) -> tuple[Floats, Floats]:
 
 
 def _contact(gap: float, flexibility: float, k: float) -> tuple[float, float]:
-    """Find delta and F at a step's end: the one root of delta + flexibility k delta^1.5 = gap.
+    """Find delta and F at a step's end: the root of delta + flexibility k delta^1.5 = gap.
 
-    gap (m): the indentation if no force acted at the step's end.
+    gap (m): the indentation if no force acted at the step's end. A flexibility below zero is small
+    beside the slope of Hertz's curve: there is one root near gap.
     """
     if gap <= 0.0:
         return gap, 0.0
     delta, change, softness = gap, gap, flexibility * k
     while abs(change) > 1e-15 * delta:
-        # The function is convex and positive at gap: Newton comes down and does not overshoot.
+        # Convex and positive at gap, or concave and negative: Newton does not overshoot.
         root = math.sqrt(delta)
         change = (delta + softness * delta * root - gap) / (1.0 + 1.5 * softness * root)
-        if change <= 0.0:
+        if change * softness <= 0.0:
             break
         delta -= change
     return delta, k * delta * math.sqrt(delta)

@@ -52,9 +52,9 @@ def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterato
             shards.write(work.keys[runs], columns)
             ledger.mark(runs)
         shards.merge()
-        answers = Answers(shards, ledger).columns(solver.columns(design))
-        with dask.config.set(scheduler="synchronous"):  # HDF5 is not for two threads
-            yield solver.labelled(design, answers)
+        # HDF5 is not for two threads
+        with Answers(shards, ledger) as answers, dask.config.set(scheduler="synchronous"):
+            yield solver.labelled(design, answers.columns(solver.columns(design)))
 
 
 def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Dataset:

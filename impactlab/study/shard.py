@@ -41,24 +41,44 @@ def write_shard(path: Path, keys: Array, columns: Columns) -> None:
         file.setncattr("checksums", json.dumps(checksums))
 
 
-def read_shard(path: Path, names: Collection[str] = ()) -> Columns:
-    """The columns of a file, keys under KEYS; only those of these names, if any are given.
+class Shard:
+    """A file that is open for reading, which takes longer than a column of it.
 
-    Raises one of DAMAGE where a checksum of theirs does not hold. It covers folder and name, so
-    that a sound shard in another's place is found, too.
+    All raise one of DAMAGE where it is no sound shard.
     """
-    with Dataset(path) as file:
-        file.set_auto_maskandscale(False)
-        checksums = json.loads(file.getncattr("checksums"))
-        if checksums.keys() != file.variables.keys():
+
+    def __init__(self, path: Path) -> None:
+        """Open it. Columns that it lacks, or has too many, are found here."""
+        self._path, self._file = path, Dataset(path)
+        self._file.set_auto_maskandscale(False)
+        self._checksums = json.loads(self._file.getncattr("checksums"))
+        if self._checksums.keys() != self._file.variables.keys():
             raise ValueError("it lacks a column, or has one too many")
-        arrays = {name: file[name][:] for name in names or checksums}
-    for name, values in arrays.items():
-        if _checksum(path, name, values) != checksums[name]:
+
+    def __enter__(self) -> Shard:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
+
+    def layout(self, name: str) -> tuple[tuple[int, ...], np.dtype[Any]]:
+        """Shape beside that of the runs, and type, of a column."""
+        variable = self._file[name]
+        return tuple(variable.shape[1:]), variable.dtype
+
+    def read(self, name: str) -> Array:
+        """A column.
+
+        Its checksum covers folder and name: a sound shard in another's place is found, too.
+        """
+        values: Array = self._file[name][:]
+        if _checksum(self._path, name, values) != self._checksums[name]:
             raise ValueError(f"the checksum of its column {name} does not hold")
-    if KEYS in arrays:
-        arrays[KEYS] = np.frombuffer(arrays[KEYS].tobytes(), dtype=KEY)
-    return arrays
+        return np.frombuffer(values.tobytes(), dtype=KEY) if name == KEYS else values
+
+    def columns(self, names: Collection[str] = ()) -> Columns:
+        """Those of these names; all without any, keys under KEYS."""
+        return {name: self.read(name) for name in names or self._checksums}
 
 
 def _bytes(keys: Array) -> Array:

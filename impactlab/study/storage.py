@@ -10,13 +10,14 @@ import hashlib
 import logging
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
+from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from impactlab.study.shard import DAMAGE, KEY, KEYS, Columns, read_shard, write_shard
+from impactlab.study.shard import DAMAGE, KEY, KEYS, Columns, Shard, write_shard
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
@@ -48,13 +49,12 @@ def run_keys(cases: Array, form: Form, version: str) -> Array:
 
     In memory, bytes that follow each other are one case: two equal cases have equal bytes.
     """
-    prefix = hashlib.sha256(f"{version} {form} {cases.dtype.descr}".encode())
-    rows = memoryview(cases.tobytes())
-    digests = []
-    for start in range(0, len(rows), cases.dtype.itemsize):
-        digest = prefix.copy()
-        digest.update(rows[start : start + cases.dtype.itemsize])
-        digests.append(digest.digest()[: KEY.itemsize])
+    given = hashlib.sha256(f"{version} {form} {cases.dtype.descr}".encode()).digest()
+    rows, size = memoryview(cases.tobytes()), cases.dtype.itemsize
+    digests = [
+        blake2b(rows[start : start + size], digest_size=KEY.itemsize, key=given).digest()
+        for start in range(0, len(rows), size)
+    ]
     return np.frombuffer(b"".join(digests), dtype=KEY)
 
 
@@ -145,7 +145,8 @@ def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
 
 def _sound(path: Path, names: Collection[str] = ()) -> tuple[Array, Columns] | None:
     try:
-        columns = read_shard(path, (KEYS, *names) if names else ())
+        with Shard(path) as shard:
+            columns = shard.columns((KEYS, *names) if names else ())
         return columns.pop(KEYS), columns
     except DAMAGE as error:
         log.warning("%s is damaged, and its runs will be solved again (%s)", path, error)

@@ -2,13 +2,13 @@
 
 import os
 import subprocess
-import sys
 import time
 from contextlib import ExitStack
 
 import pytest
 import xarray as xr
 from cluster import Cluster
+from command_line import process as impactlab
 
 STUDY = """
 title: Spread
@@ -28,11 +28,6 @@ echo "Submitted batch job $!"
 """
 BRIDGE = "impactlab0"
 NETWORK = "10.213.47"
-
-
-def impactlab(*args, cwd, env=None):
-    command = [sys.executable, "-m", "impactlab", *args]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120, env=env)
 
 
 @pytest.fixture

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import logging
-
 import pytest
-
-from impactlab.cli import main
+from command_line import here
 
 STUDY = """
 title: Small
@@ -28,12 +25,9 @@ def impactlab(tmp_path, monkeypatch, capsys):
         text = STUDY.replace("GRID", grid).replace("DURATION", duration)
         text = text.replace("GRAVITY", str(gravity))
         (tmp_path / "studies" / "some.yaml").write_text(text)
-        monkeypatch.setattr("sys.argv", ["impactlab", *args])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        logging.getLogger("impactlab").handlers.clear()
+        code = here(*args)
         printed = capsys.readouterr()
-        return ended.value.code or 0, printed.out + printed.err
+        return code, printed.out + printed.err
 
     return run
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import csv
-import logging
 from html.parser import HTMLParser
 
 import pytest
 import xarray as xr
-
-from impactlab.cli import main
+from command_line import here as impactlab
 
 HOSTILE = (
     "=1+1 <script>alert(1)</script> <img src=x onerror=alert(1)> </title></pre> \"q' {{ 7*7 }} "
@@ -51,18 +49,6 @@ class Tags(HTMLParser):
         self.data += data
 
 
-def impactlab(monkeypatch, *args):
-    """Exit code of the command line, in this process."""
-    monkeypatch.setattr("sys.argv", ["impactlab", *map(str, args)])
-    try:
-        main()
-    except SystemExit as end:
-        return end.code or 0
-    finally:
-        logging.getLogger("impactlab").handlers.clear()
-    return 0
-
-
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     (tmp_path / "here" / "studies").mkdir(parents=True)
@@ -82,12 +68,12 @@ def harmless(page, times):
 def test_from_a_hostile_study_to_its_pages(folder, monkeypatch, capsys):
     (folder / "studies" / "evil.yaml").write_text(text())
     results = folder / "results" / "evil"
-    assert impactlab(monkeypatch, "run", "studies/evil.yaml", "--workers", 1) == 0
+    assert impactlab("run", "studies/evil.yaml", "--workers", 1) == 0
     runs, analysis = results / "runs.nc", results / "analysis.nc"
-    assert impactlab(monkeypatch, "analyse", runs) == 0
-    assert impactlab(monkeypatch, "figures", runs, analysis) == 0
-    assert impactlab(monkeypatch, "report", runs, analysis) == 0
-    assert impactlab(monkeypatch, "index") == 0
+    assert impactlab("analyse", runs) == 0
+    assert impactlab("figures", runs, analysis) == 0
+    assert impactlab("report", runs, analysis) == 0
+    assert impactlab("index") == 0
     assert xr.load_dataset(runs).attrs["title"] == HOSTILE
     harmless((results / "report.html").read_text("utf-8"), times=4)  # head, title, text, file
     harmless((folder / "results" / "index.html").read_text("utf-8"), times=2)
@@ -100,7 +86,7 @@ def test_from_a_hostile_study_to_its_pages(folder, monkeypatch, capsys):
         assert b"<script" not in path.read_bytes()
     capsys.readouterr()
     monkeypatch.setenv("COLUMNS", "400")
-    assert impactlab(monkeypatch, "studies") == 0
+    assert impactlab("studies") == 0
     assert HOSTILE in capsys.readouterr().out
 
 
@@ -114,21 +100,19 @@ def number(cell):
 
 @pytest.mark.parametrize("letters", ["\\e[31m", "\\u202e", "\\a", "\\x9b2J", "\\ud800"])
 @pytest.mark.parametrize("key", ["title", "description"])
-def test_what_steers_a_terminal_is_refused_and_not_printed(
-    folder, monkeypatch, capsys, key, letters
-):
+def test_what_steers_a_terminal_is_refused_and_not_printed(folder, capsys, key, letters):
     plain = text().replace(f"{key}: '", f'{key}: "{letters}"\nother: \'', 1)
     (folder / "studies" / "evil.yaml").write_text(plain)
-    assert impactlab(monkeypatch, "studies") == 1
+    assert impactlab("studies") == 1
     said = capsys.readouterr().err
     assert f"evil.yaml: {key}" in said
     assert all(line.isprintable() for line in said.splitlines())
 
 
-def test_the_name_of_a_file_does_not_steer_a_terminal(folder, monkeypatch, capsys):
+def test_the_name_of_a_file_does_not_steer_a_terminal(folder, capsys):
     for name in ("\x1b[31mred.yaml", "two\nlines.yaml"):
         (folder / "studies" / name).write_text(text())
-        assert impactlab(monkeypatch, "run", f"studies/{name}") == 1
+        assert impactlab("run", f"studies/{name}") == 1
         said = capsys.readouterr().err
         assert said.startswith("ERROR: studies/")
         assert len(said.splitlines()) == 1
@@ -136,9 +120,9 @@ def test_the_name_of_a_file_does_not_steer_a_terminal(folder, monkeypatch, capsy
 
 
 @pytest.mark.parametrize("name", ["=1", "+a", "-a", "@a", "_a", "$a$", "a b", "a\\nb", "<b>", ""])
-def test_groups_are_named_by_words(folder, monkeypatch, capsys, name):
+def test_groups_are_named_by_words(folder, capsys, name):
     (folder / "studies" / "evil.yaml").write_text(text().replace("one-a", f'"{name}"'))
-    assert impactlab(monkeypatch, "design", "studies/evil.yaml") == 1
+    assert impactlab("design", "studies/evil.yaml") == 1
     assert "evil.yaml: sampling.groups: " in capsys.readouterr().err
 
 
@@ -151,47 +135,47 @@ def everything(folder):
     ["..", "../out", "../../out", "a/../../../out", "-n", "a b", ".hidden", "a.b", "x" * 101],
 )
 @pytest.mark.parametrize("command", ["run", "design", "recommend", "verify"])
-def test_names_of_studies_lead_nowhere(folder, monkeypatch, capsys, name, command):
+def test_names_of_studies_lead_nowhere(folder, capsys, name, command):
     (folder / "studies" / "a").mkdir()
     target = folder / "studies" / f"{name}.yaml"
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text(text().replace("function", "functio"))
     before = everything(folder.parent)
-    assert impactlab(monkeypatch, command, "--", f"studies/{name}.yaml") == 1
+    assert impactlab(command, "--", f"studies/{name}.yaml") == 1
     assert "ERROR: studies/" in capsys.readouterr().err
     assert everything(folder.parent) == before
 
 
 @pytest.mark.parametrize("place", ["results/evil", "results/evil/shards"])
-def test_links_out_of_results_are_not_followed(folder, monkeypatch, capsys, place):
+def test_links_out_of_results_are_not_followed(folder, capsys, place):
     (folder / "studies" / "evil.yaml").write_text(text())
     out = folder.parent / "out"
     out.mkdir()
     (folder / place).parent.mkdir(parents=True)
     (folder / place).symlink_to(out)
     for command in ("run", "design"):
-        assert impactlab(monkeypatch, command, "studies/evil.yaml") == 1
+        assert impactlab(command, "studies/evil.yaml") == 1
         assert f"{place}: is a link to {out}, outside results/" in capsys.readouterr().err
     assert list(out.iterdir()) == []
 
 
-def test_results_may_be_a_link_and_so_may_a_study(folder, monkeypatch):
+def test_results_may_be_a_link_and_so_may_a_study(folder):
     real = folder.parent / "elsewhere.yaml"
     real.write_text(text())
     (folder / "studies" / "evil.yaml").symlink_to(real)
     (folder.parent / "large-disk").mkdir()
     (folder / "results").symlink_to(folder.parent / "large-disk")
-    assert impactlab(monkeypatch, "design", "studies/evil.yaml") == 0
+    assert impactlab("design", "studies/evil.yaml") == 0
     assert (folder.parent / "large-disk" / "evil" / "design.nc").exists()
 
 
 @pytest.mark.parametrize("name", ["../../out", "/tmp/out", "", "a b"])
-def test_a_design_does_not_say_where_its_runs_go(folder, monkeypatch, capsys, name):
+def test_a_design_does_not_say_where_its_runs_go(folder, capsys, name):
     (folder / "studies" / "evil.yaml").write_text(text())
-    assert impactlab(monkeypatch, "design", "studies/evil.yaml") == 0
+    assert impactlab("design", "studies/evil.yaml") == 0
     stored = xr.load_dataset(folder / "results" / "evil" / "design.nc").assign_attrs(study=name)
     stored.to_netcdf(folder / "design.nc")
     before = everything(folder.parent)
-    assert impactlab(monkeypatch, "run", "design.nc") == 1
+    assert impactlab("run", "design.nc") == 1
     assert "its name becomes that of a folder" in capsys.readouterr().err
     assert everything(folder.parent) == before

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from command_line import process as impactlab
 
 STUDY = """
 title: Small
@@ -21,11 +22,6 @@ def folder(tmp_path):
     (tmp_path / "studies" / "small.yaml").write_text(STUDY)
     (tmp_path / "studies" / "gone.yaml").write_text(STUDY)
     return tmp_path
-
-
-def impactlab(*args, cwd, said=""):
-    command = [sys.executable, "-m", "impactlab", *args]
-    return subprocess.run(command, cwd=cwd, input=said, capture_output=True, text=True, timeout=120)
 
 
 def test_status_and_clean(folder):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import signal
 import subprocess
 import sys
@@ -11,8 +10,8 @@ from functools import partial
 import meshio
 import pytest
 import xarray as xr
+from command_line import here
 
-from impactlab.cli import main
 from impactlab.reference.solid import solve
 from impactlab.steering.witness.case import paper_case
 
@@ -42,12 +41,9 @@ def impactlab(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "80")
 
     def run(*args):
-        monkeypatch.setattr("sys.argv", ["impactlab", *args])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        logging.getLogger("impactlab").handlers.clear()
+        code = here(*args)
         printed = capsys.readouterr()
-        return ended.value.code or 0, printed.out + printed.err
+        return code, printed.out + printed.err
 
     return run
 
@@ -160,7 +156,6 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path):
 PRESSED = """
 import os, signal
 import impactlab.figures.solid.drawings as drawings
-from impactlab.cli import main
 from impactlab.reference.solid.stepping.march import March
 drawings.draw_witness = lambda *_: None
 advance = March._advance

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from impactlab.analysis.claims import witness
-from impactlab.analysis.claims.claim import Data, Judgement, Verdict, attempt, holds
-from impactlab.analysis.claims.witness import BEAMS
+from impactlab.analysis.claims.agreement import Agreement
+from impactlab.analysis.claims.claim import Data, Judgement
+from impactlab.analysis.claims.curves import BEAM
+from impactlab.analysis.claims.witness import VELOCITY
 
 SAYS = "The peak force lies within 2.4 % of that of a 3-D finite-element model."
 TEST = (
@@ -14,27 +15,11 @@ TEST = (
     "3-D: this project's solid model in the place of the paper's. The paper states it at 0.99 m/s "
     "of its own beam; other velocities, and the Timoshenko beam, are readings."
 )
-LIMIT = 0.024
+_AGREEMENT = Agreement(
+    "peak_force", limit=0.024, below="smaller", above="larger", stated=(VELOCITY, BEAM)
+)
 
 
 def judge(data: Data) -> Iterable[Judgement]:
     """A judgement for each velocity and each beam model."""
-    for velocity in witness.velocities(data):
-        for model, words in BEAMS.items():
-            case = f"{velocity:g} m/s, {words}"
-            yield attempt(case, lambda c=case, v=velocity, m=model: _judged(c, data, v, m))  # type: ignore[misc]
-
-
-def _judged(case: str, data: Data, velocity: float, model: str) -> Judgement:
-    ours = witness.beam(data, "peak_force", velocity, model)
-    theirs = witness.solid(data, "peak_force", velocity)
-    gap = witness.difference(ours, theirs, "difference, in parts of the 3-D model's")
-    numbers = (ours, theirs, gap)
-    least, most = abs(gap.value) - gap.uncertainty, abs(gap.value) + gap.uncertainty
-    if least <= LIMIT < most:
-        why = f"{LIMIT:.1%} lies within the uncertainty of the two models together."
-        return Judgement(case, numbers, Verdict.UNKNOWN, why)
-    literal = velocity == witness.VELOCITY and model == next(iter(BEAMS))
-    side = "below" if gap.value < 0 else "above"
-    why = f"The beam's lies {abs(gap.value):.1%} {side}."
-    return Judgement(case, numbers, holds(most <= LIMIT, as_read=not literal), why)
+    return _AGREEMENT.judged(data)

@@ -58,8 +58,8 @@ def solve_on(
     Ctrl-C, or stopped because it diverged or its elements were squeezed flat, gives what it has
     computed until then, and the attribute `stopped` says why.
 
-    Raises ValueError when a number is not valid, and PatchTooSmallError (a ValueError) when the
-    contact leaves the patch of matched nodes.
+    Raises ValueError when a number is not valid or the duration below a time step, and
+    PatchTooSmallError (a ValueError) when the contact leaves the patch of matched nodes.
     """
     positive("solve", "duration", duration)
     samples = integer("solve", "samples", samples, 2)

@@ -18,12 +18,16 @@ def shards(tmp_path):
     return kept
 
 
-def test_columns_are_in_the_order_of_the_runs(shards):
-    columns = Answers(shards, Ledger(KEYS)).columns(["status", "force"])
-    assert [*columns] == ["status", "force"]
-    assert columns["force"].compute().tolist() == [1.0, 2.0, 3.0, 2.0]
-    assert columns["status"].compute().tolist() == [0, 0, 1, 0]
-    assert columns["status"].dtype == np.int32
+@pytest.mark.parametrize("opened", [0, 1, 2])
+def test_columns_are_in_the_order_of_the_runs(shards, monkeypatch, opened):
+    """opened: shards that may stay so, of two."""
+    monkeypatch.setattr("impactlab.study.answers._OPEN", opened)
+    with Answers(shards, Ledger(KEYS)) as answers:
+        columns = answers.columns(["status", "force"])
+        assert [*columns] == ["status", "force"]
+        assert columns["force"].compute().tolist() == [1.0, 2.0, 3.0, 2.0]
+        assert columns["status"].compute().tolist() == [0, 0, 1, 0]
+        assert columns["status"].dtype == np.int32
 
 
 def test_a_run_without_answers_is_an_error(shards):
@@ -32,8 +36,9 @@ def test_a_run_without_answers_is_an_error(shards):
 
 
 def test_a_shard_that_is_damaged_meanwhile_is_an_error(shards):
-    columns = Answers(shards, Ledger(KEYS)).columns(["force"])
     first, second = shards.files()
-    first.write_bytes(second.read_bytes())
-    with pytest.raises(OSError, match=f"{first.name} was damaged"):
-        columns["force"].compute(scheduler="synchronous")
+    with Answers(shards, Ledger(KEYS)) as answers:
+        columns = answers.columns(["force"])
+        first.write_bytes(second.read_bytes())
+        with pytest.raises(OSError, match=f"{first.name} was damaged"):
+            columns["force"].compute(scheduler="synchronous")

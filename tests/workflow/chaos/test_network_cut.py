@@ -9,7 +9,7 @@ import pytest
 from chaos import SMALL, assert_same_bits, keys_on_disk, resumed, run, solved_before, stored
 from cluster import SOON, Cluster
 
-pytestmark = pytest.mark.chaos
+pytestmark = [pytest.mark.chaos, pytest.mark.xdist_group("cable")]  # there is but one
 
 HERE, THERE = "10.213.77.1", "10.213.77.2"
 """Both ends of a cable."""

@@ -46,8 +46,13 @@ class March:
     def run(self, duration: float, progress: Progress | None = None) -> History:
         """March on to `duration` (s), or until something is wrong or Ctrl-C is pressed.
 
-        Raises PatchTooSmallError when the contact leaves the matched patch.
+        Raises ValueError where that is less than a step, and PatchTooSmallError when the contact
+        leaves the matched patch.
         """
+        if duration <= self._dt:
+            raise ValueError(
+                f"solve.duration = {duration!r} s: must be longer than a step of {self._dt:.3g} s"
+            )
         try:
             for checkpoint in range(1, CHECKPOINTS + 1):
                 self._advance(duration * checkpoint / CHECKPOINTS)
@@ -56,6 +61,8 @@ class March:
                 if self.history.stopped:
                     break
         except KeyboardInterrupt:
+            if len(self.history.moments) < 2:
+                raise  # there is nothing to keep
             self.history.stopped = f"interrupted at {self._time:.4g} s"
         return self.history
 

@@ -89,6 +89,19 @@ def test_what_is_interrupted_is_kept(mesh):
     assert float(answer["checkpoint_time"][-1]) < 9e-6
 
 
+def test_what_is_interrupted_before_there_is_anything_is_not_kept(mesh):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        solve_on(mesh, IMPACT, duration=1e-6, progress=stop)  # a hundredth of it is no step
+
+
+def test_less_than_a_step_is_refused(mesh):
+    with pytest.raises(ValueError, match=r"solve\.duration = 1e-08 s: must be longer than a step"):
+        solve_on(mesh, IMPACT, duration=1e-8)
+
+
 def test_a_run_that_diverges_says_so_and_answers_nothing(mesh):
     with Parts(1) as parts:
         system = System(mesh, IMPACT, parts)

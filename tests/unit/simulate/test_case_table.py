@@ -1,0 +1,139 @@
+"""From what varies to the table of cases: the same as run by run, and as strict."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
+from impactlab.kernels.contact import LAWS
+from impactlab.model.parameters import PARAMETERS, flatten, with_values
+from impactlab.simulate import case_table
+
+IMPACT = il.paper_impact(15.0)
+GRID = il.Discretisation(nodes=21, points=5)
+DURATION = 2e-3
+DOOR = import_module("impactlab.simulate")
+
+
+def test_a_wrong_run_is_named_with_its_field():
+    def refused(varied, message):
+        for door in (case_table, il.simulate_many):
+            with pytest.raises(ValueError, match=message):
+                door(IMPACT, GRID, duration=DURATION, varied=varied)
+
+    refused({"velocity": [1.0, 2.0, -3.0]}, r"^run 2: Impact\.velocity = -3\.0: must be above zero")
+    refused({"nodes": np.array([11, 20])}, r"^run 1: Discretisation\.nodes = 20: must be odd")
+    refused({"beam_depth": [0.02, np.nan]}, r"^run 1: Beam\.depth = nan: must be a finite number")
+    refused({"contact": ["hertz", "hooke"]}, r"^run 1: Impact\.contact = 'hooke': must be one of")
+    refused({"weight": [1.0]}, r"^run 0: unknown parameter 'weight': choose from velocity")
+    filtered = {"scheme": ["leapfrog", "semi_implicit", "semi_implicit"], "nodes": [5, 17, 15]}
+    refused(filtered, r"^run 2: Discretisation\.nodes = 15: must be at least 17 with the")
+    refused({"velocity": [1.0, 2.0], "nodes": [11]}, r"one value a run.*\{1, 2\}")
+
+
+RUNS = 40
+RANDOM = np.random.default_rng(3)
+WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "rule": RULES, "scheme": SCHEMES}
+COUNTS = {"nodes": (17, 19, 1201), "points": (2, 3, 64)}
+
+
+def any_values(name):
+    """Values that every run may have beside any of the others."""
+    if name == "shear_coefficient":
+        return RANDOM.uniform(0.7, 1.0, RUNS)
+    if choices := WORDS.get(name) or COUNTS.get(name):
+        return RANDOM.choice(choices, RUNS)
+    value = flatten(IMPACT, GRID).get(name) or {"sphere_mass": 1.4}.get(name, 1e9)
+    return value * RANDOM.uniform(0.9, 1.1, RUNS)
+
+
+@pytest.fixture
+def one_by_one(monkeypatch):
+    """The case table as it is when each run is made and checked alone."""
+
+    def refuse(values):
+        raise ValueError("no columns")
+
+    def table(varied):
+        with monkeypatch.context() as without:
+            without.setattr(DOOR, "column", refuse)
+            return case_table(IMPACT, GRID, duration=DURATION, varied=varied)
+
+    return table
+
+
+@pytest.mark.parametrize("names", [*((name,) for name in PARAMETERS), tuple(PARAMETERS)])
+def test_columns_give_the_table_of_single_runs_bit_by_bit(names, one_by_one, monkeypatch):
+    varied = {name: any_values(name) for name in names}
+    alone = one_by_one(varied)
+    monkeypatch.setattr(DOOR, "_one_by_one", None)
+    for form in (np.asarray, list, np.ndarray.tolist, lambda values: values.astype(object)):
+        given = {name: form(values) for name, values in varied.items()}
+        many = case_table(IMPACT, GRID, duration=DURATION, varied=given)
+        assert many.tobytes() == alone.tobytes()
+        assert many.dtype == alone.dtype
+
+
+WRONG = {
+    "beam_density": [0, -1.0, np.nan, np.inf, "1", None, True],
+    "beam_yield_stress": [210e9, np.nan],
+    "beam_poissons_ratio": [-0.1, 0.5, np.nan],
+    "beam_isotropic_hardening_modulus": [-1e-9, np.inf],
+    "sphere_mass": [0, True],
+    "beam_depth": [0.78, 1.0],
+    "gravity": [-1.0],
+    "contact": ["hooke", "", 0, None],
+    "beam_model": ["Rigid", "spring-mass", 1],
+    "rule": ["Lobatto"],
+    "scheme": ["semi-implicit", "Leapfrog", 1, None],
+    "nodes": [3, 20, 21.5, np.nan, "21", None, True],
+    "points": [1, 2.5],
+    "courant": [0, 1.0001],
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong"), [(name, value) for name, values in WRONG.items() for value in values]
+)
+def test_a_refused_run_is_told_in_the_words_of_the_model(name, wrong):
+    right = any_values(name).tolist()[0]
+    with pytest.raises(ValueError, match=name.split("_")[-1]) as alone:
+        with_values(IMPACT, GRID, {name: wrong})
+    with pytest.raises(ValueError, match=r"^run 2: ") as among:
+        case_table(IMPACT, GRID, duration=DURATION, varied={name: [right, right, wrong, right]})
+    assert str(among.value) == f"run 2: {alone.value}"
+
+
+@pytest.mark.parametrize(
+    ("grid", "varied"),
+    [
+        ({"scheme": "semi_implicit"}, {"nodes": [17, 1201, 15]}),
+        ({"nodes": 15}, {"scheme": ["leapfrog", "leapfrog", "semi_implicit"]}),
+    ],
+    ids=["nodes", "scheme"],
+)
+def test_the_run_is_named_that_has_too_few_nodes_for_its_scheme(grid, varied):
+    with pytest.raises(
+        ValueError, match=r"^run 2: Discretisation\.nodes = 15: must be at least 17 with"
+    ):
+        case_table(IMPACT, il.Discretisation(**grid), duration=DURATION, varied=varied)
+
+
+@pytest.mark.parametrize("model", ["timoshenko", "spring_mass", "rigid"])
+def test_the_run_is_named_whose_beam_has_no_such_scheme(model):
+    varied = {"beam_model": ["elastic", model], "scheme": ["semi_implicit", "semi_implicit"]}
+    words = rf"^run 1: Discretisation\.scheme = 'semi_implicit': Impact\.beam_model = '{model}'"
+    with pytest.raises(ValueError, match=words):
+        case_table(IMPACT, GRID, duration=DURATION, varied=varied)
+
+
+def test_what_is_no_column_may_still_be_right(one_by_one):
+    """A mass that follows from the density in some runs."""
+    varied = {"sphere_mass": [None, 2.0], "velocity": [1, 2.0]}
+    cases = case_table(IMPACT, GRID, duration=DURATION, varied=varied)
+    assert cases["sphere_mass"].tolist() == [IMPACT.sphere.total_mass, 2.0]
+    assert cases.tobytes() == one_by_one(varied).tobytes()

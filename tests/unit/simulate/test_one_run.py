@@ -1,0 +1,150 @@
+"""One run: what comes out, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import impactlab as il
+from impactlab.dataset import (
+    COORDINATES,
+    FLAGS,
+    HISTORIES,
+    PROFILES,
+    REMARKS,
+    RESPONSES,
+    STATUS_FLAGS,
+)
+from impactlab.kernels import RULES
+from impactlab.model.parameters import PARAMETERS, flatten
+
+IMPACT = il.paper_impact(15.0)
+GRID = il.Discretisation(nodes=21, points=5)
+DURATION = 2e-3
+BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
+
+
+@pytest.fixture(scope="module")
+def run():
+    """A run in which the beam yields."""
+    return il.simulate(IMPACT, GRID, duration=DURATION, samples=101)
+
+
+def test_every_variable_is_there_on_its_dimensions(run):
+    for name, entry in (RESPONSES | HISTORIES | PROFILES).items():
+        assert run[name].dims == entry.dims, name
+        assert run[name].dtype == np.float64, name
+    assert set(run.data_vars) == {*RESPONSES, *HISTORIES, *PROFILES, *FLAGS}
+    assert run.status.dtype == np.int32
+    assert run.status.dims == ()
+
+
+def test_every_variable_has_units_and_a_long_name(run):
+    for name in set(run.variables) - {*FLAGS}:
+        assert run[name].attrs["units"], name
+        assert run[name].attrs["long_name"], name
+    assert run.status.attrs["long_name"]
+    assert run.status.attrs["flag_meanings"].split() == list(STATUS_FLAGS)
+    assert run.remarks.attrs["flag_meanings"].split() == list(REMARKS)
+    assert run.status.attrs["flag_masks"].tolist() == list(BITS.values())
+
+
+def test_coordinates_are_those_of_the_discretisation(run):
+    assert run.time.values == pytest.approx(np.linspace(0, DURATION, 101), rel=1e-15)
+    assert run.x.values == pytest.approx(np.arange(21) * 0.78 / 20, rel=1e-14)
+    # Gauss-Lobatto with 5 points: 0, sqrt(3/7), 1
+    positions = np.array([-1, -np.sqrt(3 / 7), 0, np.sqrt(3 / 7), 1])
+    assert run.z.values == pytest.approx(0.0139 * positions, rel=1e-12, abs=1e-17)
+
+
+def test_every_parameter_is_a_coordinate(run):
+    expected = flatten(IMPACT, GRID) | {
+        "sphere_mass": IMPACT.sphere.total_mass,
+        "duration": DURATION,
+    }
+    names = {*PARAMETERS, "duration"} - {"element_size"}  # of the 3-D model alone
+    assert {name: run[name].item() for name in names} == expected
+    assert set(run.coords) == {*names, *COORDINATES} - {"run"}
+
+
+def test_default_discretisation():
+    run = il.simulate(il.paper_impact(), duration=1e-5, samples=2)
+    assert run.sizes == {"time": 2, "x": 201, "z": 9}
+    assert run.courant == il.Discretisation().courant
+    assert il.simulate(il.paper_impact(), GRID, duration=1e-5).sizes["time"] == 2001
+
+
+def test_histories_fit_together(run):
+    approach = run.sphere_displacement - run.midspan_deflection
+    xr.testing.assert_allclose(run.indentation, approach, rtol=1e-12, atol=1e-18)
+    assert run.midspan_deflection[-1] == run.deflection[10]
+    assert (run.contact_force >= 0).all()
+    assert run.contact_force.max() <= run.peak_force
+    first = run.isel(time=1)
+    assert first.sphere_displacement.item() == pytest.approx(15.0 * first.time.item(), rel=1e-2)
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("points", [4, 5])
+def test_profiles_mirror_about_mid_span_and_strains_about_the_axis(rule, points):
+    grid = replace(GRID, rule=rule, points=points)
+    run = il.simulate(IMPACT, grid, duration=DURATION, samples=2)
+    assert run.peak_plastic_strain > 0
+    for name in PROFILES:
+        values = run[name].values
+        assert np.array_equal(values, values[::-1]), name
+    strain, peeq = run.plastic_strain.values, run.equivalent_plastic_strain.values
+    assert np.array_equal(strain, -strain[:, ::-1])
+    assert np.array_equal(peeq, peeq[:, ::-1])
+    assert np.all(peeq >= np.abs(strain))
+    assert peeq.max() == run.peak_plastic_strain
+    assert run.deflection[0] == run.deflection[-1] == 0
+
+
+def test_an_elastic_beam_has_no_negative_zeros():
+    run = il.simulate(il.paper_impact(0.1), GRID, duration=DURATION, samples=2)
+    assert not np.signbit(run.plastic_strain.values).any()
+    assert (run.plastic_strain == 0).all()
+
+
+def test_the_lower_side_is_stretched_at_mid_span():
+    """z and the deflection point downwards: tension below the axis."""
+    strain = il.simulate(IMPACT, GRID, duration=DURATION).plastic_strain
+    assert strain.isel(x=10, z=-1) > 0
+    assert strain.isel(x=10, z=0) < 0
+
+
+def test_answers_do_not_depend_on_the_samples(run):
+    for samples in (2, 21, 2001):
+        other = il.simulate(IMPACT, GRID, duration=DURATION, samples=samples)
+        for name in (*RESPONSES, *PROFILES, "status"):
+            assert other[name].values.tobytes() == run[name].values.tobytes(), name
+    coarse = il.simulate(IMPACT, GRID, duration=DURATION, samples=21)
+    for name in HISTORIES:
+        assert coarse[name].values == pytest.approx(run[name].values[::5], rel=1e-9, abs=1e-15)
+
+
+@pytest.mark.parametrize("duration", [0.0, -1e-3, np.nan, np.inf, None, "1 ms"])
+def test_a_wrong_duration_is_refused(duration):
+    with pytest.raises(ValueError, match=r"^simulate\.duration = "):
+        il.simulate(IMPACT, GRID, duration=duration)
+    with pytest.raises(ValueError, match=r"^simulate\.duration = "):
+        il.simulate_many(IMPACT, GRID, duration=duration, varied={"velocity": [1.0]})
+
+
+@pytest.mark.parametrize("samples", [1, 0, -5, 2.5, None, "9"])
+def test_a_wrong_number_of_samples_is_refused(samples):
+    with pytest.raises(ValueError, match=r"^simulate\.samples = "):
+        il.simulate(IMPACT, GRID, duration=DURATION, samples=samples)
+
+
+@pytest.mark.parametrize("count", ["nodes", "points", "samples"])
+def test_whole_floats_count(run, count):
+    counts = {"nodes": 21, "points": 5, "samples": 101}
+    counts[count] = float(counts[count])
+    grid = replace(GRID, nodes=counts["nodes"], points=counts["points"])
+    other = il.simulate(IMPACT, grid, duration=DURATION, samples=counts["samples"])
+    assert np.array_equal(other.deflection, run.deflection)

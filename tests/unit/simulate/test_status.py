@@ -1,0 +1,87 @@
+"""A response is missing where the status says why; remarks leave the numbers standing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab.dataset import (
+    FAILURES,
+    FLAGS,
+    REMARKS,
+    RESPONSES,
+    STATUS_FLAGS,
+    remarked,
+)
+from impactlab.model.parameters import with_values
+
+IMPACT = il.paper_impact(15.0)
+GRID = il.Discretisation(nodes=21, points=5)
+DURATION = 2e-3
+BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
+
+
+def test_a_run_in_which_the_contact_law_creates_energy_says_so():
+    """Stronge's law at 20 and at 990 mm/s: within and above 2.673 times the yield indentation."""
+    run = il.simulate(il.paper_impact(0.02), GRID, duration=4e-3)
+    assert run.remarks.item() & REMARKS["contact_created_energy"][0]
+    assert run.contact_dissipation < 0
+    assert "creates energy" in run.contact_dissipation.attrs["comment"]
+    assert "created energy" in remarked(run.remarks.item())[0]
+    assert il.simulate(il.paper_impact(0.99), GRID, duration=4e-3).remarks == 0
+    assert remarked(0) == []
+
+
+WHOLE_RUN = {"diverged", "energy_out_of_balance", "stopped"}
+"""The last is of the 3-D model alone."""
+
+
+def flags(run):
+    return {name for name, bit in BITS.items() if run.status.item() & bit}
+
+
+def test_a_response_is_missing_exactly_where_a_flag_says_so():
+    """Over durations from before the first peak to long after the rebound."""
+    seen = set()
+    for contact in ("hertz", "stronge"):
+        for duration in np.geomspace(2e-5, 20e-3, 16):
+            run = il.simulate(replace(IMPACT, contact=contact), GRID, duration=float(duration))
+            seen |= flags(run) or {"none"}
+            for name, entry in RESPONSES.items():
+                missing = entry.missing in flags(run)
+                assert np.isnan(run[name].item()) == missing, (name, duration)
+    assert seen == {*FAILURES, "none"} - WHOLE_RUN
+
+
+def test_flags_come_off_as_the_run_grows_longer():
+    impact, grid = il.paper_impact(0.99), il.Discretisation(nodes=41, points=3)
+    whole = il.simulate(impact, grid, duration=10e-3)
+    assert flags(whole) == set()
+    peak, end = whole.time_of_peak_force.item(), whole.contact_duration.item()
+    loading = il.simulate(impact, grid, duration=0.7 * peak)
+    assert flags(loading) == set(FAILURES) - WHOLE_RUN
+    unloading = il.simulate(impact, grid, duration=0.5 * (peak + end))
+    assert flags(loading) - flags(unloading) == {"indentation_still_growing"}
+    assert unloading.peak_force.item() == pytest.approx(whole.peak_force.item(), rel=1e-2)
+    after = il.simulate(impact, grid, duration=1.02 * end)
+    assert not {"first_contact_unfinished", "in_contact_at_end"} & flags(after)
+    assert after.contact_duration.item() == pytest.approx(end, rel=1e-2)
+
+
+def diverged(points):
+    """A contact so stiff beside so light a sphere that one step overshoots it."""
+    values = {"contact": "hertz", "velocity": 10.0, "sphere_mass": 0.05}
+    values |= {"nodes": 5, "points": points, "courant": 1.0}
+    impact, grid = with_values(il.paper_impact(), il.Discretisation(), values)
+    return il.simulate(impact, grid, duration=1e-3)
+
+
+@pytest.mark.parametrize("points", [4, 5], ids=["", "a fibre on the axis"])
+def test_a_diverged_run_gives_no_number(points):
+    run = diverged(points)
+    assert flags(run) == {"diverged"}
+    for name in set(run.data_vars) - {*FLAGS}:
+        assert run[name].isnull().all(), name

@@ -1,0 +1,45 @@
+"""A person's mistake ends in one message."""
+
+import re
+
+import pytest
+from command_line import CHECKS, SMALL, here
+from command_line import succeeded as impactlab
+
+
+def test_help_is_not_cut_short(tmp_path):
+    assert not re.search(r"\w\.\.\.", impactlab("--help", cwd=tmp_path).stdout)
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (["simulate", "--nodes", "600"], ["nodes", "600", "odd"]),
+        (["simulate", "--scheme", "newmark"], ["scheme", "newmark", "leapfrog", "semi_implicit"]),
+        (["simulate", "--beam-model", "string"], ["beam_model", "string", "timoshenko", "rigid"]),
+        (["simulate", "--contact", "glue"], ["contact", "glue", "hertz", "stronge"]),
+        (["simulate", "--velocity", "3 kg"], ["velocity", "3 kg", "m/s"]),
+        (["simulate", "--duration", "-1 ms"], ["duration", "-0.001"]),
+        (["run", "studies/none.yaml"], ["studies/none.yaml"]),
+        (["run", "studies/checks.yaml"], ["checks.yaml", "impactlab verify"]),
+        (["design", "studies/checks.yaml"], ["checks.yaml", "impactlab verify"]),
+        (["verify", "studies/small.yaml"], ["small.yaml", "impactlab run"]),
+        (["verify", "studies/misspelt.yaml"], ["misspelt.yaml", "checks.0", "half_space"]),
+        (["verify", "none.nc"], ["none.nc"]),
+        (["figures", "studies/small.yaml"], ["small.yaml", "netCDF"]),
+        (["run", "studies/broken.yaml"], ["broken.yaml", "velocty", "velocity"]),
+        (["analyse", "studies/small.yaml"], ["studies/small.yaml", "netCDF"]),
+        (["report", "none.nc", "none.nc"], ["none.nc"]),
+        (["predict", "none.nc", "velocity=1"], ["none.nc"]),
+        (["run", "studies/small.yaml", "--scheduler", "tcp://127.0.0.1:9"], ["127.0.0.1:9"]),
+    ],
+)
+def test_mistakes_end_in_one_message(folder, args, words, monkeypatch, capsys):
+    (folder / "studies" / "broken.yaml").write_text(SMALL.replace("velocity", "velocty"))
+    (folder / "studies" / "misspelt.yaml").write_text(CHECKS.replace("space", "spce"))
+    monkeypatch.chdir(folder)
+    assert here(*args) == 1
+    said = capsys.readouterr().err
+    assert "Traceback" not in said
+    for word in words:
+        assert word in said, said

@@ -1,0 +1,60 @@
+"""One run on the command line, and what a command loads."""
+
+import xarray as xr
+from command_line import succeeded as impactlab
+
+
+def test_simulate_prints_and_keeps(tmp_path):
+    done = impactlab(
+        "simulate", "--nodes", 101, "--duration", "0.5 ms", "--output", "one.nc", cwd=tmp_path
+    )
+    assert "peak_force" in done.stdout
+    assert "11748" in done.stdout
+    one = xr.load_dataset(tmp_path / "one.nc")
+    assert one["peak_force"].attrs["units"] == "N"
+
+
+def test_simulate_takes_a_scheme(tmp_path):
+    leapfrog, semi_implicit = (
+        impactlab("simulate", "--nodes", 101, "--scheme", scheme, cwd=tmp_path).stdout
+        for scheme in ("leapfrog", "semi_implicit")
+    )
+    assert leapfrog != semi_implicit
+    assert "11748" in leapfrog
+    assert "11748" in semi_implicit
+
+
+def loaded(*args, cwd):
+    """The packages that a command loads."""
+    done = impactlab(*args, cwd=cwd, python=("-X", "importtime"))
+    lines = [line for line in done.stderr.splitlines() if line.startswith("import time:")]
+    return {line.split("|")[-1].strip().split(".")[0] for line in lines}
+
+
+HEAVY = {"dask", "distributed", "matplotlib", "netCDF4", "pandas", "pint", "ruamel", "xarray"}
+ONE = ("simulate", "--nodes", "11", "--velocity", "99 cm/s")
+
+
+def test_help_loads_nothing_heavy(tmp_path):
+    packages = loaded("--help", cwd=tmp_path)
+    assert "typer" in packages
+    assert packages.isdisjoint(HEAVY | {"numba", "numpy", "pydantic", "rich", "scipy"})
+
+
+def test_simulate_loads_no_more_than_it_needs(tmp_path):
+    packages = loaded(*ONE, cwd=tmp_path)
+    assert "numba" in packages
+    assert packages.isdisjoint(HEAVY)
+    assert {"netCDF4", "xarray"} <= loaded(*ONE, "--output", "one.nc", cwd=tmp_path)
+
+
+def test_only_what_solves_loads_the_compiler(folder):
+    assert "numba" not in loaded("design", "studies/small.yaml", cwd=folder)
+    assert "numba" in loaded("run", "studies/small.yaml", cwd=folder)
+    assert "numba" not in loaded("analyse", "results/small/runs.nc", cwd=folder)
+
+
+def test_simulate_prints_the_same_with_and_without_a_file(tmp_path):
+    alone = impactlab(*ONE, cwd=tmp_path).stdout
+    assert alone == impactlab(*ONE, "--output", "one.nc", cwd=tmp_path).stdout
+    assert "peak_force" in alone

@@ -1,0 +1,127 @@
+"""Every step of a study as a command, without Snakemake."""
+
+import re
+
+import pytest
+import xarray as xr
+from command_line import SMALL
+from command_line import succeeded as impactlab
+
+GROWING = """
+title: Growing
+impact: {base: paper, beam_model: rigid}
+duration: 1 ms
+sampling:
+  method: sobol
+  base_samples: 64
+  second_order: false
+  seed: 0
+  until: {interval: 0.001, runs: 600}
+  parameters:
+    velocity: {distribution: uniform, low: 1 m/s, high: 2 m/s}
+    sphere_density: {distribution: uniform, low: 7000, high: 8000}
+responses: [peak_force]
+"""
+
+
+def test_every_step_without_snakemake(folder):
+    impactlab("run", "studies/small.yaml", cwd=folder)
+    results = folder / "results" / "small"
+    impactlab("analyse", results / "runs.nc", cwd=folder)
+    impactlab("figures", results / "runs.nc", results / "analysis.nc", cwd=folder)
+    impactlab("report", results / "runs.nc", results / "analysis.nc", cwd=folder)
+    impactlab("index", cwd=folder)
+    assert "small/report.html" in (folder / "results" / "index.html").read_text()
+    assert xr.load_dataset(results / "runs.nc")["peak_force"].sel(velocity=2, nodes=41) > 1e4
+
+
+def test_a_sample_grows_and_solves_nothing_twice(folder):
+    """First in two steps, then from a design in a file: the answers are in the shards by then."""
+    (folder / "studies" / "growing.yaml").write_text(GROWING)
+    grown = impactlab("run", "studies/growing.yaml", cwd=folder).stderr
+    counts = [int(count) for count in re.findall(r"(\d+) runs, \d+ of them solved before", grown)]
+    before = [int(count) for count in re.findall(r"(\d+) of them solved before", grown)]
+    assert counts == [256, 512]
+    assert before == [0, 256]
+    assert "more than 600" in grown
+    impactlab("design", "studies/growing.yaml", cwd=folder)
+    again = impactlab("run", "results/growing/design.nc", cwd=folder).stderr
+    assert "512 runs, 512 of them solved before" in again
+    attrs = xr.load_dataset(folder / "results" / "growing" / "runs.nc").attrs
+    assert attrs["base_samples"] == 128
+    assert attrs["until_reached"] == 0
+
+
+SAMPLE = """
+title: Sample
+impact: {base: paper}
+discretisation: {nodes: 21, points: 3}
+duration: 0.5 ms
+sampling:
+  method: sobol
+  base_samples: 16
+  parameters:
+    velocity: {distribution: uniform, low: 0.2, high: 0.4}
+    beam_depth: {distribution: uniform, low: 27 mm, high: 28 mm}
+responses: [peak_force]
+"""
+
+
+def test_a_sample_predicts_what_was_not_solved(folder):
+    (folder / "studies" / "sample.yaml").write_text(SAMPLE)
+    impactlab("run", "studies/sample.yaml", cwd=folder)
+    impactlab("analyse", "results/sample/runs.nc", cwd=folder)
+    file = folder / "results" / "sample" / "surrogate.nc"
+    said = impactlab("predict", file, "velocity=30 cm/s", "beam_depth=27.8 mm", cwd=folder).stdout
+    value, error = re.search(r"peak_force\D+([\d.]+)\s*│\s*N\s*│\s*([\d.]+)", said).groups()
+    arguments = ["--velocity", 0.3, "--nodes", 21, "--points", 3, "--duration", "0.5 ms"]
+    solved = impactlab("simulate", *arguments, cwd=folder).stdout
+    expected = float(re.search(r"peak_force\D+([\d.]+)", solved)[1])
+    assert float(value) == pytest.approx(expected, abs=5 * float(error))
+    assert float(error) < 0.01 * expected
+    runs = file.with_name("runs.nc")
+    xr.load_dataset(runs).assign_attrs(analyses="sensitivity").to_netcdf(runs)
+    impactlab("analyse", runs, cwd=folder)
+    assert not file.exists()  # it would be that of another analysis
+
+
+def test_a_sample_is_refined_and_tells_its_numerical_error(folder):
+    (folder / "studies" / "sample.yaml").write_text(SAMPLE)
+    impactlab("run", "studies/sample.yaml", cwd=folder)
+    results = folder / "results" / "sample"
+    # 16 base samples of 4 runs on 3 grids, in a folder of their own
+    said = impactlab("refine", results / "runs.nc", cwd=folder).stderr
+    assert "192 runs, 0 of them solved before" in said
+    refinement = results / "refinement.nc"
+    impactlab("analyse", results / "runs.nc", "--refinement", refinement, cwd=folder)
+    analysis = xr.load_dataset(results / "analysis.nc")
+    assert analysis["numerical_from"].item() == 0
+    assert (analysis["first_order_numerical"] < 0.2).all()
+    assert "first_order_numerical" in (results / "indices.csv").read_text()
+
+
+def test_indices_of_a_sample_are_told_beside_its_analysis(folder):
+    grid = SMALL[SMALL.index("  method") : SMALL.index("responses")]
+    drawn = """  method: sobol
+  base_samples: 8
+  parameters:
+    velocity: {distribution: uniform, low: 1 m/s, high: 2 m/s}
+    beam_depth: {distribution: uniform, low: 26 mm, high: 29 mm}
+"""
+    (folder / "studies" / "indices.yaml").write_text(SMALL.replace(grid, drawn))
+    impactlab("run", "studies/indices.yaml", cwd=folder)
+    results = folder / "results" / "indices"
+    impactlab("analyse", results / "runs.nc", cwd=folder)
+    head, first, *_ = (results / "indices.csv").read_text().splitlines()
+    assert head.startswith("response,parameter,other_parameter,base_samples,index,value,low,high")
+    assert first.startswith("peak_force,velocity,,,first_order,")
+    stored = xr.load_dataset(results / "indices.nc")["first_order"]
+    assert stored.sel(response="peak_force", parameter="velocity") == float(first.split(",")[5])
+
+
+def test_studies_are_listed(folder):
+    listed = impactlab("studies", cwd=folder).stdout
+    assert "small" in listed
+    assert "9 runs" in listed
+    assert "Small" in listed
+    assert "1 check" in listed

@@ -1,0 +1,62 @@
+"""Checks from their file to the index, and one that fails."""
+
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+import xarray as xr
+from command_line import CHECKS, here
+from command_line import succeeded as impactlab
+
+from impactlab.verification.catalogue import CATALOGUE
+from impactlab.verification.finding import Finding, relative
+
+
+def test_checks_from_the_file_to_the_index(folder):
+    said = impactlab("verify", "studies/checks.yaml", cwd=folder).stdout
+    assert "half_space" in said
+    assert re.search(r"\b(\d+) of \1\b", said)
+    findings = folder / "results" / "checks" / "findings.nc"
+    impactlab("figures", findings, cwd=folder)
+    impactlab("report", findings, cwd=folder)
+    impactlab("index", cwd=folder)
+    assert "checks/report.html" in (folder / "results" / "index.html").read_text()
+    assert "Every comparison" in findings.with_name("report.html").read_text()
+    stored = xr.load_dataset(findings)
+    assert stored["ours"].values == pytest.approx(stored["independent"].values, rel=1e-4)
+
+
+def fails():
+    entries = [relative("one", "here", "1", 1.0, 1.0, 0.1), relative("two", "", "1", 2.0, 1.0, 0.1)]
+    return Finding(entries)
+
+
+def breaks():
+    raise RuntimeError("of all things")
+
+
+@pytest.mark.parametrize(
+    ("check", "words"),
+    [(fails, "bad: 1 of 2 comparisons"), (breaks, "bad: RuntimeError: of all things")],
+)
+def test_a_failing_check_is_told_everywhere(folder, check, words, monkeypatch, capsys):
+    file = SimpleNamespace(TITLE="A bad check", SOURCE="made up", check=check)
+    monkeypatch.setitem(CATALOGUE, "bad", file)
+    monkeypatch.chdir(folder)
+    (folder / "studies" / "checks.yaml").write_text(CHECKS.replace("half_space", "half_space, bad"))
+    findings = "results/checks/findings.nc"
+    assert here("verify", "studies/checks.yaml") == 1
+    said = capsys.readouterr()
+    assert "half_space" in said.out
+    assert words in said.err
+    assert "Traceback" not in said.err
+    assert here("figures", findings) == 0
+    assert here("report", findings) == 0
+    page = Path("results/checks/report.html").read_text()
+    assert "Verification failed" in page
+    assert '<a href="#bad">A bad check</a>' in page
+    assert here("verify", "studies/checks.yaml", "--exit-zero") == 0
+    assert words in capsys.readouterr().err
+    assert here("verify", findings) == 1
+    assert words in capsys.readouterr().err
