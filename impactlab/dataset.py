@@ -197,7 +197,8 @@ _FIELDS = (
 ANALYSES: dict[str, str] = {
     "convergence_in_nodes": "a grid that varies `nodes` over at least 3 values",
     "convergence_in_time_step": "a grid that varies `courant` over at least 3 values",
-    "convergence_in_element_size": "a grid that varies `element_size` over at least 3 values",
+    "convergence_in_element_size": "a grid that varies `element_size` or "
+    "`elements_per_radius` over at least 3 values",
     "convergence_in_points": "a grid that varies `points` over at least 2 values",
     "sensitivity": "a sample (any method but grid)",
     "surrogate": "a sample (any method but grid)",

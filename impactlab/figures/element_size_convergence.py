@@ -9,33 +9,42 @@ from impactlab.figures import refinement, style
 from impactlab.figures.reading import missing, words
 from impactlab.figures.reading.units import display
 from impactlab.model.impact import SOLID
+from impactlab.model.parameters import ELEMENTS
 
 TITLE = "Convergence in the size of the solid elements"
-_AXIS = refinement.Refined("element_size", "element_size", ("velocity", "beam_yield_stress"))
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Whether the grid has at least three sizes of solid elements."""
-    return _AXIS.applies(runs) and SOLID in runs["beam_model"].values
+    return _axis(runs).applies(runs) and SOLID in runs["beam_model"].values
 
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, held and missing."""
-    chosen = _solid(runs)
+    chosen, axis = _solid(runs), _axis(runs)
     return (
         "Three-dimensional model alone; elements beyond the contact keep their largest size. "
-        f"{refinement.CAPTION} {_AXIS.plan(chosen).note(chosen)} "
-        f"{missing.note(runs, _AXIS.names(chosen))}".strip()
+        f"{refinement.CAPTION} {axis.plan(chosen).note(chosen)} "
+        f"{missing.note(runs, axis.names(chosen))}".strip()
     )
 
 
 @style.paper
 def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """A panel a response, a curve for each of a few other settings."""
-    unit = display(runs["element_size"])
-    label = words.axis("element size", unit.symbol)
-    sizes = unit(runs["element_size"].values)
-    return refinement.draw(_solid(runs), _solid(analysis), _AXIS, sizes, label)
+    axis = _axis(runs)
+    values = runs[axis.dim].values
+    if axis.dim == "element_size":
+        unit = display(runs[axis.dim])
+        sizes, label = unit(values), words.axis("element size", unit.symbol)
+    else:
+        sizes, label = 1.0 / values, words.axis("element size over expected contact radius", "")
+    return refinement.draw(_solid(runs), _solid(analysis), axis, sizes, label)
+
+
+def _axis(runs: xr.Dataset) -> refinement.Refined:
+    dim = next((name for name in ELEMENTS if name in runs.dims), ELEMENTS[0])
+    return refinement.Refined("element_size", dim, ("velocity", "beam_yield_stress"))
 
 
 def _solid(dataset: xr.Dataset) -> xr.Dataset:

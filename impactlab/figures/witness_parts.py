@@ -11,6 +11,7 @@ from impactlab.figures import scales, style
 from impactlab.figures.reading import missing, parts, words
 from impactlab.figures.reading.contents import usable
 from impactlab.figures.reading.units import display
+from impactlab.figures.reading.witness import finest
 from impactlab.model.impact import SOLID
 
 TITLE = "Where the 3-D witness differs from the paper's beam"
@@ -49,10 +50,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def _curves(ax: Axes, runs: xr.Dataset) -> None:
-    finest = {"nodes": int(np.argmax(runs["nodes"].values))} if "nodes" in runs.dims else {}
-    if "element_size" in runs.dims:
-        finest["element_size"] = int(np.argmin(runs["element_size"].values))
-    chosen = xr.Dataset({name: usable(runs, name) for name in _HISTORIES}).isel(finest)
+    chosen = xr.Dataset({name: usable(runs, name) for name in _HISTORIES}).isel(finest(runs))
     force, depth = (display(runs[name]) for name in _HISTORIES)
     softest = float(runs["beam_yield_stress"].min())
     for at, (model, label) in enumerate(_LABELS.items()):

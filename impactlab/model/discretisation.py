@@ -24,8 +24,9 @@ class Discretisation:
     "semi_implicit" (with nodes^2, from 17 nodes on; see kernels/semi_implicit.py). courant: time
     step over the scheme's largest, in (0, 1]: over the critical one of leapfrog; over half of the
     time in which a bar wave crosses a spacing, unless the contact allows less, of semi_implicit.
-    element_size: of the "solid" model alone, which needs it and nothing else of these: of its
-    elements about the contact, in m.
+    element_size, elements_per_radius: of the "solid" model alone, which needs one of them and
+    nothing else of these: the size of its elements about the contact, in m; or how many lie over
+    the contact radius to expect (reference.solid.mesh.extent), so that it follows the velocity.
 
     The two schemes tend to the same answers, but for what does not converge anyway: the peak
     plastic strain of a perfectly plastic beam depends on the time step, too.
@@ -39,6 +40,7 @@ class Discretisation:
     scheme: str = "leapfrog"
     courant: float = 0.9
     element_size: float | None = None
+    elements_per_radius: float | None = None
 
     def __post_init__(self) -> None:
         for field, least in (("nodes", 5), ("points", 2)):  # 21.0, as YAML may give it, is 21
@@ -50,8 +52,14 @@ class Discretisation:
             )
         one_of("Discretisation", "rule", self.rule, RULES)
         one_of("Discretisation", "scheme", self.scheme, SCHEMES)
-        if self.element_size is not None:
-            positive("Discretisation", "element_size", self.element_size)
+        for field in ("element_size", "elements_per_radius"):
+            if getattr(self, field) is not None:
+                positive("Discretisation", field, getattr(self, field))
+        if self.element_size is not None and self.elements_per_radius is not None:
+            raise ValueError(
+                f"Discretisation.elements_per_radius = {self.elements_per_radius!r}: element_size "
+                "says it already: take one of them out"
+            )
         few = np.less(self.nodes, _LEAST_FILTERED)
         if anywhere(few & np.equal(self.scheme, "semi_implicit")):
             raise ValueError(

@@ -92,12 +92,20 @@ PARAMETERS: dict[str, Parameter] = {
             "size of the solid elements about the contact",
             ("discretisation", "element_size"),
         ),
+        Parameter(
+            "elements_per_radius",
+            "1",
+            "solid elements over the expected contact radius",
+            ("discretisation", "elements_per_radius"),
+        ),
     )
 }
+ELEMENTS = ("element_size", "elements_per_radius")
+"""What tells the elements of the 3-D model, which takes one of them."""
 
 
 def flatten(impact: Impact, discretisation: Discretisation) -> dict[str, Value]:
-    """Every parameter's value by name; what is None is left out (sphere_mass, element_size)."""
+    """Every parameter's value by name; what is None (a mass, a size of elements) is left out."""
     roots = {"impact": impact, "discretisation": discretisation}
     values = {name: _get(roots, entry.path) for name, entry in PARAMETERS.items()}
     return {name: value for name, value in values.items() if value is not None}

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from impactlab.analysis.convergence import axis
+from impactlab.model.parameters import ELEMENTS
 
-AXIS = axis.Axis("element_size", "element_size", "the element size", lambda size: size)
+SPACINGS: dict[str, Callable[[Array], Array]] = {
+    "element_size": lambda size: size,
+    "elements_per_radius": lambda count: 1.0 / count,
+}
+"""What tends to zero, by what is varied."""
+Array = NDArray[np.float64]
 _COMMENT = (
     "The elements of the 3-D model shrink about the contact, and the time step with them; beyond "
     "they keep their largest size. Models of the beam do not know the element size, and agree."
@@ -14,10 +24,12 @@ _COMMENT = (
 
 
 def applies(runs: xr.Dataset) -> bool:
-    """Whether the runs are a grid with three or more values of `element_size`."""
-    return runs.sizes.get("element_size", 0) >= 3
+    """Whether the runs are a grid with three or more sizes of elements."""
+    return any(runs.sizes.get(name, 0) >= 3 for name in ELEMENTS)
 
 
 def analysis(runs: xr.Dataset) -> xr.Dataset:
     """The variables element_size_... of `axis.analysis`."""
-    return axis.analysis(runs, AXIS, _COMMENT)
+    dim = next(name for name in ELEMENTS if name in runs.dims)
+    refined = axis.Axis("element_size", dim, "the element size", SPACINGS[dim])
+    return axis.analysis(runs, refined, _COMMENT)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading.witness import Side, side
+from impactlab.figures.reading.witness import AXES, Side, side
 from impactlab.model.impact import SOLID
 
 EULER, TIMOSHENKO = "euler_bernoulli", "timoshenko"
@@ -25,7 +25,7 @@ def applies(runs: xr.Dataset) -> bool:
     """Whether a grid has all three models with two yield stresses, and no other parameter."""
     if "beam_model" not in runs.dims or runs.sizes.get(_YIELD, 0) != 2:
         return False
-    rest = set(runs.dims) - {"time", "beam_model", _YIELD, "nodes", "element_size"}
+    rest = set(runs.dims) - {"time", "beam_model", _YIELD, *AXES}
     wanted = {EULER, TIMOSHENKO, SOLID} <= set(runs["beam_model"].values.tolist())
     return wanted and not rest and all(name in runs for name in NAMES)
 

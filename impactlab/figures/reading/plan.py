@@ -12,7 +12,7 @@ import xarray as xr
 from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import design_dims
 
-_LARGE, _SMALL = ("nodes", "points"), ("courant", "element_size")
+_LARGE, _SMALL = ("nodes", "points", "elements_per_radius"), ("courant", "element_size")
 MOST_CURVES = 6
 MOST_PANELS = 6
 

@@ -12,7 +12,7 @@ from impactlab.figures.reading.contents import known, responses, usable
 from impactlab.model.impact import SOLID
 
 Array = NDArray[np.float64]
-_AXES = {"nodes": np.argmax, "element_size": np.argmin}
+AXES = {"nodes": np.argmax, "element_size": np.argmin, "elements_per_radius": np.argmax}
 """Refinements, and where on each the finest grid is."""
 _FEWEST = 3
 
@@ -31,7 +31,7 @@ def applies(runs: xr.Dataset) -> bool:
     """Whether a grid has the 3-D model beside others at three velocities or more."""
     if "beam_model" not in runs.dims or runs.sizes.get("velocity", 0) < _FEWEST:
         return False
-    rest = set(runs.dims) - {"time", "x", "z", "velocity", "beam_model", *_AXES}
+    rest = set(runs.dims) - {"time", "x", "z", "velocity", "beam_model", *AXES}
     return SOLID in runs["beam_model"].values and runs.sizes["beam_model"] > 1 and not rest
 
 
@@ -51,12 +51,14 @@ def asked(runs: xr.Dataset) -> list[str]:
     return [name for name in responses(runs) if name != "energy_error"]
 
 
+def finest(runs: xr.Dataset) -> dict[str, int]:
+    """Where the finest grid is, by dimension."""
+    return {dim: int(at(runs[dim].values)) for dim, at in AXES.items() if dim in runs.dims}
+
+
 def side(runs: xr.Dataset, analysis: xr.Dataset, name: str, model: str) -> Side:
     """A response of a model against the velocity, in the order of the runs."""
-    values = usable(runs, name).sel(beam_model=model)
-    for dim, pick in _AXES.items():
-        if dim in values.dims:
-            values = values.isel({dim: int(pick(runs[dim].values))})
+    values = usable(runs, name).sel(beam_model=model).isel(finest(runs), missing_dims="ignore")
     found = values.values.astype(float)
     axis = "element_size" if model == SOLID else "nodes"
     width: Array = abs(found) * _share(analysis, name, model, axis)
@@ -77,5 +79,5 @@ def _share(analysis: xr.Dataset, name: str, model: str, axis: str) -> Array:
     if variable not in analysis or not known(analysis, name):
         return np.array(np.nan)
     chosen = analysis[variable].sel(response=name, beam_model=model)
-    chosen = chosen.isel({dim: 0 for dim in _AXES if dim in chosen.dims})
+    chosen = chosen.isel({dim: 0 for dim in AXES if dim in chosen.dims})
     return np.asarray(chosen.values, dtype=float)

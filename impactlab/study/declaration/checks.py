@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from impactlab.dataset import ANALYSES
 from impactlab.kernels import BEAM_MODELS
-from impactlab.model.parameters import Value, flatten
+from impactlab.model.parameters import ELEMENTS, Value, flatten
 from impactlab.study.declaration.methods import Grid, Sample, Sobol
 from impactlab.study.declaration.plausible import doubts, ends_of, stated_at
 from impactlab.study.declaration.schema import StudyForm
@@ -75,7 +75,7 @@ def _runs_for_the_analyses(form: StudyForm) -> Findings:
     possible = {
         "convergence_in_nodes": counts.get("nodes", 0) >= 3,
         "convergence_in_time_step": counts.get("courant", 0) >= 3,
-        "convergence_in_element_size": counts.get("element_size", 0) >= 3,
+        "convergence_in_element_size": any(counts.get(name, 0) >= 3 for name in ELEMENTS),
         "convergence_in_points": counts.get("points", 0) >= 2,
         "sensitivity": not grid,
         "surrogate": not grid,

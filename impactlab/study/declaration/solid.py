@@ -6,13 +6,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from impactlab.model.impact import SOLID
+from impactlab.model.parameters import ELEMENTS
 from impactlab.study.declaration.methods import Grid
 
 if TYPE_CHECKING:
     from impactlab.study.declaration.schema import StudyForm
     from impactlab.study.declaration.study import Study
 
-_KEY, _SIZE = "beam_model", "element_size"
+_KEY = "beam_model"
 _UNKNOWN = "contact_dissipation"
 """The one response that the 3-D model does not tell from another."""
 
@@ -25,20 +26,34 @@ def asks_for_solid(study: Study | StudyForm) -> bool:
     return SOLID in (models if isinstance(models, tuple) else (models,))
 
 
+def _stated(form: StudyForm) -> Iterator[str]:
+    """Keys that tell the size of the solid elements."""
+    for name in ELEMENTS:
+        if name in form.sampling.parameters:
+            yield f"sampling.parameters.{name}"
+        elif getattr(form.discretisation.discretisation, name) is not None:
+            yield f"discretisation.{name}"
+
+
+def _size_problems(stated: list[str], solid: bool) -> Iterator[tuple[str, str]]:
+    """The 3-D model takes one size of its elements, the others none. stated: keys."""
+    if not solid:
+        for key in stated:
+            yield key, f"has no effect without beam_model: {SOLID}: take it out"
+    elif not stated:
+        reason = f"is required for beam_model: {SOLID} (1 mm takes seconds a run, 0.5 mm a minute)"
+        yield f"discretisation.{ELEMENTS[0]}", reason
+    for key in stated[1:] if solid else []:
+        yield key, f"{stated[0]} says it already: take one of them out"
+
+
 def solid_problems(form: StudyForm) -> Iterator[tuple[str, str]]:
     """Dotted keys, and what is wrong there."""
-    varied = _SIZE in form.sampling.parameters
-    stated = form.discretisation.discretisation.element_size is not None
+    yield from _size_problems(list(_stated(form)), asks_for_solid(form))
     if not asks_for_solid(form):
-        if varied or stated:
-            key = f"sampling.parameters.{_SIZE}" if varied else f"discretisation.{_SIZE}"
-            yield key, f"has no effect without beam_model: {SOLID}: take it out"
         return
     if not isinstance(form.sampling, Grid):
         yield "sampling.method", f"beam_model: {SOLID} is for method: grid (a run takes minutes)"
-    if not (varied or stated):
-        reason = f"is required for beam_model: {SOLID} (1 mm takes seconds a run, 0.5 mm a minute)"
-        yield f"discretisation.{_SIZE}", reason
     if form.discretisation.auto is not None:
         yield "discretisation.auto", f"is not for beam_model: {SOLID}: state the discretisation"
     if form.store.profiles:

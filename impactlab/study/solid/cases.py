@@ -20,6 +20,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.reference.solid.mesh.extent import contact_radius
 from impactlab.simulate import case_table
 
 Array = np.ndarray[Any, Any]
@@ -46,10 +47,9 @@ def table(
     """One record a run, each run checked; arguments as those of simulate.case_table.
 
     Raises ValueError naming the run and its field when the model refuses a value, or a run of the
-    3-D model has no element_size.
+    3-D model has neither element_size nor elements_per_radius.
     """
     models = np.asarray(varied.get("beam_model", [impact.beam_model]))
-    sizes = varied.get("element_size", [discretisation.element_size])
     plain = dict(varied)
     if "beam_model" in plain:
         plain["beam_model"] = np.where(models == SOLID, BEAM_MODELS[0], models)
@@ -61,17 +61,29 @@ def table(
         cases[name] = known[name]
     solid = np.broadcast_to(models == SOLID, cases.shape)
     if solid.any():
-        cases["element_size"][solid] = np.broadcast_to(_sizes(sizes), cases.shape)[solid]
         cases["beam_model"][solid] = SOLID_MODEL
         for name in _BEAM_MODELS_ONLY:
             cases[name][solid] = 0
+        cases["element_size"][solid] = _sizes(discretisation, varied, cases, solid)
     return cases
 
 
-def _sizes(sizes: Any) -> Array:
-    if any(size is None for size in sizes):
+def _sizes(
+    discretisation: Discretisation, varied: Mapping[str, Any], cases: Array, solid: Array
+) -> Array:
+    """Of the elements of each run of the 3-D model, in m."""
+
+    def given(name: str) -> Array | None:
+        values = varied.get(name, [getattr(discretisation, name)])
+        if any(value is None for value in values):
+            return None
+        return np.broadcast_to(positive("Discretisation", name, column(values)), solid.shape)[solid]
+
+    if (sizes := given("element_size")) is not None:
+        return sizes
+    if (counts := given("elements_per_radius")) is None:
         raise ValueError("Discretisation.element_size: is required for the solid model")
-    return np.asarray(positive("Discretisation", "element_size", column(sizes)))
+    return np.array([contact_radius(impact_of(case)) for case in cases[solid]]) / counts
 
 
 def is_solid(cases: Array) -> Array:

@@ -7,10 +7,10 @@ import pytest
 from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
 from impactlab.kernels.case import CASE
 from impactlab.kernels.contact import LAWS
-from impactlab.model.parameters import PARAMETERS
+from impactlab.model.parameters import ELEMENTS, PARAMETERS
 
-OF_KERNELS = {name: entry for name, entry in PARAMETERS.items() if name != "element_size"}
-"""The other one is of the 3-D model alone."""
+OF_KERNELS = {name: entry for name, entry in PARAMETERS.items() if name not in ELEMENTS}
+"""The others are of the 3-D model alone."""
 
 
 def test_fields_are_the_parameters_and_the_duration():

@@ -44,6 +44,7 @@ REFUSED = {
     ("Discretisation", "scheme"): ["newmark", "semi-implicit", "Leapfrog", "", None, 0],
     ("Discretisation", "courant"): [0, -0.5, 1.0001, 2, NAN, INFINITE, "0.9", None],
     ("Discretisation", "element_size"): [0, -1e-3, NAN, INFINITE, "1 mm", True],
+    ("Discretisation", "elements_per_radius"): [0, -2, NAN, INFINITE, "2", True],
 }
 ALLOWED = {
     ("Material", "poissons_ratio"): [0, 0.0, 0.4999],
@@ -56,6 +57,7 @@ ALLOWED = {
     ("Discretisation", "points"): [2, 3, 64],
     ("Discretisation", "courant"): [1, 1.0, 1e-6],
     ("Discretisation", "element_size"): [None, 1e-3],
+    ("Discretisation", "elements_per_radius"): [None, 2, 3.5],
     ("Impact", "beam_model"): ["solid"],
 }
 
@@ -141,3 +143,8 @@ def test_an_array_is_no_name():
 def test_fields_go_by_name():
     with pytest.raises(TypeError):
         il.Sphere(0.035, IMPACT.sphere.material)
+
+
+def test_the_size_of_solid_elements_is_said_once():
+    with pytest.raises(ValueError, match=r"elements_per_radius = 2: element_size says it already"):
+        il.Discretisation(element_size=1e-3, elements_per_radius=2)

@@ -19,7 +19,7 @@ from impactlab.dataset import (
     STATUS_FLAGS,
 )
 from impactlab.kernels import RULES
-from impactlab.model.parameters import PARAMETERS, flatten
+from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
@@ -65,7 +65,7 @@ def test_every_parameter_is_a_coordinate(run):
         "sphere_mass": IMPACT.sphere.total_mass,
         "duration": DURATION,
     }
-    names = {*PARAMETERS, "duration"} - {"element_size"}  # of the 3-D model alone
+    names = {*PARAMETERS, "duration"} - {*ELEMENTS}  # of the 3-D model alone
     assert {name: run[name].item() for name in names} == expected
     assert set(run.coords) == {*names, *COORDINATES} - {"run"}
 

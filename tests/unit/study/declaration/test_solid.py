@@ -23,10 +23,14 @@ def test_a_study_of_both_is_of_the_witness(read, grid):
     assert "element_size" not in plain.coords
 
 
-def test_sizes_can_be_varied(read, grid):
-    several = {"beam_model": ["solid"], "element_size": ["2 mm", 1e-3]}
+@pytest.mark.parametrize(
+    ("name", "values", "read_as"),
+    [("element_size", ["2 mm", 1e-3], (2e-3, 1e-3)), ("elements_per_radius", [2, 4.5], (2.0, 4.5))],
+)
+def test_sizes_can_be_varied(read, grid, name, values, read_as):
+    several = {"beam_model": ["solid"], name: values}
     study = read(grid(SOLID | {"sampling.parameters": several, "discretisation": {}}))
-    assert study.sampling.parameters["element_size"] == (2e-3, 1e-3)
+    assert study.sampling.parameters[name] == read_as
 
 
 @pytest.mark.parametrize(
@@ -47,6 +51,11 @@ def test_sizes_can_be_varied(read, grid):
             "has no effect without beam_model: solid",
         ),
         ({"discretisation": {"element_size": 0}}, "discretisation.element_size", "above zero"),
+        (
+            {"sampling.parameters": {"beam_model": ["solid"], "elements_per_radius": [2, 4]}},
+            "sampling.parameters.elements_per_radius",
+            "discretisation.element_size says it already",
+        ),
     ],
 )
 def test_what_contradicts_it_is_told_at_its_key(problems, grid, changes, key, said):

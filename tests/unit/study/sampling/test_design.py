@@ -7,7 +7,7 @@ from SALib.analyze import sobol as sobol_analysis
 
 from impactlab.dataset import ANALYSES, RESPONSES
 from impactlab.model.paper import paper_impact
-from impactlab.model.parameters import PARAMETERS
+from impactlab.model.parameters import ELEMENTS, PARAMETERS
 from impactlab.study.errors import StudyError
 
 GRID = """
@@ -70,7 +70,7 @@ def test_a_grid_has_a_dimension_for_each_varied_parameter(designed):
 def test_what_is_not_varied_is_a_scalar_coordinate(designed):
     grid = designed(GRID)
     scalars = {name for name, coordinate in grid.coords.items() if coordinate.ndim == 0}
-    assert scalars == PARAMETERS.keys() - {"rule", "velocity", "sphere_mass", "element_size"} | {
+    assert scalars == PARAMETERS.keys() - {"rule", "velocity", "sphere_mass", *ELEMENTS} | {
         "duration"
     }
     assert grid["nodes"].item() == 51

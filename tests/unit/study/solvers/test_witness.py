@@ -11,6 +11,7 @@ import impactlab as il
 from impactlab.dataset import STATUS_FLAGS
 from impactlab.model.cost import A_SECOND
 from impactlab.reference import solid
+from impactlab.reference.solid.mesh.extent import contact_radius
 from impactlab.study.declaration import study_of_text
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate
@@ -74,6 +75,18 @@ def test_what_a_model_does_not_know_is_nothing_to_it(study, solved):
     assert (solved["energy_error"].sel(beam_model="solid").std("nodes") == 0).all()
     assert (solved["energy_error"].sel(beam_model="timoshenko").std("element_size") == 0).all()
     assert (solved["energy_error"].std(["nodes", "element_size"]) > 0).all()
+
+
+def test_elements_follow_the_contact_radius():
+    """Of a plastic contact the radius grows with the root of the velocity."""
+    told = TEXT.replace("nodes: [51, 101]", "velocity: [1, 4]")
+    told = told.replace("element_size: [4 mm, 3 mm]", "elements_per_radius: [1, 2]")
+    cases = witness.cases(design(study_of_text("both", told)), ALL)
+    sizes = cases["element_size"].reshape(2, 2, 2)  # velocity, model, elements
+    assert (sizes[:, 0] == 0.0).all()
+    first = contact_radius(il.paper_impact(velocity=1.0))
+    expected = first * np.array([[1.0, 0.5], [2.0, 1.0]])
+    np.testing.assert_allclose(sizes[:, 1], expected, rtol=1e-12)
 
 
 def test_the_same_bits_in_any_batch(study):
