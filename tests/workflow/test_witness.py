@@ -156,6 +156,7 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path):
 PRESSED = """
 import os, signal
 import impactlab.figures.solid.drawings as drawings
+from impactlab.cli import main
 from impactlab.reference.solid.stepping.march import March
 drawings.draw_witness = lambda *_: None
 advance = March._advance
