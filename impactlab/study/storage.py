@@ -67,7 +67,7 @@ class Shards:
         version: of the solver.
         """
         self.folder = folder / hashlib.sha256(f"{version} {form}".encode()).hexdigest()[:16]
-        self._small: dict[Path, int] = {}
+        self._small: dict[Path, tuple[Array, Columns]] = {}  # to be merged, without reading them
 
     def read(self, *names: str) -> Iterator[tuple[Array, Columns]]:
         """Keys and answers of every sound shard; a damaged one is named in the log.
@@ -98,7 +98,7 @@ class Shards:
             unfinished.unlink()
         for path in self.files():
             if found := _sound(path):
-                self._noted(path)
+                self._noted(path, *found)
                 yield found[0]
             else:
                 path.replace(path.with_name(path.name + DAMAGED))
@@ -110,27 +110,31 @@ class Shards:
         """
         path = self.folder / f"{hashlib.sha256(keys.tobytes()).hexdigest()[:32]}.nc"
         write_shard(path, keys, columns)
-        self._noted(path)
-        if len(self._small) >= _MANY or sum(self._small.values()) >= _SMALL:
+        self._noted(path, keys, columns)
+        if len(self._small) >= _MANY or sum(map(_size, self._small.values())) >= _SMALL:
             self.merge()
         return path
 
     def merge(self) -> None:
         """Put one shard in the place of all small ones, which go when it is on disk."""
-        merged, self._small = sorted(self._small), {}
-        parts = [found for path in merged if (found := _sound(path))]
-        if len(parts) < 2:
+        merged, self._small = dict(sorted(self._small.items())), {}
+        if len(merged) < 2:
             return
-        keys, columns = joined(parts)
+        keys, columns = joined(merged.values())
         _, first = np.unique(keys, return_index=True)
         kept = self.write(keys[first], {name: values[first] for name, values in columns.items()})
-        for path in set(merged) - {kept}:
+        for path in merged.keys() - {kept}:
             path.unlink()
 
-    def _noted(self, path: Path) -> None:
-        size = path.stat().st_size
-        if size < _SMALL:
-            self._small[path] = size
+    def _noted(self, path: Path, keys: Array, columns: Columns) -> None:
+        if _size((keys, columns)) < _SMALL:
+            self._small[path] = keys, columns
+
+
+def _size(part: tuple[Array, Columns]) -> int:
+    """Bytes of a shard, about."""
+    keys, columns = part
+    return int(keys.nbytes + sum(values.nbytes for values in columns.values()))
 
 
 def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
