@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -38,7 +39,8 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         unit = display(runs[axis.dim])
         sizes, label = unit(values), words.axis("element size", unit.symbol)
     else:
-        sizes, label = 1.0 / values, words.axis("element size over expected contact radius", "")
+        sizes = np.round(100.0 / values, 1)
+        label = words.axis("element size over expected contact radius", "%")
     return refinement.draw(_solid(runs), _solid(analysis), axis, sizes, label)
 
 

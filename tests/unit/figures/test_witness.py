@@ -41,6 +41,21 @@ def test_the_figure_has_values_above_and_differences_below(study):
     assert not CATALOGUE["convergence_cost"].applies(*study)
 
 
+def test_elements_may_be_counted_over_the_radius(study):
+    """The same numbers, and the sizes that they stand for on the axis."""
+    counted = witnesses.counted(study[0])
+    for model in witnesses.MODELS:
+        for name in ("peak_force", "contact_duration"):
+            one, other = (witness.side(*each, name, model) for each in (study, counted))
+            assert one.value == pytest.approx(other.value)
+            assert one.uncertainty == pytest.approx(other.uncertainty, rel=1e-6)
+    assert CATALOGUE["element_size_convergence"].applies(*counted)
+    figure = CATALOGUE["element_size_convergence"].plot(*counted)
+    assert "contact radius (%)" in figure.get_supxlabel()
+    drawn = np.asarray(figure.axes[0].lines[0].get_xdata())
+    assert sorted(drawn) == pytest.approx([12.5, 25.0, 50.0])
+
+
 def test_a_missing_run_leaves_a_gap_and_is_counted(study):
     runs = study[0].copy(deep=True)
     runs["status"].loc[{"velocity": 5.0, "beam_model": "solid", "element_size": 2.5e-4}] = 256

@@ -77,6 +77,23 @@ def test_finer_meshes_take_over_at_the_papers_velocity(witness: Any) -> None:
     assert verdicts(force_of_witness.judge(data)) == [HOLDS, READING, *coarse]
 
 
+def test_elements_may_be_counted_over_the_radius(witness: Any) -> None:
+    """Told by a number that grows as the elements shrink, the answers stay what they are."""
+    data = witness(gap=0.01, error=1e-3)
+    runs = data["witness"].rename(element_size="elements_per_radius")
+    sizes = runs["elements_per_radius"].values
+    counted = {"witness": runs.assign_coords(elements_per_radius=2e-3 / sizes)}
+    for claim in (force_of_witness, duration_of_witness, displacement_of_witness):
+        for one, other in zip(claim.judge(data), claim.judge(counted), strict=True):
+            assert one.verdict == other.verdict
+            for mine, its in zip(one.numbers, other.numbers, strict=True):
+                assert mine.value == pytest.approx(its.value)
+                assert mine.uncertainty == pytest.approx(its.uncertainty, rel=1e-6)
+    (zone, _) = plastic_zone_of_witness.judge(counted)
+    assert zone.verdict == UNKNOWN
+    assert "witness_mesh has not been solved" in zone.why
+
+
 def test_the_contact_duration(witness: Any) -> None:
     assert verdicts(duration_of_witness.judge(witness(gap=0.03))) == [READING] * 4
     assert verdicts(duration_of_witness.judge(witness(gap=0.08))) == [FAILS] * 4
