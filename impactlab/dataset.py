@@ -215,6 +215,13 @@ WITNESS: dict[str, Variable] = {
     )
 }
 """What comes with the runs of the 3-D model beside the responses, by name."""
+UNLIKE: dict[str, str] = {
+    "peak_plastic_strain": "with the contact in 3-D, of bending alone in the beam models",
+    "plastic_zone_length": "with the contact in 3-D, of bending alone in the beam models",
+    "plastic_dissipation": "with the contact in 3-D, of bending alone in the beam models",
+    "energy_error": "of each model's own balance",
+}
+"""Responses that are not the same quantity in the 3-D model and in those of the beam, and why."""
 HISTORIES: dict[str, Variable] = {entry.name: entry for entry in _TIME}
 """Answers on `time`, by name."""
 PROFILES: dict[str, Variable] = {entry.name: entry for entry in _FIELDS}

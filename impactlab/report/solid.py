@@ -11,10 +11,10 @@ from rich import box
 from rich.console import Console
 from rich.table import Column, Table
 
-from impactlab.dataset import reasons
+from impactlab.dataset import UNLIKE, reasons
 from impactlab.figures.reading import words
 from impactlab.figures.reading.units import display
-from impactlab.steering.witness.comparison import SOLID, UNLIKE
+from impactlab.steering.witness.comparison import SOLID
 from impactlab.steering.witness.plan import Plan
 from impactlab.study.words import amount, time
 

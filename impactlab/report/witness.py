@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from impactlab.dataset import UNLIKE
 from impactlab.figures.reading import parts, witness, words
 from impactlab.figures.reading.contents import usable
 from impactlab.figures.reading.units import Display, display
@@ -13,8 +14,7 @@ from impactlab.report.table import Cell, Table
 
 _LEAD = (
     "Each model on its finest grid, with its numerical uncertainty (± of the value itself), and "
-    "its difference from the 3-D finite-element model. The beam models give the plastic strain of "
-    "their fibres alone; that of the solid has the contact's in it."
+    "its difference from the 3-D finite-element model."
 )
 _PARTS = (
     "The answer of the paper's beam is turned into that of the solid one effect after the other: "
@@ -44,15 +44,15 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     sides = [witness.side(runs, analysis, name, model) for model in models]
     rows = []
     for at, speed in enumerate(runs["velocity"].values):
-        cells = [_cell(unit, side, sides[0], at, alone=side is sides[0]) for side in sides]
+        cells = [_cell(unit, side, sides[0], at, name not in UNLIKE) for side in sides]
         rows.append([Cell(f"{words.number(float(speed))} m/s", "number"), *cells])
     caption = words.axis(words.response(name), unit.symbol)
+    if name in UNLIKE:
+        caption = f"{caption}: not compared, {UNLIKE[name]}"
     return Table(caption, ["Impact velocity", *map(witness.label, models)], rows)
 
 
-def _cell(
-    unit: Display, side: witness.Side, against: witness.Side, at: int, *, alone: bool
-) -> Cell:
+def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, alike: bool) -> Cell:
     value = float(side.value[at])
     if not np.isfinite(value):
         return Cell("missing", "warning")
@@ -62,7 +62,8 @@ def _cell(
         bound = f"{words.number(100.0 * width / abs(value), 2)} %" if np.isfinite(width) else "?"
         text = f"{text} ± {bound}"
     gap = float(witness.difference(side, against).value[at])
-    detail = "" if alone or not np.isfinite(gap) else f"{_signed(gap)} against the solid"
+    shown = alike and side is not against and np.isfinite(gap)
+    detail = f"{_signed(gap)} against the solid" if shown else ""
     return Cell(text, "number", detail)
 
 

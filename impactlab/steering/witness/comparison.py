@@ -8,18 +8,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import RESPONSES, attributes, reasons, status_bits
+from impactlab.dataset import RESPONSES, UNLIKE, attributes, reasons, status_bits
 from impactlab.study.netcdf import whole
 
 SOLID = "solid"
 """The 3-D model's name among the beam models."""
-UNLIKE = {
-    "peak_plastic_strain": "with the contact in 3-D, of bending alone in the beam models",
-    "plastic_zone_length": "with the contact in 3-D, of bending alone in the beam models",
-    "plastic_dissipation": "with the contact in 3-D, of bending alone in the beam models",
-    "energy_error": "of each model's own balance",
-}
-"""Responses that are not the same quantity in all models, and why."""
 COUNTS = ("number_of_contacts",)
 _NUMBER = 8
 _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")

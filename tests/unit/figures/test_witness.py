@@ -85,6 +85,16 @@ def test_the_table_says_value_uncertainty_and_difference(study):
     assert table.rows[1][3].detail == "−2 % against the solid"
 
 
+def test_what_is_not_the_same_quantity_is_not_compared(study):
+    runs = study[0].rename(peak_force="plastic_dissipation")
+    runs.attrs["responses"] = ["plastic_dissipation", "contact_duration"]
+    (section,) = sections(runs, witnesses.analysed(runs))
+    alike, unlike = section.tables
+    assert "not compared" in unlike.caption
+    assert {cell.detail for row in unlike.rows for cell in row} == {""}
+    assert "not compared" not in alike.caption
+
+
 @pytest.fixture(scope="module")
 def taken_apart():
     return witnesses.taken_apart()
