@@ -29,7 +29,7 @@ class ModalSolution:
     midspan_curvature: of bending at mid-span, w_xx or Timoshenko's psi_x, in 1/m, negative while
     the beam sags. amplitudes, rates: of each mode at mid-span, in m and m/s, shape (time, modes).
     contacts: start and end of each in s, shape (contacts, 2), NaN where the duration ends first.
-    The peak is taken between steps.
+    indentation: the approach of sphere and beam axis. The peak is taken between steps.
     """
 
     modes: BeamModes
@@ -105,22 +105,25 @@ def solve_with(
     largest = _default_step(impact) if step is None else positive("modal", "step", step)
     steps = max(math.ceil(positive("modal", "duration", duration) / largest), 4)
     path = march(impact, table, duration / steps, steps, compliance)
-    return _solution(table, path, duration, impact)
+    return _solution(table, path, duration, impact, compliance)
 
 
-def _solution(modes: BeamModes, path: Path, duration: float, impact: Impact) -> ModalSolution:
+def _solution(
+    modes: BeamModes, path: Path, duration: float, impact: Impact, compliance: float
+) -> ModalSolution:
     time = np.linspace(0.0, duration, path.force.size)
     delta, amplitudes = CubicSpline(time, path.indentation), path.y[:, 1:]
     peak_time = _peak_time(delta)
+    approach = path.indentation + compliance * path.force
     return ModalSolution(
         modes=modes,
         time=time,
         contact_force=path.force,
-        midspan_deflection=path.y[:, 0] - path.indentation,
+        midspan_deflection=path.y[:, 0] - approach,
         midspan_curvature=modes.residual_curvature * path.force + amplitudes @ modes.curvatures,
         sphere_displacement=path.y[:, 0],
         sphere_velocity=path.v[:, 0],
-        indentation=path.indentation,
+        indentation=approach,
         amplitudes=amplitudes,
         rates=path.v[:, 1:],
         contacts=_contacts(delta),
