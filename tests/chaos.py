@@ -152,7 +152,7 @@ def keys_on_disk(folder):
 def keys_in(path):
     """The key of every run in a shard, read without impactlab."""
     with netCDF4.Dataset(path) as shard:
-        return {row.tobytes() for row in np.asarray(shard["key"][:], dtype=np.uint8)}
+        return {row.tobytes() for row in np.asarray(shard["uint8_byte"][0], dtype=np.uint8)}
 
 
 def solved_before(said):

@@ -29,8 +29,8 @@ _AHEAD = 3
 """Batches under way or waiting, a worker: the graph does not grow with the study."""
 _LOOK_AGAIN = 1.0
 """Seconds between counts of the workers, which may come and go."""
-_MOMENT = 0.01
-"""Seconds between looks at what has finished: short beside a task, of which more are waiting."""
+_PAUSE = 0.001, 0.05
+"""Seconds between looks at what has finished, first and last: a look takes 0.1 ms."""
 _KEPT = "Finished runs are kept: the same command goes on from there."
 _GONE = f"the dask scheduler is gone. {_KEPT}"
 
@@ -72,9 +72,11 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
 def _finished(queue: as_completed, crew: _Crew) -> Iterator[list[tuple[Task, Result]]]:
     """Tasks as they finish; meanwhile, a look at whether any worker is there."""
     while not queue.is_empty():
+        pause, longest = _PAUSE
         while not queue.has_ready():
             crew.look()
-            time.sleep(_MOMENT)
+            time.sleep(pause)
+            pause = min(1.1 * pause, longest)  # a tenth of what it has waited
         ready = [_next(queue)]
         while queue.has_ready():
             ready.append(_next(queue))

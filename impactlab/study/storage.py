@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.study.shard import DAMAGE, KEY, KEYS, Columns, Shard, write_shard
+from impactlab.study.shard import DAMAGE, KEY, KEYS, LAYOUT, Columns, Shard, write_shard
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
@@ -62,11 +62,12 @@ class Shards:
     """The shards of one study in one form, by one solver, in one folder."""
 
     def __init__(self, folder: Path, form: Form, version: str) -> None:
-        """Look in `folder`/<hash of solver and form>, made when first written to.
+        """Look in `folder`/<hash of solver, form and layout>, made when first written to.
 
         version: of the solver.
         """
-        self.folder = folder / hashlib.sha256(f"{version} {form}".encode()).hexdigest()[:16]
+        given = f"{version} {form} {LAYOUT}"
+        self.folder = folder / hashlib.sha256(given.encode()).hexdigest()[:16]
         self._small: dict[Path, tuple[Array, Columns]] = {}  # to be merged, without reading them
 
     def read(self, *names: str) -> Iterator[tuple[Array, Columns]]:

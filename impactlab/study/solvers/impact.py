@@ -90,8 +90,9 @@ def _responses(design: xr.Dataset) -> tuple[str, ...]:
 def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
     """The impact and the discretisation of what is not varied."""
     varied = varied_names(design)
-    stated = [name for name in PARAMETERS if name in design and name not in varied]
-    fixed = {name: design[name].item() for name in stated}
+    held = design.variables  # which are quicker to get than arrays with labels
+    stated = [name for name in PARAMETERS if name in held and name not in varied]
+    fixed = {name: held[name].values.item() for name in stated}
     return with_values(paper_impact(), Discretisation(), fixed)
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 import impactlab as il
 from impactlab.simulate import case_table
 from impactlab.study import storage
-from impactlab.study.netcdf import read_netcdf
+from impactlab.study.shard import Shard
 from impactlab.study.solvers import impact
 from impactlab.study.storage import Form, Shards, run_keys
 
@@ -64,7 +64,8 @@ def truncated(path, other):
 
 def flipped(path, other):
     content = bytearray(path.read_bytes())
-    force = read_netcdf(path)["peak_force"].values.tobytes()
+    with Shard(path) as shard:
+        force = shard.read("peak_force").tobytes()
     content[content.index(force)] ^= 1
     path.write_bytes(content)
 
