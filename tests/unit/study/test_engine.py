@@ -1,7 +1,11 @@
 """What is started here can be reached from here alone."""
 
+import asyncio
+import gc
+
 import psutil
 import pytest
+from tornado.util import TimeoutError as TornadoTimeoutError
 
 from impactlab.study.engine import Engine
 
@@ -23,3 +27,19 @@ def test_scheduler_workers_and_dashboard_listen_on_the_loopback_alone(kind):
     with Engine(kind, workers=2).client() as client:
         client.wait_for_workers(2 if kind == "processes" else 1, timeout=60)
         assert "127.0.0.1" in listening() <= before | {"127.0.0.1"}
+
+
+@pytest.mark.parametrize(
+    ("error", "told"), [(TornadoTimeoutError("Timeout"), 0), (OSError("lost"), 1)]
+)
+def test_what_dask_leaves_behind_at_its_end_is_not_told(caplog, error, told):
+    """A sender that still waits when the loop ends: its time runs out, and nobody asks for it."""
+    with Engine().client():
+        pass
+
+    async def leave() -> None:
+        asyncio.get_running_loop().create_future().set_exception(error)
+
+    asyncio.run(leave())
+    gc.collect()
+    assert len([record for record in caplog.records if record.name == "asyncio"]) == told
