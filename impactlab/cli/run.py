@@ -46,6 +46,7 @@ def run(
     from impactlab.study.declaration import read_study
     from impactlab.study.engine import Engine
     from impactlab.study.execution import execute, executed
+    from impactlab.study.lock import held
     from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.study.sampling import design as sampled
     from impactlab.study.sampling.doubling import declared
@@ -68,7 +69,8 @@ def run(
         from impactlab.steering.extending import extended
 
         solve = partial(execute, shards_folder=shards, engine=engine)
-        write_netcdf(extended(samples, solve, analysed), path)
+        with held(shards):  # over all its steps
+            write_netcdf(extended(samples, solve, analysed), path)
     else:
         with executed(samples, shards, engine) as runs:
             write_netcdf(runs, path)

@@ -26,6 +26,7 @@ from impactlab.steering.ladders import Ladders, ladders
 from impactlab.steering.trials import Trials
 from impactlab.study.declaration import Auto, Study
 from impactlab.study.engine import Engine
+from impactlab.study.lock import held
 
 
 def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
@@ -42,7 +43,8 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
     candidate to the last rung of all axes at once, an independent check of the sum.
     grid_uncertainty (response, case) and grid_relative (response) are of the study's grid, the
     recommended one where its own is to be found; attributes grid_nodes, grid_points and
-    grid_courant name it. Raises OSError when the disk is full or no scheduler answers.
+    grid_courant name it. Raises OSError when the disk is full, no scheduler answers, or another
+    process works in `folder`.
     """
     wishes = wishes or study.auto or Auto()
     impact, grid = with_values(study.impact, study.discretisation, study.sampling.fixed)
@@ -50,7 +52,8 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
     cases = corner_cases(study)
     trials = Trials(study, cases, folder, engine)
     asked = wishes.responses or study.responses
-    found = _tried(study, trials, ladders(study.discretisation), wishes.tolerance, asked)
+    with held(folder):  # over all trials
+        found = _tried(study, trials, ladders(study.discretisation), wishes.tolerance, asked)
     labels = {name: ("case", np.array(values)) for name, values in cases.items()}
     attrs: dict[str, Any] = {
         "study": study.name,

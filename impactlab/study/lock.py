@@ -22,9 +22,9 @@ _PATIENCE = 1.0
 
 @contextmanager
 def held(folder: Path) -> Iterator[None]:
-    """Work in `folder` alone. Raises BlockingIOError, naming who else does."""
+    """Work in `folder` alone, in steps that may hold it again. Raises BlockingIOError: who does."""
     folder.mkdir(parents=True, exist_ok=True)
-    lock, owner = FileLock(folder / "lock"), folder / "owner"
+    lock, owner = FileLock(folder / "lock", is_singleton=True), folder / "owner"
     try:
         lock.acquire(timeout=_PATIENCE)
     except Timeout:
@@ -33,14 +33,20 @@ def held(folder: Path) -> Iterator[None]:
             "the same command then goes on from there"
         ) from None
     try:
-        if owner.exists():
-            log.info("%s did not finish: going on from what it kept", _read(owner))
-        now = datetime.now().astimezone().isoformat(" ", "seconds")
-        owner.write_text(f"process {os.getpid()} on {socket.gethostname()}, since {now}")
+        if lock.lock_counter == 1:
+            _sign(owner)
         yield
-        owner.unlink(missing_ok=True)
+        if lock.lock_counter == 1:
+            owner.unlink(missing_ok=True)
     finally:
         lock.release()
+
+
+def _sign(owner: Path) -> None:
+    if owner.exists():
+        log.info("%s did not finish: going on from what it kept", _read(owner))
+    now = datetime.now().astimezone().isoformat(" ", "seconds")
+    owner.write_text(f"process {os.getpid()} on {socket.gethostname()}, since {now}")
 
 
 def holder(folder: Path) -> str:

@@ -1,11 +1,15 @@
 """Every step of a study as a command, without Snakemake."""
 
+import os
 import re
 
 import pytest
 import xarray as xr
-from command_line import SMALL
+from command_line import SMALL, here
 from command_line import succeeded as impactlab
+
+from impactlab.steering import extending
+from impactlab.study.lock import holder
 
 GROWING = """
 title: Growing
@@ -50,6 +54,20 @@ def test_a_sample_grows_and_solves_nothing_twice(folder):
     attrs = xr.load_dataset(folder / "results" / "growing" / "runs.nc").attrs
     assert attrs["base_samples"] == 128
     assert attrs["until_reached"] == 0
+
+
+def test_nobody_gets_between_two_steps_of_a_growing_sample(folder, monkeypatch):
+    (folder / "studies" / "growing.yaml").write_text(GROWING)
+    monkeypatch.chdir(folder)
+    seen = []
+
+    def looking(design, solve, analyse):
+        seen.append(holder(folder / "results" / "growing" / "shards"))
+        raise OSError("seen enough")
+
+    monkeypatch.setattr(extending, "extended", looking)
+    assert here("run", "studies/growing.yaml") == 1
+    assert seen[0].startswith(f"process {os.getpid()} on ")
 
 
 SAMPLE = """

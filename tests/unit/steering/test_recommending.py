@@ -1,16 +1,19 @@
 """A recommendation holds against the exact solution, and says where there is none."""
 
+import os
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from impactlab.reference import modal
+from impactlab.steering import recommending
 from impactlab.steering.recommending import recommend, recommended
 from impactlab.steering.resolving import fits, resolved
 from impactlab.study.declaration import read_study
 from impactlab.study.engine import Engine
 from impactlab.study.errors import StudyError
+from impactlab.study.lock import holder
 from impactlab.study.sampling import design
 
 ELASTIC = """
@@ -46,6 +49,15 @@ def found(tmp_path_factory):
     (folder / "some.yaml").write_text(ELASTIC.replace("DISCRETISATION", "{nodes: 101}"))
     study = read_study(folder / "some.yaml")
     return recommend(study, folder, Engine(workers=2)), study
+
+
+def test_nobody_gets_between_two_trials(study, tmp_path, monkeypatch):
+    def looking(*_):
+        raise OSError(holder(tmp_path / "trials"))
+
+    monkeypatch.setattr(recommending, "_tried", looking)
+    with pytest.raises(OSError, match=f"process {os.getpid()} on "):
+        recommend(study(PLASTIC), tmp_path / "trials", Engine())
 
 
 def test_every_rungs_uncertainty_holds_the_exact_solution(found):

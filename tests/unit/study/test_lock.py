@@ -1,5 +1,6 @@
 """One process at a time, and it says who."""
 
+import os
 import subprocess
 import sys
 
@@ -44,6 +45,17 @@ def test_a_killed_process_leaves_the_folder_free(tmp_path, other, caplog):
     caplog.clear()
     with held(tmp_path):
         assert not caplog.text
+
+
+def test_steps_within_a_longer_work_leave_the_folder_held(tmp_path, caplog):
+    caplog.set_level("INFO")
+    with held(tmp_path):
+        for _ in range(2):
+            with held(tmp_path):
+                pass
+            assert f"process {os.getpid()} on " in holder(tmp_path)
+    assert holder(tmp_path) == ""
+    assert not caplog.text
 
 
 def test_nobody_works_in_an_unknown_folder(tmp_path):
