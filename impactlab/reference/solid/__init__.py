@@ -10,6 +10,7 @@ nodes to stay above each other, which holds while they slide by less than an ele
 from impactlab.reference.solid.mesh import Cost as Cost
 from impactlab.reference.solid.mesh import Mesh as Mesh
 from impactlab.reference.solid.mesh import estimate as estimate
+from impactlab.reference.solid.mesh import least_cost as least_cost
 from impactlab.reference.solid.mesh import quarter_mesh as quarter_mesh
 from impactlab.reference.solid.solve import solve as solve
 from impactlab.reference.solid.solve import solve_on as solve_on

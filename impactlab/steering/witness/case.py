@@ -46,8 +46,8 @@ def paper_case() -> Case:
 def case_of(study: Study) -> Case:
     """A study's base with its fixed values; of what it varies, the base has one value each."""
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
-    values = flatten(*base)
-    held = {name: values[name] for name in study.sampling.varied if values[name] is not None}
+    values = flatten(*base) | {"sphere_mass": base[0].sphere.total_mass}
+    held = {name: values[name] for name in study.sampling.varied if name in values}
     return Case(study.name, str(study.path), *base, study.duration, held)
 
 

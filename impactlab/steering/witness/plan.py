@@ -11,8 +11,7 @@ from distributed.system import MEMORY_LIMIT
 
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
-from impactlab.reference.solid import Cost, Mesh, estimate, quarter_mesh
-from impactlab.reference.solid.mesh.cost import FULL_SECONDS, ONE_POINT_SECONDS
+from impactlab.reference.solid import Cost, Mesh, estimate, least_cost, quarter_mesh
 from impactlab.reference.solid.mesh.extent import contact_radius, patch_size
 from impactlab.steering.witness.beams import first_contact
 from impactlab.steering.witness.case import Case
@@ -26,8 +25,8 @@ _CONTACTS = 2.25
 """Usual duration over that of the first contact: 0.45 ms in the paper's case, as there."""
 _LONG = 2.0
 """Durations over the usual one from which on it is the duration that makes a run long."""
-_BYTES = 1000
-"""Of an element and its share of the nodes, about."""
+_MOST_ELEMENTS = 10_000
+"""Of a size that is chosen, by the least cost: time sets no bound to a moment of few steps."""
 _FEWEST = 2.0
 """Elements over the contact's radius, at the least, of a size that is chosen."""
 
@@ -109,31 +108,15 @@ def _cost(
     impact: Impact, size: float, patch: float | None, duration: float
 ) -> tuple[Cost, Mesh | None]:
     """Of the mesh; of what it has at the least where that does not fit memory already."""
-    least = _at_least(impact, size, patch, duration)
+    least = least_cost(impact, element_size=size, duration=duration, patch=patch)
     if least.memory_bytes > MEMORY_LIMIT:
         return least, None
     mesh = quarter_mesh(impact, element_size=size, patch=patch)
     return estimate(mesh, impact, duration=duration), mesh
 
 
-def _at_least(impact: Impact, size: float, patch: float | None, duration: float) -> Cost:
-    """What a mesh costs without its transitions: small beside the whole, but known without it.
-
-    A cube of elements on either side of the contact, and the beam in the largest that there are.
-    """
-    beam, steel = impact.beam, impact.beam.material
-    half = patch or patch_size(impact, size)
-    largest = max(beam.depth / 6.0, size)
-    far = beam.span / 2.0 * beam.width / 2.0 * beam.depth / largest**3
-    near = 2.0 * (half / size) ** 3
-    elements = int(near + far)
-    steps = int(duration * math.sqrt(steel.youngs_modulus / steel.density) / size) + 1
-    seconds = steps * (near * FULL_SECONDS + far * ONE_POINT_SECONDS)
-    return Cost(elements, steps, seconds, elements * _BYTES)
-
-
 def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
-    """The finest size that keeps within USUAL_TIME; the coarsest that makes sense if none does."""
+    """The finest size within USUAL_TIME and _MOST_ELEMENTS; else the coarsest that makes sense."""
     beam = impact.beam
     fits = min(impact.sphere.radius, beam.width, beam.span) / 10.0
     coarsest, *finer = _sizes(min(contact_radius(impact) / _FEWEST, fits))
@@ -142,7 +125,8 @@ def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
 
 
 def _quick(impact: Impact, size: float, patch: float | None, duration: float) -> bool:
-    if _at_least(impact, size, patch, duration).cpu_seconds > USUAL_TIME:
+    least = least_cost(impact, element_size=size, duration=duration, patch=patch)
+    if least.cpu_seconds > USUAL_TIME or least.elements > _MOST_ELEMENTS:
         return False  # no mesh is made of what is known to be large
     return _cost(impact, size, patch, duration)[0].cpu_seconds <= USUAL_TIME
 

@@ -6,12 +6,15 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from distributed.system import MEMORY_LIMIT
 
 from impactlab.model import cost
-from impactlab.reference.solid import Cost, estimate, quarter_mesh
+from impactlab.reference.solid import Cost, estimate, least_cost, quarter_mesh
 from impactlab.study.solid.cases import SOLID_CASE, impact_of, is_solid, kernel_cases
 
 Array = np.ndarray[Any, Any]
+_LONG = 3600.0
+"""Seconds of a run from which on no mesh is made to tell how long it takes."""
 
 
 def work(cases: Array) -> Array:
@@ -37,7 +40,10 @@ def memory(cases: Array) -> Array:
 
 
 def of_solid(case: Any) -> Cost:
-    """Elements, steps, seconds and bytes of one 3-D run; nothing where no mesh fits."""
+    """Elements, steps, seconds and bytes of one 3-D run; nothing where no mesh fits.
+
+    Of one that is long or large, what it takes at the least: its mesh may not fit memory.
+    """
     return _of_bytes(case.tobytes())
 
 
@@ -45,8 +51,12 @@ def of_solid(case: Any) -> Cost:
 def _of_bytes(record: bytes) -> Cost:
     case = np.frombuffer(record, dtype=SOLID_CASE)[0]
     impact = impact_of(case)
+    size, duration = case["element_size"].item(), case["duration"].item()
     try:
-        mesh = quarter_mesh(impact, element_size=case["element_size"].item())
+        least = least_cost(impact, element_size=size, duration=duration)
+        if least.cpu_seconds > _LONG or least.memory_bytes > MEMORY_LIMIT:
+            return least
+        mesh = quarter_mesh(impact, element_size=size)
     except ValueError:  # the run will say so in its status
         return Cost(0, 0, 0.0, 0)
-    return estimate(mesh, impact, duration=case["duration"].item())
+    return estimate(mesh, impact, duration=duration)

@@ -2,6 +2,7 @@
 
 from impactlab.reference.solid.mesh.cost import Cost as Cost
 from impactlab.reference.solid.mesh.cost import estimate as estimate
+from impactlab.reference.solid.mesh.cost import least_cost as least_cost
 from impactlab.reference.solid.mesh.mesh import BEAM as BEAM
 from impactlab.reference.solid.mesh.mesh import SPHERE as SPHERE
 from impactlab.reference.solid.mesh.mesh import Mesh as Mesh

@@ -8,13 +8,27 @@ from __future__ import annotations
 
 import math
 
+from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
 from impactlab.reference import hertz
 
 _HARDNESS = 2.8
 """Mean pressure of a fully plastic contact over the yield stress (Tabor)."""
+_FINEST = 1e-5
+"""Of an element, over the sphere's radius."""
 _MARGIN = 1.25
 """Patch over the estimated contact radius."""
+
+
+def checked_size(impact: Impact, element_size: float) -> float:
+    """An element size in m. Raises ValueError where no mesh could ever have it."""
+    size = positive("mesh", "element_size", element_size)
+    if size < (finest := _FINEST * impact.sphere.radius):
+        raise ValueError(
+            f"mesh.element_size = {size!r} m: must be at least {finest:.2g} m, "
+            "a hundred-thousandth of the sphere's radius"
+        )
+    return size
 
 
 def contact_radius(impact: Impact) -> float:

@@ -9,7 +9,7 @@ from impactlab.model.beam import Beam
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
 from impactlab.reference.solid.mesh.beam import brick
-from impactlab.reference.solid.mesh.extent import bending_yields, patch_size
+from impactlab.reference.solid.mesh.extent import bending_yields, checked_size, patch_size
 from impactlab.reference.solid.mesh.grading import graded, uniform
 from impactlab.reference.solid.mesh.mesh import BEAM, SPHERE, Mesh
 from impactlab.reference.solid.mesh.sphere import Sphere, quarter_sphere
@@ -36,10 +36,10 @@ def quarter_mesh(
     from the impact). ratio: of neighbouring elements beyond the patch. coarsest: largest element
     in m (None: a sixth of the beam's depth).
 
-    Raises ValueError when a length is not positive, the ratio not above 1, or the patch does not
-    fit on beam and sphere.
+    Raises ValueError when a length is not positive, the ratio not above 1, the element size beyond
+    reason, or the patch does not fit on beam and sphere.
     """
-    size = positive("mesh", "element_size", element_size)
+    size = checked_size(impact, element_size)
     if positive("mesh", "ratio", ratio) <= 1.0:
         raise ValueError(f"mesh.ratio = {ratio!r}: must be above 1")
     given = impact.beam.depth / 6.0 if coarsest is None else coarsest

@@ -1,15 +1,20 @@
 """What a 3-D run will be and cost, before anything is solved."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from impactlab.reference.solid import estimate, quarter_mesh
+from impactlab.reference.solid import estimate, least_cost, quarter_mesh
 from impactlab.steering.witness import plan as plans
 from impactlab.steering.witness.case import case_of, paper_case
 from impactlab.steering.witness.plan import USUAL_TIME, planned
 from impactlab.study.declaration import read_impacts
+from impactlab.study.errors import StudyError
+
+STUDIES = Path(__file__).parents[4] / "studies"
 
 STUDY = """
 title: Some
@@ -47,6 +52,25 @@ def test_a_study_gives_its_base_and_fixed_values_and_says_what_it_varies(tmp_pat
     assert other.held == {"sphere_radius": 0.035}
 
 
+@pytest.mark.parametrize("path", sorted(STUDIES.glob("*.yaml")), ids=lambda path: path.stem)
+def test_every_study_of_impacts_has_a_witness(path):
+    try:
+        study = read_impacts(path)
+    except StudyError:
+        assert re.search("^(function|checks):", path.read_text(), re.MULTILINE)
+        return
+    case = case_of(study)
+    assert case.held.keys() <= {*study.sampling.varied}
+
+
+def test_a_varied_mass_is_held_at_that_of_the_spheres_density(tmp_path):
+    varied = "sphere_mass: {distribution: uniform, low: 1, high: 2}"
+    path = tmp_path / "some.yaml"
+    path.write_text(re.sub("sphere_radius: .*", varied, STUDY))
+    case = case_of(read_impacts(path))
+    assert case.held["sphere_mass"] == pytest.approx(7800 * 4 / 3 * np.pi * 0.035**3)
+
+
 def test_the_papers_case_takes_its_duration_and_about_a_minute(quick):
     found = planned(quick)
     assert found.duration == 0.45e-3  # as in the paper
@@ -54,6 +78,15 @@ def test_the_papers_case_takes_its_duration_and_about_a_minute(quick):
     finer = quarter_mesh(quick.impact, element_size=found.element_size / 2.5)
     assert estimate(finer, quick.impact, duration=found.duration).cpu_seconds > USUAL_TIME
     assert not found.problems(workers=1)
+
+
+def test_a_moment_is_no_reason_for_a_mesh_without_bounds(quick):
+    assert planned(quick, duration=1e-7).cost.elements < 500_000
+
+
+def test_a_size_beyond_reason_is_refused(quick):
+    with pytest.raises(ValueError, match=r"mesh.element_size = 1e-120 m: must be at least 3.5e-07"):
+        planned(quick, element_size=1e-120)
 
 
 def test_a_smaller_contact_takes_smaller_elements(quick):
@@ -82,7 +115,7 @@ def test_the_floor_of_the_cost_lies_below_the_cost(quick):
     for size in (2e-3, 1e-3, 5e-4):
         mesh = quarter_mesh(quick.impact, element_size=size)
         cost = estimate(mesh, quick.impact, duration=1e-3)
-        floor = plans._at_least(quick.impact, size, None, 1e-3)
+        floor = least_cost(quick.impact, element_size=size, duration=1e-3)
         assert floor.elements < cost.elements
         assert floor.cpu_seconds < cost.cpu_seconds
 

@@ -17,7 +17,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate
 from impactlab.study.execution import execute
 from impactlab.study.sampling import design
-from impactlab.study.solid import running
+from impactlab.study.solid import cost, running
 from impactlab.study.solvers import witness
 from impactlab.study.storage import Form
 from impactlab.study.work import Work
@@ -160,3 +160,15 @@ def test_the_answers_depend_on_the_sources_of_both():
     from impactlab.reference.solid.jit import SOURCES_HASH as SOLID_HASH
 
     assert len({witness.VERSION, SOURCES_HASH, SOLID_HASH}) == 3
+
+
+def test_what_does_not_fit_memory_is_priced_without_a_mesh(monkeypatch):
+    def watched(impact, *, element_size):
+        assert element_size > 1e-4
+        return solid.quarter_mesh(impact, element_size=element_size)
+
+    monkeypatch.setattr(cost, "quarter_mesh", watched)
+    fine = TEXT.replace("[4 mm, 3 mm]", "[0.01 mm]")
+    found = estimate(study_of_text("fine", fine), workers=1)
+    assert found.memory > 1e10
+    assert found.seconds > 86400.0
