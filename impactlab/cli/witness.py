@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import logging
 import os
+import re
+import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -53,7 +56,10 @@ def witness(
     ] = "",
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
     output: Annotated[
-        Path | None, typer.Option(help="A folder. Default: results/NAME/witness.")
+        Path | None,
+        typer.Option(
+            help="A folder. Default: results/NAME/witness, with the options given in its name."
+        ),
     ] = None,
     deck: Annotated[
         str, typer.Option(help="abaqus or calculix: write its input deck, and solve nothing.")
@@ -77,7 +83,14 @@ def witness(
 
     case = _case(study, velocity, contact)
     plan = _plan(case, element_size, patch, duration)
-    folder = output or results_file(case.name, WITNESS)
+    asked = {
+        "velocity": velocity,
+        "contact": contact,
+        "element-size": element_size,
+        "patch": patch,
+        "duration": duration,
+    }
+    folder = output or results_file(case.name, _folder_name(asked))
     problems = [] if deck and plan.mesh else plan.problems(workers)
     if dry_run or not problems or force:
         print_plan(plan, workers, problems)
@@ -91,6 +104,12 @@ def witness(
         _write_deck(plan, deck, folder, plastic=not elastic)
     else:
         _solve(plan, workers, folder)
+
+
+def _folder_name(asked: Mapping[str, str]) -> str:
+    """Of the answers to these options: those to others are not written over."""
+    said = [f"{name}-{text}" for name, text in asked.items() if text]
+    return "_".join((WITNESS, *(re.sub(r"[^\w.]+", "-", each) for each in said)))
 
 
 def _case(study: Path | None, velocity: str, contact: str) -> Case:
@@ -145,7 +164,10 @@ def _solve(plan: Plan, workers: int, folder: Path) -> None:
     from impactlab.study.netcdf import write_netcdf
     from impactlab.study.vtu import write_vtu
 
+    _writable(folder)
     solid, interrupted = _marched(plan, workers)
+    if "stopped" in solid.attrs and _is_whole(folder / "witness.nc"):
+        folder = folder.with_name(f"{folder.name}_stopped")
     write_netcdf(solid, folder / "witness.nc")
     write_vtu(solid, folder / "witness.vtu")
     others = beams(plan.case.impact, plan.case.discretisation, float(solid["duration"]))
@@ -155,6 +177,24 @@ def _solve(plan: Plan, workers: int, folder: Path) -> None:
     print_comparison(found)
     draw_witness(solid, others, folder / "figures", plan.case.name)
     _end(solid, folder, interrupted)
+
+
+def _writable(folder: Path) -> None:
+    """Made where need be. Raises OSError where answers could not be kept, before there are any."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise OSError(
+            f"--output {folder}: {error.strerror}: nothing was solved; name a folder to write to"
+        ) from None
+
+
+def _is_whole(file: Path) -> bool:
+    """Whether it holds a run that went on to its end."""
+    from impactlab.study.netcdf import read_netcdf
+
+    return file.exists() and "stopped" not in read_netcdf(file).attrs
 
 
 def _marched(plan: Plan, workers: int) -> tuple[xr.Dataset, bool]:

@@ -16,6 +16,7 @@ from impactlab.reference.solid import solve
 from impactlab.steering.witness.case import paper_case
 
 COARSE = ("--element-size", "2 mm", "--duration", "0.05 ms")
+FOLDER = "results/paper/witness_element-size-2-mm_duration-0.05-ms"
 STUDY = """
 title: Some
 impact: {base: paper}
@@ -51,7 +52,7 @@ def impactlab(tmp_path, monkeypatch, capsys):
 def test_the_papers_case_is_solved_compared_drawn_and_kept(impactlab, tmp_path):
     code, said = impactlab("witness", *COARSE, "--workers", "1")
     assert code == 0, said
-    folder = tmp_path / "results" / "paper" / "witness"
+    folder = tmp_path / FOLDER
     solid = xr.load_dataset(folder / "witness.nc")
     alone = solve(paper_case().impact, element_size=2e-3, duration=5e-5)
     assert solid["contact_force"].values.tolist() == alone["contact_force"].values.tolist()
@@ -108,13 +109,13 @@ def test_mistakes_end_in_one_message_and_leave_no_answers(impactlab, tmp_path, a
     assert "Traceback" not in said
     for word in words:
         assert word in said, said
-    assert not list(tmp_path.glob("results/**/*.*"))
+    assert not [path for path in tmp_path.glob("results/**/*") if path.is_file()]
 
 
 def test_a_deck_is_written_and_nothing_solved(impactlab, tmp_path):
     code, said = impactlab("witness", *COARSE, "--deck", "calculix")
     assert code == 0, said
-    (file,) = (tmp_path / "results" / "paper" / "witness").iterdir()
+    (file,) = (tmp_path / FOLDER).iterdir()
     assert str(file.relative_to(tmp_path)) in said
     assert file.read_text().startswith("*HEADING")
     assert "\n*PLASTIC" in file.read_text()
@@ -130,8 +131,35 @@ def test_a_run_that_goes_wrong_keeps_what_it_has(impactlab, tmp_path, undrawn, m
     monkeypatch.setattr(package, "solve_on", lambda *a, **k: whole(*a, **k).assign_attrs(stopped))
     code, said = impactlab("witness", *COARSE)
     assert code == 1
-    assert "squeezed flat; results/paper/witness holds what was computed until then" in said
-    assert (tmp_path / "results" / "paper" / "witness" / "witness.nc").exists()
+    assert f"squeezed flat; {FOLDER} holds what was computed until then" in said
+    assert (tmp_path / FOLDER / "witness.nc").exists()
+
+
+def test_what_was_broken_off_does_not_take_the_place_of_a_whole_run(
+    impactlab, tmp_path, undrawn, monkeypatch
+):
+    from impactlab.reference import solid as package
+
+    impactlab("witness", *COARSE)
+    first = (tmp_path / FOLDER / "witness.nc").read_bytes()
+    whole = package.solve_on
+    monkeypatch.setattr(
+        package, "solve_on", lambda *a, **k: whole(*a, **k).assign_attrs(stopped="so")
+    )
+    _, said = impactlab("witness", *COARSE)
+    assert f"{FOLDER}_stopped holds what was computed until then" in said
+    assert (tmp_path / FOLDER / "witness.nc").read_bytes() == first
+    assert xr.load_dataset(tmp_path / f"{FOLDER}_stopped" / "witness.nc").attrs["stopped"] == "so"
+
+
+def test_a_folder_that_cannot_be_written_to_is_told_before_anything_is_solved(
+    impactlab, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("impactlab.reference.solid.solve_on", None)
+    (tmp_path / "file").touch()
+    code, said = impactlab("witness", *COARSE, "--output", "file")
+    assert code == 1
+    assert "ERROR: --output file: File exists: nothing was solved" in said
 
 
 def test_ctrl_c_keeps_what_was_computed(tmp_path):
@@ -146,10 +174,11 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path):
     stopping, kept = done.stderr.splitlines()
     assert stopping.startswith("impactlab: stopping to keep what is computed")
     assert kept.startswith("WARNING: interrupted at ")
-    assert kept.endswith("results/paper/witness holds what was computed until then")
-    solid = xr.load_dataset(tmp_path / "results" / "paper" / "witness" / "witness.nc")
+    folder = "results/paper/witness_element-size-2-mm"
+    assert kept.endswith(f"{folder} holds what was computed until then")
+    solid = xr.load_dataset(tmp_path / folder / "witness.nc")
     assert 1e-6 < solid["duration"] < 0.1e-3
-    beams = xr.load_dataset(tmp_path / "results" / "paper" / "witness" / "beams.nc")
+    beams = xr.load_dataset(tmp_path / folder / "beams.nc")
     assert beams["duration"] == solid["duration"]
 
 
