@@ -30,8 +30,18 @@ def status(
     if declared is None:
         print(f"{study.stem}: its discretisation is auto and was not found yet: nothing is solved")
         return
+    last = _last_samples(folder / "runs.nc", declared.sha256)
     for stage in stages(design(declared)):
         found = status_of(stage, folder / SHARDS)
-        if found.done < found.runs:
+        if found.done < found.runs or stage.attrs.get("base_samples") == last:
             break
     print_status(study.stem, found)
+
+
+def _last_samples(runs: Path, study_sha256: str) -> int | None:
+    """The base samples at which this very study's sample ceased to grow; None: it may still."""
+    from impactlab.study.netcdf import read_attributes
+
+    attrs = read_attributes(runs) if runs.exists() else {}
+    ceased = attrs.get("study_sha256") == study_sha256 and "until_reason" in attrs
+    return int(attrs["base_samples"]) if ceased else None

@@ -46,7 +46,8 @@ def _sign(owner: Path) -> None:
     if owner.exists():
         log.info("%s did not finish: going on from what it kept", _read(owner))
     now = datetime.now().astimezone().isoformat(" ", "seconds")
-    owner.write_text(f"process {os.getpid()} on {socket.gethostname()}, since {now}")
+    with suppress(OSError):  # a note for people, which a full disk may not take
+        owner.write_text(f"process {os.getpid()} on {socket.gethostname()}, since {now}")
 
 
 def holder(folder: Path) -> str:

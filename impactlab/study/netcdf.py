@@ -10,6 +10,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
 
 import xarray as xr
@@ -62,8 +63,20 @@ def _unwritten(path: Path, size: int, error: Exception) -> str:
 
 def read_netcdf(path: Path) -> xr.Dataset:
     """A dataset in memory, its file closed. Raises OSError, naming a file that cannot be read."""
+    with _opened(path) as dataset:
+        return dataset.load()
+
+
+def read_attributes(path: Path) -> dict[str, Any]:
+    """Those of a dataset. Raises OSError, naming a file that cannot be read."""
+    with _opened(path) as dataset:
+        return {str(name): value for name, value in dataset.attrs.items()}
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[xr.Dataset]:
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
+            yield dataset
     except (OSError, ValueError, RuntimeError) as error:
         raise OSError(f"{path}: cannot be read as netCDF ({error})") from None

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from stat import S_ISREG
 
 import numpy as np
 import xarray as xr
@@ -55,9 +58,15 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
 
 def disk_size(paths: Iterable[Path]) -> int:
     """Bytes of these files; one that has gone in between counts nothing."""
-    return sum(path.stat().st_size for path in paths if path.is_file())
+    return sum(each.st_size for each in _seen(paths) if S_ISREG(each.st_mode))
 
 
 def _age(files: Iterable[Path]) -> float | None:
-    times = [path.stat().st_mtime for path in files]
+    times = [each.st_mtime for each in _seen(files)]
     return time.time() - max(times) if times else None
+
+
+def _seen(paths: Iterable[Path]) -> Iterator[os.stat_result]:
+    for path in paths:
+        with suppress(FileNotFoundError):
+            yield path.stat()

@@ -73,11 +73,15 @@ class Shards:
     def read(self, *names: str) -> Iterator[tuple[Array, Columns]]:
         """Keys and answers of every sound shard; a damaged one is named in the log.
 
-        names: of the columns to read and check; all without any.
+        names: of the columns to read and check; all without any. Where another process merges
+        shards meanwhile, runs may come twice, and none is left out.
         """
-        for path in self.files():
-            if found := _sound(path, names):
-                yield found
+        seen: set[Path] = set()
+        while fresh := [path for path in self.files() if path not in seen]:
+            seen.update(fresh)
+            for path in fresh:
+                if found := _sound(path, names):
+                    yield found
 
     @staticmethod
     def keys(path: Path) -> Array:
@@ -153,6 +157,8 @@ def _sound(path: Path, names: Collection[str] = ()) -> tuple[Array, Columns] | N
         with Shard(path) as shard:
             columns = shard.columns((KEYS, *names) if names else ())
         return columns.pop(KEYS), columns
+    except FileNotFoundError:  # merged into another by now
+        return None
     except DAMAGE as error:
         log.warning("%s is damaged, and its runs will be solved again (%s)", path, error)
         return None

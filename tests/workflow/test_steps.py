@@ -56,6 +56,17 @@ def test_a_sample_grows_and_solves_nothing_twice(folder):
     assert attrs["until_reached"] == 0
 
 
+def test_a_sample_that_was_soon_large_enough_has_none_left(folder):
+    enough = GROWING.replace("interval: 0.001, runs: 600", "interval: 0.5, runs: 100000")
+    (folder / "studies" / "growing.yaml").write_text(enough)
+    impactlab("run", "studies/growing.yaml", cwd=folder)
+    told = impactlab("status", "studies/growing.yaml", cwd=folder).stdout
+    assert "256 of 256 runs solved, 0 left" in told
+    (folder / "studies" / "growing.yaml").write_text(enough.replace("0.5", "0.4"))
+    told = impactlab("status", "studies/growing.yaml", cwd=folder).stdout
+    assert "256 of 512 runs solved, 256 left" in told
+
+
 def test_nobody_gets_between_two_steps_of_a_growing_sample(folder, monkeypatch):
     (folder / "studies" / "growing.yaml").write_text(GROWING)
     monkeypatch.chdir(folder)

@@ -58,6 +58,15 @@ def test_steps_within_a_longer_work_leave_the_folder_held(tmp_path, caplog):
     assert not caplog.text
 
 
+def test_a_disk_too_full_for_a_note_is_left_to_what_is_more_than_one(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(type(tmp_path), "write_text", full)
+    with held(tmp_path):
+        assert holder(tmp_path) == "another process"
+
+
 def test_nobody_works_in_an_unknown_folder(tmp_path):
     assert holder(tmp_path / "none") == ""
     assert not (tmp_path / "none").exists()

@@ -6,7 +6,7 @@ import pytest
 from impactlab.study.engine import Engine
 from impactlab.study.execution import execute
 from impactlab.study.lock import held
-from impactlab.study.status import status
+from impactlab.study.status import disk_size, status
 from impactlab.study.work import Work
 
 
@@ -54,3 +54,8 @@ def test_a_refused_run_is_named_by_its_number(small_design, monkeypatch):
     monkeypatch.setattr("impactlab.study.work._CHUNK", 2)
     with pytest.raises(ValueError, match=r"run 4: .*velocity"):
         Work.of(small_design(1.0, 2.0, -3.0))
+
+
+def test_a_file_that_has_gone_has_no_size(tmp_path):
+    (tmp_path / "here").write_bytes(b"123")
+    assert disk_size([tmp_path / "here", tmp_path / "gone", tmp_path]) == 3

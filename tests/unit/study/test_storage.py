@@ -135,6 +135,17 @@ def test_small_shards_are_merged_while_they_come(shards, monkeypatch):
     assert found_keys(shards) == set(run_keys(cases(*velocities), FORM, impact.VERSION))
 
 
+def test_what_is_merged_while_it_is_read_is_neither_lost_nor_called_damaged(shards, caplog):
+    for velocity in (1.0, 2.0, 3.0):
+        written(shards, cases(velocity))
+    reading = Shards.read(shards)
+    found = {bytes(key) for key in next(reading)[0]}
+    shards.merge()
+    found |= {bytes(key) for keys, _ in reading for key in keys}
+    assert found == set(run_keys(cases(1.0, 2.0, 3.0), FORM, impact.VERSION))
+    assert not caplog.text
+
+
 def test_a_crash_between_merging_and_clearing_loses_nothing(shards, monkeypatch, tmp_path):
     keys = {key for velocity in (1.0, 2.0) for key in written(shards, cases(velocity))[0]}
     with monkeypatch.context() as crash:
