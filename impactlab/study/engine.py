@@ -7,16 +7,20 @@ import signal
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing import resource_tracker
 from typing import Literal
 
 import dask
 from distributed import Client, LocalCluster, Security
+from tornado.ioloop import PeriodicCallback
 from tornado.util import TimeoutError as TornadoTimeoutError
 
 from impactlab.study.slurm import Profile, slurm_cluster
 
 _LOOPBACK = "127.0.0.1:0"
+_ASK_AGAIN = 60.0
+"""Seconds between looks at whether Slurm jobs have to be submitted anew."""
 _TALKERS = ("distributed", "distributed.client", "tornado.application")
 _SETTINGS = {
     "distributed.admin.low-level-log-length": 10,  # of 1000 messages kept, cases and all
@@ -81,9 +85,15 @@ def _running(address: str) -> Iterator[Client]:
 @contextmanager
 def _slurm(profile: Profile) -> Iterator[Client]:
     with slurm_cluster(profile) as cluster:
-        cluster.scale(jobs=profile.jobs)
-        with Client(cluster, set_as_default=False) as client:
-            yield client
+        ask = partial(cluster.scale, jobs=profile.jobs)
+        again = PeriodicCallback(ask, 1e3 * _ASK_AGAIN)  # jobs end, at their walltime at the latest
+        ask()
+        cluster.loop.add_callback(again.start)
+        try:
+            with Client(cluster, set_as_default=False) as client:
+                yield client
+        finally:
+            cluster.loop.add_callback(again.stop)
 
 
 @contextmanager

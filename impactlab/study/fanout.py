@@ -70,11 +70,11 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
 
 
 def _finished(queue: as_completed, crew: _Crew) -> Iterator[list[tuple[Task, Result]]]:
-    """Tasks as they finish; meanwhile, a look at whether any worker is there."""
+    """Tasks as they finish; meanwhile, more of them for workers that have come."""
     while not queue.is_empty():
         pause, longest = _PAUSE
         while not queue.has_ready():
-            crew.look()
+            queue.update(crew.more())
             time.sleep(pause)
             pause = min(1.1 * pause, longest)  # a tenth of what it has waited
         ready = [_next(queue)]
@@ -93,7 +93,7 @@ class _Crew:
 
     def more(self) -> list[Task]:
         """New tasks, as many as the workers need to be busy."""
-        self.look()
+        self._look()
         workers = max(1, self._threads)
         futures = []
         while len(self._under_way) < _AHEAD * workers:
@@ -103,7 +103,7 @@ class _Crew:
             futures.append(self._submit(runs))
         return futures
 
-    def look(self) -> None:
+    def _look(self) -> None:
         """Count the threads of all workers, now and then; a study without any says so, and waits.
 
         Workers come and go: on a busy cluster the first one may take hours.

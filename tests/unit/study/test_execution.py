@@ -1,8 +1,11 @@
 """Fan-out: the same bits however the runs are spread, and none solved twice."""
 
+from threading import Barrier
+
 import numpy as np
 import pytest
 import xarray as xr
+from distributed import LocalCluster
 
 import impactlab as il
 from impactlab.dataset import RESPONSES
@@ -14,10 +17,11 @@ from impactlab.model.cost import node_steps
 from impactlab.model.parameters import flatten
 from impactlab.simulate import case_table
 from impactlab.study import batches as batching
-from impactlab.study import execution
+from impactlab.study import execution, fanout
 from impactlab.study.engine import Engine
 from impactlab.study.execution import execute
 from impactlab.study.fanout import solve_batch
+from impactlab.study.solvers import impact
 from impactlab.study.storage import Form
 from impactlab.study.work import Work
 
@@ -67,6 +71,24 @@ def test_runs_carry_the_labels_of_the_design(tmp_path):
         here = runs.sel(velocity=velocity, nodes=nodes)
         for name in (*RESPONSES_ASKED, "contact_force", "time"):
             np.testing.assert_array_equal(here[name].values, alone[name].values, err_msg=name)
+
+
+def test_workers_that_come_later_need_not_wait_for_a_task_to_end(tmp_path, monkeypatch):
+    monkeypatch.setattr(batching, "_RUNS", 1)  # a run a task
+    monkeypatch.setattr(fanout, "_LOOK_AGAIN", 0.05)
+    solve, all_at_once = impact.solve, Barrier(6)
+
+    def together(cases, form):
+        if cases.size:
+            cluster.scale(6)
+            all_at_once.wait(timeout=60)  # or BrokenBarrierError
+        return solve(cases, form)
+
+    monkeypatch.setattr(impact, "solve", together)
+    one = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    with LocalCluster(**one) as cluster:
+        runs = execute(design(), tmp_path, Engine(address=cluster.scheduler_address))
+    assert np.isfinite(runs["peak_force"]).all()
 
 
 @pytest.mark.parametrize("engine", [Engine("threads", 3), Engine("processes", 2)])
