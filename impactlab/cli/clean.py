@@ -31,7 +31,7 @@ def clean(
         found: dict[Path, str] = {}
         for shards in _folders(results):
             locks.enter_context(held(shards))
-            found |= _stale(folder / f"{shards.parent.name}.yaml", shards)
+            found |= _stale(_study_of(shards, folder), shards)
         if not found:
             print("Nothing to remove: every shard is asked for.")
             return
@@ -47,14 +47,22 @@ def _folders(results: Path) -> list[Path]:
     )
 
 
-def _stale(file: Path, shards: Path) -> dict[Path, str]:
+def _study_of(shards: Path, folder: Path) -> Path | None:
+    """Its file, there or where it was when its runs were solved; None where it is in neither."""
+    from impactlab.study.stale import noted_study
+
+    file = folder / f"{shards.parent.name}.yaml"
+    return file if file.exists() else noted_study(shards.with_name(SHARDS))
+
+
+def _stale(file: Path | None, shards: Path) -> dict[Path, str]:
     """What can go of one study's shards; nothing while its discretisation has to be found."""
     from impactlab.study.declaration import read_study
     from impactlab.study.sampling import design
     from impactlab.study.sampling.stages import stages
     from impactlab.study.stale import outdated, stale
 
-    if not file.exists():
+    if file is None:
         return stale(shards, ())
     if shards.name != SHARDS:
         return outdated(shards)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -20,9 +21,11 @@ def design(
     A discretisation that is `auto` is found first, as by `impactlab recommend`.
     """
     from impactlab.study.declaration import read_study
+    from impactlab.study.engine import Engine
     from impactlab.study.netcdf import write_netcdf
     from impactlab.study.sampling import design as sampled
 
     declared = read_study(study)
     path = output or results_file(declared.name, "design.nc")
-    write_netcdf(sampled(settled(declared, path.with_name("resolution.nc"))), path)
+    engine = Engine(workers=os.cpu_count() or 1)
+    write_netcdf(sampled(settled(declared, path.with_name("resolution.nc"), engine)), path)

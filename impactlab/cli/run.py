@@ -51,6 +51,7 @@ def run(
     from impactlab.study.sampling import design as sampled
     from impactlab.study.sampling.doubling import declared
     from impactlab.study.slurm import read_profile
+    from impactlab.study.stale import note_study
 
     stored = read_netcdf(design_file) if design_file.suffix == ".nc" else None
     study = read_study(design_file) if stored is None else declared(stored, design_file)
@@ -58,12 +59,14 @@ def run(
     evidence = path.with_name("resolution.nc")
     if not allowed(study, path, workers, dry_run=dry_run, force=force):
         return
-    samples = sampled(settled(study, evidence)) if stored is None else stored
     profile = read_profile(cluster) if cluster else None
     engine = Engine(
         "processes" if processes else "threads", workers, scheduler, profile, batch_seconds
     )
+    samples = sampled(settled(study, evidence, engine)) if stored is None else stored
     shards = path.parent / SHARDS
+    if stored is None:
+        note_study(shards, design_file)
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse as analysed
         from impactlab.steering.extending import extended

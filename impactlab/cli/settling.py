@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,10 +12,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from impactlab.study.declaration import FunctionStudy, Study
+    from impactlab.study.engine import Engine
 
 
-def settled(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy:
-    """The study, its discretisation found by trials where it is auto; a file keeps these."""
+def settled(study: Study | FunctionStudy, evidence: Path, engine: Engine) -> Study | FunctionStudy:
+    """The study, its discretisation found by trials where it is auto; a file keeps these.
+
+    engine: solves the trials.
+    """
     from impactlab.study.declaration import FunctionStudy
 
     if isinstance(study, FunctionStudy) or study.auto is None:
@@ -24,13 +27,11 @@ def settled(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStu
     from impactlab.report.recommendation import print_recommendation
     from impactlab.steering.recommending import recommend
     from impactlab.steering.resolving import resolved
-    from impactlab.study.engine import Engine
     from impactlab.study.netcdf import write_netcdf
 
     found = _kept(study, evidence)
     if found is None:
         stop_at_once()
-        engine = Engine("threads", os.cpu_count() or 1)
         found = recommend(study, evidence.with_name(TRIALS), engine)
         write_netcdf(found, evidence)
     print_recommendation(found)

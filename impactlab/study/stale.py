@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,8 @@ from impactlab.study.storage import DAMAGED, Form, Shards
 from impactlab.study.work import Work
 
 Array = np.ndarray[Any, Any]
+_STUDY = "study"
+"""Beside the folders of shards: where the file lies that asks for them."""
 NO_STUDY = "its study is gone"
 SET_ASIDE = "was damaged and set aside"
 UNFINISHED = "was not written to its end"
@@ -37,6 +40,22 @@ def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, st
         if reason := _reason(path, wanted):
             found[path] = reason if designs else NO_STUDY
     return found
+
+
+def note_study(shards_folder: Path, file: Path) -> None:
+    """Leave word of where the study lies that asks for what is in a folder."""
+    shards_folder.mkdir(parents=True, exist_ok=True)
+    with suppress(OSError):  # a full disk is told by what needs more of it
+        (shards_folder / _STUDY).write_text(f"{file.resolve()}\n")
+
+
+def noted_study(shards_folder: Path) -> Path | None:
+    """The file that note_study told of, where there is one still."""
+    note = shards_folder / _STUDY
+    with suppress(OSError, ValueError):
+        file = Path(note.read_text().strip())
+        return file if file.is_file() else None
+    return None
 
 
 def outdated(folder: Path) -> dict[Path, str]:

@@ -44,6 +44,17 @@ def test_status_and_clean(folder):
     assert kept.exists()
 
 
+def test_clean_finds_a_study_that_lies_elsewhere(folder):
+    (folder / "elsewhere").mkdir()
+    mine = folder / "elsewhere" / "mine.yaml"
+    mine.write_text(STUDY)
+    assert impactlab("run", mine, cwd=folder).returncode == 0
+    assert "Nothing to remove" in impactlab("clean", "--yes", cwd=folder).stdout
+    mine.unlink()
+    assert "its study is gone" in impactlab("clean", "--yes", cwd=folder).stdout
+    assert not list(folder.glob("results/mine/shards/*/*.nc"))
+
+
 def test_clean_does_not_take_a_wrong_folder_for_studies_that_are_gone(folder):
     impactlab("run", "studies/small.yaml", cwd=folder)
     done = impactlab("clean", "results", "--yes", cwd=folder)

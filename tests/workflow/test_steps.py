@@ -8,7 +8,8 @@ import xarray as xr
 from command_line import SMALL, here
 from command_line import succeeded as impactlab
 
-from impactlab.steering import extending
+from impactlab.steering import extending, recommending
+from impactlab.study.engine import Engine
 from impactlab.study.lock import holder
 
 GROWING = """
@@ -154,3 +155,21 @@ def test_studies_are_listed(folder):
     assert "9 runs" in listed
     assert "Small" in listed
     assert "1 check" in listed
+
+
+def test_trials_of_an_auto_discretisation_are_solved_where_the_study_is(folder, monkeypatch):
+    automatic = SAMPLE.replace("{nodes: 21, points: 3}", "auto")
+    (folder / "studies" / "automatic.yaml").write_text(automatic)
+    monkeypatch.chdir(folder)
+    engines = []
+
+    def looking(study, trials, engine):
+        engines.append(engine)
+        raise OSError("seen enough")
+
+    monkeypatch.setattr(recommending, "recommend", looking)
+    assert here("run", "studies/automatic.yaml", "--cluster", "none.yaml") == 1
+    assert not engines  # what is wrong with a profile is told before anything is solved
+    asked = ("--workers", "3", "--scheduler", "tcp://127.0.0.1:1")
+    assert here("run", "studies/automatic.yaml", *asked) == 1
+    assert engines == [Engine(workers=3, address="tcp://127.0.0.1:1")]
