@@ -21,6 +21,8 @@ SAFETY = 0.9
 """Time step over the largest stable one."""
 CHECKPOINTS = 100
 """Checks on energies and elements in a run."""
+_SLID = 1.0
+"""Distance across z of nodes that touch, over the element size: beyond, they are no pairs."""
 _FLAT = 0.1
 """Volume at an element's corner, over that at the start, from which on it is too distorted."""
 
@@ -132,6 +134,11 @@ class March:
         system = self.system
         if not math.isfinite(self.history.energies[-1].balance):
             return f"diverged before {self._time:.4g} s"
+        if self.history.offset > _SLID:
+            return (
+                f"nodes that touch had slid by an element on each other at {self._time:.4g} s: "
+                "take larger elements or a lower velocity"
+            )
         volumes = np.empty_like(self._volumes)
         shortest = corner_volumes(system.mesh.elements, system.x, volumes)
         ratio = np.min(volumes / self._volumes, axis=1)

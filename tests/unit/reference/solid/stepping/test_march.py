@@ -112,6 +112,16 @@ def test_a_run_that_diverges_says_so_and_answers_nothing(mesh):
     assert len(history.energies) == 1
 
 
+def test_nodes_that_slide_from_each_other_stop_the_run(mesh, monkeypatch):
+    monkeypatch.setattr("impactlab.reference.solid.stepping.march._SLID", 1e-4)
+    fast = paper_impact(5.0)
+    with Parts(1) as parts:
+        history = March(System(mesh, fast, parts), fast).run(50e-6)
+    assert "had slid by an element" in history.stopped
+    assert history.offset > 1e-4
+    assert history.moments[-1].time < 49e-6
+
+
 def test_a_squeezed_element_stops_the_run(mesh):
     with Parts(1) as parts:
         system = System(mesh, IMPACT, parts)
