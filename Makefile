@@ -51,7 +51,7 @@ lint: $(MADE)-dev
 	$(IN_VENV) snakemake --lint
 
 pytest: $(MADE)-dev
-	$(IN_VENV) python -m pytest -n auto $(PYTEST_ARGS)
+	$(IN_VENV) python -m pytest -n auto --dist worksteal $(PYTEST_ARGS)
 
 chaos: $(MADE)-dev
 	$(IN_VENV) python -m pytest -n 2 --dist loadgroup -m chaos $(PYTEST_ARGS)
