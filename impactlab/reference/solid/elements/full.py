@@ -52,6 +52,7 @@ _ROOT = 1.0 / math.sqrt(3.0)
 def full_forces(
     blocks: tuple[int, int],
     nodes: Array,
+    rows: Array,
     x: Array,
     v: Array,
     dt: float,
@@ -74,7 +75,7 @@ def full_forces(
                 _point(s, held, corner * point.ROWS, lane, (xi, eta, zeta), dt, metal)
         for lane in range(W):
             nodal(s, lane, _load(s, _T, lane))
-        scatter(s, forces, block)
+        scatter(s, rows[block], forces)
 
 
 @inlined

@@ -31,8 +31,10 @@ def gather(s: Array, nodes: Array, x: Array, v: Array) -> None:
 
 
 @inlined
-def scatter(s: Array, forces: Array, block: int) -> None:
-    """A block's nodal forces into forces, (elements, 24)."""
-    for lane in range(W):
-        for row in range(24):
-            forces[block * W + lane, row] = s[(F + row) * W + lane]
+def scatter(s: Array, rows: Array, forces: Array) -> None:
+    """A block's nodal forces, added to its rows (8 W,) of forces (., 3)."""
+    for corner in range(8):
+        for lane in range(W):
+            row = rows[corner * W + lane]
+            for axis in range(3):
+                forces[row, axis] += s[(F + 3 * corner + axis) * W + lane]

@@ -41,6 +41,7 @@ ROWS = _Q + against.ROWS
 def one_point_forces(
     blocks: tuple[int, int],
     nodes: Array,
+    rows: Array,
     x: Array,
     v: Array,
     dt: float,
@@ -49,18 +50,18 @@ def one_point_forces(
     forces: Array,
     s: Array,
 ) -> None:
-    """Take a step's motion into `state`, and write the nodal forces that answer it.
+    """Take a step's motion into `state`, and add the nodal forces that answer it.
 
-    blocks: the first and the one past the last. nodes: (blocks, 8 W). x: (n, 3) in m, at the step's
-    end; v: (n, 3) in m/s, at its middle; dt in s. state: (blocks, ROWS W). forces: (elements, 24)
-    in N. s: scratch, (SCRATCH W,).
+    blocks: the first and the one past the last. nodes, and the rows of forces that are theirs:
+    (blocks, 8 W). x: (n, 3) in m, at the step's end; v: (n, 3) in m/s, at its middle; dt in s.
+    state: (blocks, ROWS W). forces: (., 3) in N. s: scratch, (SCRATCH W,).
     """
     for block in range(blocks[0], blocks[1]):
         gather(s, nodes[block], x, v)
         held = state[block]
         for lane in range(W):
             _element(s, held, lane, dt, metal)
-        scatter(s, forces, block)
+        scatter(s, rows[block], forces)
 
 
 @inlined

@@ -34,10 +34,12 @@ def critical_step(system: System) -> float:
         operator, k=1, which="LA", tol=1e-2, ncv=20, v0=start, return_eigenvectors=False
     )
     system.v[:] = rest
-    system.forces[:] = 0.0
     return float(2.0 / np.sqrt(largest))
 
 
 def _gathered(system: System) -> Floats:
-    """The elements' forces by node, (n, 3) in N."""
-    return np.asarray(np.add.reduceat(system.forces[system.slots], system.starts[:-1], axis=0))
+    """The elements' forces by node, (n, 3) in N, which are taken away."""
+    rows = system.rows
+    forces = np.asarray(np.add.reduceat(system.forces[rows.slots], rows.starts[:-1], axis=0))
+    system.forces[:] = 0.0
+    return forces

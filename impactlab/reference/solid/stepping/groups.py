@@ -23,7 +23,7 @@ from impactlab.reference.solid.types import Array
 class Group:
     """elements: (g,) numbers in the mesh. nodes: (blocks, 8 W), the last element repeated to fill.
 
-    kind: the module with the rows of `state`, (blocks, kind.ROWS W). forces: (blocks W, 24) in N.
+    kind: the module with the rows of `state`, (blocks, kind.ROWS W).
     """
 
     elements: Array
@@ -32,7 +32,6 @@ class Group:
     kernel: Callable[..., None]
     metal: Metal
     state: Array
-    forces: Array
 
     @property
     def blocks(self) -> int:
@@ -73,7 +72,6 @@ def _group(elements: Array, numbers: Array, whole: bool, steel: Metal) -> Group:
         kernel=kernel,
         metal=steel,
         state=np.zeros((blocks, kind.ROWS * W)),
-        forces=np.zeros((blocks * W, 24)),
     )
 
 

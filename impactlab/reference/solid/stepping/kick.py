@@ -1,4 +1,4 @@
-"""A step of the nodes: forces gathered in a fixed order, velocities kicked, positions moved on."""
+"""A step of the nodes: forces taken in a fixed order, velocities kicked, positions moved on."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ def kick(
 ) -> None:
     """Move the nodes from the first to before the last of `nodes`.
 
-    starts: (n + 1,); slots[starts[i]:starts[i + 1]]: node i's rows of forces (8 elements, 3) in N.
+    starts: (n + 1,); slots[starts[i]:starts[i + 1]]: node i's rows of forces (., 3) in N, which are
+    left at 0.
     inverse_mass: (n, 3) in 1/kg, 0 where a node is held. pull: (n,) downward acceleration in m/s2.
     kick_dt, dt: seconds between the velocities and between the positions.
     """
@@ -32,6 +33,7 @@ def kick(
             f0 += forces[slot, 0]
             f1 += forces[slot, 1]
             f2 += forces[slot, 2]
+            forces[slot, 0], forces[slot, 1], forces[slot, 2] = 0.0, 0.0, 0.0
         v[node, 0] -= kick_dt * inverse_mass[node, 0] * f0
         v[node, 1] -= kick_dt * inverse_mass[node, 1] * f1
         v[node, 2] -= kick_dt * (inverse_mass[node, 2] * f2 + pull[node])

@@ -10,6 +10,7 @@ from impactlab.reference.solid.elements import full, one_point, point
 from impactlab.reference.solid.elements.lanes import SCRATCH, W
 from impactlab.reference.solid.mesh.beam import brick
 from impactlab.reference.solid.stepping.groups import _group, metal
+from impactlab.reference.solid.stepping.rows import force_rows
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
 KINDS = {"one_point": one_point, "full": full}
@@ -23,30 +24,31 @@ class Body:
         self.kind = KINDS[kind]
         whole = kind == "full"
         self.group = _group(elements, np.arange(len(elements)), whole, metal(steel))
+        self._rows = force_rows([self.group], len(nodes))
+        self._forces = np.zeros((self._rows.count, 3))
         self._scratch = np.zeros(SCRATCH * W)
 
     def move_to(self, x, dt=1.0):
         """The nodal forces (n, 3) after a straight way to x in one step."""
         group, v = self.group, (x - self.x) / dt
+        self._forces[:] = 0.0
         self.x = np.ascontiguousarray(x)
         group.kernel(
             (0, group.blocks),
             group.nodes,
+            self._rows.of_groups[0],
             self.x,
             v,
             dt,
             group.metal,
             group.state,
-            group.forces,
+            self._forces,
             self._scratch,
         )
         return self.forces()
 
     def forces(self):
-        result = np.zeros_like(self.x)
-        each = self.group.forces[: len(self.elements)].reshape(-1, 8, 3)
-        np.add.at(result, self.elements, each)
-        return result
+        return np.add.reduceat(self._forces[self._rows.slots], self._rows.starts[:-1])
 
     def deviators(self):
         """(6, points, elements)"""
