@@ -1,6 +1,7 @@
 # make study   from the study files to results/index.html
 # make paper   the figures and statements of the paper, in results/paper
-# make test    the checks and the tests
+# make test    the checks, and the tests of up to a minute
+# make long    the tests that take longer: the 3-D model and its decks on finer meshes
 # make chaos   what crashes, full disks, lost workers and hostile files must not do (20 minutes)
 # make kratos  the 3-D model against Kratos Multiphysics, in a coarse case (2 minutes)
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
@@ -26,7 +27,7 @@ IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete
 
-.PHONY: study paper test lint pytest chaos kratos bench scaling mutants coverage constraints unlock clean
+.PHONY: study paper test lint pytest long chaos kratos bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -52,6 +53,9 @@ lint: $(MADE)-dev
 
 pytest: $(MADE)-dev
 	$(IN_VENV) python -m pytest -n auto --dist worksteal $(PYTEST_ARGS)
+
+long: $(MADE)-dev
+	$(IN_VENV) python -m pytest -n auto -m long $(PYTEST_ARGS)
 
 chaos: $(MADE)-dev
 	$(IN_VENV) python -m pytest -n 2 --dist loadgroup -m chaos $(PYTEST_ARGS)

@@ -77,7 +77,7 @@ def test_plastic_deck_is_read(tmp_path, impact, mesh):
 
 
 @calculix.needed
-@pytest.mark.slow
+@pytest.mark.long
 def test_plasticity_crashes_calculix_as_the_deck_says(tmp_path, impact, mesh):
     if calculix.version() != "2.20":
         pytest.skip("said of CalculiX 2.20 alone")
@@ -87,7 +87,7 @@ def test_plasticity_crashes_calculix_as_the_deck_says(tmp_path, impact, mesh):
 
 
 @calculix.needed
-@pytest.mark.slow
+@pytest.mark.long
 def test_elastic_impact_on_a_large_block_is_hertzs(tmp_path):
     """At 1 mm, with less than two elements in the contact radius.
 

@@ -122,7 +122,7 @@ def below_the_axis(impact):
     return (1 + nu) * (3 - 2 * nu) / (2 * math.pi * steel.youngs_modulus * depth)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_elastic_beam_answers_as_timoshenkos_modes():
     """The paper's beam without yield, under Hertz's law for bodies that end.
 
