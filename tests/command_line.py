@@ -1,5 +1,7 @@
 """The command line as tests call it: in a process of its own, or in theirs."""
 
+import contextlib
+import io
 import logging
 import subprocess
 import sys
@@ -50,3 +52,23 @@ def here(*args):
         main()
     logging.getLogger("impactlab").handlers.clear()
     return ended.value.code or 0
+
+
+def called(*args, cwd, said=""):
+    """As `process`, but in this process, which saves it seconds of imports."""
+    out, err = io.StringIO(), io.StringIO()
+    with (
+        contextlib.chdir(cwd),
+        patch.object(sys, "stdin", io.StringIO(said)),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+    ):
+        code = here(*args)
+    return subprocess.CompletedProcess(args, code, out.getvalue(), err.getvalue())
+
+
+def done(*args, cwd):
+    """As `called`, which must end well."""
+    ended = called(*args, cwd=cwd)
+    assert ended.returncode == 0, ended.stderr
+    return ended

@@ -4,7 +4,7 @@ import re
 
 import pytest
 from command_line import CHECKS, SMALL, here
-from command_line import succeeded as impactlab
+from command_line import done as impactlab
 
 
 def test_help_is_not_cut_short(tmp_path):

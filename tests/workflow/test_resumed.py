@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 from command_line import SMALL
-from command_line import succeeded as impactlab
+from command_line import done as impactlab
 
 SLOW = SMALL.replace("[11, 21, 41]", "[201, 203, 205, 207, 209, 211]").replace("1 ms", "20 ms")
 

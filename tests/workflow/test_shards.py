@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import pytest
-from command_line import process as impactlab
+from command_line import called as impactlab
 
 STUDY = """
 title: Small

@@ -1,7 +1,8 @@
 """One run on the command line, and what a command loads."""
 
 import xarray as xr
-from command_line import succeeded as impactlab
+from command_line import done as impactlab
+from command_line import succeeded
 
 
 def test_simulate_prints_and_keeps(tmp_path):
@@ -26,8 +27,8 @@ def test_simulate_takes_a_scheme(tmp_path):
 
 def loaded(*args, cwd):
     """The packages that a command loads."""
-    done = impactlab(*args, cwd=cwd, python=("-X", "importtime"))
-    lines = [line for line in done.stderr.splitlines() if line.startswith("import time:")]
+    ended = succeeded(*args, cwd=cwd, python=("-X", "importtime"))
+    lines = [line for line in ended.stderr.splitlines() if line.startswith("import time:")]
     return {line.split("|")[-1].strip().split(".")[0] for line in lines}
 
 

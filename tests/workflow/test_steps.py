@@ -6,7 +6,7 @@ import re
 import pytest
 import xarray as xr
 from command_line import SMALL, here
-from command_line import succeeded as impactlab
+from command_line import done as impactlab
 
 from impactlab.steering import extending, recommending
 from impactlab.study.engine import Engine

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 import xarray as xr
 from command_line import CHECKS, here
-from command_line import succeeded as impactlab
+from command_line import done as impactlab
 
 from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.finding import Finding, relative
