@@ -81,6 +81,7 @@ def witness(
     """
     from impactlab.report.solid import print_plan
 
+    _check_deck(deck, elastic=elastic)
     case = _case(study, velocity, contact)
     plan = _plan(case, element_size, patch, duration)
     asked = {
@@ -93,13 +94,11 @@ def witness(
     folder = output or results_file(case.name, _folder_name(asked))
     problems = [] if deck and plan.mesh else plan.problems(workers)
     if dry_run or not problems or force:
-        print_plan(plan, workers, problems)
+        print_plan(plan, None if deck else workers, problems)
     if dry_run:
         return
     if problems and not force:
         raise ValueError("\n".join(problems))
-    if elastic and not deck:
-        raise ValueError("--elastic: is of a deck; say which one with --deck")
     if deck:
         _write_deck(plan, deck, folder, plastic=not elastic)
     else:
@@ -139,11 +138,20 @@ def _plan(case: Case, element_size: str, patch: str, duration: str) -> Plan:
     )
 
 
-def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
-    from impactlab.reference.deck import write_deck
+def _check_deck(deck: str, *, elastic: bool) -> None:
+    from impactlab.reference.deck import FLAVOURS
 
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{flavour}.inp"
+    if deck and deck not in FLAVOURS:
+        raise ValueError(f"--deck {deck}: must be one of {', '.join(FLAVOURS)}")
+    if elastic and not deck:
+        raise ValueError("--elastic: is of a deck; say which one with --deck")
+
+
+def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
+    from impactlab.reference.deck import FLAVOURS, write_deck
+
+    _writable(folder)
+    path = folder / f"{flavour}{'' if plastic else '_elastic'}.inp"
     write_deck(
         path,
         plan.case.impact,
@@ -152,22 +160,26 @@ def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> Non
         duration=plan.duration,
         plastic=plastic,
     )
+    for limit in FLAVOURS[flavour].limits:
+        logging.getLogger("impactlab").warning("%s: %s", path, limit)
     print(path)
 
 
 def _solve(plan: Plan, workers: int, folder: Path) -> None:
     """Answers are on disk before anything is made of them."""
     from impactlab.figures.solid.drawings import draw_witness
-    from impactlab.report.solid import print_comparison
+    from impactlab.report.solid import print_comparison, print_yielding
     from impactlab.steering.witness.beams import beams
     from impactlab.steering.witness.comparison import compared, write_csv
     from impactlab.study.netcdf import write_netcdf
     from impactlab.study.vtu import write_vtu
 
     _writable(folder)
-    solid, interrupted = _marched(plan, workers)
-    if "stopped" in solid.attrs and _is_whole(folder / "witness.nc"):
-        folder = folder.with_name(f"{folder.name}_stopped")
+    spare = folder.with_name(f"{folder.resolve().name}_stopped")
+    guarded = _is_whole(folder / "witness.nc")
+    solid = _marched(plan, workers)
+    if "stopped" in solid.attrs and guarded:
+        folder = spare
     write_netcdf(solid, folder / "witness.nc")
     write_vtu(solid, folder / "witness.vtu")
     others = beams(plan.case.impact, plan.case.discretisation, float(solid["duration"]))
@@ -175,8 +187,9 @@ def _solve(plan: Plan, workers: int, folder: Path) -> None:
     found = compared(solid, others)
     write_csv(found, folder / "comparison.csv")
     print_comparison(found)
+    print_yielding(solid)
     draw_witness(solid, others, folder / "figures", plan.case.name)
-    _end(solid, folder, interrupted)
+    _end(solid, folder)
 
 
 def _writable(folder: Path) -> None:
@@ -191,45 +204,45 @@ def _writable(folder: Path) -> None:
 
 
 def _is_whole(file: Path) -> bool:
-    """Whether it holds a run that went on to its end."""
+    """Whether it holds a run that went on to its end; what cannot be read does not."""
     from impactlab.study.netcdf import read_netcdf
 
-    return file.exists() and "stopped" not in read_netcdf(file).attrs
+    try:
+        return "stopped" not in read_netcdf(file).attrs
+    except OSError:
+        return False
 
 
-def _marched(plan: Plan, workers: int) -> tuple[xr.Dataset, bool]:
-    """The 3-D run, and whether it was broken off by Ctrl-C: at a checkpoint, to keep it whole."""
-    from impactlab.reference.solid import PatchTooSmallError, solve_on
+def _marched(plan: Plan, workers: int) -> xr.Dataset:
+    """The 3-D run; Ctrl-C breaks it off at a checkpoint, to keep it whole."""
+    from impactlab.reference.solid import solve_on
     from impactlab.study.progress import share_done
 
     with stop_kept() as asked_to_stop, share_done("3-D model") as show:
 
         def progress(time: float, share: float) -> None:
             show(share)
-            if asked_to_stop():
+            if asked_to_stop() and share < 1.0:
                 raise KeyboardInterrupt
 
-        try:
-            solid = solve_on(
-                plan.solved_mesh(),
-                plan.case.impact,
-                duration=plan.duration,
-                threads=workers,
-                progress=progress,
-            )
-        except PatchTooSmallError as error:
-            raise ValueError(f"--patch: {error}") from None
-        return solid, asked_to_stop()
+        return solve_on(
+            plan.solved_mesh(),
+            plan.case.impact,
+            duration=plan.duration,
+            threads=workers,
+            progress=progress,
+        )
 
 
-def _end(solid: xr.Dataset, folder: Path, interrupted: bool) -> None:
+def _end(solid: xr.Dataset, folder: Path) -> None:
     """Where the answers lie; exit code 130 where broken off, 1 where the run went wrong."""
     stopped = str(solid.attrs.get("stopped", ""))
     log = logging.getLogger("impactlab")
-    if interrupted:
+    if stopped.startswith("interrupted"):
         log.warning("%s: %s holds what was computed until then", stopped, folder)
         raise typer.Exit(130)
     if stopped:
-        log.error("%s; %s holds what was computed until then", stopped, folder)
+        option = "--patch: " if "patch_needed" in solid.attrs else ""
+        log.error("%s%s; %s holds what was computed until then", option, stopped, folder)
         raise typer.Exit(1)
     print(f"{folder}: witness.nc, witness.vtu (for ParaView), beams.nc, comparison.csv, figures/")

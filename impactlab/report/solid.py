@@ -23,10 +23,15 @@ _NARROW: dict[str, Any] = {"box": box.SIMPLE, "show_edge": False, "padding": 0}
 """Fits 80 columns."""
 _WHOLE = 100.0
 """Difference in % from which on it is told without a decimal."""
+_FAR = 1e-3
+"""PEEQ of elements that are not fully integrated, from which on it is told."""
 
 
-def print_plan(plan: Plan, workers: int, problems: Iterable[str]) -> None:
-    """What is solved and what it costs, a line each; and why it is not unless it is forced."""
+def print_plan(plan: Plan, workers: int | None, problems: Iterable[str]) -> None:
+    """What is solved and what it costs, a line each; and why it is not unless it is forced.
+
+    workers: None of a deck, which others solve.
+    """
     cost, across = plan.cost, plan.contact_radius / plan.element_size
     lines = {
         "case": f"{plan.case.file}, at {plan.case.impact.velocity:g} m/s",
@@ -35,9 +40,11 @@ def print_plan(plan: Plan, workers: int, problems: Iterable[str]) -> None:
         "duration": f"{1e3 * plan.duration:.4g} ms; {_contact(plan)}",
         "elements": f"{cost.elements:,}",
         "time steps": f"about {cost.steps:,}",
-        "wall": f"about {time(plan.seconds(workers))} on {words.counted(workers, 'thread')}",
-        "memory": f"about {amount(cost.memory_bytes)}",
     }
+    if workers:
+        threads = words.counted(workers, "thread")
+        lines["wall"] = f"about {time(plan.seconds(workers))} on {threads}"
+        lines["memory"] = f"about {amount(cost.memory_bytes)}"
     console = Console(soft_wrap=True)
     for name, text in lines.items():
         console.print(f"{name:15s}{text}", markup=False, highlight=False)
@@ -66,6 +73,26 @@ def print_comparison(found: xr.Dataset) -> None:
         console.print(f"missing ({who}): {reason}", markup=False)
 
 
+def print_yielding(solid: xr.Dataset) -> None:
+    """What yields where the responses do not tell it, a line each.
+
+    solid: of solve. Elements with one point beyond the middle yield all at once, and late in
+    bending.
+    """
+    console = Console()
+    sphere = float(solid["sphere_plastic_strain"])
+    if sphere > 0.0:
+        told = f"the sphere yields, too: PEEQ up to {sphere:.2%}, in plastic_dissipation alone"
+        console.print(told, markup=False, highlight=False)
+    coarse = float(solid["one_point_plastic_strain"])
+    if coarse > _FAR:
+        told = (
+            f"elements with one integration point yield: PEEQ up to {coarse:.2%} away from contact "
+            "and middle, where they are too stiff in bending"
+        )
+        console.print(told, markup=False, highlight=False)
+
+
 def _missing(found: xr.Dataset) -> dict[str, list[str]]:
     """Models by the reason why they lack a response."""
     which: dict[str, list[str]] = {}
@@ -79,7 +106,9 @@ def _contact(plan: Plan) -> str:
     """How long the first contact is beside it, in words."""
     if np.isnan(plan.first_contact):
         return f"the first contact is longer than {1e3 * plan.case.longest:.4g} ms"
-    contact = f"an Euler-Bernoulli beam's first contact takes {1e3 * plan.first_contact:.3g} ms"
+    contact = (
+        f"an Euler-Bernoulli beam's first contact takes about {1e3 * plan.first_contact:.2g} ms"
+    )
     if plan.duration > 1.5 * plan.usual_duration:
         return f"{contact}: for it alone, {1e3 * plan.usual_duration:.4g} ms would do"
     return contact

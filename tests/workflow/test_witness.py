@@ -98,9 +98,10 @@ def test_a_dry_run_tells_the_cost_and_leaves_nothing(impactlab, tmp_path):
         (["--velocity", "-1"], ["velocity", "above zero"]),
         (["--contact", "glue"], ["contact", "glue", "hertz"]),
         (["studies/none.yaml"], ["studies/none.yaml"]),
-        ([*COARSE, "--patch", "2 mm", "--velocity", "9"], ["--patch", "beyond", "take patch = "]),
+        (["--patch", "1 m", "--element-size", "0.2 mm"], ["patch", "to fit on beam and sphere"]),
         ([*COARSE, "--elastic"], ["--elastic", "--deck"]),
-        ([*COARSE, "--deck", "nastran"], ["nastran", "abaqus", "calculix"]),
+        ([*COARSE, "--deck", "nastran"], ["--deck nastran", "abaqus", "calculix"]),
+        (["--dry-run", "--deck", "nastran"], ["--deck nastran", "abaqus", "calculix"]),
     ],
 )
 def test_mistakes_end_in_one_message_and_leave_no_answers(impactlab, tmp_path, args, words):
@@ -115,12 +116,15 @@ def test_mistakes_end_in_one_message_and_leave_no_answers(impactlab, tmp_path, a
 def test_a_deck_is_written_and_nothing_solved(impactlab, tmp_path):
     code, said = impactlab("witness", *COARSE, "--deck", "calculix")
     assert code == 0, said
-    (file,) = (tmp_path / FOLDER).iterdir()
-    assert str(file.relative_to(tmp_path)) in said
-    assert file.read_text().startswith("*HEADING")
-    assert "\n*PLASTIC" in file.read_text()
+    file = f"{FOLDER}/calculix.inp"
+    assert f"\n{file}\n" in said
+    assert f"WARNING: {file}: CalculiX 2.20 crashes" in said
+    assert "wall" not in said
+    assert (tmp_path / file).read_text().startswith("*HEADING")
+    assert "\n*PLASTIC" in (tmp_path / file).read_text()
     impactlab("witness", *COARSE, "--deck", "calculix", "--elastic")
-    assert "\n*PLASTIC" not in file.read_text()
+    assert "\n*PLASTIC" not in (tmp_path / FOLDER / "calculix_elastic.inp").read_text()
+    assert len(list((tmp_path / FOLDER).iterdir())) == 2
 
 
 def test_a_run_that_goes_wrong_keeps_what_it_has(impactlab, tmp_path, undrawn, monkeypatch):
@@ -133,6 +137,18 @@ def test_a_run_that_goes_wrong_keeps_what_it_has(impactlab, tmp_path, undrawn, m
     assert code == 1
     assert f"squeezed flat; {FOLDER} holds what was computed until then" in said
     assert (tmp_path / FOLDER / "witness.nc").exists()
+
+
+def test_a_contact_that_outgrows_the_patch_keeps_what_it_has(impactlab, tmp_path, undrawn):
+    small = ("--patch", "2 mm", "--velocity", "9 m/s", "--output", "here")
+    (tmp_path / "here").mkdir()
+    (tmp_path / "here" / "witness.nc").write_text("damaged")
+    code, said = impactlab("witness", *COARSE, *small)
+    assert code == 1
+    assert "ERROR: --patch: at " in said
+    assert "take patch = " in said
+    assert "here holds what was computed until then" in said
+    assert xr.load_dataset(tmp_path / "here" / "witness.nc")["peak_force"].isnull()
 
 
 def test_what_was_broken_off_does_not_take_the_place_of_a_whole_run(

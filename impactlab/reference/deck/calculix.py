@@ -85,6 +85,6 @@ CALCULIX = Flavour(
         f"overclosure at its centre is about {100.0 * _OVERCLOSURE:.9g} % of the indentation.",
         "CalculiX 2.20 crashes (segmentation fault in the first iteration) when *PLASTIC meets "
         "surface-to-surface contact in *DYNAMIC: for a run that finishes, take elastic materials "
-        "(write_deck with plastic=False).",
+        "(--elastic; write_deck with plastic=False).",
     ),
 )

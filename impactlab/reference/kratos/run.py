@@ -120,7 +120,8 @@ class Run:
         if np.any(self.mesh.gaps[self.mesh.rim] < down[upper] - down[lower]):
             raise PatchTooSmallError(
                 f"the contact reaches the rim of the patch of matched nodes: patch must be above "
-                f"{self.mesh.patch:.4g} m"
+                f"{self.mesh.patch:.4g} m",
+                self.mesh.patch,
             )
 
 

@@ -15,3 +15,4 @@ from impactlab.reference.solid.mesh import quarter_mesh as quarter_mesh
 from impactlab.reference.solid.solve import solve as solve
 from impactlab.reference.solid.solve import solve_on as solve_on
 from impactlab.reference.solid.stepping.march import PatchTooSmallError as PatchTooSmallError
+from impactlab.reference.solid.stepping.rows import MOST_THREADS as MOST_THREADS

@@ -55,11 +55,11 @@ def solve_on(
     Returns a Dataset with the histories and responses of impactlab.dataset that a 3-D model has
     (`status` says why one is NaN), energies on `checkpoint`, plastic strains and von Mises stress
     on `element`, displacements on `node`, and the mesh as coordinates. A run interrupted by
-    Ctrl-C, or stopped because it diverged or its elements were squeezed flat, gives what it has
-    computed until then, and the attribute `stopped` says why.
+    Ctrl-C, or stopped because it diverged, its elements were squeezed flat, or the contact left the
+    patch of matched nodes, gives what it has computed until then, and the attribute `stopped` says
+    why; `patch_needed` is the patch to take, in m.
 
-    Raises ValueError when a number is not valid or the duration below a time step, and
-    PatchTooSmallError (a ValueError) when the contact leaves the patch of matched nodes.
+    Raises ValueError when a number is not valid or the duration below a time step.
     """
     positive("solve", "duration", duration)
     samples = integer("solve", "samples", samples, 2)

@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import takewhile
 
+from dask.system import CPU_COUNT
 from distributed.system import MEMORY_LIMIT
 
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
-from impactlab.reference.solid import Cost, Mesh, estimate, least_cost, quarter_mesh
-from impactlab.reference.solid.mesh.extent import contact_radius, patch_size
-from impactlab.steering.witness.beams import first_contact
+from impactlab.reference.solid import MOST_THREADS, Cost, Mesh, estimate, least_cost, quarter_mesh
+from impactlab.reference.solid.mesh.extent import checked_patch, contact_radius
+from impactlab.steering.witness.beams import beam_seconds, first_contact
 from impactlab.steering.witness.case import Case
 from impactlab.study.words import amount, time
 
@@ -36,6 +37,7 @@ class Plan:
     """One 3-D run. mesh: None where it does not fit memory. Lengths in m, times in s.
 
     first_contact: NaN where it outlasts the study. contact_radius: the largest to expect.
+    beam_seconds: what the beam models take beside it.
     """
 
     case: Case
@@ -45,12 +47,14 @@ class Plan:
     first_contact: float
     usual_duration: float
     contact_radius: float
+    beam_seconds: float
     cost: Cost
     mesh: Mesh | None
 
     def seconds(self, workers: int) -> float:
-        """About how long it takes on so many cores."""
-        return self.cost.cpu_seconds / workers
+        """About how long it takes with so many threads, the beam models' runs included."""
+        busy: int = min(workers, CPU_COUNT, MOST_THREADS)
+        return self.cost.cpu_seconds / busy + self.beam_seconds
 
     def problems(self, workers: int) -> list[str]:
         """Why it should not be begun, a line each, at the option that drives it."""
@@ -99,9 +103,10 @@ def planned(
     asked = usual if duration is None else duration
     size = _usual_size(case.impact, patch, asked) if element_size is None else element_size
     cost, mesh = _cost(case.impact, size, patch, asked)
-    half = mesh.patch if mesh else patch or patch_size(case.impact, size)
+    half = mesh.patch if mesh else checked_patch(case.impact, size, patch)
     radius = contact_radius(case.impact)
-    return Plan(case, size, half, asked, first, usual, radius, cost, mesh)
+    beside = beam_seconds(case.impact, case.discretisation, asked)
+    return Plan(case, size, half, asked, first, usual, radius, beside, cost, mesh)
 
 
 def _cost(

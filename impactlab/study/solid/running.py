@@ -10,7 +10,7 @@ import xarray as xr
 
 from impactlab.dataset import FAILURES, HISTORIES, RESPONSES
 from impactlab.model.impact import Impact
-from impactlab.reference.solid import PatchTooSmallError, quarter_mesh, solve
+from impactlab.reference.solid import quarter_mesh, solve
 from impactlab.reference.solid.result.zone import surface_reach
 from impactlab.study.solid.cases import impact_of
 
@@ -51,10 +51,13 @@ def answers(case: Any, samples: int) -> dict[str, Any]:
 def _solved(impact: Impact, size: float, duration: float) -> xr.Dataset:
     patch = quarter_mesh(impact, element_size=size).patch
     while True:
-        try:
-            return solve(impact, element_size=size, duration=duration, patch=patch, samples=_STEPS)
-        except PatchTooSmallError:
-            patch = _LARGER * patch
+        run = solve(impact, element_size=size, duration=duration, patch=patch, samples=_STEPS)
+        if "patch_needed" not in run.attrs:
+            return run
+        patch = _LARGER * patch
+        log.info(
+            "a 3-D run begins again with a patch of %.3g mm: %s", 1e3 * patch, run.attrs["stopped"]
+        )
 
 
 def _histories(run: xr.Dataset, duration: float, samples: int) -> dict[str, Any]:

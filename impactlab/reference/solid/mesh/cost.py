@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from impactlab.model.impact import Impact
-from impactlab.reference.solid.mesh.extent import checked_size, patch_size
+from impactlab.model.material import Material
+from impactlab.reference.solid.mesh.extent import checked_patch, checked_size
 from impactlab.reference.solid.mesh.mesh import BEAM, SPHERE, Mesh
 
 ONE_POINT_SECONDS, FULL_SECONDS = 200e-9, 500e-9
@@ -48,11 +49,14 @@ def least_cost(
     its transitions, which are left out, may be more. Raises ValueError as quarter_mesh.
     """
     size = checked_size(impact, element_size)
-    beam, steel = impact.beam, impact.beam.material
-    half = patch or patch_size(impact, size)
+    beam = impact.beam
+    half = checked_patch(impact, size, patch)
     far = beam.span / 2.0 * beam.width / 2.0 * beam.depth / max(beam.depth / 6.0, size) ** 3
     near = 2.0 * (half / size) ** 3
-    steps = int(duration * math.sqrt(steel.youngs_modulus / steel.density) / size) + 1
+    fastest = max(
+        math.sqrt(steel.youngs_modulus / density) for _, steel, density in _metals(impact)
+    )
+    steps = int(duration * fastest / size) + 1
     seconds = steps * (near * FULL_SECONDS + far * ONE_POINT_SECONDS)
     return Cost(int(near + far), steps, seconds, int(near + far) * _BYTES)
 
@@ -65,8 +69,15 @@ def time_step(mesh: Mesh, impact: Impact) -> float:
         edge = np.linalg.norm(points[:, one] - points[:, other], axis=1)
         shortest = np.minimum(shortest, edge)
     steps = []
-    for body, steel in ((BEAM, impact.beam.material), (SPHERE, impact.sphere.material)):
+    for body, steel, density in _metals(impact):
         nu = steel.poissons_ratio
         modulus = steel.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
-        steps.append(float(shortest[mesh.body == body].min()) / np.sqrt(modulus / steel.density))
+        steps.append(float(shortest[mesh.body == body].min()) / np.sqrt(modulus / density))
     return float(0.9 * min(steps))
+
+
+def _metals(impact: Impact) -> tuple[tuple[int, Material, float], tuple[int, Material, float]]:
+    """Each body's material and density in kg/m3: the sphere's is that of the mass it is given."""
+    beam, sphere = impact.beam.material, impact.sphere
+    density = sphere.total_mass / (4.0 / 3.0 * math.pi * sphere.radius**3)
+    return (BEAM, beam, beam.density), (SPHERE, sphere.material, density)

@@ -11,6 +11,7 @@ import math
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
 from impactlab.reference import hertz
+from impactlab.reference.solid.mesh.grading import uniform
 
 _HARDNESS = 2.8
 """Mean pressure of a fully plastic contact over the yield stress (Tabor)."""
@@ -48,8 +49,38 @@ def contact_radius(impact: Impact) -> float:
 
 
 def patch_size(impact: Impact, element_size: float) -> float:
-    """Half the side of the square of matched nodes in m: a whole number of elements, at least 3."""
-    return element_size * max(math.ceil(_MARGIN * contact_radius(impact) / element_size), 3)
+    """Half the side of the square of matched nodes in m: a whole number of elements, at least 3.
+
+    Its margin is cut where the bodies end, down to the contact radius to expect.
+    """
+    radius = contact_radius(impact)
+    half = element_size * max(math.ceil(_MARGIN * radius / element_size), 3)
+    least = max(radius, 3.0 * element_size)
+    fits = element_size * math.floor(largest_patch(impact) / element_size)
+    return min(half, fits) if fits >= least else half
+
+
+def largest_patch(impact: Impact) -> float:
+    """What beam and sphere have room for, in m."""
+    beam = impact.beam
+    return min(0.9 * beam.width / 2.0, 0.45 * impact.sphere.radius, beam.span / 4.0)
+
+
+def checked_patch(impact: Impact, element_size: float, patch: float | None) -> float:
+    """The patch in m, rounded up to whole elements (None: estimated).
+
+    Raises ValueError where it is not positive, or does not fit on beam and sphere.
+    """
+    if patch is None:
+        half = patch_size(impact, element_size)
+    else:
+        half = element_size * uniform(element_size, positive("mesh", "patch", patch))
+    if half > (room := largest_patch(impact)):
+        raise ValueError(
+            f"mesh.patch = {half:.4g} m, of whole elements: must be at most {room:.4g} m to fit on "
+            "beam and sphere; a smaller patch, element_size or velocity may"
+        )
+    return half
 
 
 def bending_yields(impact: Impact) -> bool:

@@ -9,8 +9,8 @@ from impactlab.model.beam import Beam
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
 from impactlab.reference.solid.mesh.beam import brick
-from impactlab.reference.solid.mesh.extent import bending_yields, checked_size, patch_size
-from impactlab.reference.solid.mesh.grading import graded, uniform
+from impactlab.reference.solid.mesh.extent import bending_yields, checked_patch, checked_size
+from impactlab.reference.solid.mesh.grading import graded
 from impactlab.reference.solid.mesh.mesh import BEAM, SPHERE, Mesh
 from impactlab.reference.solid.mesh.sphere import Sphere, quarter_sphere
 
@@ -19,6 +19,8 @@ Integers = NDArray[np.int32]
 
 _BENT = 2.5
 """Length of beam beside the impact, over its depth, that is fully integrated where it may yield."""
+_THINNEST = 0.7
+"""Of a layer of elements, over their size in the contact."""
 
 
 def quarter_mesh(
@@ -44,34 +46,24 @@ def quarter_mesh(
         raise ValueError(f"mesh.ratio = {ratio!r}: must be above 1")
     given = impact.beam.depth / 6.0 if coarsest is None else coarsest
     largest = max(positive("mesh", "coarsest", given), size)
-    half = _patch(impact, size, patch)
+    half = checked_patch(impact, size, patch)
     depth = size * max(round(half / size), 2)
     sphere = quarter_sphere(impact.sphere.radius, size, half, depth, ratio, largest)
     x, y, z = _cuts(impact.beam, size, half, depth, ratio, largest)
     return _joined(impact, (x, y, z), sphere, size, half)
 
 
-def _patch(impact: Impact, size: float, patch: float | None) -> float:
-    if patch is None:
-        half = patch_size(impact, size)
-    else:
-        half = size * uniform(size, positive("mesh", "patch", patch))
-    room = min(0.9 * impact.beam.width / 2, 0.45 * impact.sphere.radius, impact.beam.span / 4)
-    if half > room:
-        raise ValueError(
-            f"mesh.patch = {half!r} m: must be at most {room:.4g} m to fit on beam and sphere; "
-            "a smaller element_size or velocity needs a smaller one"
-        )
-    return half
-
-
 def _cuts(
     beam: Beam, size: float, half: float, depth: float, ratio: float, largest: float
 ) -> tuple[Floats, Floats, Floats]:
-    """Where the beam is cut along x, y and z (ascending); z holds its axis."""
+    """Where the beam is cut along x, y and z (ascending); z holds its axis.
+
+    A last layer above the axis would be thin where little is left for it: then all are alike.
+    """
     x = graded(size, half, beam.span / 2, ratio, largest)
     y = graded(size, half, beam.width / 2, ratio, largest)
-    upper = graded(size, depth, beam.depth / 2, ratio, largest)
+    fine = depth if beam.depth / 2 - depth > _THINNEST * size else beam.depth / 2
+    upper = graded(size, fine, beam.depth / 2, ratio, largest)
     last = upper[-1] - upper[-2]
     lower = beam.depth / 2 + graded(last, last, beam.depth / 2, ratio, largest)
     return x, y, -np.concatenate([upper, lower[1:]])[::-1]

@@ -26,6 +26,7 @@ _OWN = {
     "displacement": ("m", "displacement of the nodes at the end (z upwards)"),
     "von_mises_stress": ("Pa", "von Mises stress at the end, mean of the element"),
     "largest_equivalent_plastic_strain": ("1", "largest PEEQ of an element's integration points"),
+    "sphere_plastic_strain": ("1", "largest PEEQ in the sphere"),
     "one_point_plastic_strain": ("1", "largest PEEQ in elements with one integration point"),
     "node_offset": ("1", "largest slide of matched nodes in touch, over the element size"),
     "kinetic_energy": ("J", "kinetic energy of beam and sphere"),
@@ -44,8 +45,10 @@ _OWN = {
 _COMMENTS = {
     "peak_plastic_strain": "of the beam, the contact included, where it grows with finer meshes",
     "plastic_dissipation": "in all of beam and sphere, the contact included",
-    "permanent_indentation": "mean of what the surfaces keep of the indentation after the last "
-    "contact",
+    "permanent_indentation": "mean of what the surfaces keep of the indentation from the last "
+    "contact to the end: vibrations that go on until then leave a part of themselves",
+    "number_of_contacts": "without pauses in which a wave does not cross the patch twice there and "
+    "back",
     "sphere_displacement": "of the sphere's centre of mass",
     "midspan_deflection": "of the axis, at mid-depth and mid-width",
 }
@@ -77,6 +80,8 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
     dataset.attrs = provenance() | {"model": "3-D finite elements"}
     if history.stopped:
         dataset.attrs["stopped"] = history.stopped
+    if history.patch_needed:
+        dataset = dataset.assign_attrs(patch_needed=history.patch_needed)
     return _named(dataset)
 
 

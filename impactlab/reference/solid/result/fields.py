@@ -39,9 +39,10 @@ def _mises(group: Group) -> Floats:
 
 
 def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, float]:
-    """Answers about PEEQ, by the names of dataset.RESPONSES; strain: each element's largest.
+    """Answers about the beam's PEEQ, by the names of dataset.RESPONSES.
 
-    And one_point_plastic_strain: where bending is not integrated over an element.
+    strain: each element's largest. And sphere_plastic_strain, and one_point_plastic_strain: where
+    bending is not integrated over an element.
     """
     points = mesh.nodes[mesh.elements, 0]
     beam = mesh.body == BEAM
@@ -50,6 +51,7 @@ def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, f
     return {
         "peak_plastic_strain": float(strain[beam].max()),
         "remote_plastic_strain": float(strain[remote].max(initial=0.0)),
+        "sphere_plastic_strain": float(strain[~beam].max(initial=0.0)),
         "one_point_plastic_strain": float(coarse.max(initial=0.0)),
         "plastic_zone_length": _length(points[beam & (strain > PLASTIC_ZONE_STRAIN)]),
     }

@@ -53,12 +53,14 @@ class History:
     """moments: one a step. energies: one a checkpoint. stopped: why before its time, else "".
 
     offset: largest distance by which matched nodes that touched had slid, over the element size.
+    patch_needed: of matched nodes in m, where the contact outgrew its own; else 0.
     """
 
     moments: list[Moment] = field(default_factory=list)
     energies: list[Energies] = field(default_factory=list)
     stopped: str = ""
     offset: float = 0.0
+    patch_needed: float = 0.0
 
     def table(self) -> Floats:
         """The moments, (7, steps)."""

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from impactlab.model.impact import Impact
+from impactlab.reference.solid.mesh.extent import largest_patch
 from impactlab.reference.solid.mesh.mesh import Floats
 from impactlab.reference.solid.stepping.critical import critical_step
 from impactlab.reference.solid.stepping.history import Energies, History, Moment
@@ -28,7 +29,12 @@ _FLAT = 0.1
 
 
 class PatchTooSmallError(ValueError):
-    """Sphere and beam touch where their nodes are not matched."""
+    """Sphere and beam touch where their nodes are not matched. needed: the patch to take, in m."""
+
+    def __init__(self, message: str, needed: float) -> None:
+        """With what a person is told."""
+        super().__init__(message)
+        self.needed = needed
 
 
 class March:
@@ -48,25 +54,29 @@ class March:
     def run(self, duration: float, progress: Progress | None = None) -> History:
         """March on to `duration` (s), or until something is wrong or Ctrl-C is pressed.
 
-        Raises ValueError where that is less than a step, and PatchTooSmallError when the contact
-        leaves the matched patch.
+        Raises ValueError where that is less than a step.
         """
         if duration <= self._dt:
             raise ValueError(
                 f"solve.duration = {duration!r} s: must be longer than a step of {self._dt:.3g} s"
             )
         try:
-            for checkpoint in range(1, CHECKPOINTS + 1):
-                self._advance(duration * checkpoint / CHECKPOINTS)
-                if progress:
-                    progress(self._time, checkpoint / CHECKPOINTS)
-                if self.history.stopped:
-                    break
-        except KeyboardInterrupt:
+            self._to(duration, progress)
+        except (PatchTooSmallError, KeyboardInterrupt) as reason:
             if len(self.history.moments) < 2:
                 raise  # there is nothing to keep
-            self.history.stopped = f"interrupted at {self._time:.4g} s"
+            self.history.stopped = str(reason) or f"interrupted at {self._time:.4g} s"
+            self.history.patch_needed = getattr(reason, "needed", 0.0)
         return self.history
+
+    def _to(self, duration: float, progress: Progress | None) -> None:
+        """Checkpoint by checkpoint."""
+        for checkpoint in range(1, CHECKPOINTS + 1):
+            self._advance(duration * checkpoint / CHECKPOINTS)
+            if self.history.stopped:
+                break
+            if progress:
+                progress(self._time, checkpoint / CHECKPOINTS)
 
     def _advance(self, end: float) -> None:
         """Steps until `end` (s), then a checkpoint."""
@@ -89,7 +99,7 @@ class March:
         pole, axis, top = mesh.nodes[at, 2] - system.x[at, 2]
         system.move(self._kick, self._dt)
         if system.beyond:
-            raise PatchTooSmallError(self._needed())
+            raise self._outgrown()
         force = 4.0 * system.impulse / self._kick
         mass = self.impact.sphere.total_mass
         self._velocity += self._kick * (self.impact.gravity - force / mass)
@@ -154,15 +164,15 @@ class March:
         self._kick, self._dt = 0.5 * (self._dt + shorter), shorter
         return ""
 
-    def _needed(self) -> str:
+    def _outgrown(self) -> PatchTooSmallError:
         """Work up to a contact radius grows with its fourth power at the least (a plastic one)."""
         mesh, first = self.system.mesh, self.impact.velocity**2
-        needed = (
-            1.1
-            * mesh.patch
-            * (first / (first - min(self._velocity, 0.999 * first**0.5) ** 2)) ** 0.25
-        )
-        return (
+        left = min(self._velocity, 0.999 * first**0.5) ** 2
+        needed = 1.1 * mesh.patch * (first / (first - left)) ** 0.25
+        told = (
             f"at {self._time:.4g} s the contact has grown beyond the matched patch of "
             f"{1e3 * mesh.patch:.4g} mm: take patch = {needed:.4g} m or more"
         )
+        if needed > (room := largest_patch(self.impact)):
+            told += f"; beam and sphere have room for {room:.4g} m"
+        return PatchTooSmallError(told, needed)

@@ -16,8 +16,8 @@ from impactlab.reference.solid.mesh.mesh import Integers
 from impactlab.reference.solid.stepping.groups import Group
 from impactlab.reference.solid.types import Array
 
-PIECES = 24
-"""Of a group: the most threads that can share it, in equal parts for 2, 3, 4, 6, 8 or 12."""
+MOST_THREADS = 24
+"""Pieces of a group: it is shared equally by 2, 3, 4, 6, 8 or 12 threads, too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class Rows:
 
 def blocks_of(group: Group, first: int, end: int) -> tuple[int, int]:
     """The blocks of a group's pieces from the first to before the one named by `end`."""
-    return group.blocks * first // PIECES, group.blocks * end // PIECES
+    return group.blocks * first // MOST_THREADS, group.blocks * end // MOST_THREADS
 
 
 def force_rows(groups: Sequence[Group], nodes: int) -> Rows:
@@ -45,7 +45,7 @@ def force_rows(groups: Sequence[Group], nodes: int) -> Rows:
     count = 0
     for group in groups:
         rows = np.empty_like(group.nodes)
-        for piece in range(PIECES):
+        for piece in range(MOST_THREADS):
             blocks = slice(*blocks_of(group, piece, piece + 1))
             own, place = np.unique(group.nodes[blocks], return_inverse=True)
             rows[blocks] = count + place.reshape(rows[blocks].shape)

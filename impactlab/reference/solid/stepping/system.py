@@ -13,7 +13,7 @@ from impactlab.reference.solid.stepping.groups import make_groups
 from impactlab.reference.solid.stepping.kick import kick
 from impactlab.reference.solid.stepping.masses import nodal_masses
 from impactlab.reference.solid.stepping.parts import Parts
-from impactlab.reference.solid.stepping.rows import PIECES, blocks_of, force_rows
+from impactlab.reference.solid.stepping.rows import MOST_THREADS, blocks_of, force_rows
 
 
 class System:
@@ -44,7 +44,7 @@ class System:
         """The elements take up a motion of dt (s) with v, which has led to x."""
 
         def work(part: int) -> None:
-            pieces = self.parts.share(part, PIECES)
+            pieces = self.parts.share(part, MOST_THREADS)
             for group, rows in zip(self.groups, self.rows.of_groups, strict=True):
                 group.kernel(
                     blocks_of(group, *pieces),

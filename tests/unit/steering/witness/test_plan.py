@@ -144,3 +144,17 @@ def test_numbers_that_make_no_sense_are_refused(quick, name):
 def test_a_patch_that_does_not_fit_is_refused(quick):
     with pytest.raises(ValueError, match="to fit on beam and sphere"):
         planned(quick, patch=0.05)
+
+
+def test_threads_beyond_the_machines_make_nothing_faster(quick, monkeypatch):
+    found = planned(quick, element_size=2e-3)
+    monkeypatch.setattr(plans, "CPU_COUNT", 4)
+    assert found.seconds(4) == found.seconds(1000) < found.seconds(1)
+    assert found.seconds(1) > found.cost.cpu_seconds
+
+
+def test_a_long_run_on_many_nodes_is_planned_at_once_and_its_beams_are_priced(quick):
+    many = replace(quick, discretisation=replace(quick.discretisation, nodes=4001), longest=1.0)
+    found = planned(many, element_size=2e-3)
+    assert found.first_contact == pytest.approx(0.2e-3, rel=0.05)
+    assert found.beam_seconds > 100.0 * planned(quick, element_size=2e-3).beam_seconds

@@ -10,6 +10,7 @@ import pytest
 
 from impactlab.model.paper import paper_impact
 from impactlab.reference.solid.mesh import BEAM, SPHERE, estimate, quarter_mesh
+from impactlab.reference.solid.mesh.extent import contact_radius
 from impactlab.reference.solid.mesh.mesh import CORNERS
 
 RADIUS, SPAN, WIDTH, DEPTH = 0.035, 0.78, 0.06, 0.0278
@@ -109,6 +110,27 @@ def test_an_inverted_element_is_named(mesh):
 def test_a_patch_beyond_the_bodies_is_refused():
     with pytest.raises(ValueError, match=r"mesh\.patch = 0\.0"):
         quarter_mesh(paper_impact(), element_size=1e-3, patch=0.02)
+
+
+@pytest.mark.parametrize("depth", [4.002, 4.2, 6.02, 6.9, 7.37, 8.3, 10.1, 27.8])
+def test_no_layer_is_much_thinner_than_the_elements_of_the_contact(depth):
+    paper = paper_impact()
+    impact = replace(paper, beam=replace(paper.beam, depth=1e-3 * depth))
+    fine = quarter_mesh(impact, element_size=1e-3, patch=3e-3)
+    layers = np.diff(np.unique(fine.nodes[fine.elements[fine.body == BEAM], 2]))
+    assert layers.min() > 0.65e-3
+    assert layers.sum() == pytest.approx(1e-3 * depth)
+
+
+def test_an_estimated_patch_gives_up_its_margin_where_the_bodies_end():
+    paper = paper_impact(velocity=20.0)
+    narrow = replace(paper, beam=replace(paper.beam, width=0.03))
+    assert contact_radius(narrow) < 0.9 * 0.015 < 14e-3  # what 1.25 of it would be
+    assert quarter_mesh(narrow, element_size=1e-3).patch == pytest.approx(13e-3)
+    narrower = replace(paper, beam=replace(paper.beam, width=0.02))
+    assert contact_radius(narrower) > 0.9 * 0.01
+    with pytest.raises(ValueError, match=r"must be at most 0\.009 m to fit"):
+        quarter_mesh(narrower, element_size=1e-3)
 
 
 def test_a_faster_impact_has_a_wider_patch_and_its_middle_fully_integrated():

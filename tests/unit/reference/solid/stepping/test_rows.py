@@ -7,7 +7,7 @@ import numpy as np
 from impactlab.reference.solid.elements.lanes import W
 from impactlab.reference.solid.mesh.beam import brick
 from impactlab.reference.solid.stepping.groups import _group
-from impactlab.reference.solid.stepping.rows import PIECES, blocks_of, force_rows
+from impactlab.reference.solid.stepping.rows import MOST_THREADS, blocks_of, force_rows
 
 STEEL = (210e9, 0.3, 80e9, 175e9, 345e6, 0.0, 0.0)
 
@@ -44,15 +44,15 @@ def test_pieces_share_no_row():
     pieces = [
         set(own[slice(*blocks_of(group, piece, piece + 1))].ravel().tolist())
         for group, own in zip(groups, rows.of_groups, strict=True)
-        for piece in range(PIECES)
+        for piece in range(MOST_THREADS)
     ]
     assert sum(map(len, pieces)) == len(set().union(*pieces)) == rows.count
 
 
 def test_blocks_are_all_shared_out_in_their_order():
     _, (_, group) = two_groups()
-    ends = [blocks_of(group, piece, piece + 1) for piece in range(PIECES)]
+    ends = [blocks_of(group, piece, piece + 1) for piece in range(MOST_THREADS)]
     assert ends[0][0] == 0
     assert ends[-1][1] == group.blocks
     assert [end for _, end in ends[:-1]] == [first for first, _ in ends[1:]]
-    assert blocks_of(group, 0, PIECES) == (0, group.blocks)
+    assert blocks_of(group, 0, MOST_THREADS) == (0, group.blocks)

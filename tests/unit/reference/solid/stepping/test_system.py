@@ -64,13 +64,16 @@ def test_the_critical_step_leaves_the_system_as_it_was(mesh):
     assert not any(group.state.any() for group in one.groups)
 
 
-def test_the_estimate_of_memory_and_steps_holds(mesh):
-    cost = estimate(mesh, IMPACT, duration=1e-3)
+@pytest.mark.parametrize("mass", [None, 0.1, 10.0])
+def test_the_estimate_of_memory_and_steps_holds(mesh, mass):
+    impact = replace(IMPACT, sphere=replace(IMPACT.sphere, mass=mass))
+    cost = estimate(mesh, impact, duration=1e-3)
     with Parts(1) as parts:
-        system = System(mesh, IMPACT, parts)
+        system = System(mesh, impact, parts)
         steps = 1e-3 / (SAFETY * critical_step(system))
     arrays = [value for value in vars(system).values() if isinstance(value, np.ndarray)]
     arrays += [part for group in system.groups for part in (group.nodes, group.state)]
+    arrays += [*system.rows.of_groups, system.rows.starts, system.rows.slots]
     held = sum(array.nbytes for array in arrays)
     assert held < cost.memory_bytes < 2.5 * held
     assert cost.steps == pytest.approx(steps, rel=0.15)
