@@ -175,7 +175,7 @@ def _solve(plan: Plan, workers: int, folder: Path) -> None:
     from impactlab.study.vtu import write_vtu
 
     _writable(folder)
-    spare = folder.with_name(f"{folder.resolve().name}_stopped")
+    spare = folder.parent / f"{folder.resolve().name}_stopped"
     guarded = _is_whole(folder / "witness.nc")
     solid = _marched(plan, workers)
     if "stopped" in solid.attrs and guarded:
