@@ -13,9 +13,11 @@ from impactlab.report.section import Section
 from impactlab.report.table import Cell, Table
 
 _LEAD = (
-    "Each model on its finest grid, with its numerical uncertainty (± of the value itself), and "
-    "its difference from the 3-D finite-element model."
+    "Each model on its finest grid, with its numerical uncertainty (± of the value itself; none "
+    "where a finer grid changes nothing), and its difference from the 3-D finite-element model."
 )
+_NOTHING = 1e-8
+"""Uncertainty over the value that is round-off's."""
 _PARTS = (
     "The answer of the paper's beam is turned into that of the solid one effect after the other: "
     "(1 + shear)(1 + elasticity)(1 + law) = 1 + all."
@@ -58,7 +60,7 @@ def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, ali
         return Cell("missing", "warning")
     text = words.number(float(unit(value)))
     width = float(side.uncertainty[at])
-    if value:
+    if value and not width <= _NOTHING * abs(value):
         bound = f"{words.number(100.0 * width / abs(value), 2)} %" if np.isfinite(width) else "?"
         text = f"{text} ± {bound}"
     gap = float(witness.difference(side, against).value[at])

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import witnesses
+import xarray as xr
 
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.reading import parts, witness
-from impactlab.report.witness import sections
+from impactlab.figures.reading.units import display
+from impactlab.report.witness import _cell, sections
 
 SPEEDS = np.array(witnesses.SPEEDS)
 
@@ -93,6 +95,15 @@ def test_what_is_not_the_same_quantity_is_not_compared(study):
     assert "not compared" in unlike.caption
     assert {cell.detail for row in unlike.rows for cell in row} == {""}
     assert "not compared" not in alike.caption
+
+
+def test_a_width_is_told_unless_it_is_that_of_round_off():
+    widths, unit = (
+        np.array([1e-9, 0.02, np.inf]),
+        display(xr.DataArray(2.0, name="number", attrs={"units": "1"})),
+    )
+    side = witness.Side(np.full(3, 2.0), widths)
+    assert [_cell(unit, side, side, at, True).text for at in range(3)] == ["2", "2 ± 1 %", "2 ± ?"]
 
 
 @pytest.fixture(scope="module")
