@@ -18,7 +18,7 @@ from impactlab.verification.stored import packed
 ROOT = Path(__file__).parents[2]
 
 
-def snakemake(folder, *args, studies="smoke,checks"):
+def snakemake(folder, *args, studies="smoke,again,checks"):
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     command = [sys.executable, "-m", "snakemake", "--cores", "2", "--config", f"studies={studies}"]
     return subprocess.run(
@@ -38,6 +38,8 @@ def folder(tmp_path_factory):
         shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("Snakefile", "environment.yaml"):
         shutil.copy(ROOT / name, copy)
+    smoke = (copy / "studies" / "smoke.yaml").read_text()
+    (copy / "studies" / "again.yaml").write_text(smoke.replace("0.99 m/s", "2 m/s"))
     (copy / "studies" / "checks.yaml").write_text("title: Checks\nchecks: [half_space]\n")
     done = snakemake(copy)
     assert done.returncode == 0, done.stderr
@@ -46,9 +48,10 @@ def folder(tmp_path_factory):
 
 def test_every_product_is_there(folder):
     results = folder / "results"
-    assert "smoke/report.html" in (results / "index.html").read_text()
-    for name in ("design.nc", "runs.nc", "analysis.nc", "report.html", "figures/captions.json"):
-        assert (results / "smoke" / name).stat().st_size > 0
+    for study in ("smoke", "again"):
+        assert f"{study}/report.html" in (results / "index.html").read_text()
+        for name in ("design.nc", "runs.nc", "analysis.nc", "report.html", "figures/captions.json"):
+            assert (results / study / name).stat().st_size > 0
     assert "checks/report.html" in (results / "index.html").read_text()
     for name in ("findings.nc", "report.html", "figures/captions.json"):
         assert (results / "checks" / name).stat().st_size > 0
