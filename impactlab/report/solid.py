@@ -21,7 +21,7 @@ from impactlab.study.words import amount, time
 _NAMES = {SOLID: "3-D"}
 _NARROW: dict[str, Any] = {"box": box.SIMPLE, "show_edge": False, "padding": 0}
 """Fits 80 columns."""
-_WHOLE = 100.0
+_WHOLE = 9.95
 """Difference in % from which on it is told without a decimal."""
 _FAR = 1e-3
 """PEEQ of elements that are not fully integrated, from which on it is told."""
