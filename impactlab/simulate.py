@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from impactlab.compiled.apart import compile_apart
 from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
 from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
-from impactlab.kernels.apart import compile_apart
 from impactlab.kernels.case import CASE, REAL, WHOLE
 from impactlab.kernels.contact import LAWS
+from impactlab.kernels.contact.history import CONTACT
 from impactlab.kernels.leapfrog import run_all
 from impactlab.kernels.quadrature import rule_points
 from impactlab.kernels.responses import RESPONSE
+from impactlab.kernels.track import TRACK
 from impactlab.model.checks import integer, positive
 from impactlab.model.columns import anywhere, column
 from impactlab.model.discretisation import Discretisation
@@ -167,8 +169,9 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
     deflection = np.full((runs, half), np.nan)
     strains = np.full((2, runs, half, fibres), np.nan)
-    compile_apart("leapfrog.run_all", _COMPILE)
-    run_all(cases, responses, histories, deflection, strains[0], strains[1])
+    compile_apart(run_all, _COMPILE)
+    contacts, tracks = np.zeros(runs, CONTACT), np.zeros(runs, TRACK)
+    run_all(cases, responses, contacts, tracks, histories, deflection, strains[0], strains[1])
     return Answers(
         responses,
         dict(zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)) if samples else {},

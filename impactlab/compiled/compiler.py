@@ -9,11 +9,13 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+from impactlab.compiled.kernel_cache import KernelCache
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def sources_hash(root: Path) -> str:
-    """SHA-256 (hex) over paths and bytes of all sources in `root` and here, and numba's version."""
+    """Return the SHA-256 (hex) of all sources in `root` and here, and of numba's version."""
     digest = hashlib.sha256(numba.__version__.encode())
     for folder in (root, Path(__file__).parent):
         for path in sorted(folder.rglob("*.py")):
@@ -23,28 +25,24 @@ def sources_hash(root: Path) -> str:
 
 
 def compiled_in(
-    cache: Path | None,
+    folder: Path | None,
     function: Function,
     fastmath: Any,
     *,
     kept: bool = True,
     inline: bool = False,
+    allocates: bool = False,
 ) -> Function:
-    """`function` compiled (or as it is under NUMBA_DISABLE_JIT=1).
+    """Return `function` compiled (or as it is under NUMBA_DISABLE_JIT=1).
 
-    cache: the folder to keep it in, unless `kept` is False. inline: into whatever calls it.
+    folder: where it is kept, unless `kept` is False. inline: into whatever calls it. allocates:
+    with numba's counting of references (`_nrt`), which costs time at each call; without it a
+    function that makes an array does not compile, and none can be freed too early.
     """
-    config: Any = numba.config  # numba's types do not list its settings
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(cache or "")
-    try:
-        jit: Any = numba.njit(
-            cache=kept and cache is not None,
-            nogil=True,
-            error_model="numpy",
-            fastmath=fastmath,
-            forceinline=inline,
-        )
-        return cast(Function, jit(function))
-    finally:
-        config.CACHE_DIR = before
+    jit: Any = numba.njit  # its types do not list `_nrt`
+    dispatcher = jit(
+        nogil=True, error_model="numpy", fastmath=fastmath, forceinline=inline, _nrt=allocates
+    )(function)
+    if kept and folder is not None and dispatcher is not function:
+        dispatcher._cache = KernelCache(folder, function)
+    return cast(Function, dispatcher)

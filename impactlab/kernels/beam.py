@@ -15,9 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.kernels.arrays import ONE, TWO, lent
-from impactlab.kernels.jit import compiled, vectorised
-from impactlab.kernels.types import Array
+from impactlab.kernels.jit import allocating, compiled, vectorised
+from impactlab.kernels.types import ONE, TWO, Array
 
 
 class Beam(NamedTuple):
@@ -63,17 +62,11 @@ def make_grid(n: int, dx: float, dt: float, mu: float, EI: float) -> Grid:
     return Grid(n + 1, dx, dt, mu, 1.0 / dx**2, factor, factor * EI / dx**2, dt**2 / (mu * dx))
 
 
-@compiled
+@allocating
 def make_beam(grid: Grid) -> Beam:
     """A beam at rest, nowhere yielded."""
     size = grid.mid + 3
     return Beam(np.zeros((2, size)), np.zeros(size), np.zeros(size), np.zeros(size))
-
-
-@compiled
-def lend_beam(beam: Beam) -> Beam:
-    """The same beam, its arrays lent."""
-    return Beam(lent(beam.w), lent(beam.u), lent(beam.du), lent(beam.plastic))
 
 
 @compiled

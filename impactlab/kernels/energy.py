@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from impactlab.kernels import fibre
-from impactlab.kernels.arrays import ONE, TWO
 from impactlab.kernels.beam import Beam, Grid
 from impactlab.kernels.jit import compiled, vectorised
 from impactlab.kernels.section import Section
-from impactlab.kernels.types import Array
+from impactlab.kernels.types import ONE, TWO, Array
 from impactlab.kernels.yielding import Yielding
 
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from impactlab.compiled.cache import cache_folder
 from impactlab.compiled.compiler import compiled_in, sources_hash
+from impactlab.compiled.folder import cache_folder
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -20,8 +20,20 @@ CACHE = cache_folder(SOURCES_HASH)
 
 
 def compiled(function: Function) -> Function:
-    """`function` as a compiled kernel (or as it is under NUMBA_DISABLE_JIT=1)."""
+    """`function` as a compiled kernel (or as it is under NUMBA_DISABLE_JIT=1).
+
+    It can make no arrays, nor free any: what it works on belongs to whoever called it. One that
+    makes an array does not compile.
+    """
     return compiled_in(CACHE, function, False)
+
+
+def allocating(function: Function) -> Function:
+    """Like `compiled`, for a function that makes arrays, or owns them while others work on them.
+
+    A record of an array does not keep it alive here, so arrays of records come from Python.
+    """
+    return compiled_in(CACHE, function, False, allocates=True)
 
 
 def vectorised(function: Function) -> Function:

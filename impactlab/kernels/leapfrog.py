@@ -11,11 +11,9 @@ import numpy as np
 
 from impactlab.kernels import responses
 from impactlab.kernels import track as watch
-from impactlab.kernels.arrays import end_loan, lent
 from impactlab.kernels.beam import (
     Beam,
     Grid,
-    lend_beam,
     make_beam,
     make_grid,
     move,
@@ -24,9 +22,9 @@ from impactlab.kernels.beam import (
     strike,
 )
 from impactlab.kernels.contact import history as contact_history
-from impactlab.kernels.contact.history import CONTACT, Pair, make_pair
+from impactlab.kernels.contact.history import Pair, make_pair
 from impactlab.kernels.energy import plastic_energy
-from impactlab.kernels.jit import compiled
+from impactlab.kernels.jit import allocating, compiled
 from impactlab.kernels.lumped import mid_span
 from impactlab.kernels.others import (
     RIGID,
@@ -36,11 +34,10 @@ from impactlab.kernels.others import (
     Others,
     beam_energy,
     is_explicit,
-    lend_others,
     make_others,
     other_step,
 )
-from impactlab.kernels.section import Section, lend_section, make_section
+from impactlab.kernels.section import Section, make_section
 from impactlab.kernels.stability import (
     critical_time_step,
     lumped_time_step,
@@ -48,8 +45,7 @@ from impactlab.kernels.stability import (
     timoshenko_time_step,
 )
 from impactlab.kernels.status import DIVERGED, ENERGY_OUT_OF_BALANCE
-from impactlab.kernels.timoshenko import make_shear
-from impactlab.kernels.track import TRACK
+from impactlab.kernels.timoshenko import shear_stiffness
 from impactlab.kernels.types import Array, Record
 from impactlab.kernels.yielding import (
     Yielding,
@@ -58,7 +54,6 @@ from impactlab.kernels.yielding import (
     curvature,
     follow_tangents,
     leave_tangents,
-    lend_yielding,
     make_yielding,
 )
 
@@ -84,7 +79,7 @@ def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
 def _largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
     """In s, of the case's model of the beam and scheme."""
     if case.beam_model == TIMOSHENKO:
-        return timoshenko_time_step(case, pair, EI, make_shear(case, 0).stiffness, dx)
+        return timoshenko_time_step(case, pair, EI, shear_stiffness(case), dx)
     if case.beam_model == SPRING_MASS:
         mass, stiffness = mid_span(case, EI)
         return lumped_time_step(case, pair, mass, stiffness)
@@ -176,10 +171,12 @@ def _answer(
     answer.energy_error = track.energy_error
 
 
-@compiled
+@allocating
 def run(
     case: Record,
     answer: Record,
+    contact: Record,
+    track: Record,
     samples: Array,
     deflection: Array,
     plastic_strain: Array,
@@ -187,7 +184,8 @@ def run(
 ) -> None:
     """Solve one case.
 
-    case: a CASE record. answer: a RESPONSE record, filled. samples: shape (5, S), filled with
+    case: a CASE record. answer: a RESPONSE record, filled. contact, track: zeros, of CONTACT and
+    TRACK, for the run to work in. samples: shape (5, S), filled with
     force, mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
     intervals from 0 to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq
     (n + 1, P // 2): filled with the half beam's final state; length 0 for none. A run that
@@ -197,30 +195,24 @@ def run(
     grid, steps = discretise(case, pair, section)
     beam, held = make_beam(grid), make_yielding(grid, section)
     others = make_others(case, section, grid)
-    contact, track = np.zeros(1, CONTACT), np.zeros(1, TRACK)
     now = march(
         case,
         pair,
-        lend_section(section),
+        section,
         grid,
-        lend_beam(beam),
-        lend_yielding(held),
-        lend_others(others),
-        contact[0],
-        track[0],
-        lent(samples),
+        beam,
+        held,
+        others,
+        contact,
+        track,
+        samples,
         steps,
     )
-    end_loan(section)
-    end_loan(beam)
-    end_loan(held)
-    end_loan(others)
-    end_loan(samples)
     if now < 0:
         responses.clear(answer, DIVERGED)
         samples[:] = np.nan
         return
-    _answer(answer, case, pair, section, grid, held, contact[0], track[0])
+    _answer(answer, case, pair, section, grid, held, contact, track)
     if deflection.size > 0:
         along = slice(1, grid.mid + 1)
         deflection[:] = beam.w[now, along]
@@ -244,7 +236,7 @@ def march(
 ) -> int:
     """From first touch to the end of the duration; which row of beam.w is the last, or -1.
 
-    -1: it diverged. The arrays are lent ones; contact and track are kept up to date.
+    -1: it diverged. contact and track are kept up to date.
     """
     w, u, plastic = beam.w, beam.u, beam.plastic
     kappa_min, kappa_max, M_0 = held.kappa_min, held.kappa_max, held.M_0
@@ -300,15 +292,30 @@ def march(
     return 1 - now
 
 
-@compiled
+@allocating
 def run_all(
     cases: Array,
     answers: Array,
+    contacts: Array,
+    tracks: Array,
     samples: Array,
     deflection: Array,
     plastic_strain: Array,
     peeq: Array,
 ) -> None:
-    """Solve every case; the arrays of `run` with one more dimension in front, the run."""
+    """Solve every case; the arrays of `run` with one more dimension in front, the run.
+
+    A record does not keep its array alive in compiled code, so kernels make no arrays of records:
+    those of all runs are the caller's, who holds them until this returns.
+    """
     for r in range(cases.size):
-        run(cases[r], answers[r], samples[r], deflection[r], plastic_strain[r], peeq[r])
+        run(
+            cases[r],
+            answers[r],
+            contacts[r],
+            tracks[r],
+            samples[r],
+            deflection[r],
+            plastic_strain[r],
+            peeq[r],
+        )

@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.kernels.arrays import lent
 from impactlab.kernels.beam import Beam, Grid, mirror
-from impactlab.kernels.jit import compiled
+from impactlab.kernels.jit import allocating, compiled
 from impactlab.kernels.types import Array, Record
 
 
@@ -28,7 +27,7 @@ class Lumped(NamedTuple):
     shape: Array
 
 
-@compiled
+@allocating
 def make_lumped(case: Record, rigid: bool, EI: float, grid: Grid) -> Lumped:
     """The model of a case's beam; EI: the section's (N m2)."""
     if rigid:
@@ -38,19 +37,13 @@ def make_lumped(case: Record, rigid: bool, EI: float, grid: Grid) -> Lumped:
 
 
 @compiled
-def lend_lumped(lumped: Lumped) -> Lumped:
-    """The same, its array lent."""
-    return Lumped(lumped.mass, lumped.stiffness, lent(lumped.shape))
-
-
-@compiled
 def mid_span(case: Record, EI: float) -> tuple[float, float]:
     """(generalised mass in kg, static stiffness in N/m) of the mid-span."""
     beam = case.beam_density * case.beam_width * case.beam_depth * case.beam_span
     return 17.0 / 35.0 * beam, 48.0 * EI / case.beam_span**3
 
 
-@compiled
+@allocating
 def _static_shape(grid: Grid) -> Array:
     """Of the finite differences, whose curvature grows in proportion from support to mid-span."""
     mid = grid.mid

@@ -10,18 +10,17 @@ from typing import NamedTuple
 from impactlab.kernels import BEAM_MODELS, SCHEMES
 from impactlab.kernels.beam import Beam, Grid
 from impactlab.kernels.energy import bending_energy, kinetic_energy, plastic_energy
-from impactlab.kernels.jit import compiled
-from impactlab.kernels.lumped import Lumped, lend_lumped, lumped_energy, lumped_step, make_lumped
+from impactlab.kernels.jit import allocating, compiled
+from impactlab.kernels.lumped import Lumped, lumped_energy, lumped_step, make_lumped
 from impactlab.kernels.section import Section
 from impactlab.kernels.semi_implicit import (
     Filter,
     filtered_kinetic_energy,
     filtered_step,
-    lend_filter,
     make_filter,
     no_filter,
 )
-from impactlab.kernels.timoshenko import Shear, lend_shear, make_shear, shear_energy, shear_step
+from impactlab.kernels.timoshenko import Shear, make_shear, shear_energy, shear_step
 from impactlab.kernels.types import Record
 from impactlab.kernels.yielding import Yielding
 
@@ -46,7 +45,7 @@ def is_explicit(case: Record) -> bool:
     return case.beam_model <= ELASTIC and case.scheme != SEMI_IMPLICIT
 
 
-@compiled
+@allocating
 def make_others(case: Record, section: Section, grid: Grid) -> Others:
     """At rest."""
     filtered = case.beam_model <= ELASTIC and case.scheme == SEMI_IMPLICIT
@@ -55,12 +54,6 @@ def make_others(case: Record, section: Section, grid: Grid) -> Others:
         make_shear(case, grid.mid + 3 if case.beam_model == TIMOSHENKO else 0),
         make_lumped(case, case.beam_model == RIGID, section.stiffness, grid),
     )
-
-
-@compiled
-def lend_others(others: Others) -> Others:
-    """The same, its arrays lent."""
-    return Others(lend_filter(others.filter), lend_shear(others.shear), lend_lumped(others.lumped))
 
 
 @compiled

@@ -129,7 +129,9 @@ def read_beam(
     answer.plastic_zone_length = 0.0
     strain_before = 0.0
     for i in range(2, grid.mid + 1):
-        strain = np.max(peeq[i])
+        strain = 0.0
+        for j in range(peeq.shape[1]):
+            strain = max(strain, peeq[i, j])
         answer.peak_plastic_strain = max(answer.peak_plastic_strain, strain)
         if (grid.mid - i) * grid.dx > case.beam_depth:
             answer.remote_plastic_strain = max(answer.remote_plastic_strain, strain)

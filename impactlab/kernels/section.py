@@ -14,8 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.kernels import BEAM_MODELS, fibre
-from impactlab.kernels.arrays import lent
-from impactlab.kernels.jit import compiled, vectorised
+from impactlab.kernels.jit import allocating, compiled, vectorised
 from impactlab.kernels.quadrature import upper_half
 from impactlab.kernels.types import Array, Record
 
@@ -52,7 +51,7 @@ class Section(NamedTuple):
     moduli: Moduli
 
 
-@compiled
+@allocating
 def make_section(case: Record) -> Section:
     """The section of a case."""
     half = case.points // 2
@@ -75,19 +74,6 @@ def make_section(case: Record) -> Section:
             case.beam_isotropic_hardening_modulus,
             case.beam_kinematic_hardening_modulus,
         ),
-    )
-
-
-@compiled
-def lend_section(section: Section) -> Section:
-    """The same section, its arrays lent."""
-    return Section(
-        lent(section.z),
-        lent(section.area),
-        lent(section.lever),
-        section.stiffness,
-        section.yield_curvature,
-        section.moduli,
     )
 
 

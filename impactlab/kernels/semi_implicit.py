@@ -17,11 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.kernels.arrays import ONE, TWO, lent
 from impactlab.kernels.beam import Beam, Grid, mirror
-from impactlab.kernels.jit import compiled, ordered, vectorised
+from impactlab.kernels.jit import allocating, compiled, ordered, vectorised
 from impactlab.kernels.section import Section
-from impactlab.kernels.types import Array
+from impactlab.kernels.types import ONE, TWO, Array
 from impactlab.kernels.yielding import Yielding, begin_tangents, follow_tangents, leave_tangents
 
 BETA = 0.5
@@ -49,7 +48,7 @@ class Filter(NamedTuple):
     between: tuple[float, float, float]
 
 
-@compiled
+@allocating
 def make_filter(grid: Grid, EI: float) -> Filter:
     """The factors, for a half beam of at least 8 spacings."""
     alpha2 = BETA * grid.dt**2 * EI / (grid.mu * grid.dx**4)
@@ -70,7 +69,7 @@ def make_filter(grid: Grid, EI: float) -> Filter:
     return Filter(alpha2, first, length, below, beyond, inverse, by_s, by_t, between)
 
 
-@compiled
+@allocating
 def no_filter() -> Filter:
     """What stands in its place in an explicit run: no rows."""
     none = np.zeros((0, 2))
@@ -79,23 +78,7 @@ def no_filter() -> Filter:
     )
 
 
-@compiled
-def lend_filter(filter: Filter) -> Filter:
-    """The same filter, its arrays lent."""
-    return Filter(
-        filter.alpha2,
-        filter.first,
-        filter.length,
-        lent(filter.below),
-        lent(filter.beyond),
-        lent(filter.inverse),
-        lent(filter.by_s),
-        lent(filter.by_t),
-        filter.between,
-    )
-
-
-@compiled
+@allocating
 def _factorise(alpha2: float, first: int, length: int) -> tuple[Array, Array, Array]:
     """L D L^T of both chains: (below, beyond, inverse), see Filter."""
     below, beyond = np.zeros((length + 2, 2)), np.zeros((length + 2, 2))

@@ -12,11 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.kernels.arrays import ONE, lent
 from impactlab.kernels.beam import Beam, Grid, mirror
-from impactlab.kernels.jit import compiled, vectorised
+from impactlab.kernels.jit import allocating, compiled, vectorised
 from impactlab.kernels.section import Section
-from impactlab.kernels.types import Array, Record
+from impactlab.kernels.types import ONE, Array, Record
 from impactlab.kernels.yielding import Yielding, begin_tangents, follow_tangents, leave_tangents
 
 
@@ -38,32 +37,24 @@ class Shear(NamedTuple):
 
 
 @compiled
+def shear_stiffness(case: Record) -> float:
+    """k G A in N."""
+    G = 0.5 * case.beam_youngs_modulus / (1.0 + case.beam_poissons_ratio)
+    return case.shear_coefficient * G * (case.beam_width * case.beam_depth)
+
+
+@allocating
 def make_shear(case: Record, size: int) -> Shear:
     """At rest; size: n + 4, or 0."""
     area = case.beam_width * case.beam_depth
-    G = 0.5 * case.beam_youngs_modulus / (1.0 + case.beam_poissons_ratio)
     return Shear(
-        case.shear_coefficient * G * area,
+        shear_stiffness(case),
         case.beam_density * area * case.beam_depth**2 / 12.0,
         np.zeros(size),
         np.zeros(size),
         np.zeros(size),
         np.zeros(size),
         np.zeros(size),
-    )
-
-
-@compiled
-def lend_shear(shear: Shear) -> Shear:
-    """The same, its arrays lent."""
-    return Shear(
-        shear.stiffness,
-        shear.inertia,
-        lent(shear.psi),
-        lent(shear.spin),
-        lent(shear.d_spin),
-        lent(shear.Q),
-        lent(shear.M),
     )
 
 

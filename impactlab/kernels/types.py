@@ -12,6 +12,9 @@ Array = np.ndarray[Any, Any]
 Record = Any
 """One record of a structured array, its fields read and set by name."""
 Index = Any
-"""A position in an array, of either sign's type: see arrays.py."""
+"""A position in an array, signed or not."""
+ONE, TWO = np.uint64(1), np.uint64(2)
+"""Offsets for an unsigned index. A loop over one gets vectorised from wherever it begins; a signed
+index might be negative, that is, count from the end."""
 Curve = Callable[..., tuple[float, float, float, float]]
 """A contact law: see contact/hertz.py."""

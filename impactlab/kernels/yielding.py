@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.kernels.arrays import ONE, TWO, lent
 from impactlab.kernels.beam import Beam, Grid
-from impactlab.kernels.jit import compiled
+from impactlab.kernels.jit import allocating, compiled
 from impactlab.kernels.section import FAR, Section, bend, tangent
-from impactlab.kernels.types import Array, Index
+from impactlab.kernels.types import ONE, TWO, Array, Index
 
 
 class Yielding(NamedTuple):
@@ -39,7 +38,7 @@ class Yielding(NamedTuple):
     peeq: Array
 
 
-@compiled
+@allocating
 def make_yielding(grid: Grid, section: Section) -> Yielding:
     """Sections never yielded."""
     size, fibres = grid.mid + 3, section.z.size
@@ -51,20 +50,6 @@ def make_yielding(grid: Grid, section: Section) -> Yielding:
         np.zeros((size, 4)),
         np.zeros((size, fibres)),
         np.zeros((size, fibres)),
-    )
-
-
-@compiled
-def lend_yielding(held: Yielding) -> Yielding:
-    """The same, its arrays lent."""
-    return Yielding(
-        lent(held.M_0),
-        lent(held.kappa_min),
-        lent(held.kappa_max),
-        lent(held.on_tangent),
-        lent(held.tangent),
-        lent(held.plastic_strain),
-        lent(held.peeq),
     )
 
 
@@ -163,7 +148,7 @@ def begin_tangents(
         kappa = curvature(beam.w, now, psi, grid, i)
         if kappa > held.kappa_max[i] or kappa < held.kappa_min[i]:
             outside -= 1.0
-            near = beam.plastic[i - ONE : i + TWO].copy()
+            near = (beam.plastic[i - ONE], beam.plastic[i], beam.plastic[i + ONE])
             _begin_tangent(beam, held, section, grid, i, kappa)
             for j in range(max(i - ONE, TWO), i + TWO):  # the support does not move
                 change = beam.plastic[j] - near[j + ONE - i]

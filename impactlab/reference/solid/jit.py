@@ -9,8 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from impactlab.compiled.cache import cache_folder
 from impactlab.compiled.compiler import compiled_in, sources_hash
+from impactlab.compiled.folder import cache_folder
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

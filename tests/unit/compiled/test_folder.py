@@ -1,19 +1,15 @@
-"""The folder of compiled kernels: whose it is, when it goes, and what happens without one."""
+"""The folder of compiled kernels: whose it is, when it is removed, and what happens without one."""
 
 from __future__ import annotations
 
 import os
-import shutil
-import subprocess
-import sys
 import time
 from pathlib import Path
 
 import numba
 import pytest
 
-from impactlab.compiled import cache
-from impactlab.kernels import jit
+from impactlab.compiled import folder as cache
 
 SOURCES, OTHERS = 64 * "a", 64 * "b"
 
@@ -26,7 +22,7 @@ def root(tmp_path, monkeypatch):
 
 def left_alone(folder, days):
     """The folder as if nobody had looked into it for so long."""
-    (folder / "code.nbc").touch()
+    (folder / "code.kernel").touch()
     then = time.time() - 24 * 3600 * days
     os.utime(folder, (then, then))
     return folder
@@ -50,14 +46,14 @@ def test_a_new_folder_takes_away_those_unused_for_a_month(root):
     new = cache.cache_folder(64 * "c")
     assert set(root.iterdir()) == {young, new}
     assert not old.exists()
-    assert (young / "code.nbc").exists()
+    assert (young / "code.kernel").exists()
 
 
 def test_a_folder_in_use_is_not_unused(root):
     folder = left_alone(cache.cache_folder(SOURCES), days=31)
     assert cache.cache_folder(SOURCES) == folder
     cache.cache_folder(OTHERS)
-    assert (folder / "code.nbc").exists()
+    assert (folder / "code.kernel").exists()
 
 
 def test_what_is_not_ours_stays(root, tmp_path):
@@ -111,70 +107,3 @@ def test_a_full_disk_is_no_place(root, monkeypatch, caplog):
     monkeypatch.setattr(cache.tempfile, "TemporaryFile", full)
     assert cache.cache_folder(SOURCES) is None
     assert "No space left on device" in caplog.text
-
-
-TRIPLE = """
-from few_kernels.jit import compiled
-
-@compiled
-def triple(x):
-    return 3.0 * x
-"""
-CALL = """
-from few_kernels.triple import triple
-print(triple(2.0), len(triple.stats.cache_hits))
-"""
-compiles = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
-
-
-@pytest.fixture
-def call(tmp_path):
-    """Starts a process that calls a kernel of a small package; told: result, cache hits."""
-    package = tmp_path / "few_kernels"
-    package.mkdir()
-    shutil.copy(jit.__file__, package)
-    (package / "__init__.py").touch()
-    (package / "triple.py").write_text(TRIPLE)
-
-    def start(**settings):
-        path = os.pathsep.join([str(tmp_path), *filter(None, sys.path)])
-        env = os.environ | {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-        return subprocess.Popen(
-            [sys.executable, "-c", CALL],
-            env=env | settings,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-
-    return start
-
-
-def told(process):
-    said, errors = process.communicate(timeout=120)
-    assert process.returncode == 0, errors
-    return said.split(), errors
-
-
-@compiles
-def test_processes_that_compile_at_once_leave_a_sound_cache(call):
-    started = [call() for _ in range(3)]
-    assert {told(process)[0][0] for process in started} == {"6.0"}
-    assert told(call())[0] == ["6.0", "1"]
-
-
-@compiles
-def test_another_processor_compiles_its_own(call):
-    assert told(call())[0] == ["6.0", "0"]
-    assert told(call(NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES=""))[0] == ["6.0", "0"]
-    assert told(call())[0] == ["6.0", "1"]
-
-
-@compiles
-def test_without_a_folder_kernels_run_and_leave_nothing_behind(call, tmp_path):
-    """numba's own way out, a folder beside the sources, would go stale."""
-    for _ in range(2):
-        said, errors = told(call(NUMBA_CACHE_DIR="/dev/null"))
-        assert said == ["6.0", "0"]
-        assert "compiled kernels cannot be kept in /dev/null/kernels-" in errors
-    assert not list(tmp_path.rglob("*.nbi"))

@@ -1,9 +1,4 @@
-"""Where compiled kernels are kept: one folder for each set of sources and class of processor.
-
-numba's own cache notices a changed function, but not a changed callee in another file, hence a
-folder a hash of all sources. It tells processors apart, too, but in one index: two machines that
-compile at once into a home that they share might leave it pointing at each other's code.
-"""
+"""Where compiled kernels are kept: one folder for each set of sources and kind of machine."""
 
 from __future__ import annotations
 
@@ -12,13 +7,16 @@ import logging
 import os
 import re
 import shutil
+import sys
 import tempfile
 import time
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
+import llvmlite
 import numba
+import numpy as np
 import platformdirs
 from llvmlite import binding
 
@@ -26,14 +24,14 @@ log = logging.getLogger(__name__)
 
 _OURS = re.compile(r"kernels-[0-9a-f]{16}(-[0-9a-f]{8})?(\.[0-9a-f]{32})?")
 _UNUSED = 30 * 24 * 3600.0
-"""Seconds after which the folder of other sources, or of another processor, is taken away."""
+"""Seconds after which the folder of other sources, or of another machine, is taken away."""
 
 
 def cache_folder(sources_hash: str) -> Path | None:
-    """The folder for these sources on this processor, made if need be; None if it cannot be."""
+    """Return the folder for these sources on this machine, or None where it cannot be made."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     root = Path(given) if given else platformdirs.user_cache_path("impactlab")
-    folder = root / f"kernels-{sources_hash[:16]}-{_processor()}"
+    folder = root / f"kernels-{sources_hash[:16]}-{_machine()}"
     try:
         if not folder.exists():
             folder.mkdir(parents=True, exist_ok=True)
@@ -65,11 +63,12 @@ def remove_unused(root: Path) -> None:
             continue
 
 
-def _processor() -> str:
-    """Short hash of the processor's kind as numba will compile for it."""
+def _machine() -> str:
+    """Return a short hash of the processor as numba sees it, and of what compiles and loads."""
     config: Any = numba.config  # numba's types do not list its settings
     name = config.CPU_NAME or binding.get_host_cpu_name()
     features = config.CPU_FEATURES
     if features is None:
         features = binding.get_host_cpu_features().flatten()
-    return hashlib.sha256(f"{name} {features}".encode()).hexdigest()[:8]
+    tools = sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__
+    return hashlib.sha256(f"{name} {features} {tools}".encode()).hexdigest()[:8]
