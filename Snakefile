@@ -64,8 +64,8 @@ def is_solid(study):
 
 def solving(wildcards):
     """Sources of the runs; the analysis is one where it decides how many there are."""
-    deciding = ("analysis/**/*.py", "steering/*.py") if has_key(wildcards.study, r"\buntil\s*:") else ()
-    solid = ("reference/hertz.py", "reference/solid/**/*.py") if is_solid(wildcards.study) else ()
+    deciding = ("analysis/**/*.py",) if has_key(wildcards.study, r"\buntil\s*:") else ()
+    solid = ("fem3d/**/*.py",) if is_solid(wildcards.study) else ()
     return code(*SOLVER, "study/**/*.py", *deciding, *solid)
 
 
@@ -85,8 +85,8 @@ def code(*patterns):
     return sorted(str(path) for pattern in patterns for path in Path("impactlab").glob(pattern))
 
 
-MODEL = ("dataset.py", "model/*.py")
-SOLVER = (*MODEL, "simulate.py", "kernels/**/*.py")
+MODEL = ("variables.py", "model/*.py")
+SOLVER = (*MODEL, "simulate.py", "solver/**/*.py", "jit/*.py")
 CHECKING = ("study/checking.py", "study/declaration/**/*.py", "study/storage.py")
 FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcome", "stored"))
 REPORTING = ("report/**/*.py", "report/templates/*")
@@ -128,7 +128,7 @@ rule index:
 
 rule resolution:
     input:
-        code=code(*SOLVER, "study/**/*.py", "analysis/convergence/*.py", "steering/*.py"),
+        code=code(*SOLVER, "study/**/*.py", "analysis/convergence/*.py"),
         study="studies/{study}.yaml",
     output:
         "results/{study}/resolution.nc",
@@ -182,7 +182,7 @@ rule runs:
 
 rule refinement:
     input:
-        code=code(*SOLVER, "study/**/*.py", "steering/refining.py"),
+        code=code(*SOLVER, "study/**/*.py"),
         runs="results/{study}/runs.nc",
     output:
         "results/{study}/refinement.nc",
@@ -222,7 +222,7 @@ rule analysis:
 # Checks that fail are findings like others: the report comes first, the verdict last.
 rule verify:
     input:
-        code=code(*SOLVER, "reference/*.py", "verification/*.py", *CHECKING),
+        code=code(*SOLVER, "verification/**/*.py", *CHECKING),
         study="studies/{study}.yaml",
     output:
         "results/{study}/findings.nc",
@@ -239,7 +239,7 @@ rule verify:
 
 rule figures:
     input:
-        code=code("dataset.py", *FINDINGS, "figures/**/*.py"),
+        code=code("variables.py", *FINDINGS, "figures/**/*.py"),
         stored=stored,
     output:
         report(
@@ -262,7 +262,7 @@ rule figures:
 
 rule report:
     input:
-        code=code("dataset.py", *FINDINGS, *REPORTING),
+        code=code("variables.py", *FINDINGS, *REPORTING),
         stored=stored,
         figures="results/{study}/figures",
     output:
@@ -285,7 +285,7 @@ rule report:
 
 rule paper:
     input:
-        code=code("dataset.py", "analysis/**/*.py", "figures/**/*.py", "reference/*.py", *REPORTING),
+        code=code("variables.py", "paper/**/*.py", "figures/**/*.py", "verification/solutions/*.py", *REPORTING),
         stored=expand("results/{study}/{name}", study=PAPER, name=["runs.nc", "analysis.nc"]),
     output:
         "results/paper/claims.csv",

@@ -8,21 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from impactlab.compiled.apart import compile_apart
-from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
-from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
-from impactlab.kernels.case import CASE, REAL, WHOLE
-from impactlab.kernels.contact import LAWS
-from impactlab.kernels.contact.history import CONTACT
-from impactlab.kernels.leapfrog import run_all
-from impactlab.kernels.quadrature import rule_points
-from impactlab.kernels.responses import RESPONSE
-from impactlab.kernels.track import TRACK
+from impactlab.jit.apart import compile_apart
 from impactlab.model.checks import integer, positive
 from impactlab.model.columns import anywhere, column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import Value, flatten, with_values
+from impactlab.solver import BEAM_MODELS, RULES, SCHEMES
+from impactlab.solver.case import CASE, REAL, WHOLE
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.history import CONTACT
+from impactlab.solver.leapfrog import run_all
+from impactlab.solver.quadrature import rule_points
+from impactlab.solver.responses import RESPONSE
+from impactlab.solver.track import TRACK
+from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,7 +48,7 @@ Columns = dict[str, np.ndarray[Any, Any]]
 class Answers:
     """What the kernels gave for R runs.
 
-    responses: record array (R,) of kernels.responses.RESPONSE. histories: name -> (R, samples).
+    responses: record array (R,) of solver.responses.RESPONSE. histories: name -> (R, samples).
     profiles: name -> (R, nodes, points), or (R, nodes) for the deflection. Both may be empty.
     """
 
@@ -74,7 +74,7 @@ def simulate(
 
     duration: simulated time in s. samples: length of `time`, equally spaced from 0 to the
     duration. Returns a Dataset with the histories on `time`, the strains on `x` and `z`, every
-    response of impactlab.dataset.RESPONSES as a scalar, `status` and `remarks`; a response that
+    response of impactlab.variables.RESPONSES as a scalar, `status` and `remarks`; a response that
     the run could not give is NaN, and `status` says why. `remarks` says what to know of the others.
 
     Raises ValueError when duration or samples is not valid.
@@ -131,7 +131,7 @@ def case_table(
     varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]] | None = None,
     first_run: int = 0,
 ) -> np.ndarray[Any, Any]:
-    """The kernels' table of cases, one record (kernels.case.CASE) a run; each run is checked.
+    """The kernels' table of cases, one record (solver.case.CASE) a run; each run is checked.
 
     first_run: the number that messages give the first one.
 
@@ -243,7 +243,7 @@ def _table(
     if anywhere(np.equal(impact.beam_model, SOLID)):
         raise ValueError(
             f"Impact.beam_model = {SOLID!r}: is no model of the kernels: use `impactlab witness`, "
-            "impactlab.reference.solid.solve, or a study of the method grid"
+            "impactlab.fem3d.solver.solve, or a study of the method grid"
         )
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
     values["sphere_mass"] = impact.sphere.total_mass

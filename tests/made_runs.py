@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import RESPONSES, described
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import flatten
+from impactlab.variables import RESPONSES, described
 
 ATTRIBUTES = {
     "description": "Made up for the tests.",

@@ -5,12 +5,12 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import STATUS_FLAGS, described
+from impactlab.fem3d.comparison.beams import beams
+from impactlab.fem3d.solver import quarter_mesh
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import flatten
-from impactlab.reference.solid import quarter_mesh
-from impactlab.steering.witness.beams import beams
+from impactlab.variables import STATUS_FLAGS, described
 
 RESPONSES = {
     "peak_force": 11e3,

@@ -17,7 +17,7 @@ import numba
 import numpy as np
 
 import impactlab as il
-from impactlab.reference import contact_laws, quadrature
+from impactlab.verification.solutions import contact_laws, quadrature
 
 Array = np.ndarray[Any, Any]
 
@@ -269,7 +269,7 @@ def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> 
 
 
 def responses(impact: il.Impact, grid: il.Discretisation, run: Run) -> dict[str, float]:
-    """The responses of impactlab.dataset.RESPONSES but for the energies; NaN where missing."""
+    """The responses of impactlab.variables.RESPONSES but for the energies; NaN where missing."""
     return _peaks(impact, run) | _contacts(impact, run) | _strains(impact, grid, run)
 
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import RESPONSES, STATUS_FLAGS, described
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import flatten
+from impactlab.variables import RESPONSES, STATUS_FLAGS, described
 
 RANGES = {
     "velocity": (5.0, 15.0),

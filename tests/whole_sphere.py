@@ -14,7 +14,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from impactlab.reference import hertz
+from impactlab.verification.solutions import hertz
 
 _MODES = 20_000
 

@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.convergence import element_size, nodes
-from impactlab.dataset import described
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import flatten
+from impactlab.variables import described
 
 Study = tuple[xr.Dataset, xr.Dataset]
 

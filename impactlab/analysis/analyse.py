@@ -10,7 +10,7 @@ import xarray as xr
 from impactlab.analysis import failures, sensitivity, surrogate
 from impactlab.analysis.convergence import element_size, nodes, points, time_step
 from impactlab.analysis.numerical import numerical
-from impactlab.dataset import ANALYSES
+from impactlab.variables import ANALYSES
 
 
 class Analysis(Protocol):
@@ -44,7 +44,7 @@ def analyse(
 
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
     attribute `analyses` says which are wanted (without it: all). resolution, refinement: what
-    steering.recommending and steering.refining found for this study: add the numerical uncertainty
+    adaptive.recommending and adaptive.refining found for this study: add the numerical uncertainty
     of sensitivity indices (see `numerical`). Returns the variables that the applying modules
     document, on `response` and the dimensions that they leave, with the attributes of the runs.
     Raises ValueError when the runs are not what their attributes say.

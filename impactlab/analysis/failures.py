@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.responses import missing, relevant_bits
-from impactlab.dataset import FAILED, FAILURES
+from impactlab.variables import FAILED, FAILURES
 
 UNEXPLAINED = ("unexplained", "a response is missing and the run's status does not say why")
 

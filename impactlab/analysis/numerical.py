@@ -40,8 +40,8 @@ def numerical(
 ) -> xr.Dataset:
     """The numerical uncertainty of each response, and of its indices; no unit.
 
-    runs: a sample; analysis: its indices; resolution, refinement: see steering.recommending and
-    steering.refining, of the same study; fit: see `sensitivity.analysis`.
+    runs: a sample; analysis: its indices; resolution, refinement: see adaptive.recommending and
+    adaptive.refining, of the same study; fit: see `sensitivity.analysis`.
 
     Returns of a resolution numerical_uncertainty (response), relative, the worst over the corner
     cases, and numerical_share (response), (u/sigma)^2 with u the root mean square of the

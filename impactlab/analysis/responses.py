@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import RESPONSES, status_bits
+from impactlab.variables import RESPONSES, status_bits
 
 
 def listed(runs: xr.Dataset, attribute: str) -> list[str]:

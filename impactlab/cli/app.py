@@ -6,50 +6,55 @@ import gc
 import logging
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
-from impactlab.cli.analyse import analyse
-from impactlab.cli.clean import clean
-from impactlab.cli.design import design
-from impactlab.cli.figures import figures
-from impactlab.cli.index import index
+from impactlab import wings
 from impactlab.cli.interrupt import stop_quietly
-from impactlab.cli.paper import paper
-from impactlab.cli.predict import predict
-from impactlab.cli.recommend import recommend
-from impactlab.cli.refine import refine
-from impactlab.cli.report import report
-from impactlab.cli.run import run
-from impactlab.cli.simulate import simulate
-from impactlab.cli.status import status
-from impactlab.cli.studies import studies
-from impactlab.cli.verify import verify
-from impactlab.cli.witness import witness
 
-_COMMANDS = (
-    simulate,
-    studies,
-    recommend,
-    design,
-    run,
-    refine,
-    status,
-    analyse,
-    predict,
-    verify,
-    figures,
-    report,
-    paper,
-    witness,
-    index,
-    clean,
-)
-"""In the order of the help; a new one is a file and a line here."""
+_COMMANDS = {
+    name: f"impactlab.cli.{name}:{name}"
+    for name in (
+        "simulate",
+        "studies",
+        "recommend",
+        "design",
+        "run",
+        "refine",
+        "status",
+        "analyse",
+        "predict",
+        "verify",
+        "figures",
+        "report",
+        "index",
+        "clean",
+    )
+} | wings.COMMANDS
+"""Module and function by name, in the order of the help."""
+
+
+class _Commands(TyperGroup):
+    """The commands, each imported when it is called or when help is asked for."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names in the order of the help."""
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a command, or None where there is none of this name."""
+        if cmd_name not in _COMMANDS:
+            return None
+        alone = typer.Typer(rich_markup_mode=None, add_completion=False)
+        alone.command(cmd_name)(wings.load(_COMMANDS[cmd_name]))
+        return typer.main.get_command(alone)
+
 
 app = typer.Typer(
     name="impactlab",
+    cls=_Commands,
     help="A sphere strikes an elastic-plastic beam: from a study file to a report.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -90,7 +95,3 @@ def configure(
     logger.handlers[:] = handlers
     for handler in handlers:
         handler.setFormatter(logging.Formatter("%(levelname)s: %(message)s"))
-
-
-for _command in _COMMANDS:
-    app.command()(_command)

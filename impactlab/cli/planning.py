@@ -37,7 +37,7 @@ def allowed(
 
 def _found(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy:
     """The study, with the discretisation that trials have found for it, where they have."""
-    from impactlab.steering.resolving import fits, resolved
+    from impactlab.study.adaptive.resolving import fits, resolved
     from impactlab.study.declaration import FunctionStudy
     from impactlab.study.netcdf import read_netcdf
 

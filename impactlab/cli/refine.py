@@ -30,7 +30,7 @@ def refine(
     """
     from functools import partial
 
-    from impactlab.steering.refining import refined
+    from impactlab.study.adaptive.refining import refined
     from impactlab.study.engine import Engine
     from impactlab.study.execution import execute
     from impactlab.study.netcdf import read_netcdf, write_netcdf

@@ -69,7 +69,7 @@ def run(
         note_study(shards, design_file)
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse as analysed
-        from impactlab.steering.extending import extended
+        from impactlab.study.adaptive.extending import extended
 
         solve = partial(execute, shards_folder=shards, engine=engine)
         with held(shards):  # over all its steps

@@ -7,6 +7,7 @@ from typing import Protocol
 import xarray as xr
 from matplotlib.figure import Figure
 
+from impactlab import wings
 from impactlab.figures import (
     contact_duration,
     contact_laws,
@@ -30,8 +31,6 @@ from impactlab.figures import (
     sobol_second_order,
     surrogate_validation,
     time_step_convergence,
-    witness,
-    witness_parts,
 )
 from impactlab.figures.index_bars import IndexBars
 from impactlab.figures.index_convergence import IndexConvergence
@@ -66,8 +65,6 @@ def _named(*files: FigureFile) -> dict[str, FigureFile]:
 
 _ANSWERS: dict[str, FigureFile] = _named(
     contact_laws,
-    witness,
-    witness_parts,
     first_contact,
     force_history,
     displacement_history,
@@ -105,5 +102,6 @@ CATALOGUE = _ANSWERS | _INDICES
 
 def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, FigureFile]:
     """The figures that apply to a study, by name, in the order of the report."""
-    everything = _ANSWERS | scatters(runs) | _INDICES
+    of_wings: dict[str, FigureFile] = wings.added("figures", runs) or {}
+    everything = of_wings | _ANSWERS | scatters(runs) | _INDICES
     return {name: file for name, file in everything.items() if file.applies(runs, analysis)}

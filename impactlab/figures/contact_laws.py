@@ -9,12 +9,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.dataset import MARKS
 from impactlab.figures import curves, responses_grid, scales, style
 from impactlab.figures.reading import missing, words
 from impactlab.figures.reading.contents import is_sample, usable
 from impactlab.figures.reading.plan import Choice, Plan, plan
 from impactlab.figures.reading.units import display
+from impactlab.variables import MARKS
 
 TITLE = "Contact laws side by side"
 _FEWEST = 3

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import curves, refinement, responses_grid, scales, style
 from impactlab.figures.reading import missing
-from impactlab.kernels import BEAM_MODELS, SCHEMES
 from impactlab.model.cost import node_steps
+from impactlab.solver import BEAM_MODELS, SCHEMES
 
 TITLE = "Cost against error"
 _AXIS = refinement.Refined("nodes", "nodes", ("scheme", "courant", "velocity"), most=6)

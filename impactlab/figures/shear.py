@@ -16,7 +16,7 @@ from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
-from impactlab.reference.shear import impact_share
+from impactlab.verification.solutions.shear import impact_share
 
 TITLE = "When shear matters"
 THRESHOLD = 1.0

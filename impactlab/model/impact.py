@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from impactlab.kernels import BEAM_MODELS
-from impactlab.kernels.contact import LAWS
 from impactlab.model.beam import Beam
 from impactlab.model.checks import instance, not_negative, one_of, positive
 from impactlab.model.sphere import Sphere
+from impactlab.solver import BEAM_MODELS
+from impactlab.solver.contact import LAWS
 
 SOLID = "solid"
-"""The word for the 3-D model of beam and sphere (impactlab.reference.solid), no kernel's."""
+"""The word for the 3-D model of beam and sphere (impactlab.fem3d), no kernel's."""
 MODELS = (*BEAM_MODELS, SOLID)
 """Names of all models of the beam."""
 
@@ -21,7 +21,7 @@ class Impact:
     """A sphere hits the middle of a beam at rest.
 
     velocity: the sphere's, downwards at first touch, in m/s. contact: the name of a contact law
-    (impactlab.kernels.contact.LAWS). gravity: acts on the sphere alone, in m/s2. beam_model:
+    (impactlab.solver.contact.LAWS). gravity: acts on the sphere alone, in m/s2. beam_model:
     "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
     "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one degree
     of freedom), "rigid" (the beam does not move) or "solid" (3-D finite elements of both bodies,

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from impactlab.kernels import RULES, SCHEMES
-from impactlab.kernels.contact import LAWS
 from impactlab.model.columns import Column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
+from impactlab.solver import RULES, SCHEMES
+from impactlab.solver.contact import LAWS
 
 Value = float | int | str
 

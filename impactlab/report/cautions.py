@@ -8,11 +8,11 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import MARKS, REMARKS
 from impactlab.figures.reading import missing, verdicts, words
 from impactlab.figures.reading.contents import count, responses, usable
-from impactlab.kernels.contact.about import ABOUT
 from impactlab.report import numerical
+from impactlab.solver.contact.about import ABOUT
+from impactlab.variables import MARKS, REMARKS
 
 _JUDGED = {
     "nodes_summary": "Not converged in nodes somewhere in the grid",

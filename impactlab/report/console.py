@@ -11,8 +11,8 @@ from rich.filesize import decimal
 from rich.markup import escape
 from rich.table import Column, Table
 
-from impactlab.dataset import RESPONSES, marks, reasons, remarked
 from impactlab.study.words import amount, time
+from impactlab.variables import RESPONSES, marks, reasons, remarked
 from impactlab.verification.outcome import Outcome, gravest_first
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def print_responses(run: Any) -> None:
     """The scalar responses of one run, each with its unit; a missing one as such, and why.
 
-    run: a dataset of simulate, or one record of kernels.responses.RESPONSE.
+    run: a dataset of simulate, or one record of solver.responses.RESPONSE.
     """
     table = Table("response", "value", "unit", "meaning")
     for name, entry in RESPONSES.items():

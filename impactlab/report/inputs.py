@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import attributes
 from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import names, varied
 from impactlab.figures.reading.units import display
 from impactlab.model.parameters import PARAMETERS
 from impactlab.report.table import Cell, Table
+from impactlab.variables import attributes
 
 _LISTED = 12
 """Up to so many values of a grid are listed; beyond, their range is given."""

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from impactlab.kernels.contact import LAWS
-from impactlab.kernels.contact.about import ABOUT
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.about import ABOUT
 
 
 class Note(NamedTuple):

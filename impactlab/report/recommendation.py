@@ -7,7 +7,7 @@ import xarray as xr
 from rich.console import Console
 from rich.table import Column, Table
 
-from impactlab.steering.candidates import relative
+from impactlab.study.adaptive.candidates import relative
 
 _AXES = ("nodes", "points", "courant")
 
@@ -15,7 +15,7 @@ _AXES = ("nodes", "points", "courant")
 def print_recommendation(found: xr.Dataset) -> None:
     """The recommended discretisation and, a row a response, the evidence for it.
 
-    found: what steering.recommending found.
+    found: what study.adaptive.recommending found.
     """
     console = Console()
     best = int(found["recommended"])

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from impactlab import wings
 from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import is_sample
 from impactlab.figures.reading.measures import asked
 from impactlab.figures.scatter import scatters
-from impactlab.report import answers, inputs, outcome, sensitivity, witness
+from impactlab.report import answers, inputs, outcome, sensitivity
 from impactlab.report.section import Section
 
 
@@ -25,7 +26,8 @@ def sections(
     name of the file of all indices, "" where there is none.
     """
     if not is_sample(runs):
-        found = witness.sections(runs, analysis)
+        own = wings.added("sections", runs)
+        found = own(runs, analysis) if own else []
         return [_runs(runs), _outcome(runs, analysis), *found], [_results(runs)]
     of_sample = [
         _runs(runs),

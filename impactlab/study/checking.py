@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import xarray as xr
 
-from impactlab.dataset import provenance
-from impactlab.kernels.jit import SOURCES_HASH
+from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.declaration import Verification
 from impactlab.study.progress import Progress
+from impactlab.variables import provenance
 from impactlab.verification.outcome import Outcome
 from impactlab.verification.running import run
 from impactlab.verification.stored import packed

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.dataset import HISTORIES, PROFILES, RESPONSES
+from impactlab import wings
 from impactlab.model.cost import A_SECOND
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID
@@ -18,7 +18,7 @@ from impactlab.study.declaration import FunctionStudy, Sobol, Study
 from impactlab.study.declaration.plausible import stated_at
 from impactlab.study.declaration.solid import asks_for_solid
 from impactlab.study.looking import costliest, costs, looked_at, table, tabled
-from impactlab.study.solid.cases import is_solid
+from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
 Array = np.ndarray[Any, Any]
 _NUMBER = 8
@@ -145,7 +145,7 @@ def _parameters(study: Study | FunctionStudy, runs: int) -> float:
 def _slow(study: Study, case: Array, runs: int) -> dict[str, float]:
     """How much less time each would take at the paper's value, by parameter or key."""
     work, impact = costs(study).work, paper_impact()
-    if asks_for_solid(study) and is_solid(case).all():
+    if asks_for_solid(study) and wings.load(wings.SOLID["cases"]).is_solid(case).all():
         impact = replace(impact, beam_model=SOLID)
     grid = Discretisation(element_size=_USUAL_SIZE)
     usual = table(study)(impact, grid, duration=_USUAL_DURATION, varied={})

@@ -19,7 +19,7 @@ from impactlab.study.ledger import Ledger
 from impactlab.study.lock import held
 from impactlab.study.progress import Progress
 from impactlab.study.shard import Columns
-from impactlab.study.solvers import SOLVERS, solver_of
+from impactlab.study.solvers import solver_named, solver_of
 from impactlab.study.storage import Shards
 from impactlab.study.work import Work
 
@@ -41,7 +41,7 @@ def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterato
     BlockingIOError when another process is at work in `shards_folder`.
     """
     name = solver_of(design)
-    solver = SOLVERS[name]
+    solver = solver_named(name)
     with held(shards_folder):
         work = Work.of(design)
         shards, ledger = Shards(shards_folder, work.form, solver.VERSION), Ledger(work.keys)
@@ -76,7 +76,7 @@ def _followed(work: Work, ledger: Ledger, engine: Engine) -> Iterator[tuple[Arra
     missing, total = ledger.missing(), ledger.distinct
     if not missing.size:
         return
-    bits = SOLVERS[work.solver].failures(work.design)
+    bits = solver_named(work.solver).failures(work.design)
     with Progress(total=total, done=total - missing.size) as progress:
         for runs, columns in solved(work, missing, engine):
             yield runs, columns

@@ -16,7 +16,7 @@ from distributed.comm.core import CommClosedError
 from impactlab.study.batches import Batches
 from impactlab.study.engine import Engine
 from impactlab.study.shard import Columns
-from impactlab.study.solvers import SOLVERS
+from impactlab.study.solvers import solver_named
 from impactlab.study.storage import Form, joined
 from impactlab.study.work import Work
 
@@ -40,12 +40,12 @@ def solve_batch(solver: str, cases: Array, form: Form, version: str) -> Result:
 
     Raises RuntimeError where the solver is not the caller's.
     """
-    if version != SOLVERS[solver].VERSION:
+    if version != solver_named(solver).VERSION:
         raise RuntimeError(
             "this dask worker has another version of impactlab: install the same one on all of them"
         )
     start = time.perf_counter()
-    columns = SOLVERS[solver].solve(cases, form)
+    columns = solver_named(solver).solve(cases, form)
     return columns, time.perf_counter() - start
 
 
@@ -54,7 +54,7 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
 
     Raises OSError when no scheduler answers, or when its workers fail.
     """
-    solver = SOLVERS[work.solver]
+    solver = solver_named(work.solver)
     first = work.cases(missing[:1])
     compiled_for = Form(work.form.samples, profiles=False)
     solver.solve(first[:0], compiled_for)  # before workers ask for it
@@ -124,7 +124,7 @@ class _Crew:
 
     def _submit(self, runs: Array) -> Task:
         work = self._work
-        version = SOLVERS[work.solver].VERSION
+        version = solver_named(work.solver).VERSION
         future = self._client.submit(
             solve_batch, work.solver, work.cases(runs), work.form, version, pure=False
         )

@@ -7,14 +7,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from impactlab import wings
 from impactlab.model import cost as beam_cost
 from impactlab.model.parameters import Value, with_values
 from impactlab.simulate import case_table
 from impactlab.study.declaration import Grid, Sample, Study
 from impactlab.study.declaration.solid import asks_for_solid
 from impactlab.study.errors import Problem, StudyError
-from impactlab.study.solid import cases as solid_cases
-from impactlab.study.solid import cost as solid_cost
 
 Array = np.ndarray[Any, Any]
 _MOST = 4096
@@ -36,12 +35,16 @@ class Costs(Protocol):
 
 def costs(study: Study) -> Costs:
     """Of the runs of a study."""
-    return solid_cost if asks_for_solid(study) else beam_cost
+    found: Costs = wings.load(wings.SOLID["costs"]) if asks_for_solid(study) else beam_cost
+    return found
 
 
 def table(study: Study) -> Callable[..., Array]:
     """What makes the table of its cases: simulate.case_table, or as that."""
-    return solid_cases.table if asks_for_solid(study) else case_table
+    if not asks_for_solid(study):
+        return case_table
+    found: Callable[..., Array] = wings.load(wings.SOLID["cases"]).table
+    return found
 
 
 def looked_at(study: Study) -> dict[str, Array]:

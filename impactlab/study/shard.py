@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from netCDF4 import Dataset
 
-from impactlab.dataset import HISTORIES, PROFILES
 from impactlab.study.netcdf import whole
+from impactlab.variables import HISTORIES, PROFILES
 
 Array = np.ndarray[Any, Any]
 Columns = dict[str, Array]

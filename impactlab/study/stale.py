@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.study.solvers import SOLVERS
+from impactlab.study.solvers import SOLVERS, solver_named
 from impactlab.study.storage import DAMAGED, Form, Shards
 from impactlab.study.work import Work
 
@@ -33,7 +33,7 @@ def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, st
     wanted: dict[Path, list[Array]] = {}
     for design in designs:
         work = Work.of(design)
-        folder = Shards(shards_folder, work.form, SOLVERS[work.solver].VERSION).folder
+        folder = Shards(shards_folder, work.form, solver_named(work.solver).VERSION).folder
         wanted.setdefault(folder, []).append(work.keys)
     found = {}
     for path in _beside(shards_folder):
@@ -63,7 +63,8 @@ def outdated(folder: Path) -> dict[Path, str]:
 
     Which of the others would be asked for again, only a search tells.
     """
-    current = {Shards(folder, Form(0, False), each.VERSION).folder for each in SOLVERS.values()}
+    versions = [solver_named(name).VERSION for name in SOLVERS]
+    current = {Shards(folder, Form(0, False), version).folder for version in versions}
     reasons = {path: _beyond_asking(path, current) for path in _beside(folder)}
     return {path: reason for path, reason in reasons.items() if reason}
 

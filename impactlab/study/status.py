@@ -15,7 +15,7 @@ import xarray as xr
 
 from impactlab.study.ledger import Ledger
 from impactlab.study.lock import holder
-from impactlab.study.solvers import SOLVERS
+from impactlab.study.solvers import solver_named
 from impactlab.study.storage import Shards
 from impactlab.study.work import Work
 
@@ -39,7 +39,7 @@ class Status:
 def status(design: xr.Dataset, shards_folder: Path) -> Status:
     """The status of a design; shards are only read, also while another process writes them."""
     work = Work.of(design)
-    solver = SOLVERS[work.solver]
+    solver = solver_named(work.solver)
     shards = Shards(shards_folder, work.form, solver.VERSION)
     ledger, bits = Ledger(work.keys), np.zeros(work.size, dtype=np.int32)
     for keys, columns in shards.read("status"):

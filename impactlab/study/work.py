@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.study.design import run_count
-from impactlab.study.solvers import SOLVERS, solver_of
+from impactlab.study.solvers import solver_named, solver_of
 from impactlab.study.storage import Form, run_keys
 
 Array = np.ndarray[Any, Any]
@@ -31,7 +31,7 @@ class Work:
     def of(design: xr.Dataset) -> Work:
         """Every run is checked. Raises ValueError naming one that the model refuses."""
         name, form = solver_of(design), Form.of(design)
-        solver = SOLVERS[name]
+        solver = solver_named(name)
         keys, cost = [], []
         for start in range(0, run_count(design), _CHUNK):
             stop = min(start + _CHUNK, run_count(design))
@@ -47,4 +47,4 @@ class Work:
 
     def cases(self, runs: Array) -> Array:
         """The cases of these runs, by number."""
-        return SOLVERS[self.solver].cases(self.design, runs)
+        return solver_named(self.solver).cases(self.design, runs)

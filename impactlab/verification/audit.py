@@ -12,14 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from impactlab.kernels.contact.history import make_pair
-from impactlab.kernels.leapfrog import discretise
-from impactlab.kernels.section import make_section
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
-from impactlab.reference import quadrature
 from impactlab.simulate import case_table, simulate
+from impactlab.solver.contact.history import make_pair
+from impactlab.solver.leapfrog import discretise
+from impactlab.solver.section import make_section
 from impactlab.verification.finding import Floats
+from impactlab.verification.solutions import quadrature
 
 
 @dataclass(frozen=True)

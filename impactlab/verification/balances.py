@@ -10,14 +10,13 @@ import math
 
 import numpy as np
 
-from impactlab.dataset import REMARKS
-from impactlab.kernels import RULES
-from impactlab.kernels.contact import LAWS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import Value, with_values
-from impactlab.reference.stronge import stronge_impact
+from impactlab.solver import RULES
+from impactlab.solver.contact import LAWS
+from impactlab.variables import REMARKS
 from impactlab.verification.audit import Audit, audit
 from impactlab.verification.finding import (
     Comparison,
@@ -27,6 +26,7 @@ from impactlab.verification.finding import (
     Panel,
     absolute,
 )
+from impactlab.verification.solutions.stronge import stronge_impact
 
 TITLE = "Balances of energy and momentum"
 SOURCE = "Sums over the dataset in impactlab.verification.audit; loops of Stronge's law"

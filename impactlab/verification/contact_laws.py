@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from impactlab.kernels.contact import LAWS
 from impactlab.model.discretisation import Discretisation
-from impactlab.reference.contact_laws import LawOnHalfSpace, law_on_half_space
 from impactlab.simulate import simulate
+from impactlab.solver.contact import LAWS
 from impactlab.verification.cases import rigid_backed
 from impactlab.verification.finding import (
     Comparison,
@@ -22,11 +21,12 @@ from impactlab.verification.finding import (
     relative,
     worst,
 )
+from impactlab.verification.solutions.contact_laws import LawOnHalfSpace, law_on_half_space
 
 TITLE = "All contact laws on a half-space"
 SOURCE = (
-    "each law from its formulas, integrated by adaptive quadrature: impactlab.reference."
-    "contact_laws, which names the papers"
+    "each law from its formulas, integrated by adaptive quadrature: "
+    "impactlab.verification.solutions.contact_laws, which names the papers"
 )
 
 VELOCITIES = (0.012, 0.03, 0.1, 0.3, 0.99, 3.0, 10.0)

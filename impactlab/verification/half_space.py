@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.reference import hertz
 from impactlab.simulate import simulate
 from impactlab.verification.cases import rigid_backed
 from impactlab.verification.finding import Finding, relative
+from impactlab.verification.solutions import hertz
 
 TITLE = "Impact on a half-space"
-SOURCE = "Hertz 1881; closed forms in impactlab.reference.hertz"
+SOURCE = "Hertz 1881; closed forms in impactlab.verification.solutions.hertz"
 
 
 def check() -> Finding:

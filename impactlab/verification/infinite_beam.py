@@ -13,12 +13,6 @@ from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
-from impactlab.reference.infinite_beam import (
-    curvature_under_force,
-    deflection_under_force,
-    deflection_under_impulse,
-    profile_under_impulse,
-)
 from impactlab.simulate import simulate
 from impactlab.verification.cases import elastic
 from impactlab.verification.finding import (
@@ -30,9 +24,15 @@ from impactlab.verification.finding import (
     curve,
     relative,
 )
+from impactlab.verification.solutions.infinite_beam import (
+    curvature_under_force,
+    deflection_under_force,
+    deflection_under_impulse,
+    profile_under_impulse,
+)
 
 TITLE = "Infinite beam under an impulse"
-SOURCE = "Boussinesq 1885; closed forms in impactlab.reference.infinite_beam"
+SOURCE = "Boussinesq 1885; closed forms in impactlab.verification.solutions.infinite_beam"
 
 Floats = NDArray[np.float64]
 

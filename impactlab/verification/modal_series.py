@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 
 from impactlab.model.paper import paper_impact
-from impactlab.reference.modal import solve
-from impactlab.reference.timoshenko_1913 import timoshenko_impact
 from impactlab.verification.cases import aluminium_impact, elastic
 from impactlab.verification.finding import Finding
 from impactlab.verification.series import Case, compare, panels
+from impactlab.verification.solutions.modal import solve
+from impactlab.verification.solutions.timoshenko_1913 import timoshenko_impact
 
 TITLE = "Elastic beam: modal series"
 SOURCE = (
     "Timoshenko, Z. Math. Phys. 62 (1913) 198; Goldsmith, Impact (1960); series in "
-    "impactlab.reference.modal"
+    "impactlab.verification.solutions.modal"
 )
 
 CASES = {

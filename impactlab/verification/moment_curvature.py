@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from impactlab.kernels import RULES, section
 from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
-from impactlab.reference import bending, cyclic, quadrature
 from impactlab.simulate import case_table
+from impactlab.solver import RULES, section
 from impactlab.verification.finding import Comparison, Curve, Finding, Floats, Panel, curve
+from impactlab.verification.solutions import bending, cyclic, quadrature
 
 TITLE = "Moment and curvature"
-SOURCE = "Masing 1926; stresses clipped fibre by fibre in impactlab.reference.cyclic"
+SOURCE = "Masing 1926; stresses clipped fibre by fibre in impactlab.verification.solutions.cyclic"
 _HARDENING = {
     "perfectly plastic": {},
     "isotropic 10 GPa": {"isotropic_hardening_modulus": 10e9},

@@ -10,8 +10,6 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
-from impactlab.reference import hertz, rigid_beam
-from impactlab.reference.stronge import stronge_impact
 from impactlab.simulate import simulate
 from impactlab.verification.finding import (
     Comparison,
@@ -23,11 +21,13 @@ from impactlab.verification.finding import (
     relative,
     worst,
 )
+from impactlab.verification.solutions import hertz, rigid_beam
+from impactlab.verification.solutions.stronge import stronge_impact
 
 TITLE = "Rigid beam"
 SOURCE = (
     "Hertz 1881; Stronge, Impact Mechanics (2000), section 6.4; DOP853 of scipy, in "
-    "impactlab.reference.hertz, .stronge and .rigid_beam"
+    "impactlab.verification.solutions.hertz, .stronge and .rigid_beam"
 )
 
 VELOCITIES = (0.1, 0.99, 5.0, 20.0)

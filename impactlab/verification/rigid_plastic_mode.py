@@ -11,12 +11,15 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
-from impactlab.reference import quadrature, rigid_plastic
 from impactlab.simulate import simulate
 from impactlab.verification.finding import Comparison, Curve, Finding, Panel, relative
+from impactlab.verification.solutions import quadrature, rigid_plastic
 
 TITLE = "Rigid-plastic mode"
-SOURCE = "Martin and Symonds 1966; Jones, Structural Impact; impactlab.reference.rigid_plastic"
+SOURCE = (
+    "Martin and Symonds 1966; Jones, Structural Impact; "
+    "impactlab.verification.solutions.rigid_plastic"
+)
 _RATIOS = (10.0, 30.0, 100.0, 300.0)
 """Kinetic energy over the elastic energy that the beam can store."""
 _HEAVY = 100.0

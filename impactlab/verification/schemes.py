@@ -14,13 +14,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.kernels import RULES, SCHEMES
-from impactlab.kernels.contact import LAWS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
-from impactlab.reference.modal import ModalSolution, solve
 from impactlab.simulate import simulate, simulate_many
+from impactlab.solver import RULES, SCHEMES
+from impactlab.solver.contact import LAWS
 from impactlab.verification import modal_series
 from impactlab.verification import series as series_of
 from impactlab.verification.finding import (
@@ -33,6 +32,7 @@ from impactlab.verification.finding import (
     relative,
     worst,
 )
+from impactlab.verification.solutions.modal import ModalSolution, solve
 from impactlab.verification.stepping import node_steps
 
 TITLE = "Schemes in time"

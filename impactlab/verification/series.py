@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
-from impactlab.reference.modal import ModalSolution
 from impactlab.simulate import simulate
 from impactlab.verification.finding import (
     Comparison,
@@ -22,6 +21,7 @@ from impactlab.verification.finding import (
     relative,
     worst,
 )
+from impactlab.verification.solutions.modal import ModalSolution
 
 Solve = Callable[[Impact, float], ModalSolution]
 """The series of an impact over a duration (s)."""

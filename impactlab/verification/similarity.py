@@ -10,13 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import HISTORIES, PROFILES, RESPONSES
-from impactlab.kernels.contact import LAWS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.simulate import simulate
+from impactlab.solver.contact import LAWS
+from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 from impactlab.verification.cases import with_beam_material
 from impactlab.verification.finding import Comparison, Curve, Finding, Panel, curve, worst
 
@@ -48,7 +48,7 @@ class Scale:
     time: float
 
     def factor(self, units: str) -> float:
-        """Factor on a quantity in `units` (UDUNITS, as in impactlab.dataset)."""
+        """Factor on a quantity in `units` (UDUNITS, as in impactlab.variables)."""
         powers = np.zeros(3)
         for name, power in re.findall(r"([A-Za-z]+)(-?\d*)", units):
             powers += np.array(_DIMENSIONS[name]) * int(power or 1)

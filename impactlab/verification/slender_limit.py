@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
-from impactlab.reference import modal, timoshenko_modal
 from impactlab.simulate import simulate
 from impactlab.verification.cases import elastic, slimmer
 from impactlab.verification.finding import Comparison, Curve, Finding, Panel, absolute, curve
+from impactlab.verification.solutions import modal, timoshenko_modal
 
 TITLE = "Slender limit of the Timoshenko beam"
 SOURCE = (
     "shear and rotary inertia go with (depth/span)^2; difference of the two modal series, in "
-    "impactlab.reference.modal and .timoshenko_modal"
+    "impactlab.verification.solutions.modal and .timoshenko_modal"
 )
 
 HISTORIES = {

@@ -11,8 +11,6 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
-from impactlab.reference import lumped, modal, spring_mass
-from impactlab.reference.lumped import LumpedSolution
 from impactlab.simulate import simulate
 from impactlab.verification.cases import elastic
 from impactlab.verification.finding import (
@@ -25,11 +23,13 @@ from impactlab.verification.finding import (
     relative,
     worst,
 )
+from impactlab.verification.solutions import lumped, modal, spring_mass
+from impactlab.verification.solutions.lumped import LumpedSolution
 
 TITLE = "Spring-mass model"
 SOURCE = (
     "Rayleigh's mass 17/35 rho A L and stiffness 48 EI/L^3, DOP853 of scipy, in "
-    "impactlab.reference.spring_mass"
+    "impactlab.verification.solutions.spring_mass"
 )
 
 HISTORIES = {

@@ -10,7 +10,6 @@ import xarray as xr
 from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
-from impactlab.reference import bending, quadrature, static_loading
 from impactlab.simulate import simulate
 from impactlab.verification.finding import (
     Comparison,
@@ -22,9 +21,10 @@ from impactlab.verification.finding import (
     relative,
 )
 from impactlab.verification.slow_load import slow_impact
+from impactlab.verification.solutions import bending, quadrature, static_loading
 
 TITLE = "Static collapse"
-SOURCE = "Prager and Hodge 1951, chapter 2; impactlab.reference.static_loading"
+SOURCE = "Prager and Hodge 1951, chapter 2; impactlab.verification.solutions.static_loading"
 _HINGE = 20e-3
 """Mid-span deflection in m from which on the load stands still: 20/9 of 6.1 mm at first yield."""
 _LARGEST = 30e-3

@@ -8,10 +8,10 @@ import numpy as np
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
-from impactlab.reference import bending, quadrature, shear
 from impactlab.simulate import simulate
 from impactlab.verification.finding import Comparison, Curve, Finding, Panel, curve
 from impactlab.verification.slow_load import slow_impact
+from impactlab.verification.solutions import bending, quadrature, shear
 
 TITLE = "Static deflection"
 SOURCE = "Closed forms of beam bending, with the integration rule's own stiffness"

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import xarray as xr
 
-from impactlab.kernels.contact.history import make_pair
-from impactlab.kernels.leapfrog import discretise
-from impactlab.kernels.section import make_section
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.simulate import case_table, simulate
+from impactlab.solver.contact.history import make_pair
+from impactlab.solver.leapfrog import discretise
+from impactlab.solver.section import make_section
 
 
 def critical_time_step(impact: Impact, grid: Discretisation) -> float:

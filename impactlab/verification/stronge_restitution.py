@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.reference.stronge import StrongeImpact, stronge_impact
 from impactlab.simulate import simulate
 from impactlab.verification.cases import rigid_backed
 from impactlab.verification.finding import (
@@ -20,11 +19,12 @@ from impactlab.verification.finding import (
     relative,
     worst,
 )
+from impactlab.verification.solutions.stronge import StrongeImpact, stronge_impact
 
 TITLE = "Restitution of Stronge's law"
 SOURCE = (
     "Stronge, Impact Mechanics (2000), section 6.4; unloading after Wang et al.; closed forms in "
-    "impactlab.reference.stronge"
+    "impactlab.verification.solutions.stronge"
 )
 
 DEPTHS = (0.9, 1.2, 1.4, 2.0, 2.673)

@@ -12,8 +12,6 @@ from scipy.interpolate import CubicSpline
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
-from impactlab.reference.modal import ModalSolution, solve
-from impactlab.reference.timoshenko_1913 import timoshenko_impact
 from impactlab.simulate import simulate
 from impactlab.verification.cases import elastic
 from impactlab.verification.finding import (
@@ -24,10 +22,13 @@ from impactlab.verification.finding import (
     absolute,
     relative,
 )
+from impactlab.verification.solutions.modal import ModalSolution, solve
+from impactlab.verification.solutions.timoshenko_1913 import timoshenko_impact
 
 TITLE = "Sub-impacts"
 SOURCE = (
-    "Timoshenko, Z. Math. Phys. 62 (1913) 198, his two spheres; series in impactlab.reference.modal"
+    "Timoshenko, Z. Math. Phys. 62 (1913) 198, his two spheres; series in "
+    "impactlab.verification.solutions.modal"
 )
 
 _GRID = Discretisation(nodes=801, points=3)

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.kernels.beam import Beam, Grid, make_beam, move_virgin, strike
-from impactlab.kernels.contact.history import CONTACT, Pair, force, make_pair
-from impactlab.kernels.leapfrog import discretise
-from impactlab.kernels.section import Section, make_section
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
 from impactlab.simulate import case_table, simulate
+from impactlab.solver.beam import Beam, Grid, make_beam, move_virgin, strike
+from impactlab.solver.contact.history import CONTACT, Pair, force, make_pair
+from impactlab.solver.leapfrog import discretise
+from impactlab.solver.section import Section, make_section
 from impactlab.verification.cases import elastic
 from impactlab.verification.finding import Comparison, Curve, Finding, Panel, absolute, curve
 
@@ -42,7 +42,7 @@ class State:
 
     @property
     def w(self) -> Floats:
-        """Deflection in m, as in kernels.beam, (n + 4,)."""
+        """Deflection in m, as in solver.beam, (n + 4,)."""
         return np.asarray(self.beam.w[self.now])
 
 

@@ -6,17 +6,17 @@ from dataclasses import replace
 
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
-from impactlab.reference import hertz, modal, timoshenko_modal
-from impactlab.reference.modal import ModalSolution
-from impactlab.reference.timoshenko_1913 import timoshenko_impact
 from impactlab.verification.cases import aluminium_impact, elastic
 from impactlab.verification.finding import Finding
 from impactlab.verification.series import Case, compare, panels
+from impactlab.verification.solutions import hertz, modal, timoshenko_modal
+from impactlab.verification.solutions.modal import ModalSolution
+from impactlab.verification.solutions.timoshenko_1913 import timoshenko_impact
 
 TITLE = "Elastic Timoshenko beam: modal series"
 SOURCE = (
     "Timoshenko, Phil. Mag. 43 (1922) 125; both spectra of each mode, series in "
-    "impactlab.reference.timoshenko_modal"
+    "impactlab.verification.solutions.timoshenko_modal"
 )
 
 

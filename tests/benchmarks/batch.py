@@ -21,9 +21,9 @@ from rich.console import Console
 from rich.table import Table
 
 import impactlab as il
-from impactlab.kernels.leapfrog import run_all
-from impactlab.kernels.responses import RESPONSE
 from impactlab.simulate import case_table
+from impactlab.solver.leapfrog import run_all
+from impactlab.solver.responses import RESPONSE
 from impactlab.study.fanout import solve_batch
 from impactlab.study.solvers import impact
 from impactlab.study.storage import Form, run_keys

@@ -18,9 +18,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import impactlab as il
+from impactlab import fem3d as solid
+from impactlab.fem3d.solver import kratos
+from impactlab.fem3d.solver.stepping.system import System
 from impactlab.figures import style
-from impactlab.reference import kratos, solid
-from impactlab.reference.solid.stepping.system import System
 
 ROOT = Path(__file__).parents[2]
 OURS, SMALL = "impactlab", "impactlab, small strains"

@@ -21,11 +21,11 @@ from rich.console import Console
 from rich.table import Table
 
 import impactlab as il
-from impactlab.kernels import SCHEMES
 from impactlab.model.cost import node_steps
-from impactlab.reference import modal
 from impactlab.simulate import case_table, solve
+from impactlab.solver import SCHEMES
 from impactlab.verification.cases import elastic
+from impactlab.verification.solutions import modal
 
 DURATION = 1e-3
 SAMPLES = 401

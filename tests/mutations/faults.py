@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Fault(NamedTuple):
-    """One fault: in `file` of impactlab/kernels, `old` (found there once) becomes `new`."""
+    """One fault: in `file` of impactlab/solver, `old` (found there once) becomes `new`."""
 
     name: str
     file: str

@@ -20,7 +20,7 @@ from pathlib import Path
 from faults import FAULTS, Fault
 
 ROOT = Path(__file__).resolve().parents[2]
-SUITES = ("tests/unit/kernels", "tests/verification")
+SUITES = ("tests/unit/solver", "tests/verification")
 PATIENCE = 1800
 """Seconds for one fault; a run that never ends counts as caught."""
 CHECKS = """
@@ -50,11 +50,11 @@ def main(words: list[str]) -> int:
 
 def misfit(fault: Fault) -> str:
     """Why the fault does not fit the source; "" when it does."""
-    times = (ROOT / "impactlab/kernels" / fault.file).read_text("utf-8").count(fault.old)
+    times = (ROOT / "impactlab/solver" / fault.file).read_text("utf-8").count(fault.old)
     if times == 1:
         return ""
     return (
-        f"{fault.name}: its text is in kernels/{fault.file} {times} times, not once; "
+        f"{fault.name}: its text is in solver/{fault.file} {times} times, not once; "
         f"put tests/mutations/faults.py right:\n    {fault.old.strip()}"
     )
 
@@ -76,7 +76,7 @@ def seed(fault: Fault, copy: Path) -> None:
     for name in ("impactlab", "tests"):
         shutil.copytree(ROOT / name, copy / name, ignore=skip)
     shutil.copy(ROOT / "pyproject.toml", copy)
-    path = copy / "impactlab/kernels" / fault.file
+    path = copy / "impactlab/solver" / fault.file
     path.write_text(path.read_text("utf-8").replace(fault.old, fault.new), "utf-8")
 
 

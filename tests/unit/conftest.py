@@ -19,9 +19,9 @@ from made_runs import (
     with_histories,
 )
 
-from impactlab.dataset import RESPONSES, described
-from impactlab.kernels.contact import LAWS
-from impactlab.kernels.status import OUTSIDE_CONTACT_LAW
+from impactlab.solver.contact import LAWS
+from impactlab.solver.status import OUTSIDE_CONTACT_LAW
+from impactlab.variables import RESPONSES, described
 from impactlab.verification.finding import Comparison, Curve, Finding, Panel, absolute, relative
 from impactlab.verification.outcome import Outcome
 from impactlab.verification.stored import packed

@@ -9,14 +9,14 @@ import pytest
 
 import impactlab as il
 from impactlab.analysis import failures
-from impactlab.dataset import FAILED, MARKS, RESPONSES
 from impactlab.figures.reading import missing
-from impactlab.kernels.contact import LAWS
-from impactlab.kernels.contact.switch import limit
-from impactlab.reference import hertz
 from impactlab.report.cautions import cautions
 from impactlab.report.console import print_responses
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.switch import limit
+from impactlab.variables import FAILED, MARKS, RESPONSES
 from impactlab.verification.cases import rigid_backed
+from impactlab.verification.solutions import hertz
 
 BIT, WORDS = MARKS["outside_contact_law"]
 GRID = il.Discretisation(nodes=21, points=3)

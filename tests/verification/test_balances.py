@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import impactlab as il
-from impactlab.dataset import STATUS_FLAGS
-from impactlab.kernels import RULES
-from impactlab.kernels.contact import LAWS
 from impactlab.model.parameters import with_values
+from impactlab.solver import RULES
+from impactlab.solver.contact import LAWS
+from impactlab.variables import STATUS_FLAGS
 from impactlab.verification.audit import audit
 
 from .test_plain_beam import FIXED, VALUES

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.dataset import HISTORIES, RESPONSES
+from impactlab.variables import HISTORIES, RESPONSES
 from impactlab.verification.cases import elastic
 
 GRID = il.Discretisation(nodes=51, points=9)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from impactlab.reference import modal, timoshenko_modal
 from impactlab.verification import modal_series, timoshenko_beam
 from impactlab.verification.series import FINEST, HISTORIES, MIDDLE
+from impactlab.verification.solutions import modal, timoshenko_modal
 
 SERIES = {
     (theory, beam): (case, file.solve, theory.solve)

@@ -18,14 +18,14 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 import impactlab as il
-from impactlab.dataset import FLAGS, HISTORIES, STATUS_FLAGS
-from impactlab.kernels import RULES, SCHEMES
-from impactlab.kernels.contact import LAWS
-from impactlab.kernels.contact.history import make_pair
-from impactlab.kernels.leapfrog import discretise
-from impactlab.kernels.section import make_section
 from impactlab.model.parameters import with_values
 from impactlab.simulate import case_table
+from impactlab.solver import RULES, SCHEMES
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.history import make_pair
+from impactlab.solver.leapfrog import discretise
+from impactlab.solver.section import make_section
+from impactlab.variables import FLAGS, HISTORIES, STATUS_FLAGS
 
 from .. import plain_beam
 

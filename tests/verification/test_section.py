@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.kernels import RULES, section
-from impactlab.kernels.case import CASE
-from impactlab.kernels.section import bend as bend_row
-from impactlab.reference import bending, quadrature
 from impactlab.simulate import case_table
+from impactlab.solver import RULES, section
+from impactlab.solver.case import CASE
+from impactlab.solver.section import bend as bend_row
+from impactlab.verification.solutions import bending, quadrature
 
 IMPACT = il.paper_impact()
 

@@ -8,15 +8,15 @@ import pytest
 from scipy.stats import norm
 
 from impactlab.analysis.analyse import analyse
-from impactlab.dataset import FAILURES
 from impactlab.figures.draw import draw_all
-from impactlab.reference.functions import FUNCTIONS
 from impactlab.report.report import write_report
 from impactlab.study.declaration import read_study
 from impactlab.study.engine import Engine
 from impactlab.study.execution import execute
 from impactlab.study.netcdf import read_netcdf, write_netcdf
 from impactlab.study.sampling import design
+from impactlab.variables import FAILURES
+from impactlab.verification.functions import FUNCTIONS
 
 ROOT = Path(__file__).parents[2]
 G = """

@@ -8,7 +8,7 @@ import xarray as xr
 from command_line import SMALL, here
 from command_line import done as impactlab
 
-from impactlab.steering import extending, recommending
+from impactlab.study.adaptive import extending, recommending
 from impactlab.study.engine import Engine
 from impactlab.study.lock import holder
 

@@ -41,7 +41,7 @@ ByGrid = Mapping[str, Array]
 def uncertainty(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
     """How far the indices of the used grid may lie from those of no spacing and many points.
 
-    refinement: see steering.refining. fit: makes the surrogate that supplies failed runs where the
+    refinement: see adaptive.refining. fit: makes the surrogate that supplies failed runs where the
     study asks for it.
 
     Returns for each of ORDERS, on (response, parameter) and without unit: <order>, that distance;

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import RESPONSES, status_bits
 from impactlab.model.parameters import PARAMETERS
+from impactlab.variables import RESPONSES, status_bits
 
 SAMPLED = ("time", "x", "z")
 """Dimensions within a run; every other dimension of a variable of runs.nc is the design's."""

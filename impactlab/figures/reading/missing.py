@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import FAILED, reasons
 from impactlab.figures.reading import words
 from impactlab.figures.reading.contents import SAMPLED, count, responses, usable
+from impactlab.variables import FAILED, reasons
 
 UNEXPLAINED = "no reason is recorded"
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from impactlab.dataset import ANALYSES
-from impactlab.kernels import BEAM_MODELS
 from impactlab.model.parameters import ELEMENTS, Value, flatten
+from impactlab.solver import BEAM_MODELS
 from impactlab.study.declaration.methods import Grid, Sample, Sobol
 from impactlab.study.declaration.plausible import doubts, ends_of, stated_at
 from impactlab.study.declaration.schema import StudyForm
 from impactlab.study.declaration.solid import solid_problems
 from impactlab.study.errors import Problem, unknown
 from impactlab.study.possible import refused_corner
+from impactlab.variables import ANALYSES
 
 _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
 """Parameters that move the places at which profiles are given."""

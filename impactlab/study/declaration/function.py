@@ -9,7 +9,6 @@ from typing import Annotated, Any
 from pydantic import Field, PlainValidator, ValidationError, create_model
 
 from impactlab.model.parameters import Parameter, Value
-from impactlab.reference.functions import FUNCTIONS
 from impactlab.study.declaration import messages
 from impactlab.study.declaration.declared import Declared
 from impactlab.study.declaration.heading import Heading
@@ -18,6 +17,7 @@ from impactlab.study.declaration.reading import Source
 from impactlab.study.declaration.schema import Analysis
 from impactlab.study.declaration.values import Factor
 from impactlab.study.errors import Problem, StudyError, unknown
+from impactlab.verification.functions import FUNCTIONS
 
 RESPONSES = ("value",)
 

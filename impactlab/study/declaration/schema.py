@@ -10,7 +10,6 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, PlainValidator, StrictBool
 
-from impactlab.dataset import ANALYSES, RESPONSES
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.study.declaration.form import (
@@ -27,6 +26,7 @@ from impactlab.study.declaration.heading import Heading
 from impactlab.study.declaration.methods import Grid, Sample, sampling_reader
 from impactlab.study.declaration.sections import Chosen, read_discretisation, read_impact
 from impactlab.study.declaration.values import FACTORS
+from impactlab.variables import ANALYSES, RESPONSES
 
 Fraction = Annotated[Number, between(0.5, 0.999)]
 

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 
 from pydantic import ValidationInfo, WrapValidator, create_model
 
-from impactlab.dataset import RESPONSES
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
@@ -17,6 +16,7 @@ from impactlab.model.parameters import PARAMETERS, Parameter, with_values
 from impactlab.study.declaration.form import Form, Number, at_key, between, names, one_of
 from impactlab.study.declaration.values import VALUES
 from impactlab.study.possible import Base, refusal
+from impactlab.variables import RESPONSES
 
 BASES = {"paper": paper_impact}
 """Impacts that a study may start from, by name."""

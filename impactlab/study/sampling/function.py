@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import xarray as xr
 
-from impactlab.reference.functions import FUNCTIONS
 from impactlab.study.declaration import FunctionStudy, Grid
 from impactlab.study.sampling.columns import columns, coordinates, declared_attributes, grid
+from impactlab.verification.functions import FUNCTIONS
 
 
 def function_design(study: FunctionStudy) -> xr.Dataset:

@@ -1,4 +1,4 @@
-"""What can solve a study's runs: one file a solver, behind one door, and a line in SOLVERS."""
+"""Solvers of a study's runs: one file each, and a line in SOLVERS or in wings.SOLVERS."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
+from impactlab import wings
 from impactlab.study.shard import Columns
-from impactlab.study.solvers import function, impact, witness
 from impactlab.study.storage import Form
 
 Array = np.ndarray[Any, Any]
@@ -56,8 +56,17 @@ class Solver(Protocol):
         ...
 
 
-SOLVERS: dict[str, Solver] = {"impact": impact, "function": function, "witness": witness}
-"""By the name that designs hold in their attribute `solver`."""
+SOLVERS = {
+    "impact": "impactlab.study.solvers.impact",
+    "function": "impactlab.study.solvers.function",
+} | wings.SOLVERS
+"""Modules, by the name that designs hold in their attribute `solver`."""
+
+
+def solver_named(name: str) -> Solver:
+    """Return the solver of this name."""
+    found: Solver = wings.load(SOLVERS[name])
+    return found
 
 
 def solver_of(design: xr.Dataset) -> str:

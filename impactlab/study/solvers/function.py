@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import described, provenance
-from impactlab.reference.functions import FUNCTIONS, sources_hash
 from impactlab.study.design import flattened, run_shape
 from impactlab.study.shard import Columns
 from impactlab.study.storage import Form
+from impactlab.variables import described, provenance
+from impactlab.verification.functions import FUNCTIONS, sources_hash
 
 Array = np.ndarray[Any, Any]
 

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
-from impactlab.kernels.jit import SOURCES_HASH
 from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
@@ -22,9 +20,11 @@ from impactlab.simulate import (
     sample_coordinates,
 )
 from impactlab.simulate import solve as solve_cases
+from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.design import flattened, run_shape, varied_names
 from impactlab.study.shard import Columns
 from impactlab.study.storage import Form
+from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 
 VERSION = SOURCES_HASH
 _OF_ANY_RUN = 6000.0

@@ -16,10 +16,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from impactlab.dataset import RESPONSES
+from impactlab.fem3d.figures.catalogue import FIGURES
 from impactlab.figures import style
 from impactlab.figures.catalogue import CATALOGUE, applicable
 from impactlab.figures.scatter import scatters
+from impactlab.variables import RESPONSES
 
 EXPECTED = {
     "velocity_study": {
@@ -132,7 +133,7 @@ def drawn(request: pytest.FixtureRequest, laid_out: dict[Any, Figure]) -> Figure
 
 
 def _figure(name: str, runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
-    return (CATALOGUE | scatters(runs))[name].plot(runs, analysis)
+    return (CATALOGUE | FIGURES | scatters(runs))[name].plot(runs, analysis)
 
 
 def _laid_out(figure: Figure) -> Figure:
@@ -153,7 +154,7 @@ def test_figures_apply_to_the_studies_they_are_for(
 
 
 def test_no_figure_is_left_without_a_case() -> None:
-    assert set().union(*EXPECTED.values()) >= set(CATALOGUE)
+    assert set().union(*EXPECTED.values()) >= set(CATALOGUE | FIGURES)
 
 
 def test_nothing_applies_to_empty_datasets() -> None:
@@ -227,9 +228,9 @@ def test_all_runs_failed_leaves_no_data_and_says_so(
     lines = [line for axes in figure.axes for line in axes.lines if not _guide(line.get_label())]
     assert [line for line in lines if len(line.get_xdata()) > 2] == []  # type: ignore[arg-type]
     total = runs["status"].size
-    assert f"{total} of {total} runs are missing" in (CATALOGUE | scatters(runs))[name].caption(
-        runs, analysis
-    )
+    assert f"{total} of {total} runs are missing" in (CATALOGUE | FIGURES | scatters(runs))[
+        name
+    ].caption(runs, analysis)
 
 
 def _undefined(analysis: xr.Dataset) -> xr.Dataset:

@@ -7,7 +7,7 @@ from itertools import combinations
 import xarray as xr
 
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.kernels.contact import LAWS
+from impactlab.solver.contact import LAWS
 
 NONE = xr.Dataset()
 FIGURE = CATALOGUE["contact_laws"]

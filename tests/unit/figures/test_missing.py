@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.dataset import STATUS_FLAGS
 from impactlab.figures.reading import missing
 from impactlab.figures.reading.contents import usable
+from impactlab.variables import STATUS_FLAGS
 
 Study = Any
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.model.paper import paper_impact
-from impactlab.reference.shear import impact_share
+from impactlab.verification.solutions.shear import impact_share
 
 NONE = xr.Dataset()
 FIGURE = CATALOGUE["shear"]

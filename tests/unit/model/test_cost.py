@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from impactlab.kernels import BEAM_MODELS, SCHEMES
-from impactlab.kernels.contact.history import make_pair
-from impactlab.kernels.leapfrog import discretise
-from impactlab.kernels.section import make_section
 from impactlab.model.cost import node_steps, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.simulate import case_table
+from impactlab.solver import BEAM_MODELS, SCHEMES
+from impactlab.solver.contact.history import make_pair
+from impactlab.solver.leapfrog import discretise
+from impactlab.solver.section import make_section
 
 PAPER: dict[str, Any] = {
     "beam_span": 0.78,

@@ -6,10 +6,10 @@ from typing import Any
 
 import xarray as xr
 
-from impactlab.kernels.contact import LAWS
-from impactlab.kernels.contact.about import ABOUT
 from impactlab.report.cautions import cautions
 from impactlab.report.notes import NOTES, notes
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.about import ABOUT
 
 Study = Any
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.dataset import RESPONSES, STATUS_FLAGS
+from impactlab.variables import RESPONSES, STATUS_FLAGS
 
 Study = Any
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.kernels import BEAM_MODELS, RULES, SCHEMES
-from impactlab.kernels.contact import LAWS
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten, with_values
 from impactlab.simulate import case_table
+from impactlab.solver import BEAM_MODELS, RULES, SCHEMES
+from impactlab.solver.contact import LAWS
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)

@@ -8,12 +8,9 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.dataset import (
-    FLAGS,
-    RESPONSES,
-)
 from impactlab.model.parameters import with_values
 from impactlab.simulate import case_table, solve
+from impactlab.variables import FLAGS, RESPONSES
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)

@@ -15,7 +15,7 @@ import numba
 import numpy as np
 import pytest
 
-from impactlab.kernels.jit import compiled
+from impactlab.solver.jit import compiled
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
 
@@ -45,9 +45,9 @@ import xarray as xr
 from command_line import done
 
 import impactlab as il
-from impactlab.kernels import BEAM_MODELS
-from impactlab.kernels.contact import LAWS
-from impactlab.reference.solid import solve
+from impactlab.solver import BEAM_MODELS
+from impactlab.solver.contact import LAWS
+from impactlab.fem3d.solver import solve
 
 DIGESTS = {}
 

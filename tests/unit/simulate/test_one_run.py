@@ -9,7 +9,9 @@ import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab.dataset import (
+from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten
+from impactlab.solver import RULES
+from impactlab.variables import (
     COORDINATES,
     FLAGS,
     HISTORIES,
@@ -18,8 +20,6 @@ from impactlab.dataset import (
     RESPONSES,
     STATUS_FLAGS,
 )
-from impactlab.kernels import RULES
-from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)

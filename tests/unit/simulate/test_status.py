@@ -8,15 +8,8 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.dataset import (
-    FAILURES,
-    FLAGS,
-    REMARKS,
-    RESPONSES,
-    STATUS_FLAGS,
-    remarked,
-)
 from impactlab.model.parameters import with_values
+from impactlab.variables import FAILURES, FLAGS, REMARKS, RESPONSES, STATUS_FLAGS, remarked
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)

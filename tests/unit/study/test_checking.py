@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from impactlab.kernels.jit import SOURCES_HASH
+from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.checking import check, failure
 from impactlab.study.declaration import Verification
 from impactlab.verification.catalogue import CATALOGUE

@@ -14,7 +14,7 @@ from impactlab.study.bearable import MOST_TIME, room, unbearable
 from impactlab.study.declaration import study_of_text
 from impactlab.study.estimate import _ITSELF, A_SECOND, Estimate, estimate
 from impactlab.study.sampling import design
-from impactlab.study.solvers import SOLVERS
+from impactlab.study.solvers import solver_named
 
 GRID = """
 title: A grid
@@ -47,7 +47,7 @@ def grid(parameters, nodes=201, duration="1 ms", store=""):
 
 def test_a_small_grid_costs_the_sum_of_its_runs():
     study = grid(NODES)
-    cases = SOLVERS["impact"].cases(design(study), np.arange(6))
+    cases = solver_named("impact").cases(design(study), np.arange(6))
     found = estimate(study, workers=2)
     assert found.runs == 6
     assert found.seconds == pytest.approx(work(cases).sum() / A_SECOND, rel=0.2)
@@ -79,7 +79,7 @@ def test_a_growing_sample_costs_what_it_may_come_to():
 
 def test_room_is_that_of_the_answers():
     study = grid(NODES, store="store: {histories: true, samples: 50000}")
-    cases = SOLVERS["impact"].cases(design(study), np.arange(6))
+    cases = solver_named("impact").cases(design(study), np.arange(6))
     found = estimate(study, workers=2)
     answers = 8 * 6 * 50_000 * 5  # five histories of eight bytes a number
     assert found.disk / 2 == pytest.approx(answers, rel=0.01)

@@ -8,14 +8,13 @@ import xarray as xr
 from distributed import LocalCluster
 
 import impactlab as il
-from impactlab.dataset import RESPONSES
-from impactlab.kernels import SCHEMES
-from impactlab.kernels.contact.history import make_pair
-from impactlab.kernels.leapfrog import discretise
-from impactlab.kernels.section import make_section
 from impactlab.model.cost import node_steps
 from impactlab.model.parameters import flatten
 from impactlab.simulate import case_table
+from impactlab.solver import SCHEMES
+from impactlab.solver.contact.history import make_pair
+from impactlab.solver.leapfrog import discretise
+from impactlab.solver.section import make_section
 from impactlab.study import batches as batching
 from impactlab.study import execution, fanout
 from impactlab.study.engine import Engine
@@ -24,6 +23,7 @@ from impactlab.study.fanout import solve_batch
 from impactlab.study.solvers import impact
 from impactlab.study.storage import Form
 from impactlab.study.work import Work
+from impactlab.variables import RESPONSES
 
 RESPONSES_ASKED = ["peak_force", "contact_duration", "restitution"]
 

@@ -10,11 +10,11 @@ from itertools import product
 
 import pytest
 
-from impactlab.dataset import VARIABLES
 from impactlab.model.parameters import PARAMETERS
 from impactlab.study import quantities
 from impactlab.study.quantities import KINDS, si, whole
 from impactlab.study.si_units import UNITS
+from impactlab.variables import VARIABLES
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import xarray as xr
 from impactlab.analysis.numerical import numerical
 from impactlab.analysis.sensitivity.refinement import uncertainty
 from impactlab.analysis.surrogate import fit
-from impactlab.steering.refining import refined
+from impactlab.study.adaptive.refining import refined
 from impactlab.study.declaration import study_of_text
 from impactlab.study.sampling import design
 

@@ -10,8 +10,8 @@ import pytest
 import xarray as xr
 from SALib.sample import sobol as sampler
 
-from impactlab.dataset import described
 from impactlab.model.distributions import quantile
+from impactlab.variables import described
 
 RANGES: dict[str, dict[str, Any]] = {
     "velocity": {"distribution": "uniform", "low": 5.0, "high": 15.0},

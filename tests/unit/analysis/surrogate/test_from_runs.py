@@ -11,7 +11,7 @@ import xarray as xr
 
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.surrogate import analysis, applies
-from impactlab.dataset import ANALYSES
+from impactlab.variables import ANALYSES
 
 from .conftest import ishigami
 

@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import pytest
 
-from impactlab.dataset import ANALYSES
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import flatten
+from impactlab.variables import ANALYSES
 
 UNIFORM = {"distribution": "uniform", "low": 1, "high": 2}
 

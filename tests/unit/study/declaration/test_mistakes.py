@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from impactlab.dataset import RESPONSES
+from impactlab.variables import RESPONSES
 
 WRONG_IN_GRID = [
     ("title", 3, "expected text"),

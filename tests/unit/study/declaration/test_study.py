@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from impactlab.dataset import RESPONSES
 from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
@@ -15,6 +14,7 @@ from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten
 from impactlab.model.sphere import Sphere
 from impactlab.study.declaration import Grid, Sobol, read_any, read_study
 from impactlab.study.declaration.schema import Analysis, Store
+from impactlab.variables import RESPONSES
 
 STUDIES = sorted((Path(__file__).parents[4] / "studies").glob("*.yaml"))
 

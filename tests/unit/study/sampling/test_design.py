@@ -5,10 +5,10 @@ import pytest
 import xarray as xr
 from SALib.analyze import sobol as sobol_analysis
 
-from impactlab.dataset import ANALYSES, RESPONSES
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import ELEMENTS, PARAMETERS
 from impactlab.study.errors import StudyError
+from impactlab.variables import ANALYSES, RESPONSES
 
 GRID = """
 title: A grid

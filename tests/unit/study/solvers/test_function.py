@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.reference.functions import ishigami
 from impactlab.study.engine import Engine
 from impactlab.study.execution import execute
 from impactlab.study.solvers import function
 from impactlab.study.storage import Form
+from impactlab.verification.functions import ishigami
 
 
 def design(**coords):

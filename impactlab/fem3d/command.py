@@ -1,0 +1,248 @@
+"""The 3-D model beside the beam models."""
+
+from __future__ import annotations
+
+import logging
+import os
+import re
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from impactlab.cli.interrupt import stop_kept
+from impactlab.cli.options import WITNESS, given, results_file
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from impactlab.fem3d.comparison.case import Case
+    from impactlab.fem3d.comparison.plan import Plan
+
+
+def witness(
+    study: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[STUDY]",
+            help="A study file: its base, fixed values. Default: the paper's case.",
+        ),
+    ] = None,
+    velocity: Annotated[str, typer.Option(help="Impact velocity. Default: the study's.")] = "",
+    contact: Annotated[
+        str, typer.Option(help="Contact law of the beam models. Default: the study's.")
+    ] = "",
+    element_size: Annotated[
+        str,
+        typer.Option(
+            help="Of the elements about the contact, such as '0.5 mm'. Default: what takes about a "
+            "minute on two cores."
+        ),
+    ] = "",
+    patch: Annotated[
+        str,
+        typer.Option(
+            help="Half the side of the square in which sphere and beam may touch. Default: an "
+            "estimate."
+        ),
+    ] = "",
+    duration: Annotated[
+        str,
+        typer.Option(
+            help="Simulated time, such as '0.45 ms'. Default: what the first contact needs."
+        ),
+    ] = "",
+    workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            help="A folder. Default: results/NAME/witness, with the options given in its name."
+        ),
+    ] = None,
+    deck: Annotated[
+        str, typer.Option(help="abaqus or calculix: write its input deck, and solve nothing.")
+    ] = "",
+    elastic: Annotated[
+        bool, typer.Option("--elastic", help="Of a deck: nothing yields (CalculiX needs it).")
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Tell elements, time and memory, and solve nothing.")
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Also what takes hours, or all memory.")
+    ] = False,
+) -> None:
+    """Hold the beam models against 3-D finite elements.
+
+    What they answer is compared in a table; fields, histories and figures are kept. Ctrl-C keeps
+    what was computed until then.
+    """
+    from impactlab.fem3d.report.run import print_plan
+
+    _check_deck(deck, elastic=elastic)
+    case = _case(study, velocity, contact)
+    plan = _plan(case, element_size, patch, duration)
+    asked = {
+        "velocity": velocity,
+        "contact": contact,
+        "element-size": element_size,
+        "patch": patch,
+        "duration": duration,
+    }
+    folder = output or results_file(case.name, _folder_name(asked))
+    problems = [] if deck and plan.mesh else plan.problems(workers)
+    if dry_run or not problems or force:
+        print_plan(plan, None if deck else workers, problems)
+    if dry_run:
+        return
+    if problems and not force:
+        raise ValueError("\n".join(problems))
+    if deck:
+        _write_deck(plan, deck, folder, plastic=not elastic)
+    else:
+        _solve(plan, workers, folder)
+
+
+def _folder_name(asked: Mapping[str, str]) -> str:
+    """Of the answers to these options: those to others are not written over."""
+    said = [f"{name}-{text}" for name, text in asked.items() if text]
+    return "_".join((WITNESS, *(re.sub(r"[^\w.]+", "-", each) for each in said)))
+
+
+def _case(study: Path | None, velocity: str, contact: str) -> Case:
+    """What is solved; of a study that varies what this takes one value of, that is said."""
+    from impactlab.fem3d.comparison.case import case_of, paper_case
+    from impactlab.study.declaration import read_impacts
+
+    case = case_of(read_impacts(study)) if study else paper_case()
+    speed = given("--velocity", velocity, "m s-1") if velocity else None
+    case = case.with_impact(speed, contact or None)
+    if case.held:
+        told = ", ".join(f"{name} = {value}" for name, value in case.held.items())
+        logging.getLogger("impactlab").info(
+            "%s varies what a witness has one value of: here %s", case.file, told
+        )
+    return case
+
+
+def _plan(case: Case, element_size: str, patch: str, duration: str) -> Plan:
+    from impactlab.fem3d.comparison.plan import planned
+
+    return planned(
+        case,
+        element_size=given("--element-size", element_size, "m") if element_size else None,
+        patch=given("--patch", patch, "m") if patch else None,
+        duration=given("--duration", duration, "s") if duration else None,
+    )
+
+
+def _check_deck(deck: str, *, elastic: bool) -> None:
+    from impactlab.fem3d.deck import FLAVOURS
+
+    if deck and deck not in FLAVOURS:
+        raise ValueError(f"--deck {deck}: must be one of {', '.join(FLAVOURS)}")
+    if elastic and not deck:
+        raise ValueError("--elastic: is of a deck; say which one with --deck")
+
+
+def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
+    from impactlab.fem3d.deck import FLAVOURS, write_deck
+
+    _writable(folder)
+    path = folder / f"{flavour}{'' if plastic else '_elastic'}.inp"
+    write_deck(
+        path,
+        plan.case.impact,
+        plan.solved_mesh(),
+        flavour=flavour,
+        duration=plan.duration,
+        plastic=plastic,
+    )
+    for limit in FLAVOURS[flavour].limits:
+        logging.getLogger("impactlab").warning("%s: %s", path, limit)
+    print(path)
+
+
+def _solve(plan: Plan, workers: int, folder: Path) -> None:
+    """Answers are on disk before anything is made of them."""
+    from impactlab.fem3d.comparison.beams import beams
+    from impactlab.fem3d.comparison.comparison import compared, write_csv
+    from impactlab.fem3d.figures.drawings import draw_witness
+    from impactlab.fem3d.report.run import print_comparison, print_yielding
+    from impactlab.fem3d.vtu import write_vtu
+    from impactlab.study.netcdf import write_netcdf
+
+    _writable(folder)
+    spare = folder.parent / f"{folder.resolve().name}_stopped"
+    guarded = _is_whole(folder / "witness.nc")
+    solid = _marched(plan, workers)
+    if "stopped" in solid.attrs and guarded:
+        folder = spare
+    write_netcdf(solid, folder / "witness.nc")
+    write_vtu(solid, folder / "witness.vtu")
+    others = beams(plan.case.impact, plan.case.discretisation, float(solid["duration"]))
+    write_netcdf(others, folder / "beams.nc")
+    found = compared(solid, others)
+    write_csv(found, folder / "comparison.csv")
+    print_comparison(found)
+    print_yielding(solid)
+    draw_witness(solid, others, folder / "figures", plan.case.name)
+    _end(solid, folder)
+
+
+def _writable(folder: Path) -> None:
+    """Made where need be. Raises OSError where answers could not be kept, before there are any."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise OSError(
+            f"--output {folder}: {error.strerror}: nothing was solved; name a folder to write to"
+        ) from None
+
+
+def _is_whole(file: Path) -> bool:
+    """Whether it holds a run that went on to its end; what cannot be read does not."""
+    from impactlab.study.netcdf import read_netcdf
+
+    try:
+        return "stopped" not in read_netcdf(file).attrs
+    except OSError:
+        return False
+
+
+def _marched(plan: Plan, workers: int) -> xr.Dataset:
+    """The 3-D run; Ctrl-C breaks it off at a checkpoint, to keep it whole."""
+    from impactlab.fem3d.solver import solve_on
+    from impactlab.study.progress import share_done
+
+    with stop_kept() as asked_to_stop, share_done("3-D model") as show:
+
+        def progress(time: float, share: float) -> None:
+            show(share)
+            if asked_to_stop() and share < 1.0:
+                raise KeyboardInterrupt
+
+        return solve_on(
+            plan.solved_mesh(),
+            plan.case.impact,
+            duration=plan.duration,
+            threads=workers,
+            progress=progress,
+        )
+
+
+def _end(solid: xr.Dataset, folder: Path) -> None:
+    """Where the answers lie; exit code 130 where broken off, 1 where the run went wrong."""
+    stopped = str(solid.attrs.get("stopped", ""))
+    log = logging.getLogger("impactlab")
+    if stopped.startswith("interrupted"):
+        log.warning("%s: %s holds what was computed until then", stopped, folder)
+        raise typer.Exit(130)
+    if stopped:
+        option = "--patch: " if "patch_needed" in solid.attrs else ""
+        log.error("%s%s; %s holds what was computed until then", option, stopped, folder)
+        raise typer.Exit(1)
+    print(f"{folder}: witness.nc, witness.vtu (for ParaView), beams.nc, comparison.csv, figures/")

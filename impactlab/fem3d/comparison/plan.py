@@ -1,0 +1,147 @@
+"""Element size, duration and cost of a 3-D run, before anything is solved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import takewhile
+
+from dask.system import CPU_COUNT
+from distributed.system import MEMORY_LIMIT
+
+from impactlab.fem3d.comparison.beams import beam_seconds, first_contact
+from impactlab.fem3d.comparison.case import Case
+from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, least_cost, quarter_mesh
+from impactlab.fem3d.solver.mesh.extent import checked_patch, contact_radius
+from impactlab.model.checks import positive
+from impactlab.model.impact import Impact
+from impactlab.study.words import amount, time
+
+USUAL_TIME = 120.0
+"""Seconds of one core that a run may take where no element size is asked for."""
+MOST_TIME = 3600.0
+"""Seconds that a run may take unless it is forced."""
+_CONTACTS = 2.25
+"""Usual duration over that of the first contact: 0.45 ms in the paper's case, as there."""
+_LONG = 2.0
+"""Durations over the usual one from which on it is the duration that makes a run long."""
+_MOST_ELEMENTS = 10_000
+"""Of a size that is chosen, by the least cost: time sets no bound to a moment of few steps."""
+_FEWEST = 2.0
+"""Elements over the contact's radius, at the least, of a size that is chosen."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """One 3-D run. mesh: None where it does not fit memory. Lengths in m, times in s.
+
+    first_contact: NaN where it outlasts the study. contact_radius: the largest to expect.
+    beam_seconds: what the beam models take beside it.
+    """
+
+    case: Case
+    element_size: float
+    patch: float
+    duration: float
+    first_contact: float
+    usual_duration: float
+    contact_radius: float
+    beam_seconds: float
+    cost: Cost
+    mesh: Mesh | None
+
+    def seconds(self, workers: int) -> float:
+        """About how long it takes with so many threads, the beam models' runs included."""
+        busy: int = min(workers, CPU_COUNT, MOST_THREADS)
+        return self.cost.cpu_seconds / busy + self.beam_seconds
+
+    def problems(self, workers: int) -> list[str]:
+        """Why it should not be begun, a line each, at the option that drives it."""
+        return [
+            f"{self.case.file}: {option}: {reason}; see --dry-run, and --force runs it all the same"
+            for option, reason in self._beyond(workers)
+        ]
+
+    def solved_mesh(self) -> Mesh:
+        """The mesh, though it may not fit memory."""
+        size = self.element_size
+        return self.mesh or quarter_mesh(self.case.impact, element_size=size, patch=self.patch)
+
+    def _beyond(self, workers: int) -> Iterator[tuple[str, str]]:
+        size = f"--element-size {1e3 * self.element_size:g} mm"
+        elements = f"{self.cost.elements:,} elements"
+        if self.cost.memory_bytes > MEMORY_LIMIT:
+            needed = f"{amount(self.cost.memory_bytes)} of memory, of {amount(MEMORY_LIMIT)}"
+            yield size, f"about {needed}, for {elements}"
+        elif self.seconds(workers) > MOST_TIME:
+            lasting = self.duration > _LONG * self.usual_duration
+            option = f"--duration {1e3 * self.duration:g} ms" if lasting else size
+            told = f"{self.cost.steps:,} steps of {elements}"
+            long = time(self.seconds(workers))
+            yield option, f"about {long}, above the hour that a run may take, for {told}"
+
+
+def planned(
+    case: Case,
+    *,
+    element_size: float | None = None,
+    patch: float | None = None,
+    duration: float | None = None,
+) -> Plan:
+    """The run that is asked for; what is None is chosen.
+
+    element_size: the finest of 1, 2 or 5 times a power of ten that keeps within USUAL_TIME.
+    duration: 2.25 times the first contact of the Euler-Bernoulli beam, at most the study's.
+    Raises ValueError when a number is not valid or the mesh is impossible.
+    """
+    for name, value in (("element_size", element_size), ("patch", patch), ("duration", duration)):
+        if value is not None:
+            positive("witness", name, value)
+    first = first_contact(case.impact, case.discretisation, case.longest)
+    usual = case.longest if math.isnan(first) else min(_two_digits(_CONTACTS * first), case.longest)
+    asked = usual if duration is None else duration
+    size = _usual_size(case.impact, patch, asked) if element_size is None else element_size
+    cost, mesh = _cost(case.impact, size, patch, asked)
+    half = mesh.patch if mesh else checked_patch(case.impact, size, patch)
+    radius = contact_radius(case.impact)
+    beside = beam_seconds(case.impact, case.discretisation, asked)
+    return Plan(case, size, half, asked, first, usual, radius, beside, cost, mesh)
+
+
+def _cost(
+    impact: Impact, size: float, patch: float | None, duration: float
+) -> tuple[Cost, Mesh | None]:
+    """Of the mesh; of what it has at the least where that does not fit memory already."""
+    least = least_cost(impact, element_size=size, duration=duration, patch=patch)
+    if least.memory_bytes > MEMORY_LIMIT:
+        return least, None
+    mesh = quarter_mesh(impact, element_size=size, patch=patch)
+    return estimate(mesh, impact, duration=duration), mesh
+
+
+def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
+    """The finest size within USUAL_TIME and _MOST_ELEMENTS; else the coarsest that makes sense."""
+    beam = impact.beam
+    fits = min(impact.sphere.radius, beam.width, beam.span) / 10.0
+    coarsest, *finer = _sizes(min(contact_radius(impact) / _FEWEST, fits))
+    within = takewhile(lambda size: _quick(impact, size, patch, duration), finer)
+    return min([coarsest, *within])
+
+
+def _quick(impact: Impact, size: float, patch: float | None, duration: float) -> bool:
+    least = least_cost(impact, element_size=size, duration=duration, patch=patch)
+    if least.cpu_seconds > USUAL_TIME or least.elements > _MOST_ELEMENTS:
+        return False  # no mesh is made of what is known to be large
+    return _cost(impact, size, patch, duration)[0].cpu_seconds <= USUAL_TIME
+
+
+def _sizes(largest: float) -> list[float]:
+    """1, 2 and 5 times powers of ten in m, downwards from `largest` over three decades."""
+    first = math.floor(math.log10(largest))
+    sizes = [float(f"{digit}e{first - down}") for down in range(4) for digit in (5, 2, 1)]
+    return [size for size in sizes if size <= largest]
+
+
+def _two_digits(value: float) -> float:
+    return float(f"{value:.2g}")

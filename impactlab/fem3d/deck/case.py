@@ -1,0 +1,78 @@
+"""What a deck is written for."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from impactlab.fem3d.solver.mesh import Mesh
+from impactlab.model.checks import instance, positive
+from impactlab.model.impact import Impact
+from impactlab.verification.solutions import hertz
+
+_SAME = 1e-9
+"""Relative difference of lengths that are the same."""
+_SAMPLES = 60
+"""Intervals in the contact duration of an elastic half-space."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """An impact on its mesh for `duration` (s).
+
+    interval: time between results in s (None: a 60th of the contact duration of an elastic
+    half-space). plastic: whether the materials yield.
+
+    Raises ValueError naming the field where impact, mesh or a time is none, and when the mesh is
+    that of other bodies.
+    """
+
+    impact: Impact
+    mesh: Mesh
+    duration: float
+    interval: float | None
+    plastic: bool
+
+    def __post_init__(self) -> None:
+        instance("deck", "impact", self.impact, Impact)
+        instance("deck", "mesh", self.mesh, Mesh)
+        positive("deck", "duration", self.duration)
+        self._check_interval()
+        self._check_sizes()
+
+    @property
+    def time_between(self) -> float:
+        """Between results, in s."""
+        if self.interval is not None:
+            return self.interval
+        contact = hertz.contact_duration(
+            self.impact.sphere.total_mass,
+            self.impact.velocity,
+            hertz.effective_modulus(self.impact),
+            hertz.effective_radius(self.impact),
+        )
+        return min(contact / _SAMPLES, self.duration)
+
+    def _check_interval(self) -> None:
+        if self.interval is None:
+            return
+        if positive("deck", "interval", self.interval) > self.duration:
+            raise ValueError(
+                f"deck.interval = {self.interval!r} s: must not be above the duration "
+                f"({self.duration!r} s)"
+            )
+
+    def _check_sizes(self) -> None:
+        """The mesh's extents are those of the impact's bodies."""
+        beam, nodes = self.impact.beam, self.mesh.nodes
+        for name, meshed, wanted in (
+            ("beam's span", 2.0 * nodes[self.mesh.support, 0].max(), beam.span),
+            ("beam's width", 2.0 * nodes[self.mesh.support, 1].max(), beam.width),
+            ("beam's depth", -nodes[:, 2].min(), beam.depth),
+            ("sphere's radius", 0.5 * nodes[:, 2].max(), self.impact.sphere.radius),
+        ):
+            if not math.isclose(meshed, wanted, rel_tol=_SAME):
+                raise ValueError(
+                    f"deck.mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in "
+                    "the impact: make the mesh from this impact (quarter_mesh)"
+                )

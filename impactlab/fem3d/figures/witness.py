@@ -1,0 +1,109 @@
+"""The beam models and their 3-D witness against velocity, and by how much they differ."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from impactlab.fem3d.figures import differences as witness
+from impactlab.figures import scales, style
+from impactlab.figures.reading import missing, words
+from impactlab.figures.reading.contents import usable
+from impactlab.figures.reading.units import display
+
+TITLE = "The beam models and the 3-D witness"
+_NAMES = (
+    *("peak_force", "contact_duration", "maximum_deflection"),
+    *("permanent_indentation", "maximum_indentation"),
+)
+"""What is drawn first, as far as it is there."""
+_MOST = 3
+_LEAST, _ROOM = 2.0, 2.0
+"""Least half-height of a panel of differences in %; its most, in times the largest difference."""
+
+
+def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Whether a grid has the 3-D model beside others, and a response to draw."""
+    return witness.applies(runs) and bool(_drawn(runs))
+
+
+def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    """What is shown and missing."""
+    return (
+        "Above: each model on its finest grid. Below: its difference from the 3-D "
+        "finite-element model, in parts of that; bars: the numerical uncertainty of both models "
+        "together, left out where nothing bounds it and cut at the panel's edge. Markers are "
+        "shifted sideways a little. "
+        f"{missing.note(runs, _drawn(runs))}".strip()
+    )
+
+
+@style.paper
+def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """A column a response: the values above, the differences from the witness below."""
+    names = _drawn(runs)
+    figure, axes = style.panels(2 * len(names), columns=len(names), height=52)
+    for at, name in enumerate(names):
+        above, below = axes[at], axes[at + len(names)]
+        _values(above, runs, analysis, name)
+        _differences(below, runs, analysis, name)
+        for ax in (above, below):
+            scales.logarithmic(ax, "x", runs["velocity"].values)
+            scales.at(ax, "x", runs["velocity"].values)
+        below.set_xlabel(words.axis(words.parameter("velocity"), "m/s"))
+    axes[len(names)].set_ylabel(words.wrapped_axis("difference from the 3-D model", "%", 24))
+    style.legend(
+        figure, "Model of the beam", [witness.label(model) for model in witness.models(runs)]
+    )
+    return figure
+
+
+def _drawn(runs: xr.Dataset) -> list[str]:
+    return [name for name in _NAMES if name in witness.asked(runs)][:_MOST]
+
+
+def _look(at: int) -> dict[str, Any]:
+    """The witness black, the others in the colours of all figures, each with its own marker."""
+    colour = "black" if at == 0 else style.COLOURS[at - 1]
+    return {"color": colour, "marker": style.MARKERS[at], "linestyle": style.LINES[at]}
+
+
+def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
+    unit = display(usable(runs, name).rename(name).assign_attrs(runs[name].attrs))
+    for at, model in enumerate(witness.models(runs)):
+        values = unit(witness.side(runs, analysis, name, model).value)
+        if np.isfinite(values).any():
+            ax.plot(runs["velocity"].values, values, label=witness.label(model), **_look(at))
+    ax.set_title(words.sentence(words.response(name)), loc="left")
+    ax.set_ylabel(words.axis(words.response(name), unit.symbol))
+    if not ax.lines:
+        style.remark(ax, "no finite values")
+        return
+    shown = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
+    if np.nanmin(shown) > 0:
+        scales.logarithmic(ax, "y", shown)
+
+
+def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
+    first, *others = witness.models(runs)
+    against = witness.side(runs, analysis, name, first)
+    for at, model in enumerate(others, 1):
+        gap = witness.difference(witness.side(runs, analysis, name, model), against)
+        bars = np.where(np.isfinite(gap.uncertainty), 100.0 * gap.uncertainty, np.nan)
+        shift = 1.0 + 0.04 * (at - 0.5 * (len(others) + 1))
+        if np.isfinite(gap.value).any():
+            speed = shift * runs["velocity"].values
+            look: dict[str, Any] = {"elinewidth": 0.8, "label": witness.label(model)} | _look(at)
+            ax.errorbar(speed, 100.0 * gap.value, yerr=bars, **look)
+    if not ax.containers:
+        style.remark(ax, "no finite values")
+        return
+    ax.axhline(0.0, label="_guide", **style.GUIDE)
+    scales.linear(ax, "y")
+    largest = max(_LEAST, *(np.nanmax(abs(np.asarray(line.get_ydata()))) for line in ax.lines))
+    low, high = ax.get_ylim()
+    ax.set_ylim(max(low, -_ROOM * largest), min(high, _ROOM * largest))

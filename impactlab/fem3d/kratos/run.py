@@ -1,0 +1,132 @@
+"""Kratos' steps, one after the other."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from impactlab.fem3d.kratos import readings
+from impactlab.fem3d.kratos.engine import Engine
+from impactlab.fem3d.kratos.history import History, Moment
+from impactlab.fem3d.kratos.model_part import fill, hold, launch
+from impactlab.fem3d.kratos.settings import PART, RESIDUAL_RATIO, settings
+from impactlab.fem3d.solver import Mesh, PatchTooSmallError
+from impactlab.fem3d.solver.mesh import SPHERE
+from impactlab.fem3d.solver.mesh.mesh import Floats
+from impactlab.fem3d.solver.stepping.masses import nodal_masses
+from impactlab.model.impact import Impact
+
+Progress = Callable[[float, float], None]
+
+_HALVINGS = 5
+"""How often a step that does not converge is cut in half."""
+
+
+class Run:
+    """An impact on a mesh in Kratos, ready to go. history: what it has left so far."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        mesh: Mesh,
+        impact: Impact,
+        *,
+        duration: float,
+        time_step: float,
+        penalty: float,
+    ) -> None:
+        """Take s, s and N/m3; raises ValueError for a material that Kratos' law cannot follow."""
+        self._started = time.process_time()
+        self.engine, self.mesh, self.duration = engine, mesh, duration
+        self.history = History([Moment(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, impact.velocity, 0.0)])
+        model = engine.core.Model()
+        self.part = model.CreateModelPart(PART)
+        self.part.ProcessInfo[engine.variable("DOMAIN_SIZE")] = 3
+        told = engine.core.Parameters(settings(duration, time_step, penalty))
+        self._analysis = engine.analysis(model, told)
+        fill(engine, self.part, mesh, impact)
+        self._analysis.Initialize()
+        hold(engine, self.part, mesh)
+        launch(engine, self.part, mesh, impact)
+        self._sphere = _shares(mesh, impact)
+
+    def go(self, progress: Progress | None = None) -> History:
+        """Step on to the end, or until a step does not converge or Ctrl-C is pressed.
+
+        Raises PatchTooSmallError when the contact leaves the matched patch.
+        """
+        analysis = self._analysis
+        try:
+            while analysis.KeepAdvancingSolutionLoop() and not self.history.stopped:
+                self._take()
+                if progress:
+                    progress(analysis.time, min(analysis.time / self.duration, 1.0))
+        except KeyboardInterrupt:
+            self.history.stopped = f"interrupted at {analysis.time:.4g} s"
+        self.history.cpu_seconds = time.process_time() - self._started
+        return self.history
+
+    def _take(self) -> None:
+        """One step, or as much of it as converges: what is left falls to the steps that follow."""
+        analysis, before = self._analysis, self._analysis.time
+        analysis.time = analysis._GetSolver().AdvanceInTime(before)
+        for _ in range(1 + _HALVINGS):
+            analysis.InitializeSolutionStep()
+            if analysis.SolveSolutionStep() or self._balanced():
+                analysis.FinalizeSolutionStep()
+                self.history.moments.append(self._moment(analysis.time))
+                return
+            analysis.time = 0.5 * (before + analysis.time)
+            self._begin_again()
+        self.history.stopped = f"Newton's iterations did not converge after {before:.4g} s"
+
+    def _begin_again(self) -> None:
+        """Back to where the step began, to end at the analysis' time."""
+        part = self.part
+        part.OverwriteSolutionStepData(1, 0)
+        part.ReduceTimeStep(part, self._analysis.time)
+        displacement = self.engine.variable("DISPLACEMENT")
+        self.engine.core.VariableUtils().UpdateCurrentPosition(part.Nodes, displacement)
+
+    def _balanced(self) -> bool:
+        """Whether forces balance, though Kratos' set of touching nodes does not settle.
+
+        A node that barely touches may change sides with each iteration, and no force with it.
+        """
+        ratio = self.part.ProcessInfo[self.engine.variable("CONVERGENCE_RATIO")]
+        return bool(ratio <= RESIDUAL_RATIO)
+
+    def _moment(self, now: float) -> Moment:
+        down = -readings.vectors(self.engine, self.part, "DISPLACEMENT")[:, 2]
+        speed = -readings.vectors(self.engine, self.part, "VELOCITY")[:, 2]
+        iterations = self.engine.variable("NL_ITERATION_NUMBER")
+        mesh = self.mesh
+        self._check_patch(down)
+        return Moment(
+            time=now,
+            force=readings.contact_force(self.engine, self.part),
+            sphere=float(self._sphere @ down),
+            pole=float(down[mesh.pole]),
+            axis=float(down[mesh.axis_node]),
+            top=float(down[mesh.top_node]),
+            velocity=float(self._sphere @ speed),
+            iterations=float(self.part.ProcessInfo[iterations]),
+        )
+
+    def _check_patch(self, down: Floats) -> None:
+        upper, lower = self.mesh.pairs[self.mesh.rim].T
+        if np.any(self.mesh.gaps[self.mesh.rim] < down[upper] - down[lower]):
+            raise PatchTooSmallError(
+                f"the contact reaches the rim of the patch of matched nodes: patch must be above "
+                f"{self.mesh.patch:.4g} m",
+                self.mesh.patch,
+            )
+
+
+def _shares(mesh: Mesh, impact: Impact) -> Floats:
+    """Each node's share of the sphere's mass, (n,): 0 in the beam."""
+    mass = nodal_masses(mesh, impact)
+    mass[np.setdiff1d(np.arange(mass.size), mesh.elements[mesh.body == SPHERE])] = 0.0
+    return np.asarray(mass / mass.sum())

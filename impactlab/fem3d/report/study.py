@@ -1,0 +1,95 @@
+"""The beam models beside the 3-D witness as tables: a response each, model by model."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from impactlab.fem3d.figures import differences as witness
+from impactlab.fem3d.figures import effects as parts
+from impactlab.figures.reading import words
+from impactlab.figures.reading.contents import usable
+from impactlab.figures.reading.units import Display, display
+from impactlab.report.section import Section
+from impactlab.report.table import Cell, Table
+from impactlab.variables import UNLIKE
+
+_LEAD = (
+    "Each model on its finest grid, with its numerical uncertainty (± of the value itself; none "
+    "where a finer grid changes nothing), and its difference from the 3-D finite-element model."
+)
+_NOTHING = 1e-8
+"""Uncertainty over the value that is round-off's."""
+_PARTS = (
+    "The answer of the paper's beam is turned into that of the solid one effect after the other: "
+    "(1 + shear)(1 + elasticity)(1 + law) = 1 + all."
+)
+
+
+def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
+    """What a study with 3-D runs shows; none where there are none beside others."""
+    found = []
+    if witness.applies(runs):
+        tables = [_table(runs, analysis, name) for name in witness.asked(runs)]
+        title = "Model by model"
+        found.append(Section("witness", title, _LEAD, tables=tables, figures=["witness"]))
+    if parts.applies(runs):
+        title = "Where the difference comes from"
+        tables = [_effects(runs, analysis)]
+        found.append(Section("parts", title, _PARTS, tables=tables, figures=["witness_parts"]))
+    return found
+
+
+def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
+    """A row a velocity, a column a model, the witness first."""
+    models = witness.models(runs)
+    values = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
+    unit = display(values)
+    sides = [witness.side(runs, analysis, name, model) for model in models]
+    rows = []
+    for at, speed in enumerate(runs["velocity"].values):
+        cells = [_cell(unit, side, sides[0], at, name not in UNLIKE) for side in sides]
+        rows.append([Cell(f"{words.number(float(speed))} m/s", "number"), *cells])
+    caption = words.axis(words.response(name), unit.symbol)
+    if name in UNLIKE:
+        caption = f"{caption}: not compared, {UNLIKE[name]}"
+    return Table(caption, ["Impact velocity", *map(witness.label, models)], rows)
+
+
+def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, alike: bool) -> Cell:
+    value = float(side.value[at])
+    if not np.isfinite(value):
+        return Cell("missing", "warning")
+    text = words.number(float(unit(value)))
+    width = float(side.uncertainty[at])
+    if value and not width <= _NOTHING * abs(value):
+        bound = f"{words.number(100.0 * width / abs(value), 2)} %" if np.isfinite(width) else "?"
+        text = f"{text} ± {bound}"
+    gap = float(witness.difference(side, against).value[at])
+    shown = alike and side is not against and np.isfinite(gap)
+    detail = f"{_signed(gap)} against the solid" if shown else ""
+    return Cell(text, "number", detail)
+
+
+def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
+    """A row an effect, a column a response."""
+    found = {name: parts.effects(runs, analysis, name) for name in parts.NAMES}
+    rows = [
+        [Cell(words.sentence(text)), *(_share(found[name][key]) for name in parts.NAMES)]
+        for key, text in parts.EFFECTS.items()
+    ]
+    head = ["Effect", *(words.sentence(words.response(name)) for name in parts.NAMES)]
+    return Table("Change of the answer of the paper's beam by each effect", head, rows)
+
+
+def _share(side: witness.Side) -> Cell:
+    value, width = float(side.value), float(side.uncertainty)
+    if not np.isfinite(value):
+        return Cell("missing", "warning")
+    bound = f"{words.number(100.0 * width, 2)} %" if np.isfinite(width) else "?"
+    return Cell(f"{_signed(value)} ± {bound}", "number")
+
+
+def _signed(share: float) -> str:
+    text = f"{words.number(100.0 * share, 2)} %"
+    return text if share < 0 else f"+{text}"

@@ -1,0 +1,1 @@
+"""What a run answers: responses, histories and fields, under the names of impactlab.variables."""

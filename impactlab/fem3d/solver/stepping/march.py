@@ -1,0 +1,178 @@
+"""The march through time: steps, checkpoints, and reasons to stop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from impactlab.fem3d.solver.mesh.extent import largest_patch
+from impactlab.fem3d.solver.mesh.mesh import Floats
+from impactlab.fem3d.solver.stepping.critical import critical_step
+from impactlab.fem3d.solver.stepping.history import Energies, History, Moment
+from impactlab.fem3d.solver.stepping.shapes import corner_volumes
+from impactlab.fem3d.solver.stepping.system import System
+from impactlab.model.impact import Impact
+
+Progress = Callable[[float, float], None]
+"""Called at checkpoints with the simulated time in s and the share done."""
+
+SAFETY = 0.9
+"""Time step over the largest stable one."""
+CHECKPOINTS = 100
+"""Checks on energies and elements in a run."""
+_SLID = 1.0
+"""Distance across z of nodes that touch, over the element size: beyond, they are no pairs."""
+_FLAT = 0.1
+"""Volume at an element's corner, over that at the start, from which on it is too distorted."""
+
+
+class PatchTooSmallError(ValueError):
+    """Sphere and beam touch where their nodes are not matched. needed: the patch to take, in m."""
+
+    def __init__(self, message: str, needed: float) -> None:
+        """With what a person is told."""
+        super().__init__(message)
+        self.needed = needed
+
+
+class March:
+    """A system on its way. history: what it has left so far."""
+
+    def __init__(self, system: System, impact: Impact) -> None:
+        """At first touch."""
+        self.system, self.impact, self.history = system, impact, History()
+        self._step = SAFETY * critical_step(system)
+        self._volumes = np.empty(system.mesh.elements.shape)
+        self._shortest = corner_volumes(system.mesh.elements, system.x, self._volumes)
+        self._dt = self._step
+        self._kick = 0.5 * self._step  # from rest at time 0 to the middle of the first step
+        self._time, self._lost = 0.0, 0.0
+        self._sphere, self._velocity = 0.0, impact.velocity
+
+    def run(self, duration: float, progress: Progress | None = None) -> History:
+        """March on to `duration` (s), or until something is wrong or Ctrl-C is pressed.
+
+        Raises ValueError where that is less than a step.
+        """
+        if duration <= self._dt:
+            raise ValueError(
+                f"solve.duration = {duration!r} s: must be longer than a step of {self._dt:.3g} s"
+            )
+        try:
+            self._to(duration, progress)
+        except (PatchTooSmallError, KeyboardInterrupt) as reason:
+            if len(self.history.moments) < 2:
+                raise  # there is nothing to keep
+            self.history.stopped = str(reason) or f"interrupted at {self._time:.4g} s"
+            self.history.patch_needed = getattr(reason, "needed", 0.0)
+        return self.history
+
+    def _to(self, duration: float, progress: Progress | None) -> None:
+        """Checkpoint by checkpoint."""
+        for checkpoint in range(1, CHECKPOINTS + 1):
+            self._advance(duration * checkpoint / CHECKPOINTS)
+            if self.history.stopped:
+                break
+            if progress:
+                progress(self._time, checkpoint / CHECKPOINTS)
+
+    def _advance(self, end: float) -> None:
+        """Steps until `end` (s), then a checkpoint."""
+        steps = math.ceil((end - self._time) / self._dt)
+        if steps <= 0:
+            return
+        for _ in range(steps - 1):
+            self._take()
+        before = self.system.v.copy()
+        worked = self._works()
+        self._take()
+        self.history.energies.append(self._energies(before, worked))
+        self.history.offset = max(self.history.offset, self._offset())
+        self.history.stopped = self._wrong()
+
+    def _take(self) -> None:
+        """One step, from positions at its beginning to those at its end."""
+        system, mesh = self.system, self.system.mesh
+        at = (mesh.pole, mesh.axis_node, mesh.top_node)
+        pole, axis, top = mesh.nodes[at, 2] - system.x[at, 2]
+        system.move(self._kick, self._dt)
+        if system.beyond:
+            raise self._outgrown()
+        force = 4.0 * system.impulse / self._kick
+        mass = self.impact.sphere.total_mass
+        self._velocity += self._kick * (self.impact.gravity - force / mass)
+        moment = Moment(self._time, force, self._sphere, pole, axis, top, self._velocity)
+        self.history.moments.append(moment)
+        self._lost += system.lost
+        self._sphere += self._dt * self._velocity
+        self._time += self._dt
+        system.strain(self._dt)
+        self._kick = self._dt
+
+    def _works(self) -> Floats:
+        """Sums over the elements: work, dissipated, against hourglassing (J)."""
+        return np.sum(
+            [
+                [group.row(row).sum() for row in (kind.WORK, kind.DISSIPATED, kind.HOURGLASS_WORK)]
+                for group in self.system.groups
+                for kind in [group.kind]
+            ],
+            axis=0,
+        )
+
+    def _energies(self, before: Floats, worked: Floats) -> Energies:
+        """At the last step's beginning; kinetic by the velocities half a step before and after."""
+        moment, system = self.history.moments[-1], self.system
+        kinetic = 0.5 * float(np.sum(system.mass[:, None] * before * system.v))
+        gravity = self.impact.sphere.total_mass * self.impact.gravity * moment.sphere
+        work, plastic, hourglass = (4.0 * worked).tolist()
+        return Energies(
+            moment.time, 4.0 * kinetic, work, plastic, hourglass, 4.0 * self._lost, gravity
+        )
+
+    def _offset(self) -> float:
+        """Largest distance across z of nodes that touch, over the size of their elements."""
+        mesh = self.system.mesh
+        apart = self.system.x[mesh.pairs[:, 0]] - self.system.x[mesh.pairs[:, 1]]
+        touching = apart[apart[:, 2] <= 0.0, :2]
+        return float(np.max(np.hypot(*touching.T), initial=0.0)) / mesh.element_size
+
+    def _wrong(self) -> str:
+        """Why to stop here, or "". Steps are shortened with the elements."""
+        system = self.system
+        if not math.isfinite(self.history.energies[-1].balance):
+            return f"diverged before {self._time:.4g} s"
+        if self.history.offset > _SLID:
+            return (
+                f"nodes that touch had slid by an element on each other at {self._time:.4g} s: "
+                "take larger elements or a lower velocity"
+            )
+        volumes = np.empty_like(self._volumes)
+        shortest = corner_volumes(system.mesh.elements, system.x, volumes)
+        ratio = np.min(volumes / self._volumes, axis=1)
+        worst = int(np.argmin(ratio))
+        if ratio[worst] < _FLAT:
+            place = 1e3 * system.mesh.nodes[system.mesh.elements[worst]].mean(axis=0)
+            return (
+                f"an element at x, y, z = {place.round(2).tolist()} mm was squeezed to "
+                f"{ratio[worst]:.2g} of its corner volume at {self._time:.4g} s: take larger "
+                "elements or a lower velocity"
+            )
+        shorter = self._step * min(1.0, shortest / self._shortest)
+        self._kick, self._dt = 0.5 * (self._dt + shorter), shorter
+        return ""
+
+    def _outgrown(self) -> PatchTooSmallError:
+        """Work up to a contact radius grows with its fourth power at the least (a plastic one)."""
+        mesh, first = self.system.mesh, self.impact.velocity**2
+        left = min(self._velocity, 0.999 * first**0.5) ** 2
+        needed = 1.1 * mesh.patch * (first / (first - left)) ** 0.25
+        told = (
+            f"at {self._time:.4g} s the contact has grown beyond the matched patch of "
+            f"{1e3 * mesh.patch:.4g} mm: take patch = {needed:.4g} m or more"
+        )
+        if needed > (room := largest_patch(self.impact)):
+            told += f"; beam and sphere have room for {room:.4g} m"
+        return PatchTooSmallError(told, needed)

@@ -1,0 +1,113 @@
+"""The table of cases of a study in which some runs are of the 3-D model.
+
+A record is that of the kernels (solver.case.CASE) with the size of the solid elements. What a run
+does not depend on is zero in it, so that runs which differ in that alone are one case.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from impactlab.fem3d.solver.mesh.extent import contact_radius
+from impactlab.model.checks import positive
+from impactlab.model.columns import column
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import SOLID, Impact
+from impactlab.model.paper import paper_impact
+from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.simulate import case_table
+from impactlab.solver import BEAM_MODELS
+from impactlab.solver.case import CASE
+
+Array = np.ndarray[Any, Any]
+
+SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
+"""Record type of the table."""
+SOLID_MODEL = len(BEAM_MODELS)
+"""In the place of the number of a kernel's model."""
+_BEAM_MODELS_ONLY = (
+    *("contact", "shear_coefficient"),
+    *("nodes", "points", "rule", "scheme", "courant"),
+)
+"""Fields that the 3-D model does not know."""
+
+
+def table(
+    impact: Impact,
+    discretisation: Discretisation,
+    *,
+    duration: float,
+    varied: Mapping[str, Any],
+    first_run: int = 0,
+) -> Array:
+    """One record a run, each run checked; arguments as those of simulate.case_table.
+
+    Raises ValueError naming the run and its field when the model refuses a value, or a run of the
+    3-D model has neither element_size nor elements_per_radius.
+    """
+    models = np.asarray(varied.get("beam_model", [impact.beam_model]))
+    plain = dict(varied)
+    if "beam_model" in plain:
+        plain["beam_model"] = np.where(models == SOLID, BEAM_MODELS[0], models)
+    elif impact.beam_model == SOLID:
+        impact = replace(impact, beam_model=BEAM_MODELS[0])
+    known = case_table(impact, discretisation, duration=duration, varied=plain, first_run=first_run)
+    cases = np.zeros(known.size, dtype=SOLID_CASE)
+    for name in CASE.names or ():
+        cases[name] = known[name]
+    solid = np.broadcast_to(models == SOLID, cases.shape)
+    if solid.any():
+        cases["beam_model"][solid] = SOLID_MODEL
+        for name in _BEAM_MODELS_ONLY:
+            cases[name][solid] = 0
+        cases["element_size"][solid] = _sizes(discretisation, varied, cases, solid)
+    return cases
+
+
+def _sizes(
+    discretisation: Discretisation, varied: Mapping[str, Any], cases: Array, solid: Array
+) -> Array:
+    """Of the elements of each run of the 3-D model, in m."""
+
+    def given(name: str) -> Array | None:
+        values = varied.get(name, [getattr(discretisation, name)])
+        if any(value is None for value in values):
+            return None
+        return np.broadcast_to(positive("Discretisation", name, column(values)), solid.shape)[solid]
+
+    if (sizes := given("element_size")) is not None:
+        return sizes
+    if (counts := given("elements_per_radius")) is None:
+        raise ValueError("Discretisation.element_size: is required for the solid model")
+    return np.array([contact_radius(impact_of(case)) for case in cases[solid]]) / counts
+
+
+def is_solid(cases: Array) -> Array:
+    """Which are of the 3-D model, (cases,)."""
+    return np.asarray(cases["beam_model"] == SOLID_MODEL)
+
+
+def kernel_cases(cases: Array) -> Array:
+    """The cases of the models of the beam as the kernels take them."""
+    beams = cases[~is_solid(cases)]
+    found = np.zeros(beams.size, dtype=CASE)
+    for name in CASE.names or ():
+        found[name] = beams[name]
+    return found
+
+
+def impact_of(case: Any) -> Impact:
+    """The impact of a record of the 3-D model."""
+    values = {name: case[name].item() for name in _IMPACT}
+    return with_values(paper_impact(), Discretisation(), values | {"beam_model": SOLID})[0]
+
+
+_IMPACT = [
+    name
+    for name, entry in PARAMETERS.items()
+    if entry.path[0] == "impact" and name not in (*_BEAM_MODELS_ONLY, "beam_model")
+]

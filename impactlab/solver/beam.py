@@ -1,0 +1,140 @@
+"""The Euler-Bernoulli beam by finite differences: rho A w_tt = M_xx + p, kappa = w_xx.
+
+By symmetry only the half from the left support to mid-span is solved. Arrays along it have n + 4
+entries: 1 is the support, where w = M = 0, `mid` = n + 1 is mid-span, and 0, mid + 1, mid + 2
+mirror the nodes within. Deflection is positive downwards.
+
+With M = M_0 - EI kappa (section.py), M_xx is the fourth difference of w and the second one of
+M_0. M_0 changes only where sections yield, so a step is one loop over w, and the share of M_0 in
+it, `plastic`, is kept from step to step.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from impactlab.solver.jit import allocating, compiled, vectorised
+from impactlab.solver.types import ONE, TWO, Array
+
+
+class Beam(NamedTuple):
+    """The half beam's state.
+
+    w: deflection (m) at this step and the next, in turns, (2, n + 4). u = dt w_t at half steps, du
+    its increment (of the semi-implicit scheme alone), plastic = dt^2/(rho A) (M_0)_xx, all in m,
+    (n + 4,).
+    """
+
+    w: Array
+    u: Array
+    du: Array
+    plastic: Array
+
+
+class Grid(NamedTuple):
+    """mid: index of mid-span; dx (m); dt (s); mu = rho A (kg/m).
+
+    per_dx2 = 1/dx^2. Shares in w of one step: factor = dt^2/(mu dx^2) of a second difference of
+    moments, stiffness = factor EI/dx^2 of a fourth difference of w, push = dt^2/(mu dx) of the
+    mid-span force.
+    """
+
+    mid: int
+    dx: float
+    dt: float
+    mu: float
+    per_dx2: float
+    factor: float
+    stiffness: float
+    push: float
+
+
+_NOTHING = 1e-100
+"""A deflection (m) ahead of the wave that counts as none: keeps denormal numbers out."""
+
+
+@compiled
+def make_grid(n: int, dx: float, dt: float, mu: float, EI: float) -> Grid:
+    """A grid with n spacings in the half beam, and what follows from it."""
+    factor = dt**2 / (mu * dx**2)
+    return Grid(n + 1, dx, dt, mu, 1.0 / dx**2, factor, factor * EI / dx**2, dt**2 / (mu * dx))
+
+
+@allocating
+def make_beam(grid: Grid) -> Beam:
+    """A beam at rest, nowhere yielded."""
+    size = grid.mid + 3
+    return Beam(np.zeros((2, size)), np.zeros(size), np.zeros(size), np.zeros(size))
+
+
+@compiled
+def reach(w: Array, now: int, first: int) -> int:
+    """Where the wave from mid-span begins, one step after it began at `first`."""
+    moved = abs(w[now, first]) > _NOTHING or abs(w[now, first + 1]) > _NOTHING
+    return max(first - 2, 2) if moved else first
+
+
+# What follows runs at every step, so it takes arrays: a whole Beam takes longer to hand on.
+
+
+@vectorised
+def move_virgin(
+    w: Array, now: int, u: Array, first: int, stop: int, grid: Grid, kappa_y: float
+) -> float:
+    """One leapfrog step of the nodes from `first` to before `stop`, where nothing has yielded yet.
+
+    Returns the number of sections that are now beyond the yield curvature kappa_y (1/m).
+    """
+    after, outside = 1 - now, 0.0
+    for i in range(np.uint64(first), np.uint64(stop)):
+        here, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]
+        outside += 1.0 if abs((beside - 2.0 * here) * grid.per_dx2) > kappa_y else 0.0
+        u[i] -= grid.stiffness * (w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * here)
+        w[after, i] = here + u[i]
+    return outside
+
+
+@vectorised
+def move(
+    w: Array,
+    now: int,
+    u: Array,
+    plastic: Array,
+    kappa_min: Array,
+    kappa_max: Array,
+    first: int,
+    grid: Grid,
+) -> float:
+    """One leapfrog step from `first` to mid-span, as if none yielded further and without a force.
+
+    Returns the number of sections that are now outside their elastic interval (1/m).
+    """
+    after, outside = 1 - now, 0.0
+    for i in range(np.uint64(first), np.uint64(grid.mid + 1)):
+        here, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]
+        kappa = (beside - 2.0 * here) * grid.per_dx2
+        outside += 1.0 if kappa > kappa_max[i] else 0.0
+        outside += 1.0 if kappa < kappa_min[i] else 0.0
+        fourth = w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * here
+        u[i] += plastic[i] - grid.stiffness * fourth
+        w[after, i] = here + u[i]
+    return outside
+
+
+@compiled
+def strike(w: Array, now: int, u: Array, F: float, grid: Grid) -> None:
+    """Add the contact force F (N) to a step already made, and mirror the nodes beyond the ends."""
+    u[grid.mid] += grid.push * F
+    w[1 - now, grid.mid] += grid.push * F
+    mirror(w, now, grid)
+
+
+@compiled
+def mirror(w: Array, now: int, grid: Grid) -> None:
+    """Set the nodes beyond both ends after a step: w is odd at the support, even at mid-span."""
+    after, mid = 1 - now, grid.mid
+    w[after, 0] = -w[after, 2]
+    w[after, mid + 1] = w[after, mid - 1]
+    w[after, mid + 2] = w[after, mid - 2]

@@ -1,0 +1,36 @@
+"""Brake's unloading, on the loading of the modified Jackson-Green law.
+
+Source: Brake 2015 (Int. J. Solids and Structures 62, 104), as in public code, which joins it to
+the loading of mjg.py (about.py). With F_H the force of Hertz at delta_m:
+    delta_r = delta_m (1 - F_m/F_H)
+    F = F_m ((delta - delta_r)/(delta_m - delta_r))^1.5
+The softer the contact beside Hertz's, the deeper the dent.
+"""
+
+from __future__ import annotations
+
+import math
+
+from impactlab.solver.contact.jackson_green import ONSET, critical_indentation
+from impactlab.solver.contact.mjg import loading, loading_limit
+from impactlab.solver.jit import compiled
+
+
+@compiled
+def curve(
+    delta: float, E: float, R: float, S_y: float, nu: float
+) -> tuple[float, float, float, float]:
+    """Force and unloading curve (see contact/hertz.py for the form)."""
+    K = 4.0 / 3.0 * E * math.sqrt(R)
+    delta_c = critical_indentation(E, R, S_y, nu)
+    F = loading(delta, delta_c, E, R, S_y, nu)
+    if delta <= ONSET * delta_c:
+        return F, K, 0.0, 1.5
+    recovered = delta * F / (K * delta * math.sqrt(delta))
+    return F, F / recovered**1.5, delta - recovered, 1.5
+
+
+@compiled
+def limit(E: float, R: float, S_y: float, nu: float) -> float:
+    """That of the loading; unloading has none."""
+    return loading_limit(E, R, S_y, nu)

@@ -1,0 +1,31 @@
+"""Hertz contact: F = (4/3) E* sqrt(R*) delta^1.5, elastic, the same way back.
+
+Source: Hertz 1881; Johnson, Contact Mechanics, eq. 4.23.
+
+Every law is two functions of this form. In: indentation delta (m), effective modulus E (Pa),
+effective radius R (m), the softer body's yield stress S_y (Pa) and Poisson's ratio nu.
+`curve` gives (F, K, delta_r, n), the loading force (N) at delta, and the curve on which the contact
+unloads from there, K (d - delta_r)^n. `limit` gives the indentation (m) up to which the law holds;
+why, and what of the law is not confirmed, is in about.py, which also names the law.
+"""
+
+from __future__ import annotations
+
+import math
+
+from impactlab.solver.jit import compiled
+
+
+@compiled
+def curve(
+    delta: float, E: float, R: float, S_y: float, nu: float
+) -> tuple[float, float, float, float]:
+    """Force and unloading curve of Hertz contact."""
+    K = 4.0 / 3.0 * E * math.sqrt(R)
+    return K * delta * math.sqrt(delta), K, 0.0, 1.5
+
+
+@compiled
+def limit(E: float, R: float, S_y: float, nu: float) -> float:
+    """Where a = sqrt(R delta) reaches R."""
+    return R

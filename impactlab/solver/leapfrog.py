@@ -1,0 +1,312 @@
+"""The time loop: leapfrog (central differences), velocities at half steps.
+
+m_s w_s'' = -F + m_s g, w_s(0) = 0, w_s'(0) = v0; indentation delta = w_s - w(L/2).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from impactlab.solver import responses
+from impactlab.solver import track as watch
+from impactlab.solver.beam import Beam, Grid, make_beam, make_grid, move, move_virgin, reach, strike
+from impactlab.solver.beam_models import (
+    RIGID,
+    SEMI_IMPLICIT,
+    SPRING_MASS,
+    TIMOSHENKO,
+    Others,
+    beam_energy,
+    is_explicit,
+    make_others,
+    other_step,
+)
+from impactlab.solver.contact import history as contact_history
+from impactlab.solver.contact.history import Pair, make_pair
+from impactlab.solver.energy import plastic_energy
+from impactlab.solver.jit import allocating, compiled
+from impactlab.solver.lumped import mid_span
+from impactlab.solver.section import Section, make_section
+from impactlab.solver.stability import (
+    critical_time_step,
+    lumped_time_step,
+    semi_implicit_time_step,
+    timoshenko_time_step,
+)
+from impactlab.solver.status import DIVERGED, ENERGY_OUT_OF_BALANCE
+from impactlab.solver.timoshenko import shear_stiffness
+from impactlab.solver.types import Array, Record
+from impactlab.solver.yielding import (
+    Yielding,
+    begin_tangents,
+    catch_up,
+    curvature,
+    follow_tangents,
+    leave_tangents,
+    make_yielding,
+)
+
+_AUDITS = 500
+_LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
+"""Energy is audited 500 times a run, but no more often than every 16 steps nor less than 64."""
+
+WORST_ENERGY_ERROR = 0.05
+"""Imbalance over the initial kinetic energy beyond which a run gives no other answer."""
+
+
+@compiled
+def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
+    """Nodes and time steps of a case: (grid, number of steps)."""
+    dx = case.beam_span / (case.nodes - 1)
+    dt = case.courant * _largest_time_step(case, pair, section.stiffness, dx)
+    steps = math.ceil(case.duration / dt)
+    mu = case.beam_density * case.beam_width * case.beam_depth
+    return make_grid(case.nodes // 2, dx, case.duration / steps, mu, section.stiffness), steps
+
+
+@compiled
+def _largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
+    """In s, of the case's model of the beam and scheme."""
+    if case.beam_model == TIMOSHENKO:
+        return timoshenko_time_step(case, pair, EI, shear_stiffness(case), dx)
+    if case.beam_model == SPRING_MASS:
+        mass, stiffness = mid_span(case, EI)
+        return lumped_time_step(case, pair, mass, stiffness)
+    if case.beam_model == RIGID:
+        return lumped_time_step(case, pair, 0.0, 0.0)
+    if case.scheme == SEMI_IMPLICIT:
+        return semi_implicit_time_step(case, pair, dx)
+    return critical_time_step(case, pair, EI, dx)
+
+
+@compiled
+def _sample(
+    out: Array,
+    step: int,
+    steps: int,
+    before: tuple[float, float, float, float, float],
+    here: tuple[float, float, float, float, float],
+) -> None:
+    """Fill the samples of `out`, shape (5, samples), that fall into the step that ends here."""
+    if out.shape[1] == 0:
+        return
+    per_step = (out.shape[1] - 1) / steps
+    k = max(math.ceil((step - 1) * per_step - 1e-9), 0)
+    while k < out.shape[1] and k <= step * per_step * (1.0 + 1e-12):
+        share = 1.0 - (step - k / per_step)
+        for row in range(5):
+            out[row, k] = before[row] + share * (here[row] - before[row])
+        k += 1
+
+
+@compiled
+def _imbalance(
+    case: Record,
+    pair: Pair,
+    section: Section,
+    grid: Grid,
+    beam: Beam,
+    held: Yielding,
+    others: Others,
+    contact: Record,
+    now: int,
+    sphere: tuple[float, float, float, float],
+    F: float,
+    u_mid: float,
+) -> float:
+    """Energy missing or in excess, over the initial kinetic energy.
+
+    sphere: its displacement (m), velocity before and after the step (m/s), indentation (m).
+    """
+    w_s, v_before, v_after, delta = sphere
+    start = 0.5 * case.sphere_mass * case.velocity**2
+    falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
+    in_beam = beam_energy(case.beam_model, beam, held, section, grid, others, now, F, u_mid)
+    kept, lost = contact_history.energies(contact, pair, delta)
+    return abs(falling + in_beam + kept + lost - start) / start
+
+
+@compiled
+def _contact_force(
+    contact: Record, track: Record, pair: Pair, delta: float, t: float, dt: float
+) -> float:
+    """Contact force (N) at the step of time t; a peak just passed is taken between the steps."""
+    if watch.passed_peak(track, delta, contact.delta_m):
+        offset, peak = watch.vertex(track.delta_before, track.delta, delta)
+        contact_history.load(contact, pair, peak)
+        track.t_peak = t + (offset - 1.0) * dt
+    return contact_history.force(contact, pair, delta)
+
+
+@compiled
+def _answer(
+    answer: Record,
+    case: Record,
+    pair: Pair,
+    section: Section,
+    grid: Grid,
+    held: Yielding,
+    contact: Record,
+    track: Record,
+) -> None:
+    """All responses, or none and why, at the end of a run that has not diverged."""
+    _, dissipated = plastic_energy(held, section, grid)
+    responses.clear(answer, 0)
+    responses.read_contact(answer, track, contact, pair)
+    responses.read_rebound(answer, case, track)
+    responses.read_beam(answer, case, track, held.peeq, grid, dissipated)
+    if track.energy_error > WORST_ENERGY_ERROR:
+        responses.clear(answer, ENERGY_OUT_OF_BALANCE)
+    answer.energy_error = track.energy_error
+
+
+@allocating
+def run(
+    case: Record,
+    answer: Record,
+    contact: Record,
+    track: Record,
+    samples: Array,
+    deflection: Array,
+    plastic_strain: Array,
+    peeq: Array,
+) -> None:
+    """Solve one case.
+
+    case: a CASE record. answer: a RESPONSE record, filled. contact, track: zeros, of CONTACT and
+    TRACK, for the run to work in. samples: shape (5, S), filled with
+    force, mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
+    intervals from 0 to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq
+    (n + 1, P // 2): filled with the half beam's final state; length 0 for none. A run that
+    diverges leaves NaN and its status.
+    """
+    pair, section = make_pair(case), make_section(case)
+    grid, steps = discretise(case, pair, section)
+    beam, held = make_beam(grid), make_yielding(grid, section)
+    others = make_others(case, section, grid)
+    now = march(
+        case,
+        pair,
+        section,
+        grid,
+        beam,
+        held,
+        others,
+        contact,
+        track,
+        samples,
+        steps,
+    )
+    if now < 0:
+        responses.clear(answer, DIVERGED)
+        samples[:] = np.nan
+        return
+    _answer(answer, case, pair, section, grid, held, contact, track)
+    if deflection.size > 0:
+        along = slice(1, grid.mid + 1)
+        deflection[:] = beam.w[now, along]
+        plastic_strain[:] = held.plastic_strain[along]
+        peeq[:] = held.peeq[along]
+
+
+@compiled
+def march(
+    case: Record,
+    pair: Pair,
+    section: Section,
+    grid: Grid,
+    beam: Beam,
+    held: Yielding,
+    others: Others,
+    contact: Record,
+    track: Record,
+    samples: Array,
+    steps: int,
+) -> int:
+    """From first touch to the end of the duration; which row of beam.w is the last, or -1.
+
+    -1: it diverged. contact and track are kept up to date.
+    """
+    w, u, plastic = beam.w, beam.u, beam.plastic
+    kappa_min, kappa_max, M_0 = held.kappa_min, held.kappa_max, held.M_0
+    on_tangent, tangent, psi = held.on_tangent, held.tangent, others.shear.psi
+    explicit = is_explicit(case)
+    kappa_y, dt, mid = section.yield_curvature, grid.dt, grid.mid
+    stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
+    # half a step before the first touch
+    w_s, v_s, per_mass = 0.0, case.velocity - 0.5 * dt * case.gravity, 1.0 / case.sphere_mass
+    now, first, yielded, to_audit = 0, mid, mid + 1, stride
+    here = (0.0, 0.0, 0.0, 0.0, 0.0)
+    contact.n = 1.5
+    watch.start(track)
+    for step in range(steps + 1):
+        w_mid, u_mid = w[now, mid], u[mid]
+        delta = w_s - w_mid
+        F = _contact_force(contact, track, pair, delta, step * dt, dt)
+        v_after = v_s + dt * (case.gravity - F * per_mass)
+        watch.watch(track, delta, contact.delta_r, w_mid, F, v_s, step * dt, dt)
+        kappa = curvature(w, now, psi, grid, np.uint64(mid))
+        before, here = here, (F, w_mid, kappa, w_s, delta)
+        _sample(samples, step, steps, before, here)
+
+        if explicit:
+            if on_tangent[0] > 0 and follow_tangents(
+                w, now, psi, plastic, M_0, on_tangent, tangent, grid
+            ):
+                leave_tangents(beam, now, psi, held, section, grid)
+            outside = move_virgin(w, now, u, first, yielded, grid, kappa_y)
+            if yielded <= mid:
+                outside += move(w, now, u, plastic, kappa_min, kappa_max, yielded, grid)
+            if outside > 0.0:
+                bent = begin_tangents(beam, now, psi, outside, held, section, grid, u, w[1 - now])
+                yielded = min(yielded, max(bent - 1, 2))
+            strike(w, now, u, F, grid)
+        else:
+            other_step(case.beam_model, beam, held, section, grid, others, now, F)
+
+        to_audit -= 1
+        if to_audit == 0 or step == steps:
+            to_audit = stride
+            catch_up(held, section)
+            track.v_s, track.v_mid = v_s, u_mid / dt
+            sphere = (w_s, v_s, v_after, delta)
+            error = _imbalance(
+                case, pair, section, grid, beam, held, others, contact, now, sphere, F, u_mid
+            )
+            track.energy_error = max(track.energy_error, error)
+            if not error < 1.0:
+                return -1
+        w_s, v_s, now = w_s + dt * v_after, v_after, 1 - now
+        first = reach(w, now, first)
+    return 1 - now
+
+
+@allocating
+def run_all(
+    cases: Array,
+    answers: Array,
+    contacts: Array,
+    tracks: Array,
+    samples: Array,
+    deflection: Array,
+    plastic_strain: Array,
+    peeq: Array,
+) -> None:
+    """Solve every case; the arrays of `run` with one more dimension in front, the run.
+
+    A record does not keep its array alive in compiled code, so kernels make no arrays of records:
+    those of all runs are the caller's, who holds them until this returns.
+    """
+    for r in range(cases.size):
+        run(
+            cases[r],
+            answers[r],
+            contacts[r],
+            tracks[r],
+            samples[r],
+            deflection[r],
+            plastic_strain[r],
+            peeq[r],
+        )

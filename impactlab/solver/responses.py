@@ -1,0 +1,152 @@
+"""The scalar answers of a run, read off what was watched and off the final state.
+
+Units and meanings: impactlab.variables.RESPONSES, which has the same names.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from impactlab.solver.beam import Grid
+from impactlab.solver.contact.history import Pair, energies
+from impactlab.solver.contact.switch import limit
+from impactlab.solver.jit import compiled
+from impactlab.solver.remarks import CONTACT_CREATED_ENERGY, CONTACT_LEFT_A_BULGE
+from impactlab.solver.status import (
+    DEFLECTION_STILL_GROWING,
+    FIRST_CONTACT_UNFINISHED,
+    IN_CONTACT_AT_END,
+    INDENTATION_STILL_GROWING,
+    OUTSIDE_CONTACT_LAW,
+    SPHERE_NOT_LEAVING,
+)
+from impactlab.solver.types import Array, Record
+
+ANSWERS = (
+    "peak_force",
+    "time_of_peak_force",
+    "contact_duration",
+    "number_of_contacts",
+    "total_contact_time",
+    "maximum_indentation",
+    "permanent_indentation",
+    "maximum_deflection",
+    "impulse",
+    "rebound_velocity",
+    "restitution",
+    "peak_plastic_strain",
+    "remote_plastic_strain",
+    "plastic_zone_length",
+    "contact_dissipation",
+    "plastic_dissipation",
+    "energy_error",
+)
+_BITS = ("status", "remarks")
+RESPONSE = np.dtype(
+    (np.record, [(name, np.int64) for name in _BITS] + [(name, float) for name in ANSWERS])
+)
+"""Record type of the answers; made of the bits of status.py and remarks.py, and of numbers."""
+
+PLASTIC_ZONE_STRAIN = 1e-5
+"""PEEQ from which on a section counts as plastic."""
+_ROUNDING = 1e-9
+"""Share of the loading work below which the contact has created no energy."""
+
+
+@compiled
+def clear(answer: Record, status: int) -> None:
+    """No answers, and the reason."""
+    answer.status = status
+    answer.remarks = 0
+    answer.peak_force = np.nan
+    answer.time_of_peak_force = np.nan
+    answer.contact_duration = np.nan
+    answer.number_of_contacts = np.nan
+    answer.total_contact_time = np.nan
+    answer.maximum_indentation = np.nan
+    answer.permanent_indentation = np.nan
+    answer.maximum_deflection = np.nan
+    answer.impulse = np.nan
+    answer.rebound_velocity = np.nan
+    answer.restitution = np.nan
+    answer.peak_plastic_strain = np.nan
+    answer.remote_plastic_strain = np.nan
+    answer.plastic_zone_length = np.nan
+    answer.contact_dissipation = np.nan
+    answer.plastic_dissipation = np.nan
+    answer.energy_error = np.nan
+
+
+@compiled
+def read_contact(answer: Record, track: Record, contact: Record, pair: Pair) -> None:
+    """Force, indentation and contact times; marked where the contact law does not hold."""
+    if contact.delta_m > limit(pair.law, pair.E, pair.R, pair.S_y, pair.nu):
+        answer.status |= OUTSIDE_CONTACT_LAW
+    if track.delta == contact.delta_m:
+        answer.status |= INDENTATION_STILL_GROWING
+    else:
+        answer.peak_force = contact.F_m
+        answer.time_of_peak_force = track.t_peak
+        answer.maximum_indentation = contact.delta_m
+    answer.number_of_contacts = track.contacts
+    answer.contact_duration = track.t_first_end
+    if np.isnan(track.t_first_end):
+        answer.status |= FIRST_CONTACT_UNFINISHED
+    if track.touching == 1.0:
+        answer.status |= IN_CONTACT_AT_END
+    else:
+        answer.total_contact_time = track.time_in_contact
+        answer.permanent_indentation = contact.delta_r
+        answer.impulse = track.impulse
+        _, answer.contact_dissipation = energies(contact, pair, track.delta)
+        if answer.contact_dissipation < -_ROUNDING * contact.work:
+            answer.remarks |= CONTACT_CREATED_ENERGY
+        if contact.delta_r < 0.0:
+            answer.remarks |= CONTACT_LEFT_A_BULGE
+
+
+@compiled
+def read_rebound(answer: Record, case: Record, track: Record) -> None:
+    """Rebound, once the sphere moves upwards and away from the beam."""
+    if track.touching == 1.0 or track.v_s >= 0.0 or track.v_s >= track.v_mid:
+        answer.status |= SPHERE_NOT_LEAVING
+    else:
+        answer.rebound_velocity = -track.v_exit
+        answer.restitution = -track.v_exit / case.velocity
+
+
+@compiled
+def read_beam(
+    answer: Record, case: Record, track: Record, peeq: Array, grid: Grid, dissipated: float
+) -> None:
+    """Deflection and plastic strain; peeq: of the half beam, see Yielding."""
+    if track.w > track.w_max:
+        answer.status |= DEFLECTION_STILL_GROWING
+    else:
+        answer.maximum_deflection = track.w_max
+    answer.peak_plastic_strain = 0.0
+    answer.remote_plastic_strain = 0.0
+    answer.plastic_zone_length = 0.0
+    strain_before = 0.0
+    for i in range(2, grid.mid + 1):
+        strain = 0.0
+        for j in range(peeq.shape[1]):
+            strain = max(strain, peeq[i, j])
+        answer.peak_plastic_strain = max(answer.peak_plastic_strain, strain)
+        if (grid.mid - i) * grid.dx > case.beam_depth:
+            answer.remote_plastic_strain = max(answer.remote_plastic_strain, strain)
+        share = share_above(strain_before, strain, PLASTIC_ZONE_STRAIN)
+        answer.plastic_zone_length += 2.0 * grid.dx * share
+        strain_before = strain
+    answer.plastic_dissipation = dissipated
+
+
+@compiled
+def share_above(left: float, right: float, threshold: float) -> float:
+    """Share of a cell in which the line from `left` to `right` lies above the threshold."""
+    high, low = max(left, right), min(left, right)
+    if low >= threshold:
+        return 1.0
+    if high <= threshold:
+        return 0.0
+    return (high - threshold) / (high - low)

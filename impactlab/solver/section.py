@@ -1,0 +1,121 @@
+"""The fibre section: from curvature to bending moment.
+
+strain(z) = -z kappa, M = B * integral of z stress dz (N m). The section and its strains are
+antisymmetric about the axis, so only the fibres with z > 0 are kept, each counted twice.
+While no fibre yields, M = M_0 - EI kappa: a section remembers M_0 and the interval
+[kappa_min, kappa_max] of curvature (1/m) in which that holds, and only leaving it costs a loop
+over the fibres.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from impactlab.solver import BEAM_MODELS, fibre
+from impactlab.solver.jit import allocating, compiled, vectorised
+from impactlab.solver.quadrature import upper_half
+from impactlab.solver.types import Array, Record
+
+FAR = 1e300
+"""A curvature that no section reaches (1/m)."""
+
+_ELASTIC = BEAM_MODELS.index("elastic")
+_ROUND_OFF = 1e-12
+"""A fibre so near its yield strain, in shares of it, yields."""
+
+
+class Moduli(NamedTuple):
+    """Young's modulus, yield stress, isotropic and kinematic hardening modulus (Pa)."""
+
+    E: float
+    S_y: float
+    H_i: float
+    H_k: float
+
+
+class Section(NamedTuple):
+    """The rule's fibres and their material, for one run.
+
+    z: distance from the axis, m, outermost first; area: twice B times the rule's weight, m2;
+    lever: E area z, N m; each of shape (P // 2,). stiffness: (EI)_q = sum(E area z^2), N m2, the
+    rule's own. yield_curvature: where the outermost fibre first yields, 1/m.
+    """
+
+    z: Array
+    area: Array
+    lever: Array
+    stiffness: float
+    yield_curvature: float
+    moduli: Moduli
+
+
+@allocating
+def make_section(case: Record) -> Section:
+    """The section of a case."""
+    half = case.points // 2
+    z, area = np.empty(half), np.empty(half)
+    upper_half(case.rule, case.points, z, area)
+    E, stiffness = case.beam_youngs_modulus, 0.0
+    for j in range(half):
+        z[j] *= 0.5 * case.beam_depth
+        area[j] *= case.beam_depth * case.beam_width
+        stiffness += E * area[j] * z[j] * z[j]
+    return Section(
+        z,
+        area,
+        E * area * z,
+        stiffness,
+        FAR if case.beam_model == _ELASTIC else case.beam_yield_stress / (E * z[0]),
+        Moduli(
+            E,
+            case.beam_yield_stress,
+            case.beam_isotropic_hardening_modulus,
+            case.beam_kinematic_hardening_modulus,
+        ),
+    )
+
+
+@vectorised
+def bend(
+    section: Section, kappa: float, plastic_strain: Array, peeq: Array, i: int
+) -> tuple[float, float, float]:
+    """Take the fibres of section i to curvature kappa (1/m).
+
+    Updates row i of plastic_strain and peeq, shape (sections, P // 2). Returns (M_0, kappa_min,
+    kappa_max) of the new elastic interval.
+    """
+    z, lever = section.z, section.lever
+    E, S_y, H_i, H_k = section.moduli
+    M_0, kappa_min, kappa_max = 0.0, -FAR, FAR
+    for j in range(z.size):
+        strain, slipped = plastic_strain[i, j], peeq[i, j]
+        strain, slipped = fibre.return_mapping(-z[j] * kappa, strain, slipped, E, S_y, H_i, H_k)
+        plastic_strain[i, j], peeq[i, j] = strain, slipped
+        M_0 -= lever[j] * strain
+        least, largest = fibre.elastic_range(strain, slipped, E, S_y, H_i, H_k)
+        kappa_min = max(kappa_min, -largest / z[j])
+        kappa_max = min(kappa_max, -least / z[j])
+    return M_0, kappa_min, kappa_max
+
+
+@compiled
+def tangent(
+    section: Section, kappa: float, direction: float, plastic_strain: Array, peeq: Array, i: int
+) -> tuple[float, float]:
+    """(growth of M_0 with kappa in N m2, curvature in 1/m at which a further fibre yields).
+
+    Of section i, which `bend` has taken to kappa, when it is bent on towards greater (direction 1)
+    or smaller (-1) curvature.
+    """
+    z, (E, S_y, H_i, H_k) = section.z, section.moduli
+    growth, limit = 0.0, direction * FAR
+    for j in range(z.size):
+        least, largest = fibre.elastic_range(plastic_strain[i, j], peeq[i, j], E, S_y, H_i, H_k)
+        end = -(least if direction > 0.0 else largest) / z[j]
+        if direction * (end - kappa) <= _ROUND_OFF * S_y / (E * z[j]):
+            growth += section.lever[j] * z[j] * E / (E + H_i + H_k)
+        elif direction * (limit - end) > 0.0:
+            limit = end
+    return growth, limit

@@ -1,0 +1,165 @@
+"""The Timoshenko beam: transverse shear and rotary inertia, by staggered central differences.
+
+rho A w_tt = Q_x + p, rho I psi_tt = -M_x + Q, Q = k G A (w_x - psi), with the section's moment
+M = M_0 - EI kappa as everywhere in the kernels, but of the curvature kappa = psi_x; shear stays
+elastic. w and M at nodes, psi and Q half-way to the next node. Source: S. Timoshenko, Phil. Mag. 41
+(1921) 744; shear coefficient k = 5/6 for a rectangle.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from impactlab.solver.beam import Beam, Grid, mirror
+from impactlab.solver.jit import allocating, compiled, vectorised
+from impactlab.solver.section import Section
+from impactlab.solver.types import ONE, Array, Record
+from impactlab.solver.yielding import Yielding, begin_tangents, follow_tangents, leave_tangents
+
+
+class Shear(NamedTuple):
+    """What a Timoshenko beam has besides Beam; all arrays (n + 4,), or empty for other models.
+
+    stiffness = k G A (N); inertia = rho I (kg m). psi: rotation, spin = dt psi_t its increment,
+    d_spin the last change of that (rad), Q (N): half-way from node i to i + 1 at index i. M (N m):
+    at nodes.
+    """
+
+    stiffness: float
+    inertia: float
+    psi: Array
+    spin: Array
+    d_spin: Array
+    Q: Array
+    M: Array
+
+
+@compiled
+def shear_stiffness(case: Record) -> float:
+    """k G A in N."""
+    G = 0.5 * case.beam_youngs_modulus / (1.0 + case.beam_poissons_ratio)
+    return case.shear_coefficient * G * (case.beam_width * case.beam_depth)
+
+
+@allocating
+def make_shear(case: Record, size: int) -> Shear:
+    """At rest; size: n + 4, or 0."""
+    area = case.beam_width * case.beam_depth
+    return Shear(
+        shear_stiffness(case),
+        case.beam_density * area * case.beam_depth**2 / 12.0,
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+    )
+
+
+@compiled
+def shear_step(
+    beam: Beam,
+    shear: Shear,
+    held: Yielding,
+    section: Section,
+    grid: Grid,
+    now: int,
+    F: float,
+) -> None:
+    """One step under the contact force F (N)."""
+    psi, M, mid = shear.psi, shear.M, grid.mid
+    if held.on_tangent[0] > 0 and follow_tangents(
+        beam.w, now, psi, beam.plastic, held.M_0, held.on_tangent, held.tangent, grid
+    ):
+        leave_tangents(beam, now, psi, held, section, grid)
+    EI, per_dx = section.stiffness, 1.0 / grid.dx
+    outside = _moments(psi, M, held.M_0, held.kappa_min, held.kappa_max, EI, per_dx, mid)
+    if outside > 0.0:
+        begin_tangents(beam, now, psi, outside, held, section, grid, beam.du, beam.du[:0])
+        _moments(psi, M, held.M_0, held.kappa_min, held.kappa_max, EI, per_dx, mid)
+    turn = grid.dt**2 / shear.inertia
+    Q, kGA = shear.Q, shear.stiffness
+    _rotate(beam.w, now, psi, shear.spin, shear.d_spin, Q, M, kGA, turn, per_dx, mid)
+    psi[mid], Q[mid] = -psi[mid - 1], -Q[mid - 1]
+    _shift(beam.w, now, beam.u, beam.du, Q, grid.push, F, mid)
+    mirror(beam.w, now, grid)
+
+
+@vectorised
+def _moments(
+    psi: Array,
+    M: Array,
+    M_0: Array,
+    kappa_min: Array,
+    kappa_max: Array,
+    EI: float,
+    per_dx: float,
+    mid: int,
+) -> float:
+    """Moments at the nodes; how many sections are outside their elastic interval."""
+    outside = 0.0
+    for i in range(np.uint64(2), np.uint64(mid + 1)):
+        kappa = (psi[i] - psi[i - ONE]) * per_dx
+        outside += 1.0 if kappa > kappa_max[i] else 0.0
+        outside += 1.0 if kappa < kappa_min[i] else 0.0
+        M[i] = M_0[i] - EI * kappa
+    return outside
+
+
+@vectorised
+def _rotate(
+    w: Array,
+    now: int,
+    psi: Array,
+    spin: Array,
+    d_spin: Array,
+    Q: Array,
+    M: Array,
+    kGA: float,
+    turn: float,
+    per_dx: float,
+    mid: int,
+) -> None:
+    """Shear force half-way between the nodes, and the rotation's step; turn = dt^2/(rho I)."""
+    for i in range(np.uint64(1), np.uint64(mid)):
+        Q[i] = kGA * ((w[now, i + ONE] - w[now, i]) * per_dx - psi[i])
+        d_spin[i] = turn * (Q[i] - (M[i + ONE] - M[i]) * per_dx)
+        spin[i] += d_spin[i]
+        psi[i] += spin[i]
+
+
+@vectorised
+def _shift(
+    w: Array, now: int, u: Array, du: Array, Q: Array, push: float, F: float, mid: int
+) -> None:
+    """The deflection's step; push = dt^2/(rho A dx)."""
+    after = 1 - now
+    for i in range(np.uint64(2), np.uint64(mid)):
+        du[i] = push * (Q[i] - Q[i - ONE])
+        u[i] += du[i]
+        w[after, i] = w[now, i] + u[i]
+    du[mid] = push * (Q[mid] - Q[mid - 1] + F)
+    u[mid] += du[mid]
+    w[after, mid] = w[now, mid] + u[mid]
+
+
+@vectorised
+def shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) -> float:
+    """Energy in J of the whole beam after a step, at its beginning, but for the plastic strains'.
+
+    Kinetic as in energy.py, of deflection and rotation; elastic of bending (see there) and shear.
+    """
+    u, du, spin, d_spin, mid = beam.u, beam.du, shear.spin, shear.d_spin, grid.mid
+    moved, turned, bent, sheared = 0.0, 0.0, 0.0, 0.0
+    for i in range(np.uint64(2), np.uint64(mid)):
+        moved += u[i] * (u[i] - du[i])
+        bent += shear.M[i] * shear.M[i] - M_0[i] * M_0[i]
+    moved += 0.5 * u[mid] * (u[mid] - du[mid])
+    bent += 0.5 * (shear.M[mid] * shear.M[mid] - M_0[mid] * M_0[mid])
+    for i in range(np.uint64(1), np.uint64(mid)):
+        turned += spin[i] * (spin[i] - d_spin[i])
+        sheared += shear.Q[i] * shear.Q[i]
+    moving = (grid.mu * moved + shear.inertia * turned) / grid.dt**2
+    return grid.dx * (moving + bent / EI + sheared / shear.stiffness)

@@ -1,0 +1,121 @@
+"""What is watched at every step: peaks and contact events, taken between the steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from impactlab.solver.jit import compiled
+from impactlab.solver.types import Record
+
+TRACK = np.dtype(
+    (
+        np.record,
+        [
+            (name, float)
+            for name in (
+                "delta",
+                "delta_before",
+                "t_peak",
+                "w",
+                "w_before",
+                "w_max",
+                "F",
+                "contacts",
+                "touching",
+                "t_touch",
+                "t_first_end",
+                "time_in_contact",
+                "v_exit",
+                "v_s",
+                "v_mid",
+                "impulse",
+                "energy_error",
+            )
+        ],
+    )
+)
+"""At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before
+(m), force F (N). t_peak (s): time of the largest indentation; w_max (m). contacts: number begun;
+touching: 1 or 0; t_touch: when this contact began, t_first_end: when the first one ended (NaN:
+not yet), time_in_contact of the ended ones (s); v_exit (m/s): the sphere's velocity when the last
+contact ended; v_s, v_mid (m/s): of sphere and mid-span at the last audit. impulse (N s).
+energy_error: largest imbalance over the initial energy."""
+
+
+@compiled
+def start(track: Record) -> None:
+    """First touch: the sphere rests on the beam at t = 0."""
+    track.contacts = 1.0
+    track.touching = 1.0
+    track.t_first_end = np.nan
+    track.v_exit = np.nan
+    track.t_peak = np.nan
+
+
+@compiled
+def vertex(before: float, here: float, after: float) -> tuple[float, float]:
+    """(offset in steps from `here`, value) of the extremum of the parabola through three points."""
+    bend = before - 2.0 * here + after
+    if bend == 0.0:
+        return 0.0, here
+    offset = 0.5 * (before - after) / bend
+    return offset, here - 0.25 * (before - after) * offset
+
+
+@compiled
+def passed_peak(track: Record, delta: float, delta_m: float) -> bool:
+    """Whether the largest indentation so far lies between the last two steps and this one."""
+    return track.delta == delta_m and delta < track.delta and track.delta >= track.delta_before
+
+
+@compiled
+def watch(
+    track: Record,
+    delta: float,
+    delta_r: float,
+    w: float,
+    F: float,
+    v_s: float,
+    t: float,
+    dt: float,
+) -> None:
+    """Note what happened in the step that ends at t."""
+    watch_contact(track, delta, delta_r, v_s, t, dt)
+    watch_deflection(track, w)
+    shift(track, delta, w, F, dt)
+
+
+@compiled
+def watch_contact(
+    track: Record, delta: float, delta_r: float, v_s: float, t: float, dt: float
+) -> None:
+    """Note where, in the step that ends at t, a contact ended or a new one began."""
+    gap_before, gap = delta_r - track.delta, delta_r - delta
+    if track.touching == 1.0 and gap >= 0.0 and t > 0.0:
+        end = t - dt * gap / (gap - gap_before)
+        track.touching = 0.0
+        track.time_in_contact += end - track.t_touch
+        track.v_exit = v_s
+        if np.isnan(track.t_first_end):
+            track.t_first_end = end
+    elif track.touching == 0.0 and gap < 0.0:
+        track.t_touch = t - dt * gap / (gap - gap_before)
+        track.touching = 1.0
+        track.contacts += 1.0
+
+
+@compiled
+def watch_deflection(track: Record, w: float) -> None:
+    """Note a largest mid-span deflection that lies between the last two steps and this one."""
+    if track.w > track.w_before and w <= track.w:
+        _, value = vertex(track.w_before, track.w, w)
+        track.w_max = max(track.w_max, value)
+
+
+@compiled
+def shift(track: Record, delta: float, w: float, F: float, dt: float) -> None:
+    """This step becomes the last one."""
+    track.impulse += 0.5 * dt * (track.F + F)
+    track.delta_before, track.delta = track.delta, delta
+    track.w_before, track.w = track.w, w
+    track.F = F

@@ -1,0 +1,182 @@
+"""The beam's sections while they yield.
+
+As long as a section is bent on in one direction and no further fibre begins to yield, its moment
+follows a straight line, the tangent, and its fibres need not be touched: they are caught up with
+when the section turns back, when a further fibre begins to yield, or when they are asked for.
+Return mapping with linear hardening does not depend on the number of steps taken in one
+direction, so nothing is lost.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from impactlab.solver.beam import Beam, Grid
+from impactlab.solver.jit import allocating, compiled
+from impactlab.solver.section import FAR, Section, bend, tangent
+from impactlab.solver.types import ONE, TWO, Array, Index
+
+
+class Yielding(NamedTuple):
+    """What each section remembers; indices as in beam.py.
+
+    M_0 (N m) and kappa_min, kappa_max (1/m): the elastic interval, (n + 4,); without limits in a
+    section on its tangent. on_tangent: the number of these, then which they are, (n + 5,).
+    tangent: (n + 4, 4), of these the direction (1 or -1), the growth of M_0 with kappa (N m2), the
+    curvature at which a further fibre yields, and the present one (1/m). plastic_strain and peeq
+    of the fibres, (n + 4, P // 2).
+    """
+
+    M_0: Array
+    kappa_min: Array
+    kappa_max: Array
+    on_tangent: Array
+    tangent: Array
+    plastic_strain: Array
+    peeq: Array
+
+
+@allocating
+def make_yielding(grid: Grid, section: Section) -> Yielding:
+    """Sections never yielded."""
+    size, fibres = grid.mid + 3, section.z.size
+    return Yielding(
+        np.zeros(size),
+        np.full(size, -section.yield_curvature),
+        np.full(size, section.yield_curvature),
+        np.zeros(size + 1, dtype=np.uint64),
+        np.zeros((size, 4)),
+        np.zeros((size, fibres)),
+        np.zeros((size, fibres)),
+    )
+
+
+@compiled
+def curvature(w: Array, now: int, psi: Array, grid: Grid, i: Index) -> float:
+    """kappa in 1/m: w_xx, or psi_x where there is a rotation of its own (timoshenko.py)."""
+    if psi.size > 0:
+        return (psi[i] - psi[i - ONE]) / grid.dx
+    return (w[now, i - ONE] - 2.0 * w[now, i] + w[now, i + ONE]) * grid.per_dx2
+
+
+@compiled
+def follow_tangents(
+    w: Array,
+    now: int,
+    psi: Array,
+    plastic: Array,
+    M_0: Array,
+    on_tangent: Array,
+    tangent: Array,
+    grid: Grid,
+) -> int:
+    """Bend the sections on a tangent, before the beam makes its step.
+
+    psi: the rotation of a Timoshenko beam, else empty. Returns how many have come to the end of
+    their tangent; these get the direction 0 and are left as they are. Runs at every step: see
+    beam.py.
+    """
+    ended = 0
+    for k in range(ONE, on_tangent[0] + ONE):
+        i = on_tangent[k]
+        kappa = curvature(w, now, psi, grid, i)
+        direction, ahead = tangent[i, 0], kappa - tangent[i, 3]
+        if ahead * direction >= 0.0 and (tangent[i, 2] - kappa) * direction >= 0.0:
+            tangent[i, 3] = kappa
+            _add_moment(plastic, M_0, i, tangent[i, 1] * ahead, grid)
+        else:
+            tangent[i, 0] = 0.0
+            ended += 1
+    return ended
+
+
+@compiled
+def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: Grid) -> None:
+    """Change M_0 of section i by so much (N m), and `plastic` with it."""
+    share = grid.factor * change
+    M_0[i] += change
+    plastic[i - ONE] += share  # at the support it is never read
+    plastic[i] -= 2.0 * share
+    # mid-span has such a neighbour on both sides
+    plastic[i + ONE] += 2.0 * share if i + ONE == np.uint64(grid.mid) else share
+
+
+@compiled
+def leave_tangents(
+    beam: Beam, now: int, psi: Array, held: Yielding, section: Section, grid: Grid
+) -> None:
+    """Bend the sections that follow_tangents has left, before the beam makes its step."""
+    k = np.uint64(1)
+    while k <= held.on_tangent[0]:
+        i = held.on_tangent[k]
+        if held.tangent[i, 0] == 0.0:
+            kappa = curvature(beam.w, now, psi, grid, i)
+            M_0, held.kappa_min[i], held.kappa_max[i] = bend(
+                section, held.tangent[i, 3], held.plastic_strain, held.peeq, i
+            )
+            if held.kappa_min[i] <= kappa <= held.kappa_max[i]:
+                _add_moment(beam.plastic, held.M_0, i, M_0 - held.M_0[i], grid)
+                held.on_tangent[k] = held.on_tangent[held.on_tangent[0]]
+                held.on_tangent[0] -= ONE
+                continue
+            _begin_tangent(beam, held, section, grid, i, kappa)
+        k += ONE
+
+
+@compiled
+def begin_tangents(
+    beam: Beam,
+    now: int,
+    psi: Array,
+    outside: float,
+    held: Yielding,
+    section: Section,
+    grid: Grid,
+    u: Array,
+    w: Array,
+) -> int:
+    """Bend the `outside` sections that have left their interval.
+
+    Adds what that changes to u and, unless it is empty, to w: a step is mended that has been made
+    before. Returns the first section looked at.
+    """
+    i = np.uint64(grid.mid + 1)
+    while outside > 0.0 and i > TWO:  # from mid-span, near which they most often are
+        i -= ONE
+        kappa = curvature(beam.w, now, psi, grid, i)
+        if kappa > held.kappa_max[i] or kappa < held.kappa_min[i]:
+            outside -= 1.0
+            near = (beam.plastic[i - ONE], beam.plastic[i], beam.plastic[i + ONE])
+            _begin_tangent(beam, held, section, grid, i, kappa)
+            for j in range(max(i - ONE, TWO), i + TWO):  # the support does not move
+                change = beam.plastic[j] - near[j + ONE - i]
+                u[j] += change
+                if w.size > 0:
+                    w[j] += change
+            held.on_tangent[0] += ONE
+            held.on_tangent[held.on_tangent[0]] = i
+    return int(i)
+
+
+@compiled
+def _begin_tangent(
+    beam: Beam, held: Yielding, section: Section, grid: Grid, i: Index, kappa: float
+) -> None:
+    """Bend section i out of its elastic interval to kappa, where its tangent begins."""
+    direction = 1.0 if kappa > held.kappa_max[i] else -1.0
+    M_0, _, _ = bend(section, kappa, held.plastic_strain, held.peeq, i)
+    _add_moment(beam.plastic, held.M_0, i, M_0 - held.M_0[i], grid)
+    growth, limit = tangent(section, kappa, direction, held.plastic_strain, held.peeq, i)
+    line = held.tangent[i]
+    line[0], line[1], line[2], line[3] = direction, growth, limit, kappa
+    held.kappa_min[i], held.kappa_max[i] = -FAR, FAR
+
+
+@compiled
+def catch_up(held: Yielding, section: Section) -> None:
+    """Bring the fibres of the sections on a tangent up to date."""
+    for k in range(ONE, held.on_tangent[0] + ONE):
+        i = held.on_tangent[k]
+        bend(section, held.tangent[i, 3], held.plastic_strain, held.peeq, i)

@@ -1,0 +1,72 @@
+"""A Sobol sample that is doubled until its intervals are narrow enough.
+
+The sample is nested: the runs of N base samples are the first ones of 2 N, so that none is solved
+in vain.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.study.adaptive.widest import Widest, widest
+from impactlab.study.sampling.doubling import doubled
+
+log = logging.getLogger(__name__)
+Step = Callable[[xr.Dataset], xr.Dataset]
+
+
+def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
+    """The runs of the smallest sample whose intervals are as narrow as asked.
+
+    design: of a Sobol study with `until`. solve: makes the runs of a design; analyse: makes
+    first_order_interval, total_order_interval (response, parameter) and sensitivity_verdict
+    (response) of runs.
+
+    Returns runs with the attributes until_reached (1: the intervals are as asked), until_reason
+    (why it stopped, in words), until_widest (the widest half-width) and of what it is,
+    until_widest_index, until_widest_response and until_widest_parameter, and until_left_out:
+    which responses had no say, and why, a line each. Raises ValueError when this version of
+    impactlab draws other runs than the design has.
+    """
+    while True:
+        runs = solve(design)
+        found = widest(analyse(runs.assign_attrs(analyses="sensitivity")), _asked(design))
+        reason = _enough(design, found)
+        log.info("%d runs: %s", runs.sizes["run"], reason or f"{found}: twice as many")
+        if reason:
+            return runs.assign_attrs(_said(design, found, reason))
+        design = doubled(design)
+
+
+def _asked(design: xr.Dataset) -> list[str]:
+    names = design.attrs.get("until_responses", design.attrs["responses"])
+    return [str(name) for name in np.atleast_1d(names)]
+
+
+def _enough(design: xr.Dataset, found: Widest) -> str:
+    """Why not to go on; "" where the sample is to be doubled."""
+    interval, most = float(design.attrs["until_interval"]), int(design.attrs["until_runs"])
+    if not found.response:
+        return "no response has indices that more runs could narrow"
+    if found.half_width <= interval:
+        return f"{found}, within {interval:g}"
+    if 2 * design.sizes["run"] > most:
+        return f"{found}, above {interval:g}, but twice as many runs are more than {most:,}"
+    return ""
+
+
+def _said(design: xr.Dataset, found: Widest, reason: str) -> dict[str, Any]:
+    return {
+        "until_reached": int(found.half_width <= float(design.attrs["until_interval"])),
+        "until_reason": reason,
+        "until_widest": found.half_width,
+        "until_widest_index": found.index,
+        "until_widest_response": found.response,
+        "until_widest_parameter": found.parameter,
+        "until_left_out": "\n".join(found.left_out),
+    }

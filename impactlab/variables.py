@@ -1,0 +1,358 @@
+"""The table of every variable in impactlab's datasets, their encoding, and their provenance."""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+from collections.abc import Iterable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from impactlab.model.parameters import PARAMETERS
+from impactlab.solver import remarks, status
+from impactlab.solver.contact.about import ABOUT
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_STOPPED = 256
+"""Beside the kernels' bits: the 3-D model alone has it."""
+FAILURES: dict[str, tuple[int, str]] = {
+    "diverged": (status.DIVERGED, "the run diverged; every response is missing"),
+    "first_contact_unfinished": (
+        status.FIRST_CONTACT_UNFINISHED,
+        "the duration ends before the first contact does",
+    ),
+    "in_contact_at_end": (
+        status.IN_CONTACT_AT_END,
+        "the duration ends while sphere and beam are in contact",
+    ),
+    "sphere_not_leaving": (
+        status.SPHERE_NOT_LEAVING,
+        "the duration ends before the sphere moves upwards and away from the beam",
+    ),
+    "deflection_still_growing": (
+        status.DEFLECTION_STILL_GROWING,
+        "the largest deflection falls on the end of the duration",
+    ),
+    "indentation_still_growing": (
+        status.INDENTATION_STILL_GROWING,
+        "the largest indentation falls on the end of the duration",
+    ),
+    "energy_out_of_balance": (
+        status.ENERGY_OUT_OF_BALANCE,
+        "energy is out of balance by more than 5 %: take more nodes or a smaller courant",
+    ),
+    "stopped": (
+        _STOPPED,
+        "the 3-D model stopped before its time, or had no room for its contact (see the log); "
+        "every response is missing",
+    ),
+}
+"""Reasons for a missing response, by name: (bit in `status`, in words)."""
+MARKS: dict[str, tuple[int, str]] = {
+    "outside_contact_law": (
+        status.OUTSIDE_CONTACT_LAW,
+        "the largest indentation is beyond the range of the contact law (which `contact` states): "
+        "the responses are there, but extrapolated",
+    ),
+}
+"""What else `status` says, by name: bits that leave every response as it is."""
+STATUS_FLAGS = FAILURES | MARKS
+"""All that `status` can say."""
+FAILED = sum(bit for bit, _ in FAILURES.values())
+"""The bits of a run that failed."""
+_MARKED = sum(bit for bit, _ in MARKS.values())
+
+REMARKS: dict[str, tuple[int, str]] = {
+    "contact_created_energy": (
+        remarks.CONTACT_CREATED_ENERGY,
+        "the contact law created energy: the contact dissipation is below zero",
+    ),
+    "contact_left_a_bulge": (
+        remarks.CONTACT_LEFT_A_BULGE,
+        "the contact law left a bulge: the permanent indentation is below zero",
+    ),
+}
+"""What to know of responses that are there, by name: (bit in `remarks`, in words)."""
+
+FLAGS: dict[str, tuple[str, dict[str, tuple[int, str]]]] = {
+    "status": ("why responses are missing or to be taken with care (0: none is)", STATUS_FLAGS),
+    "remarks": ("what to know of the responses that are there (0: nothing)", REMARKS),
+}
+"""The variables made of bits: (long_name, flags)."""
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One dataset variable: where it lives, its unit (UDUNITS) and its meaning.
+
+    missing: the status flag that explains why a response is NaN (besides those of the whole run).
+    comment: what a reader of the number has to know.
+    """
+
+    name: str
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    missing: str | None = None
+    comment: str | None = None
+
+
+def _response(
+    name: str, units: str, long_name: str, missing: str | None = None, comment: str | None = None
+) -> Variable:
+    return Variable(name, (), units, long_name, missing, comment)
+
+
+RESPONSES: dict[str, Variable] = {
+    entry.name: entry
+    for entry in (
+        _response("peak_force", "N", "largest contact force", "indentation_still_growing"),
+        _response(
+            "time_of_peak_force",
+            "s",
+            "time of the largest contact force",
+            "indentation_still_growing",
+        ),
+        _response(
+            "contact_duration", "s", "duration of the first contact", "first_contact_unfinished"
+        ),
+        _response("number_of_contacts", "1", "contacts begun within the duration"),
+        _response("total_contact_time", "s", "time in contact, all contacts", "in_contact_at_end"),
+        _response("maximum_indentation", "m", "largest indentation", "indentation_still_growing"),
+        _response(
+            "permanent_indentation",
+            "m",
+            "indentation left after the last contact",
+            "in_contact_at_end",
+            "below zero where the contact law itself leaves a bulge, as Stronge's does for largest "
+            "indentations of 1 to 1.998 times that of first yield; `remarks` says so, too",
+        ),
+        _response(
+            "maximum_deflection", "m", "largest mid-span deflection", "deflection_still_growing"
+        ),
+        _response(
+            "impulse", "N s", "impulse of the contact force, all contacts", "in_contact_at_end"
+        ),
+        _response(
+            "rebound_velocity",
+            "m s-1",
+            "sphere's velocity away from the beam when the last contact ends",
+            "sphere_not_leaving",
+        ),
+        _response(
+            "restitution",
+            "1",
+            "coefficient of restitution (rebound over impact velocity)",
+            "sphere_not_leaving",
+        ),
+        _response("peak_plastic_strain", "1", "largest equivalent plastic strain (PEEQ)"),
+        _response(
+            "remote_plastic_strain",
+            "1",
+            "largest PEEQ farther than one beam depth from the impact",
+        ),
+        _response(
+            "plastic_zone_length", "m", "length of beam with a PEEQ above 1e-5 in the section"
+        ),
+        _response(
+            "contact_dissipation",
+            "J",
+            "energy dissipated in the contact",
+            "in_contact_at_end",
+            "below zero where the contact law itself creates energy, as Stronge's does for largest "
+            "indentations of 1 to 2.673 times that of first yield; `remarks` says so, too",
+        ),
+        _response("plastic_dissipation", "J", "energy dissipated in the fibres"),
+        _response("energy_error", "1", "largest energy imbalance over the initial kinetic energy"),
+    )
+}
+"""The scalar answers of a run, by name."""
+
+_TIME = (
+    Variable("contact_force", ("time",), "N", "contact force"),
+    Variable("midspan_deflection", ("time",), "m", "deflection of the beam at mid-span"),
+    Variable(
+        "midspan_curvature",
+        ("time",),
+        "m-1",
+        "curvature of the beam at mid-span (w_xx; psi_x of a Timoshenko beam)",
+    ),
+    Variable("sphere_displacement", ("time",), "m", "displacement of the sphere since first touch"),
+    Variable("indentation", ("time",), "m", "indentation (approach of sphere and beam axis)"),
+)
+_FIELDS = (
+    Variable("equivalent_plastic_strain", ("x", "z"), "1", "equivalent plastic strain (PEEQ)"),
+    Variable("plastic_strain", ("x", "z"), "1", "plastic strain along the beam"),
+    Variable("deflection", ("x",), "m", "deflection at the end of the duration"),
+)
+ANALYSES: dict[str, str] = {
+    "convergence_in_nodes": "a grid that varies `nodes` over at least 3 values",
+    "convergence_in_time_step": "a grid that varies `courant` over at least 3 values",
+    "convergence_in_element_size": "a grid that varies `element_size` or "
+    "`elements_per_radius` over at least 3 values",
+    "convergence_in_points": "a grid that varies `points` over at least 2 values",
+    "sensitivity": "a sample (any method but grid)",
+    "surrogate": "a sample (any method but grid)",
+}
+"""Names of the analyses (modules of impactlab.analysis), and what runs each one needs."""
+
+WITNESS: dict[str, Variable] = {
+    "plastic_zone_radius": Variable(
+        "plastic_zone_radius",
+        (),
+        "m",
+        "distance from the centre of the impact to which the struck surface has a PEEQ above 0.2 %",
+        comment="of the 3-D model alone: NaN for models of the beam",
+    )
+}
+"""What comes with the runs of the 3-D model beside the responses, by name."""
+UNLIKE: dict[str, str] = {
+    "peak_plastic_strain": "with the contact in 3-D, of bending alone in the beam models",
+    "plastic_zone_length": "with the contact in 3-D, of bending alone in the beam models",
+    "plastic_dissipation": "with the contact in 3-D, of bending alone in the beam models",
+    "energy_error": "of each model's own balance",
+}
+"""Responses that are not the same quantity in the 3-D model and in those of the beam, and why."""
+HISTORIES: dict[str, Variable] = {entry.name: entry for entry in _TIME}
+"""Answers on `time`, by name."""
+PROFILES: dict[str, Variable] = {entry.name: entry for entry in _FIELDS}
+"""Answers along the beam at the end of the run, by name."""
+
+COORDINATES: dict[str, Variable] = {
+    "time": Variable("time", ("time",), "s", "time since first touch"),
+    "x": Variable("x", ("x",), "m", "distance from the left support"),
+    "z": Variable("z", ("z",), "m", "distance below the beam's axis"),
+    "duration": Variable("duration", (), "s", "simulated time"),
+    "run": Variable("run", ("run",), "1", "number of the run"),
+}
+VARIABLES = RESPONSES | WITNESS | HISTORIES | PROFILES | COORDINATES
+"""Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
+
+
+def attributes(name: str) -> dict[str, Any]:
+    """CF attributes of a variable, a parameter or a name of FLAGS. Raises KeyError if unknown."""
+    if name in FLAGS:
+        long_name, flags = FLAGS[name]
+        return {
+            "long_name": long_name,
+            "flag_masks": np.array([bit for bit, _ in flags.values()], dtype=np.int32),
+            "flag_meanings": " ".join(flags),
+        }
+    entry = VARIABLES[name] if name in VARIABLES else PARAMETERS[name]
+    attrs: dict[str, Any] = {"units": entry.units, "long_name": entry.long_name}
+    if isinstance(entry, Variable) and entry.missing:
+        attrs["missing_because"] = f"diverged energy_out_of_balance stopped {entry.missing}"
+    if isinstance(entry, Variable) and entry.comment:
+        attrs["comment"] = entry.comment
+    return attrs
+
+
+def described(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset with the attributes of the table on every variable that the table knows."""
+    known = VARIABLES | PARAMETERS | FLAGS
+    for name, variable in dataset.variables.items():
+        if name in known:
+            variable.attrs = attributes(str(name)) | variable.attrs
+    if "contact" in dataset.variables:
+        laws = np.unique(dataset["contact"].values).tolist()
+        dataset["contact"].attrs |= contact_attributes(laws)
+    return dataset
+
+
+def contact_attributes(laws: Iterable[str]) -> dict[str, str]:
+    """Attributes of `contact` on these laws, a line each: source, range, flaws and doubts."""
+    found = [(law, ABOUT[law]) for law in laws]
+    texts = {
+        "source": [(law, about.source) for law, about in found],
+        "holds_for": [(law, about.holds) for law, about in found],
+        "flaws": [(law, about.flaws) for law, about in found],
+        "unconfirmed": [(law, about.unconfirmed) for law, about in found],
+    }
+    lines = {key: [f"{law}: {text}" for law, text in entry if text] for key, entry in texts.items()}
+    return {key: "\n".join(entry) for key, entry in lines.items() if entry}
+
+
+def status_bits(responses: Iterable[str]) -> int:
+    """The status bits that take these responses away: the whole run's, and each one's own."""
+    bits = status.DIVERGED | status.ENERGY_OUT_OF_BALANCE | _STOPPED
+    for name in responses:
+        if reason := RESPONSES[name].missing:
+            bits |= STATUS_FLAGS[reason][0]
+    return bits
+
+
+def kept_bits(responses: Iterable[str]) -> int:
+    """The status bits that matter to who asks for these responses: status_bits and the marks."""
+    return status_bits(responses) | _MARKED
+
+
+def reasons(bits: int) -> list[str]:
+    """The failures of a status in words, for a person."""
+    return [words for bit, words in FAILURES.values() if bits & bit]
+
+
+def marks(bits: int) -> list[str]:
+    """The marks of a status in words, for a person."""
+    return [words for bit, words in MARKS.values() if bits & bit]
+
+
+def remarked(bits: int) -> list[str]:
+    """The flags of `remarks` in words, for a person."""
+    return [words for bit, words in REMARKS.values() if bits & bit]
+
+
+_PACKAGES = (
+    *("impactlab", "numpy", "numba", "xarray", "netCDF4", "dask", "SALib", "scikit-learn", "scipy"),
+)
+
+
+def provenance() -> dict[str, str]:
+    """Where numbers come from: versions, source revision, time and class of processor."""
+    return {
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "versions": _versions(),
+        "source_revision": _revision(Path(__file__).resolve().parent),
+        "processor": _processor(),
+        "Conventions": "CF-1.11",
+    }
+
+
+# What a process has loaded stays as it is, so each of these is found out once.
+
+
+@cache
+def _versions() -> str:
+    packages = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
+    return f"{packages}, python {platform.python_version()}"
+
+
+@cache
+def _revision(here: Path) -> str:
+    """The commit of the source tree, marked when it has changes; "release" outside a checkout."""
+    command = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
+    if not (here.parent / ".git").exists():
+        return f"release {version('impactlab')}"
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return "unknown (git did not answer)"
+    return result.stdout.strip()
+
+
+@cache
+def _processor() -> str:
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        for line in info.read_text().splitlines():
+            if line.startswith("model name"):
+                return f"{line.split(':', 1)[1].strip()}, {os.cpu_count()} cores"
+    return f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores"

@@ -1,0 +1,300 @@
+"""Every contact law again, written from its formulas, and what follows from it by quadrature.
+
+A sphere on a rigidly backed half-space: no gravity, no waves. Sources: physics.md ("Further contact
+laws") and the papers named there; Stronge's law with force continuity is in stronge.py in closed
+form, too. Functions of plain numbers, all in SI: indentation d (m), effective modulus E (Pa) and
+radius R (m), the softer body's yield stress S (Pa) and Poisson's ratio nu.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from impactlab.model.checks import one_of, positive
+from impactlab.model.impact import Impact
+from impactlab.verification.solutions import hertz as hertz_forms
+
+# Loading: F(d, E, R, S, nu) in N.
+
+
+def hertz(d: float, E: float, R: float, S: float, nu: float) -> float:
+    """F = (4/3) E sqrt(R) d^1.5."""
+    return 4.0 / 3.0 * E * math.sqrt(R * d) * d
+
+
+def stronge(d: float, E: float, R: float, S: float, nu: float) -> float:
+    """Mean pressure p over a^2 = R (2 d - d_y): 1.1 S + S ln(u)/3, at most 2.8 S."""
+    d_y = R * (0.825 * math.pi * S / E) ** 2
+    if d <= d_y:
+        return hertz(d, E, R, S, nu)
+    u = 2.0 * d / d_y - 1.0
+    pressure = min(1.1 * S + S * math.log(u) / 3.0, 2.8 * S)
+    return math.pi * R * (2.0 * d - d_y) * pressure
+
+
+def jackson_green(d: float, E: float, R: float, S: float, nu: float) -> float:
+    """Jackson and Green 2005."""
+    C = 1.295 * math.exp(0.736 * nu)
+    d_c = R * (math.pi * C * S / (2.0 * E)) ** 2
+    if d <= 1.9 * d_c:
+        return hertz(d, E, R, S, nu)
+    a = math.sqrt(R * d * (d / (1.9 * d_c)) ** (0.14 * math.exp(23.0 * S / E)))
+    H = 2.84 * S * (1.0 - math.exp(-0.82 / (a / R) ** 0.7))
+    return _fitted(d / d_c, 4.0 * H / (C * S), C, E, R, S)
+
+
+def mjg(d: float, E: float, R: float, S: float, nu: float) -> float:
+    """Ghaednia, Brake, Berryhill and Jackson 2019, without hardening."""
+    C = 1.295 * math.exp(0.736 * nu)
+    d_c = R * (math.pi * C * S / (2.0 * E)) ** 2
+    if d <= 1.9 * d_c:
+        return hertz(d, E, R, S, nu)
+    a = math.sqrt(R * d * (d / (1.9 * d_c)) ** (0.14 * math.exp(23.0 * S / E)))
+    H = S * (1.92 + 0.92 * math.cos(math.pi * a / R))
+    return _fitted(d / d_c, 4.0 * H / (C * S), C, E, R, S)
+
+
+def _fitted(y: float, factor: float, C: float, E: float, R: float, S: float) -> float:
+    F_c = 4.0 / 3.0 * (R / E) ** 2 * (math.pi * C * S / 2.0) ** 3
+    faded = math.exp(-math.pow(y, 5.0 / 12.0) / 4.0)
+    grown = 1.0 - math.exp(-math.pow(y, 5.0 / 9.0) / 25.0)
+    return F_c * (faded * math.pow(y, 1.5) + factor * grown * y)
+
+
+def thornton(d: float, E: float, R: float, S: float, nu: float) -> float:
+    """Thornton 1997, limiting pressure 1.6 S."""
+    p_y = 1.6 * S
+    d_y = R * (math.pi * p_y / (2.0 * E)) ** 2
+    if d <= d_y:
+        return hertz(d, E, R, S, nu)
+    F_y = (R / E) ** 2 * (math.pi * p_y) ** 3 / 6.0
+    return F_y + math.pi * p_y * R * (d - d_y)
+
+
+def kogut_etsion(d: float, E: float, R: float, S: float, nu: float) -> float:
+    """Kogut and Etsion 2002; F_c = (2/3) pi K H R d_c."""
+    K, H = 0.454 + 0.41 * nu, 2.8 * S
+    d_c = R * (math.pi * K * H / (2.0 * E)) ** 2
+    y, F_c = d / d_c, 2.0 / 3.0 * math.pi * K * H * R * d_c
+    if y <= 1.0:
+        return hertz(d, E, R, S, nu)
+    if y <= 6.0:
+        return F_c * 1.03 * math.pow(y, 1.425)
+    if y <= 110.0:
+        return F_c * 1.40 * math.pow(y, 1.263)
+    return F_c * 3.0 / K * y
+
+
+# Unloading from d: (force at its start in N, indentation at its end in m, exponent).
+
+
+def elastic_unloading(
+    d: float, F: float, E: float, R: float, S: float, nu: float
+) -> tuple[float, float, float]:
+    """The way back of Hertz's law."""
+    return F, 0.0, 1.5
+
+
+def wang_unloading(
+    d: float, F: float, E: float, R: float, S: float, nu: float
+) -> tuple[float, float, float]:
+    """The paper's Eqs. 15 to 17: R_e = sqrt(3 F/(4 E)) (R/d_y)^(3/4)."""
+    d_y = R * (0.825 * math.pi * S / E) ** 2
+    if d <= d_y:
+        return F, 0.0, 1.5
+    R_e = math.sqrt(3.0 * F / (4.0 * E)) * (R / d_y) ** 0.75
+    return F, d - d_y * R_e / R, 1.5
+
+
+def stronge_unloading(
+    d: float, F: float, E: float, R: float, S: float, nu: float
+) -> tuple[float, float, float]:
+    """Stronge 2000: recovers d_y sqrt(2 d/d_y - 1), from the force F_y (2 d/d_y - 1) on."""
+    d_y = R * (0.825 * math.pi * S / E) ** 2
+    if d <= d_y:
+        return F, 0.0, 1.5
+    u = 2.0 * d / d_y - 1.0
+    return 1.1 * math.pi * S * R * d_y * u, d - d_y * math.sqrt(u), 1.5
+
+
+def jackson_unloading(
+    d: float, F: float, E: float, R: float, S: float, nu: float
+) -> tuple[float, float, float]:
+    """Jackson, Chusoipin and Green 2005; at least 1 % is recovered."""
+    d_c = R * (math.pi * 1.295 * math.exp(0.736 * nu) * S / (2.0 * E)) ** 2
+    if d <= d_c:
+        return F, 0.0, 1.5
+    share = 1.02 - 1.02 * (6.9 / (d / d_c + 5.9)) ** 0.54
+    return F, d * min(share, 0.99), 1.5
+
+
+def thornton_unloading(
+    d: float, F: float, E: float, R: float, S: float, nu: float
+) -> tuple[float, float, float]:
+    """Thornton 1997: Hertz's curve on R_p = (4 E/(3 F)) ((2 F + F_y)/(2 pi p_y))^1.5."""
+    p_y = 1.6 * S
+    F_y = (R / E) ** 2 * (math.pi * p_y) ** 3 / 6.0
+    if d <= (math.pi * p_y / (2.0 * E)) ** 2 * R:
+        return F, 0.0, 1.5
+    a_squared = (2.0 * F + F_y) / (2.0 * math.pi * p_y)
+    R_p = 4.0 * E / (3.0 * F) * a_squared**1.5
+    return F, d - (9.0 * F**2 / (16.0 * E**2 * R_p)) ** (1.0 / 3.0), 1.5
+
+
+def etsion_unloading(
+    d: float, F: float, E: float, R: float, S: float, nu: float
+) -> tuple[float, float, float]:
+    """Etsion, Kligerman and Kadin 2005."""
+    y = d / (R * (1.4 * math.pi * (0.454 + 0.41 * nu) * S / E) ** 2)
+    if y <= 1.0:
+        return F, 0.0, 1.5
+    return F, d * (1.0 - 1.0 / y**0.28) * (1.0 - 1.0 / y**0.69), 1.5 / y**0.0331
+
+
+def brake_unloading(
+    d: float, F: float, E: float, R: float, S: float, nu: float
+) -> tuple[float, float, float]:
+    """Brake 2015; elastic until the loading leaves Hertz's."""
+    onset = 1.9 * R * (math.pi * 1.295 * math.exp(0.736 * nu) * S / (2.0 * E)) ** 2
+    if d <= onset:
+        return F, 0.0, 1.5
+    return F, d * (1.0 - F / hertz(d, E, R, S, nu)), 1.5
+
+
+Loading = Callable[[float, float, float, float, float], float]
+Unloading = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
+
+LAWS: dict[str, tuple[Loading, Unloading]] = {
+    "hertz": (hertz, elastic_unloading),
+    "stronge": (stronge, wang_unloading),
+    "stronge_original": (stronge, stronge_unloading),
+    "jackson_green": (jackson_green, jackson_unloading),
+    "mjg": (mjg, jackson_unloading),
+    "thornton": (thornton, thornton_unloading),
+    "kogut_etsion": (kogut_etsion, etsion_unloading),
+    "brake": (mjg, brake_unloading),
+}
+"""Loading and unloading of each law, by name."""
+
+
+def joints(E: float, R: float, S: float, nu: float) -> list[float]:
+    """Indentations (m) at which some law changes its form, ascending."""
+    stronge_y = R * (0.825 * math.pi * S / E) ** 2
+    jackson_c = R * (math.pi * 1.295 * math.exp(0.736 * nu) * S / (2.0 * E)) ** 2
+    thornton_y = R * (0.8 * math.pi * S / E) ** 2
+    kogut_c = R * (1.4 * math.pi * (0.454 + 0.41 * nu) * S / E) ** 2
+    plastic = 0.5 * (math.exp(5.1) + 1.0)
+    return sorted(
+        [
+            *(stronge_y * x for x in (1.0, plastic)),
+            *(jackson_c * x for x in (1.0, 1.9)),
+            thornton_y,
+            *(kogut_c * x for x in (1.0, 6.0, 110.0)),
+        ]
+    )
+
+
+@dataclass(frozen=True)
+class LawOnHalfSpace:
+    """A law between two bodies: effective_modulus, yield_stress in Pa, effective_radius in m.
+
+    Raises ValueError for an unknown law, or where a number is not finite and positive.
+    """
+
+    law: str
+    effective_modulus: float
+    effective_radius: float
+    yield_stress: float
+    poissons_ratio: float
+
+    def __post_init__(self) -> None:
+        one_of("LawOnHalfSpace", "law", self.law, tuple(LAWS))
+        for field in ("effective_modulus", "effective_radius", "yield_stress"):
+            positive("LawOnHalfSpace", field, getattr(self, field))
+
+    @property
+    def pair(self) -> tuple[float, float, float, float]:
+        """E, R, S, nu, as the functions above take them."""
+        return (
+            self.effective_modulus,
+            self.effective_radius,
+            self.yield_stress,
+            self.poissons_ratio,
+        )
+
+    def loading_force(self, indentation: float) -> float:
+        """F in N at a monotonically reached indentation (m)."""
+        return LAWS[self.law][0](indentation, *self.pair)
+
+    def unloading(self, indentation: float) -> tuple[float, float, float]:
+        """(force at the start in N, residual indentation in m, exponent) after `indentation`."""
+        return LAWS[self.law][1](indentation, self.loading_force(indentation), *self.pair)
+
+    def residual_indentation(self, indentation: float) -> float:
+        """What is left of `indentation`, in m."""
+        return self.unloading(indentation)[1]
+
+    def loading_work(self, indentation: float) -> float:
+        """Integral of the force up to `indentation`, in J: adaptive quadrature between joints."""
+        inner = [d for d in joints(*self.pair) if d < indentation]
+        ends = [0.0, *inner, indentation]
+        return sum(_quadrature(self, *piece) for piece in pairwise(ends))
+
+    def released_work(self, indentation: float) -> float:
+        """Integral of the unloading curve, in J: a power law."""
+        force, end, exponent = self.unloading(indentation)
+        return force * (indentation - end) / (exponent + 1.0)
+
+    def maximum_indentation(self, velocity: float, mass: float) -> float:
+        """Where the loading work is the energy of `mass` (kg) at `velocity` (m/s), in m."""
+        speed = positive("LawOnHalfSpace", "velocity", velocity)
+        energy = 0.5 * positive("LawOnHalfSpace", "mass", mass) * speed**2
+        high = hertz_forms.maximum_indentation(mass, speed, *self.pair[:2])
+        while self.loading_work(high) < energy:
+            high *= 2.0
+        low = 0.5 * high
+        while self.loading_work(low) > energy:
+            low *= 0.5
+        return float(
+            brentq(lambda d: self.loading_work(d) - energy, low, high, xtol=1e-16, rtol=1e-13)
+        )
+
+    def restitution(self, velocity: float, mass: float) -> float:
+        """sqrt(released/put in) of `mass` (kg) at `velocity` (m/s)."""
+        deepest = self.maximum_indentation(velocity, mass)
+        return math.sqrt(self.released_work(deepest) / self.loading_work(deepest))
+
+
+@cache
+def _quadrature(law: LawOnHalfSpace, start: float, stop: float) -> float:
+    return float(quad(law.loading_force, start, stop, epsabs=0.0, epsrel=1e-11)[0])
+
+
+def law_on_half_space(impact: Impact) -> LawOnHalfSpace:
+    """The law and the bodies of `impact` as if the beam were a half-space."""
+    sphere, beam = impact.sphere.material, impact.beam.material
+    softer = beam if beam.yield_stress <= sphere.yield_stress else sphere
+    return LawOnHalfSpace(
+        impact.contact,
+        hertz_forms.effective_modulus(impact),
+        hertz_forms.effective_radius(impact),
+        softer.yield_stress,
+        softer.poissons_ratio,
+    )
+
+
+def thornton_restitution(velocity_ratio: float) -> float:
+    """e of Thornton's law in closed form (Thornton 1997); velocity over that of first yield."""
+    if velocity_ratio <= 1.0:
+        return 1.0
+    slow = 1.0 / velocity_ratio
+    cut = 1.0 - slow**2 / 6.0
+    rest = slow / (slow + 2.0 * math.sqrt(1.2 - 0.2 * slow**2))
+    return math.sqrt(1.2 * math.sqrt(3.0) * cut) * math.sqrt(math.sqrt(rest))

@@ -1,0 +1,160 @@
+"""A sphere strikes one mass on one spring under Hertz contact, by a general integrator.
+
+m_s w_s'' = m_s g - F, m w'' = F - K w, F = k delta^1.5 while delta = w_s - w > 0; all at rest at
+first touch but for the sphere. Symbols: w_s, w (m), displacements of sphere and mass; F (N).
+Source: the spring-mass models of Goldsmith, Impact (1960); integrator: scipy's DOP853 (Hairer,
+Norsett and Wanner, Solving Ordinary Differential Equations I (1993), section II.10).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import solve_ivp
+
+from impactlab.model.checks import not_negative, positive
+from impactlab.model.impact import Impact
+from impactlab.verification.solutions import hertz
+from impactlab.verification.solutions.modal_march import contact_stiffness
+
+Floats = NDArray[np.float64]
+_RTOL = 1e-12
+_STEPS = 50
+"""At least so many steps in Hertz's contact time: no contact is stepped over."""
+
+
+@dataclass(frozen=True)
+class Oscillator:
+    """What the sphere strikes: mass in kg (infinite: it does not move), stiffness K in N/m."""
+
+    mass: float
+    stiffness: float
+
+
+@dataclass(frozen=True)
+class LumpedSolution:
+    """Histories are at any times through `at`; displacements and forces are positive downwards.
+
+    contacts: start and end of each in s, shape (contacts, 2), NaN where the duration ends first.
+    peak_force in N at time_of_peak_force in s: the largest, of all contacts. duration in s.
+    """
+
+    impact: Impact
+    duration: float
+    contacts: Floats
+    peak_force: float
+    time_of_peak_force: float
+    _path: Callable[[Floats], Floats]
+
+    @property
+    def contact_duration(self) -> float:
+        """Duration of the first contact in s, NaN where it does not end."""
+        return float(self.contacts[0, 1])
+
+    def at(self, history: str, time: ArrayLike) -> Floats:
+        """The named history at `time` (s, shape (n,)), in SI units, shape (n,).
+
+        Names: contact_force, midspan_deflection, indentation, sphere_displacement,
+        sphere_velocity, midspan_velocity.
+
+        Raises ValueError when a time is outside the solution's, KeyError for another name.
+        """
+        seconds = np.atleast_1d(np.asarray(time, dtype=np.float64))
+        if not np.all((seconds >= 0) & (seconds <= self.duration)):
+            raise ValueError(f"time: every value must be within 0 to {self.duration!r} s")
+        return _HISTORIES[history](self._path(seconds), contact_stiffness(self.impact))
+
+
+_HISTORIES: dict[str, Callable[[Floats, float], Floats]] = {
+    "contact_force": lambda state, k: np.asarray(_force(state[0] - state[1], k)),
+    "midspan_deflection": lambda state, _: state[1],
+    "indentation": lambda state, _: state[0] - state[1],
+    "sphere_displacement": lambda state, _: state[0],
+    "sphere_velocity": lambda state, _: state[2],
+    "midspan_velocity": lambda state, _: state[3],
+}
+
+
+def solve(impact: Impact, struck: Oscillator, duration: float) -> LumpedSolution:
+    """The impact of the sphere on `struck` over `duration` (s); the beam gives E* alone.
+
+    Raises ValueError when the contact is not "hertz", the mass or the duration is not positive, or
+    the stiffness is negative or not finite.
+    """
+    if impact.contact != "hertz":
+        raise ValueError(f"Impact.contact = {impact.contact!r}: lumped masses need 'hertz'")
+    _check(struck)
+    end, k = positive("lumped", "duration", duration), contact_stiffness(impact)
+    found = _integrate(impact, struck, end)
+    touches, turns = found.t_events
+    depths = [state[0] - state[1] for state in (*found.y_events[1], found.y[:, -1])]
+    deepest = int(np.argmax(depths))
+    return LumpedSolution(
+        impact,
+        end,
+        _contacts(touches),
+        float(_force(depths[deepest], k)),
+        float([*turns, end][deepest]),
+        found.sol,
+    )
+
+
+def _integrate(impact: Impact, struck: Oscillator, duration: float) -> Any:
+    """What solve_ivp gives: first event, touch and parting; second, the indentation turns."""
+    mass, k = impact.sphere.total_mass, contact_stiffness(impact)
+
+    def motion(_: float, state: Floats) -> list[float]:
+        w_s, w, v_s, v = state
+        F = _force(w_s - w, k)
+        return [v_s, v, impact.gravity - F / mass, (F - struck.stiffness * w) / struck.mass]
+
+    def gap(_: float, state: Floats) -> float:
+        return float(state[0] - state[1])
+
+    def closing(_: float, state: Floats) -> float:
+        return float(state[2] - state[3])
+
+    closing.direction = -1.0  # type: ignore[attr-defined]
+    v0, scales = impact.velocity, _scales(impact)
+    return solve_ivp(
+        motion,
+        (0.0, duration),
+        [0.0, 0.0, v0, 0.0],
+        method="DOP853",
+        rtol=_RTOL,
+        atol=_RTOL * np.array([scales[0], scales[0], v0, v0]),
+        max_step=scales[1] / _STEPS,
+        events=(gap, closing),
+        dense_output=True,
+    )
+
+
+def _force(delta: Any, k: float) -> Any:
+    """Hertz force in N at an indentation (m), zero out of contact."""
+    depth = np.maximum(delta, 0.0)
+    return k * depth * np.sqrt(depth)
+
+
+def _scales(impact: Impact) -> tuple[float, float]:
+    """Indentation (m) and contact time (s) on a half-space."""
+    modulus, radius = hertz.effective_modulus(impact), hertz.effective_radius(impact)
+    args = (impact.sphere.total_mass, impact.velocity, modulus, radius)
+    return hertz.maximum_indentation(*args), hertz.contact_duration(*args)
+
+
+def _contacts(touches: Floats) -> Floats:
+    """Start and end of each contact, the first touch at 0 included."""
+    later = touches[touches > 0.0]
+    ends = np.concatenate(([0.0], later, [np.nan] * ((later.size + 1) % 2)))
+    return np.asarray(ends.reshape(-1, 2))
+
+
+def _check(struck: Oscillator) -> None:
+    if not math.isinf(struck.mass):
+        positive("Oscillator", "mass", struck.mass)
+    not_negative("Oscillator", "stiffness", struck.stiffness)

@@ -1,0 +1,93 @@
+"""The simply supported beam under a load that grows slowly at mid-span, beyond yield.
+
+Statically determinate: the moment is P x/2 at a distance x from the support, whatever yields. The
+deflection follows from the curvature by the unit-load theorem.
+Source: Prager and Hodge, Theory of Perfectly Plastic Solids (1951), chapter 2.
+"""
+
+from __future__ import annotations
+
+import math
+
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from impactlab.model.beam import Beam
+from impactlab.model.checks import positive
+from impactlab.verification.solutions import bending
+
+_FAR = 1e6
+"""Curvature, over the yield curvature, beyond which a section counts as a hinge."""
+
+
+def midspan_deflection(beam: Beam, load: float) -> float:
+    """Mid-span deflection in m under a `load` (N) there that has only grown.
+
+    w = integral of kappa x dx over half the span; with M = P x/2 and by parts
+    w = 2/P^2 (kappa_m M_m^2 - integral of M^2 over kappa from 0 to kappa_m), m: at mid-span.
+
+    Raises ValueError when the load is not above zero, or the beam cannot carry it.
+    """
+    highest = positive("static_loading", "load", load) * beam.span / 4.0
+    curvature = _curvature(beam, highest)
+    first = min(curvature, bending.yield_curvature(beam))
+    work = beam.bending_stiffness**2 * first**3 / 3.0 + _squares(beam, first, curvature)
+    return float(2.0 / load**2 * (curvature * highest**2 - work))
+
+
+def load_at(beam: Beam, deflection: float) -> float:
+    """Load in N that gives a mid-span `deflection` (m) on the first loading.
+
+    Without hardening it ends at the collapse load, which deflections of 20/9 times that of first
+    yield and more share.
+
+    Raises ValueError when the deflection is not above zero.
+    """
+    target = positive("static_loading", "deflection", deflection)
+    elastic = target / bending.static_deflection(beam, 1.0)  # no beam carries more
+    farthest = 4.0 / beam.span * float(bending.moment(beam, 0.5 * _hinge(beam)))
+    most = min(elastic, farthest)
+    if midspan_deflection(beam, most) <= target:
+        return most
+    least = 2.0 / 3.0 * most  # the plastic moment is 1.5 times that of first yield
+    while midspan_deflection(beam, least) > target:
+        least *= 0.5
+    return float(brentq(lambda load: midspan_deflection(beam, load) - target, least, most))
+
+
+def missing_work(beam: Beam) -> float:
+    """Work in J that collapse takes less than the collapse load would have done all the way.
+
+    The integral of P_c - P over the deflection, that is of the deflection over P; without
+    hardening.
+    """
+    collapse = bending.collapse_load(beam)
+    at_yield = 4.0 * bending.yield_moment(beam) / beam.span
+    elastic = 0.5 * bending.static_deflection(beam, at_yield) * at_yield
+    beyond, _ = quad(lambda load: midspan_deflection(beam, load), at_yield, collapse * (1 - 1e-9))
+    return float(elastic + beyond)
+
+
+def _hinge(beam: Beam) -> float:
+    return _FAR * bending.yield_curvature(beam)
+
+
+def _squares(beam: Beam, start: float, stop: float) -> float:
+    """Integral of M^2 over the curvature, which may grow by orders: in its logarithm."""
+
+    def integrand(logarithm: float) -> float:
+        kappa = math.exp(logarithm)
+        return float(bending.moment(beam, kappa)) ** 2 * kappa
+
+    value, _ = quad(integrand, math.log(start), math.log(stop), epsrel=1e-11)
+    return float(value)
+
+
+def _curvature(beam: Beam, moment: float) -> float:
+    """The curvature (1/m) at which the section carries `moment` (N m)."""
+    if moment <= bending.yield_moment(beam):
+        return moment / beam.bending_stiffness
+    first, far = bending.yield_curvature(beam), _hinge(beam)
+    if moment > float(bending.moment(beam, far)):
+        raise ValueError(f"the beam cannot carry a moment of {moment:g} N m")
+    return float(brentq(lambda kappa: float(bending.moment(beam, kappa)) - moment, first, far))

@@ -1,0 +1,155 @@
+"""Restitution of a sphere on a rigidly backed half-space under the Stronge law, in closed form.
+
+Loading in three phases (elastic, elastic-plastic, fully plastic), unloading with force continuity.
+Sources: W. J. Stronge, Impact Mechanics (2000), section 6.4, for loading; Wang et al., as the paper
+takes it (its Table 1 and Eqs. 15 to 17), for unloading. No gravity, no waves in the half-space.
+
+Symbols: delta_y (m) and F_y (N), indentation and force at first yield; x = delta/delta_y,
+u = 2 x - 1.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from scipy.optimize import brentq
+
+from impactlab.model.checks import not_negative, positive
+from impactlab.model.impact import Impact
+from impactlab.verification.solutions import hertz
+
+CONSTRAINT = 1.1
+"""th: mean contact pressure over yield stress at first yield."""
+HARDNESS = 2.8
+"""Mean contact pressure over yield stress when fully plastic."""
+U_PLASTIC = math.exp(3.0 * (HARDNESS - CONSTRAINT))
+"""u = 164.02 (x = 82.511), where the two plastic branches meet without a jump."""
+
+
+@dataclass(frozen=True)
+class StrongeImpact:
+    """Closed forms for one pair of bodies: E* and sigma_y (of the softer body) in Pa, R* in m.
+
+    Raises ValueError naming the field when one is not finite and positive; the methods likewise
+    for their arguments.
+    """
+
+    effective_modulus: float
+    effective_radius: float
+    yield_stress: float
+
+    def __post_init__(self) -> None:
+        for field in ("effective_modulus", "effective_radius", "yield_stress"):
+            positive("StrongeImpact", field, getattr(self, field))
+
+    @property
+    def yield_indentation(self) -> float:
+        """delta_y = (3 pi th sigma_y/(4 E*))^2 R* in m."""
+        pressure = CONSTRAINT * self.yield_stress
+        return (0.75 * math.pi * pressure / self.effective_modulus) ** 2 * self.effective_radius
+
+    @property
+    def yield_force(self) -> float:
+        """F_y = (4/3) E* sqrt(R*) delta_y^1.5 in N."""
+        stiffness = hertz.stiffness(self.effective_modulus, self.effective_radius)
+        return stiffness * math.pow(self.yield_indentation, 1.5)
+
+    def yield_velocity(self, mass: float) -> float:
+        """Velocity in m/s below which a sphere of `mass` (kg) stays elastic."""
+        work = 0.4 * self.yield_force * self.yield_indentation
+        return math.sqrt(2.0 * work / positive("StrongeImpact", "mass", mass))
+
+    def loading_force(self, indentation: float) -> float:
+        """Force in N at a monotonically reached `indentation` (m, zero or more)."""
+        x = not_negative("StrongeImpact", "indentation", indentation) / self.yield_indentation
+        return self.yield_force * _force(x)
+
+    def loading_work(self, indentation: float) -> float:
+        """Energy in J put in up to a monotonically reached `indentation` (m, zero or more)."""
+        x = not_negative("StrongeImpact", "indentation", indentation) / self.yield_indentation
+        return self.yield_force * self.yield_indentation * _work(x)
+
+    def maximum_indentation(self, velocity: float, mass: float) -> float:
+        """delta_m in m: the loading work is the energy of `mass` (kg) at `velocity` (m/s)."""
+        speed = positive("StrongeImpact", "velocity", velocity)
+        energy = 0.5 * positive("StrongeImpact", "mass", mass) * speed**2
+        scaled = energy / (self.yield_force * self.yield_indentation)
+        if scaled <= 0.4:
+            return self.yield_indentation * math.pow(scaled / 0.4, 0.4)
+        # F >= F_y u, hence the work is at least 0.4 + (u^2 - 1)/4: this bounds u.
+        limit = 0.5 + 0.5 * math.sqrt(1.0 + 4.0 * scaled)
+        root = brentq(lambda x: _work(x) - scaled, 1.0, limit, xtol=1e-13, rtol=1e-14)
+        return self.yield_indentation * float(root)
+
+    def peak_force(self, velocity: float, mass: float) -> float:
+        """F_m in N at the delta_m of `mass` (kg) at `velocity` (m/s)."""
+        return self.loading_force(self.maximum_indentation(velocity, mass))
+
+    def unloading_radius(self, maximum_indentation: float) -> float:
+        """R_e in m, from R_e/R* = sqrt(F_m/F_y); R* while elastic."""
+        force = self.loading_force(maximum_indentation)
+        if maximum_indentation <= self.yield_indentation:
+            return self.effective_radius
+        return self.effective_radius * math.sqrt(force / self.yield_force)
+
+    def residual_indentation(self, maximum_indentation: float) -> float:
+        """delta_r = delta_m - delta_y R_e/R* in m; 0 while elastic.
+
+        Negative for 1 < x < 1.998: there the law leaves a bulge and not a dent.
+        """
+        radius = self.unloading_radius(maximum_indentation)
+        if maximum_indentation <= self.yield_indentation:
+            return 0.0
+        return maximum_indentation - self.yield_indentation * radius / self.effective_radius
+
+    def unloading_force(self, indentation: float, maximum_indentation: float) -> float:
+        """Force in N on the way back from `maximum_indentation` (both in m)."""
+        radius = self.unloading_radius(maximum_indentation)
+        recovered = indentation - self.residual_indentation(maximum_indentation)
+        return hertz.stiffness(self.effective_modulus, radius) * math.pow(max(recovered, 0.0), 1.5)
+
+    def released_work(self, maximum_indentation: float) -> float:
+        """Energy in J given back: 0.4 F_m (delta_m - delta_r)."""
+        recovered = maximum_indentation - self.residual_indentation(maximum_indentation)
+        return 0.4 * self.loading_force(maximum_indentation) * recovered
+
+    def restitution(self, velocity: float, mass: float) -> float:
+        """Coefficient of restitution of `mass` (kg) at `velocity` (m/s): sqrt(released/put in).
+
+        1 while elastic. Above 1 for 1 < x < 2.673 (at most 1.101, at x = 1.415), whatever the
+        bodies: there the law itself creates energy.
+        """
+        if (deepest := self.maximum_indentation(velocity, mass)) <= self.yield_indentation:
+            return 1.0
+        return math.sqrt(self.released_work(deepest) / self.loading_work(deepest))
+
+
+def stronge_impact(impact: Impact) -> StrongeImpact:
+    """The bodies of `impact` as if the beam were a half-space; its law and gravity are ignored."""
+    return StrongeImpact(
+        hertz.effective_modulus(impact),
+        hertz.effective_radius(impact),
+        min(impact.sphere.material.yield_stress, impact.beam.material.yield_stress),
+    )
+
+
+def _force(x: float) -> float:
+    """F/F_y."""
+    u = 2.0 * x - 1.0
+    if x <= 1.0:
+        return math.pow(x, 1.5)
+    if u <= U_PLASTIC:
+        return u * (1.0 + math.log(u) / (3.0 * CONSTRAINT))
+    return HARDNESS * u / CONSTRAINT
+
+
+def _work(x: float) -> float:
+    """Loading work over F_y delta_y."""
+    if x <= 1.0:
+        return 0.4 * math.pow(x, 2.5)
+    u = 2.0 * x - 1.0
+    mixed = min(u, U_PLASTIC)
+    logarithm = mixed**2 * math.log(mixed) / 2.0 - mixed**2 / 4.0 + 0.25
+    elastic_plastic = ((mixed**2 - 1.0) / 2.0 + logarithm / (3.0 * CONSTRAINT)) / 2.0
+    return 0.4 + elastic_plastic + HARDNESS / CONSTRAINT * (u**2 - mixed**2) / 4.0

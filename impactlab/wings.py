@@ -1,0 +1,42 @@
+"""What the wings add to the core, imported when it is first asked for.
+
+The core never imports a wing: it looks here. What belongs to a model of the beam is asked for only
+by studies that have runs of it, so a study without 3-D runs loads nothing of fem3d.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+COMMANDS = {
+    "paper": "impactlab.paper.command:paper",
+    "witness": "impactlab.fem3d.command:witness",
+}
+"""Commands, by name: module and function."""
+SOLVERS = {"witness": "impactlab.fem3d.study.solver"}
+"""Solvers of runs, see study.solvers, by the name that designs hold."""
+SOLID = {
+    "cases": "impactlab.fem3d.study.cases",
+    "costs": "impactlab.fem3d.study.cost",
+    "figures": "impactlab.fem3d.figures.catalogue:FIGURES",
+    "sections": "impactlab.fem3d.report.study:sections",
+}
+"""What the 3-D model adds to studies that have runs of it: their table of cases and its costs (see
+study.looking), figures by name and sections of the report."""
+
+
+def load(reference: str) -> Any:
+    """Return a module ("a.b"), or what it holds under a name ("a.b:name")."""
+    module, _, name = reference.partition(":")
+    loaded = import_module(module)
+    return getattr(loaded, name) if name else loaded
+
+
+def added(what: str, runs: xr.Dataset) -> Any:
+    """Return an entry of SOLID where some of the runs are 3-D, else None."""
+    models = runs["beam_model"].values if "beam_model" in runs.coords else ()
+    return load(SOLID[what]) if "solid" in models else None

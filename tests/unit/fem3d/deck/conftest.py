@@ -1,0 +1,38 @@
+"""One coarse case, and its decks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import decks
+import pytest
+
+from impactlab.fem3d.deck import write_deck
+from impactlab.fem3d.solver.mesh import quarter_mesh
+from impactlab.model.beam import Beam
+from impactlab.model.paper import paper_impact
+
+
+@pytest.fixture(scope="session")
+def impact():
+    """The paper's sphere, a little heavier than its volume, on a short beam."""
+    paper = paper_impact()
+    beam = Beam(span=0.1, width=0.06, depth=0.0278, material=paper.beam.material)
+    return replace(paper, beam=beam, sphere=replace(paper.sphere, mass=1.5))
+
+
+@pytest.fixture(scope="session")
+def mesh(impact):
+    return quarter_mesh(impact, element_size=3e-3, ratio=2.0, coarsest=0.02)
+
+
+@pytest.fixture
+def written(tmp_path, impact, mesh):
+    """Writes a deck, and returns its cards."""
+
+    def write(flavour, this=impact, **options):
+        options.setdefault("duration", 1e-4)
+        path = write_deck(tmp_path / "deck.inp", this, mesh, flavour=flavour, **options)
+        return decks.cards(path)
+
+    return write

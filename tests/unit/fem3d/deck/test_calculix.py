@@ -1,0 +1,137 @@
+"""CalculiX reads the decks, and finds Hertz's impact with one."""
+
+from __future__ import annotations
+
+import re
+import signal
+
+import calculix
+import numpy as np
+import pytest
+import whole_sphere
+
+from impactlab.fem3d.deck import write_deck
+from impactlab.fem3d.solver.mesh import quarter_mesh
+from impactlab.model.beam import Beam
+from impactlab.model.impact import Impact
+from impactlab.model.paper import paper_impact
+from impactlab.model.sphere import Sphere
+from impactlab.verification.solutions import hertz
+
+
+def counted(screen, what):
+    """A number of CalculiX's summary of what it has read."""
+    return int(re.findall(rf"^ +{what}: +(\d+)$", screen, re.MULTILINE)[0])
+
+
+def small_deck(tmp_path, impact, mesh, plastic):
+    """A deck of one step."""
+    return write_deck(
+        tmp_path / "deck.inp",
+        impact,
+        mesh,
+        flavour="calculix",
+        duration=1e-6,
+        interval=1e-6,
+        plastic=plastic,
+    )
+
+
+def check_read(screen, mesh):
+    """All that is in the deck has been understood."""
+    assert "*ERROR" not in screen
+    assert "*WARNING" not in screen
+    assert "STEP            1" in screen
+    assert counted(screen, "elements") == len(mesh.elements)
+    inner = 3 * len(mesh.elements)  # that C3D8I adds for its incompatible modes
+    assert counted(screen, "nodes") == len(mesh.nodes) + inner
+    assert counted(screen, "sets") == 18
+    assert counted(screen, "materials") == 3  # and the surface interaction
+
+
+@calculix.needed
+def test_elastic_deck_is_read_and_steps(tmp_path, impact, mesh):
+    found = calculix.run(small_deck(tmp_path, impact, mesh, plastic=False))
+    check_read(found.screen, mesh)
+    assert found.code == 0
+    assert "Job finished" in found.screen
+    times, places = found.table("displacements")
+    np.testing.assert_allclose(times, [1e-6])
+    np.testing.assert_allclose(places[0, 1:3, 3], -0.99e-3, rtol=1e-3)  # the sphere's, in mm
+
+
+@calculix.needed
+def test_plastic_deck_is_read(tmp_path, impact, mesh):
+    """Its contact left out, which is that of the elastic deck, and with which it crashes."""
+    path = small_deck(tmp_path, impact, mesh, plastic=True)
+    text = path.read_text()
+    for card in (r"\*CONTACT PAIR", r"\*CONTACT PRINT"):
+        text, count = re.subn(rf"{card}.*\n.*\n", "", text)
+        assert count == 1
+    path.write_text(text)
+    found = calculix.run(path)
+    check_read(found.screen, mesh)
+    assert found.code == 0
+    assert "Job finished" in found.screen
+    assert counted(found.screen, "plastic data points per material") == 1
+
+
+@calculix.needed
+@pytest.mark.long
+def test_plasticity_crashes_calculix_as_the_deck_says(tmp_path, impact, mesh):
+    if calculix.version() != "2.20":
+        pytest.skip("said of CalculiX 2.20 alone")
+    path = small_deck(tmp_path, impact, mesh, plastic=True)
+    assert "CalculiX 2.20 crashes" in path.read_text()
+    assert calculix.run(path).code == -signal.SIGSEGV
+
+
+@calculix.needed
+@pytest.mark.long
+def test_elastic_impact_on_a_large_block_is_hertzs(tmp_path):
+    """At 1 mm, with less than two elements in the contact radius.
+
+    The block weighs 7000 spheres, and waves come back from its end when the contact is over; the
+    finite sphere is stiffer by 0.6 % in force.
+    """
+    steel = paper_impact().sphere.material
+    block = Beam(span=2.0, width=2.0, depth=1.2, material=steel)
+    this = Impact(sphere=Sphere(radius=0.05, material=steel), beam=block, velocity=0.5, gravity=0.0)
+    mass = this.sphere.total_mass
+    force, duration = whole_sphere.impact(this)
+    assert force == pytest.approx(
+        hertz.peak_force(mass, 0.5, hertz.effective_modulus(this), 0.05), rel=0.01
+    )
+    path = write_deck(
+        tmp_path / "hertz.inp",
+        this,
+        quarter_mesh(this, element_size=1e-3, ratio=2.0, coarsest=1.0, patch=2e-3),
+        flavour="calculix",
+        duration=1.1 * duration,
+        interval=duration / 20.0,
+        plastic=False,
+    )
+    found = calculix.run(path)
+    assert found.code == 0
+    times, forces = found.contact()
+    quarter = forces[:, 2]
+    assert 4.0 * peak(times, quarter) == pytest.approx(force, rel=0.02)
+    assert end(times, quarter) == pytest.approx(duration, rel=0.02)
+    impulse = 4.0 * np.trapezoid(quarter, times)
+    assert impulse == pytest.approx(2.0 * mass * 0.5, rel=0.01)  # nothing is lost
+
+
+def peak(times, forces):
+    """Between steps, by a parabola."""
+    i = int(np.argmax(forces))
+    c, b, a = np.polynomial.Polynomial.fit(
+        times[i - 1 : i + 2], forces[i - 1 : i + 2], 2, domain=[-1, 1], window=[-1, 1]
+    ).coef
+    return c - b**2 / (4.0 * a)
+
+
+def end(times, forces):
+    """When the contact ends, between steps: the force goes to zero as time to the power 3/2."""
+    last = int(np.flatnonzero(forces > 0.0)[-1])
+    early, late = forces[last - 1 : last + 1] ** (2.0 / 3.0)
+    return times[last] + (times[last] - times[last - 1]) * late / (early - late)

@@ -1,0 +1,19 @@
+"""The paper's case at 1 mm about the contact, on a mesh that is coarse elsewhere."""
+
+from __future__ import annotations
+
+import pytest
+
+from impactlab.fem3d.solver import Mesh, quarter_mesh
+from impactlab.model.impact import Impact
+from impactlab.model.paper import paper_impact
+
+
+@pytest.fixture(scope="package")
+def impact() -> Impact:
+    return paper_impact(velocity=0.99)
+
+
+@pytest.fixture(scope="package")
+def mesh(impact: Impact) -> Mesh:
+    return quarter_mesh(impact, element_size=1e-3, ratio=2.0, coarsest=20e-3)

@@ -1,0 +1,32 @@
+"""Kratos is asked for late, and missed in one line."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from impactlab.fem3d.solver import kratos
+from impactlab.model.paper import paper_impact
+
+
+@pytest.mark.parametrize(
+    "missing", ["KratosMultiphysics", "KratosMultiphysics.ConstitutiveLawsApplication"]
+)
+def test_what_is_missing_is_told(missing: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, missing, None)
+    with pytest.raises(kratos.KratosMissingError, match=r"pip install 'impactlab\[kratos\]'"):
+        kratos.solve(paper_impact(), element_size=4e-3, duration=1e-5)
+
+
+def test_nothing_imports_it_beforehand() -> None:
+    code = "import impactlab.fem3d.kratos, sys; print('KratosMultiphysics' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
+
+
+@pytest.mark.parametrize("wrong", [{"duration": 0.0}, {"time_step": -1e-6}, {"penalty": 0.0}])
+def test_numbers_that_make_no_sense_are_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        kratos.solve(paper_impact(), element_size=4e-3, **({"duration": 1e-5} | wrong))

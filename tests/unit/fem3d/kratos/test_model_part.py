@@ -1,0 +1,69 @@
+"""What Kratos is given is the mesh of the solid model: its mass, its faces, who is held."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from impactlab.fem3d.kratos.engine import Engine, engine
+from impactlab.fem3d.kratos.run import Run
+from impactlab.fem3d.solver import Mesh, kratos
+from impactlab.model.impact import Impact
+
+pytestmark = pytest.mark.kratos
+
+
+@pytest.fixture(scope="module")
+def ready(impact: Impact, mesh: Mesh) -> Run:
+    return Run(engine(1), mesh, impact, duration=1e-4, time_step=8e-6, penalty=1e15)
+
+
+def node_values(kratos: Engine, part: Any, name: str) -> np.ndarray:
+    variable = kratos.variable(name)
+    return np.array([node.GetSolutionStepValue(variable) for node in part.Nodes])
+
+
+def test_bodies_weigh_what_they_should(ready: Run, impact: Impact) -> None:
+    """By Kratos' own mass matrices (t, of a quarter), in the direction of the impact."""
+    weights = {1: 0.0, 2: 0.0}
+    matrix = ready.engine.core.Matrix()
+    for element in ready.part.Elements:
+        element.CalculateMassMatrix(matrix, ready.part.ProcessInfo)
+        weights[element.Properties.Id] += 4e3 * float(np.array(matrix)[2::3, 2::3].sum())
+    assert weights[1] == pytest.approx(impact.beam.mass_per_length * impact.beam.span, rel=1e-9)
+    assert weights[2] == pytest.approx(impact.sphere.total_mass, rel=1e-9)
+
+
+@pytest.mark.parametrize(("name", "upwards"), [("BeamTop", 1.0), ("SphereBottom", -1.0)])
+def test_faces_look_out_of_their_bodies(ready: Run, mesh: Mesh, name: str, upwards: float) -> None:
+    faces = ready.part.GetSubModelPart(name).Conditions
+    normals = np.array([list(face.GetGeometry().UnitNormal()) for face in faces])
+    area = sum(face.GetGeometry().Area() for face in faces)
+    assert (normals[:, 2] * upwards > 0.95).all()
+    assert area == pytest.approx(1e6 * mesh.patch**2, rel=0.01)
+
+
+def test_planes_and_supports_are_held(ready: Run, mesh: Mesh) -> None:
+    for axis, nodes in (("X", mesh.symmetry_x), ("Y", mesh.symmetry_y), ("Z", mesh.support)):
+        variable = ready.engine.variable(f"DISPLACEMENT_{axis}")
+        fixed = [node.Id - 1 for node in ready.part.Nodes if node.IsFixed(variable)]
+        assert fixed == sorted(nodes.tolist())
+
+
+def test_only_the_sphere_moves_and_falls(ready: Run, mesh: Mesh) -> None:
+    below = mesh.nodes[:, 2] < 0.0
+    for name, expected in (("VELOCITY_Z", -990.0), ("VOLUME_ACCELERATION_Z", -9810.0)):
+        values = node_values(ready.engine, ready.part, name)
+        assert (values[below] == 0.0).all()
+        assert values[mesh.pole] == expected
+        assert set(values.tolist()) == {0.0, expected}
+
+
+def test_kinematic_hardening_is_refused(impact: Impact, mesh: Mesh) -> None:
+    steel = replace(impact.beam.material, kinematic_hardening_modulus=1e9)
+    hardening = replace(impact, beam=replace(impact.beam, material=steel))
+    with pytest.raises(ValueError, match="kinematic_hardening_modulus = 1000000000"):
+        kratos.solve_on(mesh, hardening, duration=1e-5)

@@ -1,0 +1,81 @@
+"""A body of hexahedra in a test's hands: it moves the nodes, and gets the forces that answer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from impactlab.fem3d.solver.elements import full, one_point, point
+from impactlab.fem3d.solver.elements.lanes import SCRATCH, W
+from impactlab.fem3d.solver.mesh.beam import brick
+from impactlab.fem3d.solver.stepping.groups import _group, metal
+from impactlab.fem3d.solver.stepping.rows import force_rows
+from impactlab.model.material import Material
+
+STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
+KINDS = {"one_point": one_point, "full": full}
+
+
+class Body:
+    """x: (n, 3), where the nodes are. group: the elements."""
+
+    def __init__(self, nodes, elements, kind, steel=STEEL):
+        self.x, self.elements = nodes.copy(), elements
+        self.kind = KINDS[kind]
+        whole = kind == "full"
+        self.group = _group(elements, np.arange(len(elements)), whole, metal(steel))
+        self._rows = force_rows([self.group], len(nodes))
+        self._forces = np.zeros((self._rows.count, 3))
+        self._scratch = np.zeros(SCRATCH * W)
+
+    def move_to(self, x, dt=1.0):
+        """The nodal forces (n, 3) after a straight way to x in one step."""
+        group, v = self.group, (x - self.x) / dt
+        self._forces[:] = 0.0
+        self.x = np.ascontiguousarray(x)
+        group.kernel(
+            (0, group.blocks),
+            group.nodes,
+            self._rows.of_groups[0],
+            self.x,
+            v,
+            dt,
+            group.metal,
+            group.state,
+            self._forces,
+            self._scratch,
+        )
+        return self.forces()
+
+    def forces(self):
+        return np.add.reduceat(self._forces[self._rows.slots], self._rows.starts[:-1])
+
+    def deviators(self):
+        """(6, points, elements)"""
+        return np.stack([self.group.points(point.STRESS + row) for row in range(6)])
+
+    def stress(self):
+        """(6, points, elements): xx, yy, zz, yz, zx, xy."""
+        stress = self.deviators()
+        stress[:3] += self.group.row(self.kind.MEAN)
+        return stress
+
+
+@pytest.fixture
+def make_body():
+    return Body
+
+
+@pytest.fixture(params=list(KINDS))
+def kind(request):
+    return request.param
+
+
+@pytest.fixture
+def distorted():
+    """27 hexahedra with inner nodes out of place: nodes, elements, whether a node is inside."""
+    line = np.linspace(0.0, 1.0, 4)
+    nodes, elements = brick(line, 1.3 * line, 0.7 * line)
+    inside = np.all((nodes > 1e-9) & (nodes < np.array([1.0, 1.3, 0.7]) - 1e-9), axis=1)
+    shift = np.random.default_rng(1).uniform(-0.07, 0.07, nodes.shape)
+    return nodes + shift * inside[:, None], elements, inside

@@ -1,0 +1,88 @@
+"""Masses, the largest stable step, and the same bits for any number of threads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numba
+import numpy as np
+import pytest
+import xarray as xr
+
+from impactlab.fem3d.solver import estimate, quarter_mesh, solve_on
+from impactlab.fem3d.solver.mesh import BEAM, SPHERE
+from impactlab.fem3d.solver.stepping.critical import critical_step
+from impactlab.fem3d.solver.stepping.march import SAFETY
+from impactlab.fem3d.solver.stepping.masses import nodal_masses
+from impactlab.fem3d.solver.stepping.parts import Parts
+from impactlab.fem3d.solver.stepping.system import System
+from impactlab.model.paper import paper_impact
+
+pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
+IMPACT = paper_impact()
+
+
+@pytest.fixture(scope="module")
+def mesh():
+    return quarter_mesh(IMPACT, element_size=1.5e-3)
+
+
+def test_a_quarter_weighs_a_quarter_and_the_sphere_what_it_is_said_to(mesh):
+    heavy = replace(IMPACT, sphere=replace(IMPACT.sphere, mass=2.5))
+    mass = nodal_masses(mesh, heavy)
+    sphere = np.unique(mesh.elements[mesh.body == SPHERE])
+    beam = np.unique(mesh.elements[mesh.body == BEAM])
+    assert mass[sphere].sum() == pytest.approx(2.5 / 4, rel=1e-12)
+    assert mass[beam].sum() == pytest.approx(7800 * 0.78 * 0.06 * 0.0278 / 4, rel=1e-12)
+
+
+def test_nodes_go_on_below_the_critical_step_and_run_away_above_it(mesh):
+    with Parts(1) as parts:
+        system = System(mesh, IMPACT, parts)
+        limit = critical_step(system)
+        largest = {}
+        for share in (0.97, 1.04):
+            system = System(mesh, IMPACT, parts)
+            system.v[:] = 1e-6 * np.random.default_rng(0).standard_normal(system.v.shape)
+            system.v[system.inverse_mass == 0.0] = 0.0
+            system.pull[:] = 0.0
+            system.x[np.unique(mesh.elements[mesh.body == SPHERE]), 2] += 1e-3  # no contact
+            for _ in range(200):
+                system.strain(share * limit)
+                system.move(share * limit, share * limit)
+            largest[share] = np.abs(system.v).max()
+    assert largest[0.97] < 1e-4
+    assert not largest[1.04] < 1.0
+
+
+def test_the_critical_step_leaves_the_system_as_it_was(mesh):
+    with Parts(1) as parts:
+        one, other = System(mesh, IMPACT, parts), System(mesh, IMPACT, parts)
+        critical_step(one)
+    for name in ("x", "v", "forces"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    assert not any(group.state.any() for group in one.groups)
+
+
+@pytest.mark.parametrize("mass", [None, 0.1, 10.0])
+def test_the_estimate_of_memory_and_steps_holds(mesh, mass):
+    impact = replace(IMPACT, sphere=replace(IMPACT.sphere, mass=mass))
+    cost = estimate(mesh, impact, duration=1e-3)
+    with Parts(1) as parts:
+        system = System(mesh, impact, parts)
+        steps = 1e-3 / (SAFETY * critical_step(system))
+    arrays = [value for value in vars(system).values() if isinstance(value, np.ndarray)]
+    arrays += [part for group in system.groups for part in (group.nodes, group.state)]
+    arrays += [*system.rows.of_groups, system.rows.starts, system.rows.slots]
+    held = sum(array.nbytes for array in arrays)
+    assert held < cost.memory_bytes < 2.5 * held
+    assert cost.steps == pytest.approx(steps, rel=0.15)
+
+
+def test_the_same_bits_for_any_number_of_threads(mesh):
+    answers = [
+        solve_on(mesh, IMPACT, duration=15e-6, threads=threads, samples=50) for threads in (1, 2, 3)
+    ]
+    assert float(answers[0]["contact_force"].max()) > 100.0
+    for other in answers[1:]:
+        xr.testing.assert_identical(answers[0].drop_attrs(deep=False), other.drop_attrs(deep=False))

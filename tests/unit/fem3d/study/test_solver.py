@@ -1,0 +1,174 @@
+"""Runs of the 3-D model in a study: the same as alone, and a failed one is data."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab import fem3d as solid
+from impactlab.fem3d.solver.mesh.extent import contact_radius
+from impactlab.fem3d.study import cost, running
+from impactlab.fem3d.study import solver as witness
+from impactlab.model.cost import A_SECOND
+from impactlab.study.declaration import study_of_text
+from impactlab.study.engine import Engine
+from impactlab.study.estimate import estimate
+from impactlab.study.execution import execute
+from impactlab.study.sampling import design
+from impactlab.study.storage import Form
+from impactlab.study.work import Work
+from impactlab.variables import STATUS_FLAGS
+
+TEXT = """
+title: Both
+impact: {base: paper}
+duration: 0.02 ms
+sampling:
+  method: grid
+  parameters:
+    nodes: [51, 101]
+    beam_model: [timoshenko, solid]
+    element_size: [4 mm, 3 mm]
+responses: [peak_force, number_of_contacts, energy_error]
+store: {histories: true, samples: 5}
+"""
+ALL = np.arange(8)
+HERE = Form(5, profiles=False)
+
+
+@pytest.fixture(scope="module")
+def study():
+    return study_of_text("both", TEXT)
+
+
+@pytest.fixture(scope="module")
+def solved(study, tmp_path_factory):
+    return execute(design(study), tmp_path_factory.mktemp("shards"), Engine(workers=2))
+
+
+def test_each_model_answers_as_it_does_alone(solved):
+    beam = replace(il.paper_impact(), beam_model="timoshenko")
+    alone = il.simulate(beam, il.Discretisation(nodes=101), duration=2e-5, samples=5)
+    there = solved.sel(beam_model="timoshenko", nodes=101, element_size=3e-3)
+    assert there["energy_error"] == alone["energy_error"]
+    np.testing.assert_array_equal(there["contact_force"], alone["contact_force"])
+    alone = solid.solve(il.paper_impact(), element_size=3e-3, duration=2e-5)
+    there = solved.sel(beam_model="solid", nodes=101, element_size=3e-3)
+    assert there["energy_error"] == alone["energy_error"]
+    assert there["status"] == alone["status"].item() & there["status"]
+    force = np.interp(there["time"], alone["time"], alone["contact_force"])
+    np.testing.assert_allclose(there["contact_force"], force, rtol=2e-3)
+    assert there["contact_force"][-1] > 100.0
+    assert there["midspan_curvature"].isnull().all()
+    assert solved["plastic_zone_radius"].sel(beam_model="timoshenko").isnull().all()
+    assert (solved["plastic_zone_radius"].sel(beam_model="solid") >= 0).all()
+
+
+def test_what_a_model_does_not_know_is_nothing_to_it(study, solved):
+    """Of eight runs four differ: two of the beam, two of the solid."""
+    work = Work.of(design(study))
+    assert np.unique(work.keys).size == 4
+    assert np.count_nonzero(work.cost) == 4
+    assert (solved["energy_error"].sel(beam_model="solid").std("nodes") == 0).all()
+    assert (solved["energy_error"].sel(beam_model="timoshenko").std("element_size") == 0).all()
+    assert (solved["energy_error"].std(["nodes", "element_size"]) > 0).all()
+
+
+def test_elements_follow_the_contact_radius():
+    """Of a plastic contact the radius grows with the root of the velocity."""
+    told = TEXT.replace("nodes: [51, 101]", "velocity: [1, 4]")
+    told = told.replace("element_size: [4 mm, 3 mm]", "elements_per_radius: [1, 2]")
+    cases = witness.cases(design(study_of_text("both", told)), ALL)
+    sizes = cases["element_size"].reshape(2, 2, 2)  # velocity, model, elements
+    assert (sizes[:, 0] == 0.0).all()
+    first = contact_radius(il.paper_impact(velocity=1.0))
+    expected = first * np.array([[1.0, 0.5], [2.0, 1.0]])
+    np.testing.assert_allclose(sizes[:, 1], expected, rtol=1e-12)
+
+
+def test_the_same_bits_in_any_batch(study):
+    cases = witness.cases(design(study), ALL)
+    together = witness.solve(cases, HERE)
+    for at in (0, 3, 5):
+        for name, values in witness.solve(cases[at : at + 1], HERE).items():
+            np.testing.assert_array_equal(values[0], together[name][at])
+
+
+def test_the_cost_counts_what_is_solved_once(study):
+    found = estimate(study, workers=2)
+    impact = il.paper_impact()
+    seconds = [
+        solid.estimate(solid.quarter_mesh(impact, element_size=h), impact, duration=2e-5)
+        for h in (3e-3, 4e-3)
+    ]
+    assert found.seconds == pytest.approx(sum(each.cpu_seconds for each in seconds), rel=0.2)
+    assert found.largest_run["beam_model"] == "solid"
+    cases = witness.cases(design(study), ALL)
+    assert witness.cost(cases).sum() / A_SECOND == pytest.approx(found.seconds)
+
+
+def only_solid(study):
+    return witness.cases(design(study), ALL[3:4])
+
+
+@pytest.mark.parametrize("words", ["an element was squeezed flat", "diverged before 1e-5 s"])
+def test_a_run_that_stops_is_an_answer_without_numbers(study, monkeypatch, caplog, words):
+    def stopped(*args, **kwargs):
+        return solid.solve(*args, **kwargs).assign_attrs(stopped=words)
+
+    monkeypatch.setattr(running, "solve", stopped)
+    found = witness.solve(only_solid(study), HERE)
+    assert found["status"][0] & STATUS_FLAGS["stopped"][0]
+    assert np.isnan(found["peak_force"]).all()
+    assert np.isnan(found["contact_force"]).all()
+    assert words in caplog.text
+
+
+def test_a_run_that_was_interrupted_is_no_answer(study, monkeypatch):
+    def interrupted(*args, **kwargs):
+        return solid.solve(*args, **kwargs).assign_attrs(stopped="interrupted at 1e-05 s")
+
+    monkeypatch.setattr(running, "solve", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        witness.solve(only_solid(study), HERE)
+
+
+def test_a_patch_that_is_outgrown_is_enlarged_while_there_is_room(study, monkeypatch):
+    patches = []
+
+    def small(impact, *, patch, **others):
+        patches.append(patch)
+        run = solid.solve(impact, patch=patch, **others)
+        outgrown = {"stopped": "the contact has grown", "patch_needed": least}
+        return run.assign_attrs(outgrown) if patch < least else run
+
+    monkeypatch.setattr(running, "solve", small)
+    usual, least = 0.009, 0.013
+    found = witness.solve(only_solid(study), HERE)
+    assert patches == pytest.approx([usual, 1.5 * usual])
+    assert np.isfinite(found["energy_error"]).all()
+    least = 1.0
+    found = witness.solve(only_solid(study), HERE)
+    assert found["status"][0] == STATUS_FLAGS["stopped"][0]
+
+
+def test_the_answers_depend_on_the_sources_of_both():
+    from impactlab.fem3d.solver.jit import SOURCES_HASH as SOLID_HASH
+    from impactlab.solver.jit import SOURCES_HASH
+
+    assert len({witness.VERSION, SOURCES_HASH, SOLID_HASH}) == 3
+
+
+def test_what_does_not_fit_memory_is_priced_without_a_mesh(monkeypatch):
+    def watched(impact, *, element_size):
+        assert element_size > 1e-4
+        return solid.quarter_mesh(impact, element_size=element_size)
+
+    monkeypatch.setattr(cost, "quarter_mesh", watched)
+    fine = TEXT.replace("[4 mm, 3 mm]", "[0.01 mm]")
+    found = estimate(study_of_text("fine", fine), workers=1)
+    assert found.memory > 1e10
+    assert found.seconds > 86400.0

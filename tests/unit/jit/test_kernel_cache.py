@@ -1,0 +1,194 @@
+"""Compiled kernels on disk: shared by processes and checkouts, and sound whatever happens."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numba
+import pytest
+
+from impactlab.solver import jit
+
+pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
+
+TRIPLE = """
+from few_kernels.jit import compiled
+
+@compiled
+def triple(x):
+    return 3.0 * x
+"""
+CALL = """
+from few_kernels.triple import triple
+print(triple(2.0), len(triple.stats.cache_hits))
+"""
+Start = Callable[..., "subprocess.Popen[str]"]
+
+
+def checkout(folder: Path) -> Path:
+    """A package with one kernel, in `folder`."""
+    package = folder / "few_kernels"
+    package.mkdir(parents=True)
+    shutil.copy(jit.__file__, package)
+    (package / "__init__.py").touch()
+    (package / "triple.py").write_text(TRIPLE)
+    return folder
+
+
+@pytest.fixture
+def call(tmp_path: Path) -> Start:
+    """Start a process that calls the kernel and prints its result and the cache hits."""
+    here = checkout(tmp_path / "here")
+
+    def start(folder: Path = here, **settings: str) -> subprocess.Popen[str]:
+        path = os.pathsep.join([str(folder), *filter(None, sys.path)])
+        env = os.environ | {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+        return subprocess.Popen(
+            [sys.executable, "-c", CALL],
+            env=env | settings,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    return start
+
+
+def printed(process: subprocess.Popen[str]) -> tuple[list[str], str]:
+    out, errors = process.communicate(timeout=120)
+    assert process.returncode == 0, errors
+    return out.split(), errors
+
+
+def test_processes_that_compile_at_once_leave_a_sound_cache(call: Start) -> None:
+    started = [call() for _ in range(3)]
+    assert {printed(process)[0][0] for process in started} == {"6.0"}
+    assert printed(call())[0] == ["6.0", "1"]
+
+
+def test_a_second_checkout_finds_the_kernels_of_the_first(call: Start, tmp_path: Path) -> None:
+    assert printed(call())[0] == ["6.0", "0"]
+    assert printed(call(checkout(tmp_path / "elsewhere")))[0] == ["6.0", "1"]
+
+
+def test_another_processor_compiles_its_own(call: Start) -> None:
+    assert printed(call())[0] == ["6.0", "0"]
+    assert printed(call(NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES=""))[0] == ["6.0", "0"]
+    assert printed(call())[0] == ["6.0", "1"]
+
+
+def test_without_a_folder_kernels_run_and_leave_nothing_behind(call: Start, tmp_path: Path) -> None:
+    for _ in range(2):
+        out, errors = printed(call(NUMBA_CACHE_DIR="/dev/null"))
+        assert out == ["6.0", "0"]
+        assert "compiled kernels cannot be kept in /dev/null/kernels-" in errors
+    assert not list(tmp_path.rglob("*.nbi"))
+    assert not list(tmp_path.rglob("*.kernel"))
+
+
+DAMAGE: dict[str, Callable[[bytes], bytes]] = {
+    "empty": lambda content: b"",
+    "shorter than its checksum": lambda content: content[:20],
+    "truncated": lambda content: content[: len(content) // 2],
+    "garbled": lambda content: bytes(reversed(content)),
+    "a bit flipped in the code": lambda content: (
+        content[:-100] + bytes([content[-100] ^ 1]) + content[-99:]
+    ),
+    "a bit flipped in the checksum": lambda content: bytes([content[0] ^ 1]) + content[1:],
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE.keys())
+def test_a_damaged_kernel_is_removed_reported_and_compiled_again(
+    call: Start, tmp_path: Path, damage: Callable[[bytes], bytes]
+) -> None:
+    assert printed(call())[0] == ["6.0", "0"]
+    (file,) = (tmp_path / "cache").rglob("*.kernel")
+    file.write_bytes(damage(file.read_bytes()))
+    out, errors = printed(call())
+    assert out == ["6.0", "0"]
+    assert errors.splitlines() == [
+        f"damaged compiled kernels in {file.parent} are removed and compiled again"
+    ]
+    assert printed(call()) == (["6.0", "1"], "")
+
+
+def test_a_write_that_fails_half_way_leaves_nothing(call: Start, tmp_path: Path) -> None:
+    """The limit on file size stops it in the middle, as a full disk would."""
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))"
+    (tmp_path / "here" / "few_kernels" / "__init__.py").write_text(limit)
+    out, errors = printed(call())
+    assert out == ["6.0", "0"]
+    assert "could not be kept" in errors
+    assert not list((tmp_path / "cache").rglob("*.kernel*"))
+
+
+def test_a_file_half_written_by_a_killed_process_is_not_read(call: Start, tmp_path: Path) -> None:
+    assert printed(call())[0] == ["6.0", "0"]
+    (file,) = (tmp_path / "cache").rglob("*.kernel")
+    file.rename(file.with_name(f"{file.name}.{32 * 'a'}"))
+    assert printed(call()) == (["6.0", "0"], "")
+    assert printed(call()) == (["6.0", "1"], "")
+
+
+SOLVE = """
+import hashlib
+import impactlab as il
+from impactlab.solver.leapfrog import run_all
+grid = il.Discretisation(nodes=21, points=5)
+run = il.simulate(il.paper_impact(12.0), grid, duration=1e-3)
+bits = b"".join(run[name].values.tobytes() for name in sorted(run.variables))
+print(hashlib.sha256(bits).hexdigest(), len(run_all.stats.cache_hits))
+"""
+
+
+@pytest.mark.long
+def test_every_process_runs_the_same_machine_code(tmp_path: Path) -> None:
+    """The first, several that start at once, a second checkout, and one with damaged kernels."""
+    package = Path(jit.__file__).parents[1]
+    roots = [package.parent, tmp_path / "checkout"]
+    ignored = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(package, roots[1] / package.name, ignore=ignored)
+
+    def start(root: Path) -> subprocess.Popen[str]:
+        env = os.environ | {"PYTHONPATH": str(root), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+        return subprocess.Popen(
+            [sys.executable, "-c", SOLVE],
+            cwd=tmp_path,
+            env=env,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    started = [start(root) for root in roots]
+    out = [process.communicate()[0].split() for process in started]
+    (file,) = (tmp_path / "cache").rglob("*.leapfrog.run_all-*.kernel")
+    compiled_once = file.stat().st_mtime_ns
+    out.append(start(roots[1]).communicate()[0].split())
+    assert file.stat().st_mtime_ns == compiled_once
+    content = file.read_bytes()
+    file.write_bytes(content[:-200] + bytes([content[-200] ^ 4]) + content[-199:])
+    again, errors = start(roots[0]).communicate()
+    assert errors.count("\n") == 1
+    assert str(file.parent) in errors
+    out.append(again.split())
+    assert out == [[out[0][0], "1"]] * 4
+
+
+def test_a_setting_that_numba_refuses_is_named() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "impactlab", "simulate", "--velocity", "5"],
+        env=os.environ | {"NUMBA_NUM_THREADS": "0"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("ERROR: numba refuses a setting of the environment")
+    assert "NUMBA_NUM_THREADS=0" in line

@@ -1,0 +1,254 @@
+"""Every contact law through the same tests; what a law lacks is measured, and said in about.py."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.about import ABOUT
+from impactlab.solver.contact.history import CONTACT, Pair, energies, force, load
+from impactlab.solver.contact.switch import curve, limit
+from impactlab.verification.solutions.contact_laws import LAWS as REFERENCE
+from impactlab.verification.solutions.contact_laws import LawOnHalfSpace, joints
+
+STEEL = (115e9, 0.035, 345e6, 0.3)
+SOFT = (40e9, 0.002, 40e6, 0.35)
+HARD = (100e9, 0.01, 2e9, 0.25)
+BODIES = {"steel": STEEL, "soft": SOFT, "hard": HARD}
+
+every_law = pytest.mark.parametrize("law", LAWS)
+every_pair = pytest.mark.parametrize("bodies", BODIES.values(), ids=BODIES)
+
+
+class Flaws(NamedTuple):
+    """What is measured for steel.
+
+    jumps: of the loading force, relative, where it jumps; start: that of unloading over the
+    loading force at the worst; restitution: largest; creates: from and to which indentation over
+    that of first yield it creates energy; dent: the lowest residual over the largest indentation.
+    """
+
+    jumps: tuple[float, ...] = ()
+    start: float = 1.0
+    restitution: float = 1.0
+    creates: tuple[float, float] = (1.0, 1.0)
+    dent: float = 0.0
+
+
+FLAWS = {
+    "hertz": Flaws(),
+    "stronge": Flaws(restitution=1.1008, creates=(1.0, 2.673), dent=-0.04057),
+    "stronge_original": Flaws(start=1.1 / 2.8, restitution=1.0123, creates=(1.0, 1.2526)),
+    "jackson_green": Flaws(jumps=(0.00474,)),
+    "mjg": Flaws(jumps=(0.00470,)),
+    "thornton": Flaws(),
+    "kogut_etsion": Flaws(
+        jumps=(0.03, 0.016788, 0.078776), restitution=1.01489, creates=(1.0, 1.2483)
+    ),
+    "brake": Flaws(jumps=(0.00470,), restitution=1.0047, creates=(1.9, 2.0011), dent=-0.0047),
+}
+
+
+def first_yield(law):
+    """Indentation of first yield, of steel, by the law's own measure."""
+    E, R, S_y, nu = STEEL
+    pressure = {
+        "hertz": 1.0,
+        "stronge": 1.65 * S_y,
+        "stronge_original": 1.65 * S_y,
+        "thornton": 1.6 * S_y,
+        "kogut_etsion": 2.8 * (0.454 + 0.41 * nu) * S_y,
+    }.get(law, 1.295 * np.exp(0.736 * nu) * S_y)
+    return R * (0.5 * np.pi * pressure / E) ** 2
+
+
+def depths(law, bodies, number=2001):
+    """From 1e-6 of the sphere's radius to the law's limit, none on a joint."""
+    return np.geomspace(1e-6 * bodies[1], limit(LAWS.index(law), *bodies), number)
+
+
+def along(law, bodies, deltas):
+    """(F, K, delta_r, n), each of the shape of `deltas`."""
+    return np.array([curve(LAWS.index(law), delta, *bodies) for delta in deltas]).T
+
+
+def released(deltas, K, delta_r, n):
+    return K * (deltas - delta_r) ** (n + 1) / (n + 1)
+
+
+def test_every_law_has_its_file_its_entry_and_its_reference():
+    assert set(REFERENCE) == set(LAWS) == set(FLAWS)
+    for name in LAWS:
+        file = import_module(f"impactlab.solver.contact.{name}")
+        assert file.__doc__
+        about = ABOUT[name]
+        assert about.title
+        assert about.source
+        assert about.holds
+
+
+@every_law
+def test_the_page_has_every_law(law):
+    page = Path(__file__).parents[4] / "docs" / "contact_laws.md"
+    assert page.read_text(encoding="utf-8").count(f"`{law}`") >= 2
+
+
+@every_law
+@every_pair
+def test_force_and_unloading_are_those_of_the_formulas(law, bodies):
+    deltas = np.append(depths(law, bodies, 201), 2.0 * limit(LAWS.index(law), *bodies))
+    formulas = LawOnHalfSpace(law, *bodies)
+    F, K, delta_r, n = along(law, bodies, deltas)
+    expected = np.array([formulas.loading_force(delta) for delta in deltas])
+    np.testing.assert_allclose(F, expected, rtol=1e-12)
+    start, end, exponent = np.array([formulas.unloading(delta) for delta in deltas]).T
+    np.testing.assert_allclose(K * (deltas - delta_r) ** n, start, rtol=1e-8)
+    np.testing.assert_allclose(delta_r, end, atol=1e-12 * deltas.max())
+    np.testing.assert_allclose(n, exponent, rtol=1e-13)
+
+
+@every_law
+@every_pair
+def test_hertz_until_first_yield(law, bodies):
+    hertz = along("hertz", bodies, [0.999 * joints(*bodies)[0]])
+    np.testing.assert_allclose(along(law, bodies, [0.999 * joints(*bodies)[0]]), hertz, rtol=1e-14)
+
+
+@every_law
+@every_pair
+def test_force_is_never_negative_and_grows_within_the_laws_range(law, bodies):
+    F = along(law, bodies, depths(law, bodies))[0]
+    assert F[0] > 0
+    assert np.all(np.diff(F) > 0)
+
+
+@every_law
+def test_jumps_of_the_loading_force(law):
+    """Told from steep by halving the step: a jump stays."""
+    jumps = []
+    for joint in (d for d in joints(*STEEL) if d < limit(LAWS.index(law), *STEEL) * 1.01):
+        F = along(law, STEEL, joint * np.array([1 - 1e-9, 1 + 1e-9]))[0]
+        if abs(F[1] / F[0] - 1) > 1e-7:
+            jumps.append(F[1] / F[0] - 1)
+    np.testing.assert_allclose(jumps, FLAWS[law].jumps, rtol=2e-3)
+
+
+@every_law
+def test_no_jump_elsewhere(law):
+    deltas = depths(law, STEEL, 20001)
+    far = np.min(np.abs(np.log(deltas[:-1, None] / joints(*STEEL))), axis=1) > 1e-3
+    F = along(law, STEEL, deltas)[0]
+    assert np.all(np.diff(np.log(F))[far] < 3 * np.diff(np.log(deltas))[far])
+
+
+@every_law
+def test_force_at_the_start_of_unloading(law):
+    """Where the source has it, that of loading; never above it."""
+    deltas = depths(law, STEEL)
+    F, K, delta_r, n = along(law, STEEL, deltas)
+    share = K * (deltas - delta_r) ** n / F
+    assert share.max() < 1 + 1e-9
+    assert share.min() == pytest.approx(FLAWS[law].start, rel=1e-6)
+
+
+@every_law
+def test_energy_created_and_where(law):
+    """Restitution after every depth, the work by scipy's quadrature of the kernel's own curve."""
+    unit = first_yield(law)
+    ratios = np.concatenate([np.linspace(0.5, 3.5, 1201), np.geomspace(3.5, 1e3, 60)])
+    deltas = unit * ratios[unit * ratios < limit(LAWS.index(law), *STEEL)]
+    _, K, delta_r, n = along(law, STEEL, deltas)
+    ends = np.unique(np.concatenate([[0.0], joints(*STEEL), deltas]))
+    pieces = [
+        quad(lambda d: along(law, STEEL, [d])[0][0], *ends[i : i + 2], epsrel=1e-9)[0]
+        for i in range(ends.size - 1)
+    ]
+    work = np.interp(deltas, ends, np.append(0.0, np.cumsum(pieces)))
+    restitution = np.sqrt(released(deltas, K, delta_r, n) / work)
+    flaws = FLAWS[law]
+    assert restitution.max() == pytest.approx(flaws.restitution, abs=2e-4)
+    creating = deltas[restitution > 1 + 1e-6] / unit
+    if flaws.restitution == 1.0:
+        assert creating.size == 0
+    else:
+        assert creating[[0, -1]] == pytest.approx(flaws.creates, abs=5e-3)
+    assert (delta_r / deltas).min() == pytest.approx(flaws.dent, abs=2e-4)
+    assert restitution[-1] < 0.6 or law == "hertz"
+
+
+@every_law
+@every_pair
+def test_dent_is_shallower_than_the_indentation_even_beyond_the_range(law, bodies):
+    deltas = np.geomspace(1e-6, 1, 400) * bodies[1]
+    F, K, delta_r, n = along(law, bodies, deltas)
+    assert np.isfinite(F).all()
+    assert np.all(delta_r < deltas)
+    assert np.all(K > 0)
+    assert np.all(n > 1)
+
+
+@every_law
+def test_unloading_and_reloading_are_one_curve_and_its_work_is_the_energy_given_back(law):
+    pair = Pair(LAWS.index(law), *STEEL)
+    contact = np.zeros(1, CONTACT)[0]
+    deepest = 30 * first_yield("stronge")
+    load(contact, pair, deepest)
+    below = np.linspace(contact.delta_r, deepest * (1 - 1e-12), 2001)
+    back = [force(contact, pair, delta) for delta in below[::-1]]
+    again = [force(contact, pair, delta) for delta in below]
+    assert back[::-1] == again
+    assert min(again) == 0.0
+    stored, _ = energies(contact, pair, deepest)
+    assert np.trapezoid(again, below) == pytest.approx(stored, rel=1e-5)
+
+
+@every_law
+def test_what_it_does_to_energy_is_said(law):
+    """A flaw that the tests know is one that the reader is told."""
+    flaws, told = FLAWS[law], ABOUT[law].flaws
+    assert ("jumps" in told) == bool(flaws.jumps)
+    assert ("creates energy" in told) == (flaws.restitution > 1)
+    assert ("dent below zero" in told) == (flaws.dent < 0)
+    assert ("begins below the loading force" in told) == (flaws.start < 1)
+
+
+@pytest.mark.parametrize(
+    ("law", "name", "radius"),
+    [
+        ("jackson_green", "steel", 0.41),
+        ("jackson_green", "hard", 0.41),
+        *(("brake", name, 1.0) for name in BODIES),
+    ],
+)
+def test_limits_are_where_the_contact_circle_has_that_radius(law, name, radius):
+    E, R, S_y, nu = BODIES[name]
+    d = limit(LAWS.index(law), *BODIES[name])
+    d_c = R * (0.5 * np.pi * 1.295 * np.exp(0.736 * nu) * S_y / E) ** 2
+    B = 0.14 * np.exp(23 * S_y / E)
+    assert np.sqrt(d / R * (d / d_c / 1.9) ** B) == pytest.approx(radius, rel=1e-12)
+
+
+@pytest.mark.parametrize(("law", "radii"), [("hertz", 1.0), ("stronge", 0.5), ("thornton", 1.0)])
+def test_limits_of_laws_without_one_are_the_spheres(law, radii):
+    assert limit(LAWS.index(law), *STEEL) == pytest.approx(radii * STEEL[1], rel=1e-3)
+
+
+def test_limits_of_the_fits():
+    d_c = first_yield("jackson_green")
+    assert limit(LAWS.index("kogut_etsion"), *STEEL) == pytest.approx(
+        110 * first_yield("kogut_etsion"), rel=1e-12
+    )
+    assert limit(LAWS.index("mjg"), *STEEL) == pytest.approx(4725 * d_c, rel=1e-4)
+    F, _, delta_r, _ = curve(LAWS.index("mjg"), 4700 * d_c, *STEEL)
+    assert F > 0
+    assert 0.98 * 4700 * d_c < delta_r < 0.99 * 4700 * d_c
+
+
+def test_an_unknown_number_has_no_limit():
+    assert np.isnan(limit(len(LAWS), *STEEL))

@@ -1,0 +1,71 @@
+"""Stronge's law as a kernel, against the closed forms and its own limits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from impactlab.solver.contact.stronge import MEAN_PRESSURE, THETA, U_PLASTIC, curve
+from impactlab.verification.solutions.stronge import StrongeImpact
+
+E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
+LAW = StrongeImpact(E, R, S_y)
+X_PLASTIC = 0.5 * (U_PLASTIC + 1.0)
+REGIMES = {"elastic": 0.4, "elastic-plastic": 20.0, "fully plastic": 200.0}
+
+
+def at(x):
+    return curve(x * LAW.yield_indentation, E, R, S_y, nu)
+
+
+@pytest.mark.parametrize("x", [1e-3, 0.5, 1.0, 1.01, 1.4, 5.0, 82.4, 82.6, 400.0])
+def test_force_and_unloading_curve_are_the_closed_forms(x):
+    deepest = x * LAW.yield_indentation
+    F, K, delta_r, n = at(x)
+    assert LAW.loading_force(deepest) == pytest.approx(F, rel=1e-12)
+    assert LAW.residual_indentation(deepest) == pytest.approx(delta_r, abs=1e-12 * deepest)
+    for share in (0.0, 0.3, 0.9):
+        delta = delta_r + share * (deepest - delta_r)
+        expected = LAW.unloading_force(delta, deepest)
+        assert K * (delta - delta_r) ** n == pytest.approx(expected, rel=1e-9, abs=1e-9 * F)
+
+
+@pytest.mark.parametrize("x", REGIMES.values(), ids=REGIMES)
+def test_unloading_starts_at_the_force_that_loading_reached(x):
+    F, K, delta_r, n = at(x)
+    assert K * (x * LAW.yield_indentation - delta_r) ** n == pytest.approx(F, rel=1e-12)
+
+
+@pytest.mark.parametrize("limit", [1.0, X_PLASTIC])
+def test_no_jump_at_the_limits_of_the_regimes(limit):
+    small = 1e-12
+    below, above = at(limit * (1 - small)), at(limit * (1 + small))
+    assert above == pytest.approx(below, rel=1e-10, abs=1e-15)
+    assert above[0] > below[0]
+
+
+def test_the_plastic_regimes_meet_at_x_82_511_and_not_at_84():
+    assert round(X_PLASTIC, 3) == 82.511
+    u = 2 * 84.0 - 1.0
+    jump = MEAN_PRESSURE / THETA / (1 + math.log(u) / (3 * THETA)) - 1
+    assert abs(jump) > 1e-3  # what the often quoted limit would leave
+
+
+def test_fully_plastic_mean_pressure():
+    """F over the area of contact is 2.8 S_y, with a^2 = R (2 delta - delta_y)."""
+    delta = 150 * LAW.yield_indentation
+    area = math.pi * R * (2 * delta - LAW.yield_indentation)
+    assert curve(delta, E, R, S_y, nu)[0] / area == pytest.approx(2.8 * S_y, rel=1e-12)
+
+
+def test_first_yield_is_at_a_mean_pressure_of_1_1_yield_stresses():
+    delta = LAW.yield_indentation
+    area = math.pi * R * delta
+    assert curve(delta, E, R, S_y, nu)[0] / area == pytest.approx(1.1 * S_y, rel=1e-12)
+
+
+def test_force_grows_with_indentation():
+    forces = [at(x)[0] for x in np.geomspace(1e-3, 1e3, 400)]
+    assert np.all(np.diff(forces) > 0)

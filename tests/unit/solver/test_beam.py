@@ -1,0 +1,146 @@
+"""The finite-difference half beam against numpy, and its free vibration in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from impactlab.solver.beam import make_beam, make_grid, move, move_virgin, reach, strike
+from impactlab.solver.energy import bending_energy, kinetic_energy, plastic_energy
+from impactlab.solver.section import make_section
+from impactlab.solver.yielding import make_yielding
+
+N = 20
+"""Spacings in the half beam."""
+GRID = make_grid(N, 0.02, 1e-6, 13.0, 2e4)
+MID = GRID.mid
+
+
+def shaped(values, now=0, grid=GRID):
+    """A beam whose w from the support to mid-span is `values`, mirrored beyond both."""
+    beam = make_beam(grid)
+    beam.w[now] = mirrored(values)
+    return beam
+
+
+def mirrored(values):
+    return np.concatenate([[-values[1]], values, values[-2:-4:-1]])
+
+
+def fourth_difference(values):
+    """Of w from the support to mid-span, at each node but the support."""
+    return np.diff(mirrored(values), 4)
+
+
+def test_a_new_beam_is_straight_and_at_rest():
+    beam = make_beam(GRID)
+    assert beam.w.shape == (2, N + 4)
+    assert not any(array.any() for array in beam)
+
+
+def test_the_grid_knows_what_follows_from_it():
+    grid = make_grid(N, 0.01, 1e-6, 13.0, 2e4)
+    assert grid.mid == N + 1
+    assert grid.per_dx2 == pytest.approx(1e4)
+    assert grid.factor == pytest.approx(1e-12 / 13e-4)
+    assert grid.stiffness == pytest.approx(1e-12 * 2e4 / 13e-8)
+    assert grid.push == pytest.approx(1e-12 / 0.13)
+
+
+@pytest.mark.parametrize(
+    ("moved", "first", "expected"),
+    [(8, 8, 6), (9, 8, 6), (10, 8, 8), (3, 3, 2), (2, 2, 2)],
+    ids=["at first", "next to it", "behind it", "near the support", "at the support"],
+)
+def test_the_front_goes_ahead_of_the_wave(moved, first, expected):
+    w = np.zeros((2, N + 4))
+    w[1, moved] = -1e-9
+    assert reach(w, 1, first) == expected
+    assert reach(w, 0, first) == first
+
+
+def test_the_front_ignores_what_would_become_denormal():
+    w = np.zeros((2, N + 4))
+    w[0, 8] = 1e-101
+    assert reach(w, 0, 8) == 8
+
+
+@pytest.mark.parametrize("now", [0, 1])
+@pytest.mark.parametrize(("first", "stop"), [(2, MID + 1), (6, MID), (MID, MID + 1), (4, 4)])
+def test_a_virgin_step_is_the_fourth_difference(now, first, stop):
+    values = 1e-6 * np.sin(np.arange(N + 1.0))
+    beam = shaped(values, now)
+    u = beam.u[:] = np.cos(np.arange(N + 4.0))
+    here = slice(first, stop)
+    expected = u.copy()
+    expected[2 : MID + 1] -= GRID.stiffness * fourth_difference(values)
+    kappa = np.abs(np.diff(mirrored(values), 2)[: N + 2]) * GRID.per_dx2  # kappa[i - 1] at i
+    limit = np.median(kappa)
+    outside = move_virgin(beam.w, now, beam.u, first, stop, GRID, limit)
+    assert beam.u[here] == pytest.approx(expected[here], rel=1e-12)
+    assert beam.w[1 - now, here] == pytest.approx(beam.w[now, here] + expected[here], rel=1e-12)
+    assert outside == np.sum(kappa[first - 1 : stop - 1] > limit)
+    others = np.delete(np.arange(N + 4), np.arange(first, stop))
+    assert np.array_equal(beam.u[others], np.cos(others))
+    assert not beam.w[1 - now, others].any()
+
+
+@pytest.mark.parametrize("first", [2, 6, MID])
+def test_a_step_takes_each_sections_interval_and_plastic_share(first):
+    values = 1e-6 * np.sin(np.arange(N + 1.0))
+    beam = shaped(values)
+    beam.plastic[:] = 1e-7 * np.arange(N + 4)
+    kappa = np.diff(mirrored(values), 2) * GRID.per_dx2
+    kappa = np.concatenate([[0], kappa, [0]])[: N + 4]
+    low, high = kappa - 1e-6, kappa + 1e-6
+    low[[7, 9]], high[[8, MID]] = kappa[[7, 9]] + 1e-6, kappa[[8, MID]] - 1e-6
+    outside = move(beam.w, 0, beam.u, beam.plastic, low, high, first, GRID)
+    expected = np.zeros(N + 4)
+    expected[2 : MID + 1] = -GRID.stiffness * fourth_difference(values)
+    here = slice(first, MID + 1)
+    assert beam.u[here] == pytest.approx(expected[here] + beam.plastic[here], rel=1e-9)
+    assert outside == sum(i >= first for i in (7, 8, 9, MID))
+
+
+def test_the_force_moves_mid_span_and_the_ends_are_mirrored():
+    beam = make_beam(GRID)
+    beam.w[1] = np.arange(N + 4.0)
+    beam.w[1, 1] = 0.0
+    strike(beam.w, 0, beam.u, 500.0, GRID)
+    assert beam.u[MID] == pytest.approx(500.0 * 1e-12 / (13.0 * 0.02))
+    assert np.count_nonzero(beam.u) == 1
+    assert beam.w[1, MID] == pytest.approx(MID + beam.u[MID])
+    assert beam.w[1, :2].tolist() == [-2.0, 0.0]
+    assert beam.w[1, MID + 1 :].tolist() == [MID - 1, MID - 2]
+    assert not beam.w[0].any()
+
+
+@pytest.mark.parametrize("mode", [1, 3, 7])
+def test_free_vibration_is_that_of_the_discrete_beam(make_case, mode):
+    """sin(k pi x/L) cos(j theta), 4 sin^2(theta/2) = dt^2 EI/mu (4 sin^2(k pi/(4 n))/dx^2)^2."""
+    mu, dx, section = 13.0, 0.02, make_section(make_case(points=5))
+    EI = section.stiffness
+    grid = make_grid(N, dx, 0.4 * dx**2 * np.sqrt(mu / EI), mu, EI)
+    shape = np.sin(mode * np.pi * np.arange(N + 1) / (2 * N))
+    eigenvalue = (4 * np.sin(mode * np.pi / (4 * N)) ** 2 / dx**2) ** 2
+    theta = 2 * np.arcsin(0.5 * grid.dt * np.sqrt(EI / mu * eigenvalue))
+    amplitude = 1e-7
+    beam, held = shaped(amplitude * shape, grid=grid), make_yielding(grid, section)
+    # half a step back in time, so that the first whole kick ends half a step on
+    beam.u[1 : MID + 1] = amplitude * shape * (1.0 - np.cos(theta))
+    totals = []
+    for step in range(200):
+        now, u_mid = step % 2, beam.u[MID]
+        assert beam.w[now, 1 : MID + 1] == pytest.approx(
+            amplitude * shape * np.cos(step * theta), abs=1e-10 * amplitude
+        )
+        args = (grid, section.yield_curvature)
+        assert move_virgin(beam.w, now, beam.u, 2, MID + 1, *args) == 0
+        strike(beam.w, now, beam.u, 0.0, grid)
+        stored = bending_energy(beam, held, section, grid, now)
+        assert plastic_energy(held, section, grid) == (0.0, 0.0)
+        totals.append(stored + kinetic_energy(beam, grid, now, u_mid))
+    # EI/2 times the integral of kappa^2, and the cosine of leapfrog's product of velocities
+    bending = 0.25 * EI * amplitude**2 * eigenvalue * 2 * N * dx
+    expected = bending * np.cos(theta / 2) ** 2
+    assert totals == pytest.approx([expected] * len(totals), rel=1e-10)

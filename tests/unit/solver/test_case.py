@@ -1,0 +1,44 @@
+"""The case table holds every parameter, in SI, with names as numbers."""
+
+from __future__ import annotations
+
+import pytest
+
+from impactlab.model.parameters import ELEMENTS, PARAMETERS
+from impactlab.solver import BEAM_MODELS, RULES, SCHEMES
+from impactlab.solver.case import CASE
+from impactlab.solver.contact import LAWS
+
+OF_KERNELS = {name: entry for name, entry in PARAMETERS.items() if name not in ELEMENTS}
+"""The others are of the 3-D model alone."""
+
+
+def test_fields_are_the_parameters_and_the_duration():
+    assert sorted(CASE.names) == sorted([*OF_KERNELS, "duration"])
+
+
+def test_a_record_has_every_value_in_its_place(make_case):
+    names = {"contact": "hertz", "beam_model": "elastic", "rule": "layers"}
+    names |= {"scheme": "semi_implicit"}
+    numbers = {
+        name: 0.5 + number / 100
+        for number, (name, entry) in enumerate(OF_KERNELS.items())
+        if not entry.choices and not entry.whole and "poisson" not in name
+    }
+    ratios = {"sphere_poissons_ratio": 0.1, "beam_poissons_ratio": 0.2}
+    moduli = {"sphere_youngs_modulus": 1e9, "beam_youngs_modulus": 2e9, "beam_span": 9.0}
+    values = numbers | ratios | moduli | {"nodes": 19, "points": 3}
+    case = make_case(duration=0.7, **values, **names)
+    numbers_of_names = {
+        "contact": LAWS.index("hertz"),
+        "beam_model": BEAM_MODELS.index("elastic"),
+        "rule": RULES.index("layers"),
+        "scheme": SCHEMES.index("semi_implicit"),
+    }
+    expected = values | numbers_of_names | {"duration": 0.7}
+    assert {name: case[name] for name in CASE.names} == expected
+
+
+def test_the_spheres_mass_is_the_stated_one_or_follows_from_density(make_case):
+    assert make_case(sphere_mass=2.0).sphere_mass == 2.0
+    assert make_case(sphere_radius=0.1).sphere_mass == pytest.approx(32.6726, rel=1e-5)

@@ -1,0 +1,60 @@
+"""The rules computed by Newton's method against scipy's eigenvalues and exact integrals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from impactlab.solver import RULES
+from impactlab.solver.quadrature import legendre_pair, rule_points, upper_half
+from impactlab.verification.solutions import quadrature
+
+COUNTS = [*range(2, 22), 32, 33, 48, 63, 64]
+DEGREE = {"lobatto": lambda n: 2 * n - 3, "legendre": lambda n: 2 * n - 1, "layers": lambda n: 1}
+
+
+def half(rule, points):
+    positions, weights = np.full(points // 2, np.nan), np.full(points // 2, np.nan)
+    upper_half(RULES.index(rule), points, positions, weights)
+    return positions, weights
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("points", COUNTS)
+def test_points_and_weights_are_those_of_scipy(rule, points):
+    positions, weights = half(rule, points)
+    expected_positions, expected_weights = quadrature.rule(rule, points)
+    above = slice(None, -(points // 2) - 1, -1)  # outermost first, the axis left out
+    np.testing.assert_allclose(positions, expected_positions[above], rtol=1e-13, atol=0)
+    np.testing.assert_allclose(weights, expected_weights[above], rtol=1e-11, atol=0)
+    np.testing.assert_allclose(rule_points(rule, points), expected_positions, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("points", COUNTS)
+def test_even_powers_are_integrated_up_to_the_rules_degree_and_no_further(rule, points):
+    positions, weights = half(rule, points)
+    degree = DEGREE[rule](points)
+
+    def error(power):
+        return 2 * (weights @ positions**power) * (power + 1) / 2 - 1
+
+    for power in range(2, degree + 1, 2):
+        assert abs(error(power)) < 1e-12
+    if points < 20:  # then the error is above rounding
+        first_missed = max(2, degree + 1 + (degree + 1) % 2)
+        assert abs(error(first_missed)) > 1e-13
+
+
+def test_legendre_polynomials():
+    x = 0.3
+    for degree in range(1, 20):
+        value, lower = legendre_pair(degree, x)
+        series = np.polynomial.legendre.legval(x, np.eye(21)[[degree, degree - 1]].T)
+        assert (value, lower) == pytest.approx(tuple(series), abs=1e-15)
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_an_odd_number_of_points_includes_the_axis(rule):
+    assert rule_points(rule, 7)[3] == 0
+    assert not np.any(rule_points(rule, 8) == 0)

@@ -1,0 +1,136 @@
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from impactlab.analysis.analyse import analyse
+from impactlab.study.adaptive.extending import extended
+from impactlab.study.declaration import study_of_text
+from impactlab.study.sampling import design
+
+RESPONSES = ["peak_force", "contact_duration", "number_of_contacts"]
+
+
+def uniform(low, high):
+    return {"distribution": "uniform", "low": low, "high": high}
+
+
+@pytest.fixture
+def sample():
+    """The design of 64 base samples of two parameters, to be extended."""
+
+    def make(**until):
+        study = {
+            "title": "-",
+            "impact": {"base": "paper"},
+            "duration": 1e-3,
+            "responses": RESPONSES,
+            "sampling": {
+                "method": "sobol",
+                "base_samples": 64,
+                "second_order": False,
+                "seed": 0,
+                "until": {"interval": 0.05, "runs": 100_000} | until,
+                "parameters": {"velocity": uniform(1, 2), "gravity": uniform(0, 10)},
+            },
+        }
+        return design(study_of_text("some", json.dumps(study)))
+
+    return make
+
+
+@pytest.fixture
+def solve():
+    """Answers in closed form; notes the number of runs each time."""
+
+    def solved(asked):
+        solved.runs.append(asked.sizes["run"])
+        v, g = asked["velocity"] - 1.5, asked["gravity"] / 10 - 0.5
+        answers = {"peak_force": 2 * v + g, "contact_duration": v * g + v + g}
+        answers["number_of_contacts"] = xr.ones_like(v)
+        answers["status"] = xr.zeros_like(v, dtype=np.int32)
+        return asked.assign(answers)
+
+    solved.runs = []
+    return solved
+
+
+@pytest.fixture
+def shrinking():
+    """Intervals of 1.6/sqrt(N): a tenth at N = 256; that of the total order of the force, half."""
+
+    def analysed(runs):
+        width = 1.6 / np.sqrt(runs.attrs["base_samples"])
+        widths = np.full((3, 2), width)
+        widths[2] = np.nan
+        flags = {"flag_values": [0, 2], "flag_descriptions": "usable: fine\nconstant: it is still"}
+        dims = ("response", "parameter")
+        return xr.Dataset(
+            {
+                "first_order_interval": (dims, widths * [[0.5], [1], [1]]),
+                "total_order_interval": (dims, widths * [0.1, 0.2]),
+                "sensitivity_verdict": ("response", [0, 0, 2], flags),
+            },
+            {"response": RESPONSES, "parameter": ["velocity", "gravity"]},
+        )
+
+    return analysed
+
+
+def test_the_sample_grows_until_the_widest_interval_is_narrow_enough(sample, solve, shrinking):
+    runs = extended(sample(interval=0.1), solve, shrinking)
+    assert solve.runs == [256, 512, 1024]  # N (D + 2)
+    assert runs.attrs["base_samples"] == 256
+    assert runs.attrs["until_reached"] == 1
+    assert runs.attrs["until_widest"] == pytest.approx(0.1)
+    assert runs.attrs["until_widest_index"] == "first_order"
+    assert runs.attrs["until_widest_response"] == "contact_duration"
+    assert runs.attrs["until_widest_parameter"] == "velocity"
+    assert runs.attrs["until_reason"].endswith("contact_duration to velocity, ± 0.1, within 0.1")
+    assert runs.attrs["until_left_out"] == "number_of_contacts (constant: it is still)"
+
+
+def test_it_stops_before_there_are_more_runs_than_allowed(sample, solve, shrinking):
+    runs = extended(sample(interval=0.01, runs=2047), solve, shrinking)
+    assert solve.runs == [256, 512, 1024]
+    assert runs.attrs["until_reached"] == 0
+    assert runs.attrs["until_widest"] == pytest.approx(0.1)
+    assert "twice as many runs are more than 2,047" in runs.attrs["until_reason"]
+
+
+def test_as_many_runs_as_allowed_are_made(sample, solve, shrinking):
+    extended(sample(interval=0.01, runs=2048), solve, shrinking)
+    assert solve.runs == [256, 512, 1024, 2048]
+
+
+def test_only_the_responses_it_is_asked_of_count(sample, solve, shrinking):
+    runs = extended(sample(interval=0.1, responses=["peak_force"]), solve, shrinking)
+    assert solve.runs == [256]
+    assert runs.attrs["until_widest_response"] == "peak_force"
+    assert runs.attrs["until_left_out"] == ""
+
+
+def test_responses_without_indices_alone_ask_for_no_runs(sample, solve, shrinking):
+    runs = extended(sample(responses=["number_of_contacts"]), solve, shrinking)
+    assert solve.runs == [256]
+    assert runs.attrs["until_reached"] == 0
+    assert np.isnan(runs.attrs["until_widest"])
+    assert runs.attrs["until_reason"] == "no response has indices that more runs could narrow"
+
+
+def test_the_analysis_of_the_package_decides(sample, solve, tmp_path):
+    """Also when the design and the runs have been in files."""
+    sample(interval=0.08).to_netcdf(tmp_path / "design.nc")
+    runs = extended(xr.load_dataset(tmp_path / "design.nc"), solve, analyse)
+    runs.to_netcdf(tmp_path / "runs.nc")
+    analysis = analyse(xr.load_dataset(tmp_path / "runs.nc"))
+    assert len(solve.runs) > 1
+    widths = [analysis[f"{name}_order_interval"] for name in ("first", "total")]
+    assert max(width.max().item() for width in widths) == analysis.attrs["until_widest"] <= 0.08
+    assert "number_of_contacts (constant: " in runs.attrs["until_left_out"]
+    # S = (a_i width_i)^2 / sum for a linear function
+    first = analysis["first_order"].sel(response="peak_force")
+    np.testing.assert_allclose(first, [0.8, 0.2], atol=0.08)

@@ -1,0 +1,196 @@
+"""The table of variables, and where numbers say they come from."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from datetime import UTC, datetime, timedelta
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import impactlab as il
+from impactlab import variables as dataset
+from impactlab.model.parameters import PARAMETERS
+from impactlab.solver.contact.about import ABOUT
+from impactlab.variables import (
+    COORDINATES,
+    FAILED,
+    FAILURES,
+    HISTORIES,
+    MARKS,
+    PROFILES,
+    REMARKS,
+    RESPONSES,
+    STATUS_FLAGS,
+    attributes,
+    contact_attributes,
+    described,
+    kept_bits,
+    marks,
+    provenance,
+    reasons,
+    status_bits,
+)
+
+TABLE = RESPONSES | HISTORIES | PROFILES | COORDINATES | PARAMETERS
+BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
+WHOLE_RUN = {"diverged", "energy_out_of_balance", "stopped"}
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_units_are_udunits_and_names_are_spelled_out(name):
+    attrs = attributes(name)
+    assert re.fullmatch(r"1|[A-Za-z]+(-?\d)?( [A-Za-z]+(-?\d)?)*", attrs["units"])
+    assert len(attrs["long_name"]) > 4
+    assert TABLE[name].name == name
+
+
+def test_no_name_is_used_twice():
+    tables = (RESPONSES, HISTORIES, PROFILES, COORDINATES, PARAMETERS)
+    assert sum(map(len, tables)) == len(TABLE)
+
+
+def test_an_unknown_variable_is_an_error():
+    with pytest.raises(KeyError, match="contact_farce"):
+        attributes("contact_farce")
+
+
+def test_responses_name_the_flags_that_make_them_missing():
+    for name, entry in RESPONSES.items():
+        named = set(attributes(name).get("missing_because", "").split())
+        assert named == ({*WHOLE_RUN, entry.missing} if entry.missing else set())
+        assert named <= set(STATUS_FLAGS)
+
+
+@pytest.mark.parametrize(("name", "flags"), [("status", STATUS_FLAGS), ("remarks", REMARKS)])
+def test_bits_are_cf_flags(name, flags):
+    attrs = attributes(name)
+    assert attrs["flag_meanings"].split() == list(flags)
+    assert attrs["flag_masks"].tolist() == [bit for bit, _ in flags.values()]
+    assert attrs["flag_masks"].dtype == np.int32
+
+
+def test_described_fills_in_what_is_known_and_keeps_what_was_said():
+    data = xr.Dataset(
+        {"peak_force": 1.0, "own": ("run", [1.0])},
+        coords={"velocity": ("run", [2.0], {"long_name": "mine", "low": 1.0})},
+    )
+    result = described(data)
+    assert result.peak_force.attrs == attributes("peak_force")
+    assert result.velocity.attrs == {"units": "m s-1", "long_name": "mine", "low": 1.0}
+    assert result.own.attrs == {}
+
+
+def test_status_bits_are_those_that_matter_to_the_asked_responses():
+    whole = sum(BITS[name] for name in WHOLE_RUN)
+    assert status_bits([]) == whole
+    assert status_bits(["energy_error"]) == whole
+    assert status_bits(["contact_duration"]) == whole | BITS["first_contact_unfinished"]
+    assert status_bits(RESPONSES) == FAILED == sum(bit for bit, _ in FAILURES.values())
+    assert kept_bits(RESPONSES) == sum(BITS.values())
+    assert kept_bits([]) == whole | BITS["outside_contact_law"]
+
+
+def test_status_of_a_run_is_zero_where_every_asked_response_is_there():
+    """Too short for a rebound, long enough for a peak."""
+    asked = {"peak_force": 0, "restitution": BITS["sphere_not_leaving"]}
+    run = il.simulate(
+        il.paper_impact(), il.Discretisation(nodes=21, points=3), duration=1.8e-4, samples=2
+    )
+    for name, bits in asked.items():
+        assert run.status.item() & status_bits([name]) == bits
+        assert np.isnan(run[name].item()) == (bits > 0)
+
+
+def test_reasons_are_words():
+    assert reasons(0) == []
+    two = BITS["diverged"] | BITS["in_contact_at_end"]
+    assert marks(two) == []
+    assert reasons(two | BITS["outside_contact_law"]) == [
+        STATUS_FLAGS["diverged"][1],
+        STATUS_FLAGS["in_contact_at_end"][1],
+    ]
+
+
+def test_failures_and_marks_are_told_apart():
+    assert not set(FAILURES) & set(MARKS)
+    assert marks(BITS["outside_contact_law"]) == [MARKS["outside_contact_law"][1]]
+    assert reasons(BITS["outside_contact_law"]) == []
+
+
+def test_contact_says_where_its_laws_come_from_and_what_is_in_doubt():
+    attrs = contact_attributes(["hertz", "mjg"])
+    assert attrs["source"].splitlines() == [
+        f"{law}: {ABOUT[law].source}" for law in ("hertz", "mjg")
+    ]
+    assert attrs["unconfirmed"] == f"mjg: {ABOUT['mjg'].unconfirmed}"
+    assert "flaws" not in contact_attributes(["hertz"])
+    many = il.simulate_many(
+        il.paper_impact(),
+        il.Discretisation(nodes=11, points=3),
+        duration=1e-5,
+        varied={"contact": ["mjg", "hertz", "mjg"]},
+    )
+    assert many.contact.attrs["long_name"] == "contact law"
+    assert attrs.items() <= many.contact.attrs.items()
+
+
+def test_a_run_survives_being_stored(tmp_path):
+    run = il.simulate(
+        il.paper_impact(20.0), il.Discretisation(nodes=11, points=3), duration=1e-4, samples=5
+    )
+    run.to_netcdf(tmp_path / "run.nc")
+    with xr.open_dataset(tmp_path / "run.nc") as stored:
+        xr.testing.assert_identical(stored.load(), run)
+
+
+def test_provenance_names_versions_time_and_machine():
+    found = provenance()
+    made = datetime.fromisoformat(found["created"])
+    assert abs(datetime.now(UTC) - made) < timedelta(minutes=1)
+    for name in ("impactlab", "numpy", "numba", "xarray"):
+        assert f"{name} {version(name)}" in found["versions"]
+    assert re.search(r"python 3\.\d+\.\d+$", found["versions"])
+    assert re.search(r", \d+ cores$", found["processor"])
+    assert found["Conventions"].startswith("CF-")
+
+
+@pytest.fixture
+def source_tree(tmp_path, monkeypatch):
+    """The package as if it lay in a folder of its own."""
+    monkeypatch.setattr(dataset, "__file__", str(tmp_path / "impactlab" / "variables.py"))
+    (tmp_path / "impactlab").mkdir()
+    return tmp_path
+
+
+def git(folder: Path, *words: str) -> str:
+    settings = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
+    command = ["git", "-C", str(folder), *settings, *words]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def test_source_revision_is_the_commit_and_says_when_the_tree_differs(source_tree):
+    git(source_tree, "init")
+    file = source_tree / "impactlab" / "variables.py"
+    file.write_text("one")
+    git(source_tree, "add", ".")
+    git(source_tree, "commit", "-m", "one")
+    commit = git(source_tree, "rev-parse", "HEAD")[:12]
+    assert provenance()["source_revision"] == commit
+    file.write_text("another")
+    assert provenance()["source_revision"] == commit  # what this process has loaded
+    dataset._revision.cache_clear()
+    assert provenance()["source_revision"] == f"{commit}-dirty"
+
+
+def test_source_revision_outside_a_checkout_is_the_release(source_tree):
+    assert provenance()["source_revision"] == f"release {version('impactlab')}"
+
+
+def test_source_revision_of_a_broken_checkout_is_unknown(source_tree):
+    (source_tree / ".git").mkdir()
+    assert provenance()["source_revision"].startswith("unknown")

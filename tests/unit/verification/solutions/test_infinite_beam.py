@@ -1,0 +1,89 @@
+"""The infinite beam against the modal sum of a long one, before the supports' echo."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.special import beta
+
+from impactlab.model.paper import paper_impact
+from impactlab.verification.solutions.beam_modes import odd_modes
+from impactlab.verification.solutions.infinite_beam import (
+    curvature_under_force,
+    deflection_under_force,
+    deflection_under_impulse,
+    profile_under_impulse,
+)
+
+BEAM = paper_impact().beam
+
+
+def test_long_beam_deflects_like_the_infinite_one():
+    long, impulse, time = replace(BEAM, span=60.0), 2.0, np.array([1e-4, 5e-4, 2e-3])
+    modes = odd_modes(long, 40_000)
+    mass = 0.5 * long.mass_per_length * long.span
+    amplitudes = np.sin(np.outer(time, modes.frequencies)) * (impulse / (mass * modes.frequencies))
+    series = amplitudes.sum(1)
+    np.testing.assert_allclose(deflection_under_impulse(long, impulse, time), series, rtol=1e-3)
+    x = np.array([-0.1, 0.0, 0.05, 0.3, 1.0])
+    profile = profile_under_impulse(long, impulse, time[:, np.newaxis], x)
+    shapes = modes.shapes(0.5 * long.span + x)
+    np.testing.assert_allclose(profile, amplitudes @ shapes, atol=1e-3 * series.max())
+
+
+@pytest.mark.parametrize("power", [1.0, 2.5])
+def test_a_growing_force_as_euler_integrates_it(power):
+    """For F = t^p both histories are Beta functions."""
+    time = np.linspace(0.0, 1e-3, 2001)
+    at = slice(200, -1)  # before, one line is no curve
+    unit = deflection_under_impulse(BEAM, 1.0, 1.0)
+    w = deflection_under_force(BEAM, time, time**power)
+    expected = unit * beta(power + 1, 1.5) * time ** (power + 1.5)
+    np.testing.assert_allclose(w[at], expected[at], rtol=1e-4)
+    k = np.sqrt(BEAM.bending_stiffness / BEAM.mass_per_length)
+    curvature = curvature_under_force(BEAM, time, time**power)
+    np.testing.assert_allclose(curvature[at], -np.gradient(expected, time)[at] / k, rtol=2e-4)
+
+
+def test_a_short_force_is_an_impulse():
+    time = np.array([0.0, 1e-7, 2e-7, 1e-3])
+    w = deflection_under_force(BEAM, time, [0.0, 2e7, 0.0, 0.0])
+    assert w[-1] == pytest.approx(deflection_under_impulse(BEAM, 2.0, 1e-3), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("time", "force"),
+    [
+        ([0.0, 1.0], [1.0, 1.0]),
+        ([0.0, 0.0], [0.0, 1.0]),
+        ([0.0, 1.0], [0.0, np.nan]),
+        ([0.0, 1.0], [0.0]),
+    ],
+)
+def test_wrong_force_is_named(time, force):
+    with pytest.raises(ValueError, match="force"):
+        deflection_under_force(BEAM, time, force)
+
+
+def test_profile_at_no_time_is_refused():
+    with pytest.raises(ValueError, match="time"):
+        profile_under_impulse(BEAM, 1.0, 0.0, 0.1)
+
+
+def test_deflection_grows_with_the_root_of_time_from_zero():
+    w = deflection_under_impulse(BEAM, 1.0, [0.0, 1e-3, 4e-3])
+    assert w[0] == 0.0
+    assert w[2] == pytest.approx(2 * w[1], rel=1e-12)
+
+
+@pytest.mark.parametrize("time", [-1e-6, np.nan, [0.0, np.inf]])
+def test_wrong_time_is_named(time):
+    with pytest.raises(ValueError, match="time"):
+        deflection_under_impulse(BEAM, 1.0, time)
+
+
+def test_wrong_impulse_is_named():
+    with pytest.raises(ValueError, match="impulse"):
+        deflection_under_impulse(BEAM, np.nan, 1e-3)

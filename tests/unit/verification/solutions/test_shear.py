@@ -1,0 +1,84 @@
+"""Closed forms of shear against integrals, the exact frequency equation and small numbers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from impactlab.model.paper import paper_impact
+from impactlab.verification.solutions import beam_modes, bending, shear, timoshenko_modes
+
+BEAM = paper_impact().beam
+FUNCTIONS = pytest.mark.parametrize(
+    ("call", "word"),
+    [
+        (lambda: shear.static_deflection(BEAM, -1.0), "load"),
+        (lambda: shear.impact_share(BEAM, 0.0), "duration"),
+        (lambda: shear.early_deflection(BEAM, 1.0, -1.0), "time"),
+        (lambda: shear.early_deflection(BEAM, np.nan, 1.0), "load"),
+    ],
+)
+
+
+def test_shear_stiffness_of_the_papers_beam():
+    assert shear.shear_stiffness(BEAM) == pytest.approx(5 / 6 * 210e9 / 2.6 * 0.06 * 0.0278)
+    other = replace(BEAM, shear_coefficient=0.5)
+    assert shear.shear_stiffness(other) == pytest.approx(0.6 * shear.shear_stiffness(BEAM))
+
+
+def test_coefficient_is_that_of_the_energy_in_a_parabola():
+    """tau = 1.5 (1 - xi^2) of the mean: its energy over that of the mean is 1/k."""
+    energy, _ = quad(lambda xi: 0.5 * (1.5 * (1 - xi**2)) ** 2, -1, 1)
+    assert BEAM.shear_coefficient == pytest.approx(1 / energy)
+
+
+def test_static_deflection_by_the_unit_load():
+    """Integral of M m/(EI) + Q q/(a), M = P x/2 and Q = P/2 up to mid-span."""
+    load, a, EI = 1e3, shear.shear_stiffness(BEAM), BEAM.bending_stiffness
+    work, _ = quad(lambda x: load * x / 2 * x / 2 / EI + load / 4 / a, 0, BEAM.span / 2)
+    assert shear.static_deflection(BEAM, load) == pytest.approx(2 * work, rel=1e-12)
+    ratio = shear.static_deflection(BEAM, load) / bending.static_deflection(BEAM, load)
+    assert ratio - 1 == pytest.approx(shear.static_share(BEAM), rel=1e-10)
+    assert shear.static_share(BEAM) == pytest.approx(3.12 * (0.0278 / 0.78) ** 2, rel=1e-12)
+
+
+@pytest.mark.parametrize("depth", [0.0278, 0.3])
+def test_first_frequency_is_that_of_the_modes(depth):
+    beam = replace(BEAM, depth=depth)
+    modes = timoshenko_modes.odd_modes(beam, 1)
+    assert shear.first_frequency(beam) == pytest.approx(modes.frequencies[0], rel=1e-12)
+    plain = beam_modes.odd_modes(beam, 1).frequencies[0]
+    assert shear.bending_frequency(beam) == pytest.approx(plain, rel=1e-14)
+
+
+def test_impact_share_is_the_slowing_of_the_wave_of_that_frequency():
+    """A long beam whose first mode turns by pi during the contact."""
+    duration = 5e-3
+    speed = np.sqrt(BEAM.bending_stiffness / BEAM.mass_per_length)
+    long = replace(BEAM, span=np.pi * np.sqrt(speed * duration / np.pi))
+    slowed = 1 - shear.first_frequency(long) / shear.bending_frequency(long)
+    assert shear.impact_share(long, duration) == pytest.approx(slowed, rel=0.01)
+
+
+def test_cubic_term_of_the_early_deflection():
+    """Its coefficient over 6, by quadrature of a^2 x^2/((mu + a x^2)^2 (J + EI x^2))/(2 pi)."""
+    a, mu, EI = shear.shear_stiffness(BEAM), BEAM.mass_per_length, BEAM.bending_stiffness
+    inertia, scale = mu * BEAM.depth**2 / 12, np.sqrt(mu / a)
+
+    def integrand(y):
+        x = scale * y
+        return a**2 * x**2 / ((mu + a * x**2) ** 2 * (inertia + EI * x**2)) * scale
+
+    integral, _ = quad(integrand, -np.inf, np.inf)
+    t = 1e-6
+    cubic = shear.early_deflection(BEAM, 1.0, t) - t / (2 * np.sqrt(a * mu))
+    assert cubic == pytest.approx(integral / (2 * np.pi) * t**3 / 6, rel=1e-6)
+
+
+@FUNCTIONS
+def test_wrong_arguments_are_named(call, word):
+    with pytest.raises(ValueError, match=word):
+        call()
