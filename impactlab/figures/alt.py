@@ -11,9 +11,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from impactlab.figures import data
+from impactlab.figures import data, labels
 from impactlab.figures.data import Drawn
-from impactlab.figures.reading import words
 
 _PANELS, _CURVES = 5, 3
 """At most so many panels, and curves of a panel, are told one by one; else the highest curve."""
@@ -30,7 +29,7 @@ def alt(figure: Figure) -> str:
     ]
     shown = " ".join(told[:_PANELS])
     more = len(told) - _PANELS
-    return f"{shown} And {words.counted(more, 'more panel')}." if more > 0 else shown
+    return f"{shown} And {labels.counted(more, 'more panel')}." if more > 0 else shown
 
 
 def _drawn(curves: list[Drawn]) -> Iterator[str]:
@@ -80,10 +79,10 @@ def _meshes(figure: Figure) -> Iterator[str]:
 def _mesh(cells: PolyCollection) -> str:
     paths, values = cells.get_paths(), cells.get_array()
     if values is None:
-        return words.counted(len(paths), "cell")
+        return labels.counted(len(paths), "cell")
     at = int(np.argmax(values))
     x, y = np.mean(np.asarray(paths[at].vertices)[:-1], axis=0)
-    coloured = words.counted(len(paths), "coloured cell")
+    coloured = labels.counted(len(paths), "coloured cell")
     place = f"{_number(x)}, {_number(y)}"
     return f"{coloured}, the largest value at {place} ({_number(values[at])})"
 
@@ -114,4 +113,4 @@ def _range(values: NDArray[np.float64]) -> str:
 
 
 def _number(value: float) -> str:
-    return words.number(value, digits=3)
+    return labels.number(value, digits=3)

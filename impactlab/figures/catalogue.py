@@ -20,6 +20,7 @@ from impactlab.figures import (
     force_history,
     force_indentation,
     force_indentation_by_law,
+    measures,
     morris_plane,
     nodes_convergence,
     parameter_effects,
@@ -34,7 +35,6 @@ from impactlab.figures import (
 )
 from impactlab.figures.index_bars import IndexBars
 from impactlab.figures.index_convergence import IndexConvergence
-from impactlab.figures.reading import measures
 from impactlab.figures.scatter import scatters
 
 

@@ -7,11 +7,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import usable
-from impactlab.figures.reading.plan import Plan, plan
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, curves, labels, scales, style
+from impactlab.figures.access import usable
+from impactlab.figures.curves import Plan, plan
+from impactlab.figures.labels import display
 
 TITLE = "Contact duration against velocity"
 _DURATION = "contact_duration"
@@ -28,7 +27,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Duration of the first contact (a later sub-impact does not count) against the impact "
         "velocity. Grey: the slope −1/5 of Hertz's elastic impact on a half-space. "
-        f"{_plan(runs).note(runs)} {missing.note(runs, [_DURATION])}".strip()
+        f"{_plan(runs).note(runs)} {access.missing_note(runs, [_DURATION])}".strip()
     )
 
 
@@ -42,8 +41,8 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         values = unit(valid.isel(selected.held | curve.where))
         if np.isfinite(values).any():
             ax.plot(speed, values, label=curve.label or "_only", **curves.marked(curve))
-    ax.set_xlabel(words.axis(words.parameter("velocity"), "m/s"))
-    ax.set_ylabel(words.axis("duration of the first contact", unit.symbol))
+    ax.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
+    ax.set_ylabel(labels.axis("duration of the first contact", unit.symbol))
     _scale(ax, speed)
     style.legend(figure, selected.title(), selected.labels())
     return figure

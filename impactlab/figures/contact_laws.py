@@ -9,11 +9,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, responses_grid, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import is_sample, usable
-from impactlab.figures.reading.plan import Choice, Plan, plan
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, curves, labels, responses_grid, scales, style
+from impactlab.figures.access import is_sample, usable
+from impactlab.figures.curves import Choice, Plan, plan
+from impactlab.figures.labels import display
 from impactlab.variables import MARKS
 
 TITLE = "Contact laws side by side"
@@ -32,14 +31,14 @@ def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, held and missing."""
-    at = words.value(runs["velocity"], _middle(runs)) if _has_histories(runs) else ""
+    at = labels.value(runs["velocity"], _middle(runs)) if _has_histories(runs) else ""
     force = f"Force against indentation at {at}, while in contact. " if at else ""
     logarithmic = "Permanent indentations of zero or below are not shown. " * (_DENT in runs)
     beyond = bool(((runs["status"] & _OUTSIDE) != 0).any())
     open_markers = "Open markers: beyond the range of the law. " if beyond else ""
     return (
         f"{force}{logarithmic}{open_markers}{_plan(runs).note(runs)} "
-        f"{missing.note(runs, _variables(runs))}".strip()
+        f"{access.missing_note(runs, _variables(runs))}".strip()
     )
 
 
@@ -86,8 +85,8 @@ def _forces(ax: Axes, runs: xr.Dataset, selected: Plan) -> None:
         if touching.any():
             x = depth(runs[_INDENTATION].isel(where).values[touching])
             ax.plot(x, force(values[touching]), label=curve.label, **curves.look(curve))
-    ax.set_xlabel(words.axis("indentation", depth.symbol))
-    ax.set_ylabel(words.axis("contact force", force.symbol))
+    ax.set_xlabel(labels.axis("indentation", depth.symbol))
+    ax.set_ylabel(labels.axis("contact force", force.symbol))
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
         return
@@ -105,7 +104,7 @@ def _against_velocity(ax: Axes, runs: xr.Dataset, name: str, selected: Plan) -> 
             ax.plot(speed, y, label=curve.label, **curves.marked(curve))
             outside = _outside(runs, selected, curve)
             ax.plot(speed[outside], y[outside], **_open(curve))
-    ax.set(xlabel=words.axis("velocity", "m/s"), ylabel=label)
+    ax.set(xlabel=labels.axis("velocity", "m/s"), ylabel=label)
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
         return

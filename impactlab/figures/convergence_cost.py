@@ -7,8 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, refinement, responses_grid, scales, style
-from impactlab.figures.reading import missing
+from impactlab.figures import access, curves, refinement, responses_grid, scales, style
 from impactlab.model.cost import node_steps
 from impactlab.solver import BEAM_MODELS, SCHEMES
 
@@ -41,7 +40,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         "fit, or else the finest value) against the estimated work of a run: half its nodes times "
         "its time steps. What a step costs grows with the integration points, and is larger with "
         f"the semi-implicit scheme. Grey: {100 * _TOLERANCE:g} %. "
-        f"{_AXIS.plan(runs).note(runs)} {missing.note(runs, _AXIS.names(runs))}".strip()
+        f"{_AXIS.plan(runs).note(runs)} {access.missing_note(runs, _AXIS.names(runs))}".strip()
     )
 
 

@@ -7,10 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import usable
-from impactlab.figures.reading.units import Display, display
+from impactlab.figures import access, curves, labels, scales, style
+from impactlab.figures.access import usable
+from impactlab.figures.labels import Display, display
 
 TITLE = "Displacements against time"
 _CURVES = {
@@ -34,7 +33,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Displacement of the sphere since first touch, deflection of the beam at mid-span, and "
         "their difference, the indentation (below zero: the two are apart); downwards is positive. "
-        f"{curves.note(runs, names[0])} {missing.note(runs, names)}".strip()
+        f"{curves.note(runs, names[0])} {access.missing_note(runs, names)}".strip()
     )
 
 
@@ -47,11 +46,11 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     figure, axes = style.panels(len(shown), columns=columns, height=45, sharex=True)
     unit = display(runs["midspan_deflection"])
     for ax, (panel, curve) in zip(axes, shown, strict=True):
-        labels = (words.sentence(panel.label), curve.label)
-        ax.set_title(", ".join(filter(None, labels)), loc="left")
+        texts = (labels.sentence(panel.label), curve.label)
+        ax.set_title(", ".join(filter(None, texts)), loc="left")
         _draw(ax, runs, selected.runs(panel, curve), unit)
-    figure.supylabel(words.axis("displacement", unit.symbol))
-    figure.supxlabel(words.axis("time since first touch", display(runs["time"]).symbol))
+    figure.supylabel(labels.axis("displacement", unit.symbol))
+    figure.supxlabel(labels.axis("time since first touch", display(runs["time"]).symbol))
     style.legend(figure, order=list(_CURVES.values()))
     return figure
 

@@ -6,9 +6,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import refinement, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, refinement, style
+from impactlab.figures.labels import display
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS
 
@@ -26,7 +25,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Three-dimensional model alone; elements beyond the contact keep their largest size. "
         f"{refinement.CAPTION} {axis.plan(chosen).note(chosen)} "
-        f"{missing.note(runs, axis.names(chosen))}".strip()
+        f"{access.missing_note(runs, axis.names(chosen))}".strip()
     )
 
 
@@ -37,10 +36,10 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     values = runs[axis.dim].values
     if axis.dim == "element_size":
         unit = display(runs[axis.dim])
-        sizes, label = unit(values), words.axis("element size", unit.symbol)
+        sizes, label = unit(values), labels.axis("element size", unit.symbol)
     else:
         sizes = np.round(100.0 / values, 1)
-        label = words.axis("element size over expected contact radius", "%")
+        label = labels.axis("element size over expected contact radius", "%")
     return refinement.draw(_solid(runs), _solid(analysis), axis, sizes, label)
 
 

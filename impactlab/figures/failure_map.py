@@ -10,10 +10,9 @@ import scipy  # its stats are loaded when first used
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import is_sample, varied
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, scales, style
+from impactlab.figures.access import is_sample, varied
+from impactlab.figures.labels import display
 
 TITLE = "Where runs failed"
 _TELLING = 3
@@ -29,21 +28,21 @@ def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Whether some runs of a sample of two parameters or more failed, but not all."""
     if not is_sample(runs) or len(varied(runs)) < 2:
         return False
-    failed = missing.failed(runs)
+    failed = access.failed(runs)
     return bool(failed.any()) and not bool(failed.all())
 
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, and how many runs failed."""
-    failed = missing.failed(runs).values
+    failed = access.failed(runs).values
     told = [
-        f"{words.parameter(name)} {distance:.2f}" for name, distance in _distances(runs).items()
+        f"{labels.parameter(name)} {distance:.2f}" for name, distance in _distances(runs).items()
     ]
     return (
         f"The {int(failed.sum())} failed runs among the good ones (at most {_SHOWN['failed']} and "
         f"{_SHOWN['good']} are drawn), over the parameters whose values differ most between the "
         "two. Distance of Kolmogorov and Smirnov between failed and good runs, 1 where they do "
-        f"not overlap: {words.listing(told)}."
+        f"not overlap: {labels.listing(told)}."
     )
 
 
@@ -52,7 +51,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """A panel a pair of parameters."""
     pairs = list(combinations(_distances(runs), 2))
     figure, axes = style.panels(len(pairs), columns=max(len(pairs), 2), height=58)
-    failed = missing.failed(runs).values
+    failed = access.failed(runs).values
     kinds = {"good": np.flatnonzero(~failed), "failed": np.flatnonzero(failed)}
     for ax, pair in zip(axes, pairs, strict=True):
         units = [display(runs[name]) for name in pair]
@@ -60,10 +59,10 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             some = np.random.default_rng(1).permutation(which)[: _SHOWN[kind]]
             x, y = (unit(runs[name].values[some]) for name, unit in zip(pair, units, strict=True))
             ax.plot(x, y, linestyle="", label=kind, rasterized=kind == "good", **_LOOKS[kind])
-        labels = [
-            words.wrapped_axis(words.parameter(name), display(runs[name]).symbol) for name in pair
+        texts = [
+            labels.wrapped_axis(labels.parameter(name), display(runs[name]).symbol) for name in pair
         ]
-        ax.set(xlabel=labels[0], ylabel=labels[1])
+        ax.set(xlabel=texts[0], ylabel=texts[1])
         scales.linear(ax, "x", 4)
         scales.linear(ax, "y", 4)
     style.legend(figure)
@@ -72,7 +71,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 def _distances(runs: xr.Dataset) -> dict[str, float]:
     """Kolmogorov-Smirnov distances of the most telling parameters, the largest first."""
-    failed = missing.failed(runs).values
+    failed = access.failed(runs).values
     found = {
         name: float(
             scipy.stats.ks_2samp(

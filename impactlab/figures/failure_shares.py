@@ -10,10 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from impactlab.figures import scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import is_sample, varied
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, scales, style
+from impactlab.figures.access import is_sample, varied
+from impactlab.figures.labels import display
 
 TITLE = "Share of failed runs along each parameter"
 _BINS = 10
@@ -27,31 +26,31 @@ _LOOK: dict[str, Any] = {
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Whether runs of a sample failed."""
-    return is_sample(runs) and bool(varied(runs)) and bool(missing.failed(runs).any())
+    return is_sample(runs) and bool(varied(runs)) and bool(access.failed(runs).any())
 
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, and how many failed why."""
-    failed = missing.failed(runs)
-    why = [f"{number} × “{text}”" for text, number in missing.causes(runs, failed).items()]
+    failed = access.failed(runs)
+    why = [f"{number} × “{text}”" for text, number in access.causes(runs, failed).items()]
     return (
         "Share of the runs that failed in each tenth of a parameter's draws, with the 95 % "
         "interval of a binomial share (Wilson); dashed: the share of all runs. A parameter along "
         "which the share rises tells where runs fail. "
         f"{int(failed.sum())} of {failed.size} runs failed, or are missing a response: "
-        f"{words.listing(why)}."
+        f"{labels.listing(why)}."
     )
 
 
 @style.paper
 def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """A panel a parameter."""
-    names, failed = varied(runs), missing.failed(runs).values
+    names, failed = varied(runs), access.failed(runs).values
     figure, axes = style.panels(len(names), columns=3, height=36, sharey=True)
     for ax, name in zip(axes, names, strict=True):
         unit = display(runs[name])
         _shares(ax, unit(runs[name].values), failed)
-        ax.set_xlabel(words.wrapped_axis(words.parameter(name), unit.symbol))
+        ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
     figure.supylabel("Failed runs (%)")
     return figure
 

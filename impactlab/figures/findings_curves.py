@@ -12,9 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from impactlab.figures import scales, style
-from impactlab.figures.reading import words
-from impactlab.figures.reading.units import Display, display
+from impactlab.figures import labels, scales, style
+from impactlab.figures.labels import Display, display
 from impactlab.verification.finding import Curve, Panel
 from impactlab.verification.outcome import Outcome
 
@@ -99,10 +98,10 @@ def _broken(at: int) -> dict[str, Any]:
 
 def _draw(ax: Axes, panel: Panel, looks: dict[str, dict[str, Any]]) -> None:
     units = [_unit(panel, axis) for axis in ("x", "y")]
-    ax.set_title(fill(words.sentence(panel.title), width=_TITLE), loc="left")
+    ax.set_title(fill(labels.sentence(panel.title), width=_TITLE), loc="left")
     names = panel.x[0], panel.y[0]
-    labels = [words.axis(n, unit.symbol) for n, unit in zip(names, units, strict=True)]
-    ax.set(xlabel=labels[0], ylabel=fill(labels[1], width=_LABEL))
+    texts = [labels.axis(n, unit.symbol) for n, unit in zip(names, units, strict=True)]
+    ax.set(xlabel=texts[0], ylabel=fill(texts[1], width=_LABEL))
     for curve in sorted(panel.curves, key=lambda curve: curve.independent):
         x, y = (unit(values) for unit, values in zip(units, (curve.x, curve.y), strict=True))
         if panel.log:

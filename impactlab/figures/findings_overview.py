@@ -11,8 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from impactlab.figures import scales, style
-from impactlab.figures.reading import words
+from impactlab.figures import labels, scales, style
 from impactlab.verification.outcome import Outcome
 
 TITLE = "All comparisons"
@@ -35,14 +34,14 @@ def caption(outcomes: Sequence[Outcome]) -> str:
     small = int(np.count_nonzero(ratios < _LEAST))
     large = int(np.count_nonzero(ratios > _MOST))
     edges = [
-        f"{count} {side} {words.number(limit)} or {tail}"
+        f"{count} {side} {labels.number(limit)} or {tail}"
         for count, side, limit, tail in (
             (small, "below", _LEAST, "without any error at the left edge"),
             (large, "above", _MOST, "without a number at the right edge"),
         )
         if count
     ]
-    shown = f" Drawn as triangles: {words.listing(edges)}." if edges else ""
+    shown = f" Drawn as triangles: {labels.listing(edges)}." if edges else ""
     return (
         "Error over tolerance, a point a comparison and a row a check; right of the line at 1 a "
         f"comparison fails. Within a row, points are spread in the order of the comparisons.{shown}"

@@ -7,9 +7,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from impactlab.figures import curves, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, curves, labels, scales, style
+from impactlab.figures.labels import display
 
 TITLE = "Contact force during the first contact"
 _FORCE = "contact_force"
@@ -24,7 +23,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, held and missing."""
     return (
         "Contact force from first touch to the end of the longest first contact. "
-        f"{curves.note(runs, _FORCE)} {missing.note(runs, [_FORCE])}".strip()
+        f"{curves.note(runs, _FORCE)} {access.missing_note(runs, [_FORCE])}".strip()
     )
 
 
@@ -39,8 +38,8 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     figure, axes = curves.draw(runs, _FORCE, line)
     curves.label(
         axes,
-        words.axis("time since first touch", time.symbol),
-        words.axis("contact force", force.symbol),
+        labels.axis("time since first touch", time.symbol),
+        labels.axis("contact force", force.symbol),
     )
     ends = [_end(curve) for ax in axes for curve in ax.lines]
     for ax in axes:

@@ -7,11 +7,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import usable
-from impactlab.figures.reading.plan import Choice
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, curves, labels, scales, style
+from impactlab.figures.access import usable
+from impactlab.figures.curves import Choice
+from impactlab.figures.labels import display
 
 TITLE = "Contact force against time"
 _FORCE = "contact_force"
@@ -31,7 +30,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Contact force from first touch to the end of the last contact; each panel has a scale of "
         "force of its own, and a peak after a gap is a sub-impact. "
-        f"{curves.note(runs, _FORCE)} {missing.note(runs, [_FORCE])}".strip()
+        f"{curves.note(runs, _FORCE)} {access.missing_note(runs, [_FORCE])}".strip()
     )
 
 
@@ -46,12 +45,12 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     )
     between = ", " if len(selected.panels) <= _WIDE else "\n"
     for ax, (panel, curve) in zip(axes, shown, strict=True):
-        labels = (words.sentence(panel.label), curve.label)
-        ax.set_title(between.join(filter(None, labels)), loc="left")
+        texts = (labels.sentence(panel.label), curve.label)
+        ax.set_title(between.join(filter(None, texts)), loc="left")
         _draw(ax, force.isel(selected.runs(panel, curve)), runs, curve)
     units = display(runs[_FORCE]).symbol, display(runs["time"]).symbol
-    figure.supylabel(words.axis("contact force", units[0]))
-    figure.supxlabel(words.axis("time since first touch", units[1]))
+    figure.supylabel(labels.axis("contact force", units[0]))
+    figure.supxlabel(labels.axis("time since first touch", units[1]))
     axes[0].set_xlim(0.0, 1.02 * _end(axes) or None)
     return figure
 

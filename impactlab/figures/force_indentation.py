@@ -7,9 +7,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from impactlab.figures import curves, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.units import Display, display
+from impactlab.figures import access, curves, labels, scales, style
+from impactlab.figures.labels import Display, display
 
 TITLE = "Contact force against indentation"
 _FORCE, _INDENTATION = "contact_force", "indentation"
@@ -25,7 +24,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Contact force against indentation while in contact; each sub-impact is a loop of its "
         "own, and the area inside is the energy dissipated in the contact. "
-        f"{curves.note(runs, _FORCE)} {missing.note(runs, [_FORCE])}".strip()
+        f"{curves.note(runs, _FORCE)} {access.missing_note(runs, [_FORCE])}".strip()
     )
 
 
@@ -39,7 +38,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
     figure, axes = curves.draw(runs, _FORCE, line)
     curves.label(
-        axes, words.axis("indentation", depth.symbol), words.axis("contact force", force.symbol)
+        axes, labels.axis("indentation", depth.symbol), labels.axis("contact force", force.symbol)
     )
     for ax in axes:
         scales.linear(ax, "x")

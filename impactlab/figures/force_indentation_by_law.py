@@ -6,11 +6,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, force_indentation, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import usable
-from impactlab.figures.reading.plan import Plan, plan
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, curves, force_indentation, labels, scales, style
+from impactlab.figures.access import usable
+from impactlab.figures.curves import Plan, plan
+from impactlab.figures.labels import display
 
 TITLE = "Contact force against indentation under each contact law"
 _FORCE, _INDENTATION = "contact_force", "indentation"
@@ -28,7 +27,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Contact force against indentation while in contact, each panel on scales of its own; the "
         "area inside a loop is the energy dissipated in the contact. "
-        f"{_plan(runs).note(runs)} {missing.note(runs, [_FORCE])}".strip()
+        f"{_plan(runs).note(runs)} {access.missing_note(runs, [_FORCE])}".strip()
     )
 
 
@@ -52,8 +51,8 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             ax.set(xlim=(0.0, None), ylim=(0.0, None))
         else:
             style.remark(ax, "no finite values")
-    figure.supxlabel(words.axis("indentation", depth.symbol))
-    figure.supylabel(words.axis("contact force", force.symbol))
+    figure.supxlabel(labels.axis("indentation", depth.symbol))
+    figure.supylabel(labels.axis("contact force", force.symbol))
     style.legend(figure, selected.title(), selected.labels())
     return figure
 

@@ -10,9 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter
 
-from impactlab.figures import responses_grid, scales, style
-from impactlab.figures.reading import measures, missing, verdicts, words
-from impactlab.figures.reading.measures import Family, asked
+from impactlab.figures import access, labels, measures, responses_grid, scales, style
+from impactlab.figures.measures import Family, asked
 
 _THICK = 0.76
 """Of all bars of a row together, in rows."""
@@ -43,10 +42,10 @@ class IndexBars:
                 (
                     self.family.says,
                     _estimator(analysis, self.family),
-                    f"Lines on the bars: {verdicts.confidence(analysis)} intervals.",
+                    f"Lines on the bars: {access.confidence(analysis)} intervals.",
                     _floor_words(analysis, self.family),
                     _numerical_words(analysis, self.family),
-                    missing.note(runs, asked(runs, analysis)),
+                    access.missing_note(runs, asked(runs, analysis)),
                 ),
             )
         )
@@ -72,7 +71,7 @@ def undefined(ax: Axes, analysis: xr.Dataset, response: str, measure: str) -> No
     if bool(np.isfinite(analysis[measure].sel(response=response)).any()):
         responses_grid.warn(ax, analysis, "sensitivity_verdict", response)
         return
-    found = verdicts.verdict(analysis, "sensitivity_verdict", response)
+    found = access.verdict(analysis, "sensitivity_verdict", response)
     style.remark(ax, f"undefined:\n{found.words if found else 'no reason is given'}")
 
 
@@ -131,7 +130,7 @@ def _span(rows: int) -> tuple[float, float]:
 def _rows(ax: Axes, names: list[str], *, named: bool) -> None:
     """Parameters from top to bottom."""
     ax.set_yticks(range(len(names)))
-    ax.yaxis.set_major_formatter(FixedFormatter([words.parameter(name) for name in names]))
+    ax.yaxis.set_major_formatter(FixedFormatter([labels.parameter(name) for name in names]))
     ax.tick_params(axis="y", length=0, labelleft=named)
     ax.grid(visible=False, axis="y")
     ax.set_ylim(*_span(len(names)))

@@ -9,9 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import responses_grid, scales, style
-from impactlab.figures.reading import measures, missing, verdicts, words
-from impactlab.figures.reading.measures import Measure, asked
+from impactlab.figures import access, labels, measures, responses_grid, scales, style
+from impactlab.figures.measures import Measure, asked
 
 _SAMPLES = "base_samples"
 _ENDS = (-0.25, 1.25)
@@ -27,7 +26,7 @@ class IndexConvergence:
     @property
     def TITLE(self) -> str:  # noqa: N802  (what every figure's file calls it)
         """Heads the figure."""
-        return f"{words.sentence(self.measure.words)} indices against the number of samples"
+        return f"{labels.sentence(self.measure.words)} indices against the number of samples"
 
     @property
     def _variable(self) -> str:
@@ -45,10 +44,10 @@ class IndexConvergence:
         """What is shown."""
         return (
             f"The {self.measure.words} index from the first samples alone, up to all "
-            f"{int(analysis[_SAMPLES].max())} base samples; bands: {verdicts.confidence(analysis)} "
+            f"{int(analysis[_SAMPLES].max())} base samples; bands: {access.confidence(analysis)} "
             "intervals, cut off outside −0.25 to 1.25. Indices that still drift beyond their bands "
             "at the right need more samples. "
-            f"{missing.note(runs, asked(runs, analysis))}".strip()
+            f"{access.missing_note(runs, asked(runs, analysis))}".strip()
         )
 
     @style.paper
@@ -75,7 +74,7 @@ class IndexConvergence:
             y = values.isel(parameter=at).values
             look = style.told_apart(at)
             if np.isfinite(y).any():
-                ax.plot(samples, y, label=words.parameter(name), markersize=2.5, **look)
+                ax.plot(samples, y, label=labels.parameter(name), markersize=2.5, **look)
             if margins is not None:
                 m = margins.sel(response=response).isel(parameter=at).values
                 ax.fill_between(samples, y - m, y + m, color=look["color"], alpha=0.15, linewidth=0)

@@ -10,10 +10,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import responses_grid, scales, style
-from impactlab.figures.reading import measures, missing, verdicts, words
-from impactlab.figures.reading.measures import MORRIS, asked
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, measures, responses_grid, scales, style
+from impactlab.figures.labels import display
+from impactlab.figures.measures import MORRIS, asked
 
 TITLE = MORRIS.title
 _SLOPES = ((1.0, "σ = µ*"), (0.1, "σ = 0.1 µ*"))
@@ -31,8 +30,8 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         f"{MORRIS.says} Above σ = µ* an effect changes its size or sign with the others or along "
         "the range; below σ = 0.1 µ* it is nearly linear and additive. Lines: "
-        f"{verdicts.confidence(analysis)} intervals of µ*. "
-        f"{missing.note(runs, asked(runs, analysis))}".strip()
+        f"{access.confidence(analysis)} intervals of µ*. "
+        f"{access.missing_note(runs, asked(runs, analysis))}".strip()
     )
 
 
@@ -58,7 +57,7 @@ def _plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> N
                 x[at],
                 y[at],
                 xerr=margin[at] if np.isfinite(margin[at]) else None,
-                label=words.parameter(name),
+                label=labels.parameter(name),
                 elinewidth=0.8,
                 **(style.told_apart(at) | {"linestyle": ""}),
             )
@@ -66,7 +65,7 @@ def _plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> N
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
         return
-    ax.set(xlabel=words.axis("mean µ*", unit.symbol), ylabel=words.axis("spread σ", unit.symbol))
+    ax.set(xlabel=labels.axis("mean µ*", unit.symbol), ylabel=labels.axis("spread σ", unit.symbol))
     _guides(ax, right=float(np.nanmax(x + np.nan_to_num(margin, posinf=0.0))), top=np.nanmax(y))
 
 

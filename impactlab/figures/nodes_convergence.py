@@ -5,9 +5,8 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import refinement, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, refinement, style
+from impactlab.figures.labels import display
 
 TITLE = "Convergence in nodes"
 _AXIS = refinement.Refined("nodes", "nodes", ("velocity", "points"))
@@ -22,7 +21,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, held and missing."""
     return (
         f"{refinement.CAPTION} {_AXIS.plan(runs).note(runs)} "
-        f"{missing.note(runs, _AXIS.names(runs))}".strip()
+        f"{access.missing_note(runs, _AXIS.names(runs))}".strip()
     )
 
 
@@ -39,4 +38,4 @@ def _spacing(runs: xr.Dataset) -> tuple[refinement.Array, str]:
         return relative, "Spacing of the nodes over the span (–)"
     spacing = (runs["beam_span"] * xr.DataArray(relative)).assign_attrs(units="m").rename("spacing")
     unit = display(spacing)
-    return unit(spacing), words.axis("spacing of the nodes", unit.symbol)
+    return unit(spacing), labels.axis("spacing of the nodes", unit.symbol)

@@ -6,11 +6,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, responses_grid, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import is_sample, physical, responses
-from impactlab.figures.reading.plan import Plan, plan
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, curves, labels, responses_grid, scales, style
+from impactlab.figures.access import is_sample, physical, responses
+from impactlab.figures.curves import Plan, plan
+from impactlab.figures.labels import display
 
 TITLE = "Effect of the varied parameters"
 _FEWEST = 3
@@ -24,9 +23,9 @@ def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown, held and missing."""
     return (
-        f"Responses against the {words.parameter(str(_along(runs)))}; where curves coincide, the "
+        f"Responses against the {labels.parameter(str(_along(runs)))}; where curves coincide, the "
         f"first in the legend lies on top. {_plan(runs).note(runs)} "
-        f"{missing.note(runs, responses(runs))}".strip()
+        f"{access.missing_note(runs, responses(runs))}".strip()
     )
 
 
@@ -49,7 +48,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.fit(ax, "y", drawn)
         if not ax.lines:
             responses_grid.empty(ax, "no finite values")
-    figure.supxlabel(words.axis(words.parameter(str(along.name)), unit.symbol))
+    figure.supxlabel(labels.axis(labels.parameter(str(along.name)), unit.symbol))
     style.legend(figure, selected.title(), selected.labels())
     return figure
 

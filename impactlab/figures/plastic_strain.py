@@ -7,10 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, profiles, scales, style
+from impactlab.figures import curves, labels, profiles, scales, style
+from impactlab.figures.labels import display
 from impactlab.figures.profiles import LOWEST, PAPER_LIMIT, STRAIN
-from impactlab.figures.reading import words
-from impactlab.figures.reading.units import display
 
 TITLE = "Equivalent plastic strain along the beam"
 
@@ -41,7 +40,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
     figure, axes = curves.draw(kept, STRAIN, line)
     curves.label(
-        axes, words.axis("distance from the left support", place.symbol), words.axis("PEEQ", "%")
+        axes, labels.axis("distance from the left support", place.symbol), labels.axis("PEEQ", "%")
     )
     marks = [place.scale * mark for mark in profiles.depth_marks(kept)]
     for ax in axes:

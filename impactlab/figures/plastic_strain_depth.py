@@ -6,10 +6,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, profiles, scales, style
+from impactlab.figures import curves, labels, profiles, scales, style
+from impactlab.figures.labels import display
 from impactlab.figures.profiles import LOWEST, STRAIN
-from impactlab.figures.reading import words
-from impactlab.figures.reading.units import display
 
 TITLE = "Equivalent plastic strain over the depth"
 
@@ -40,7 +39,9 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
     figure, axes = curves.draw(kept, STRAIN, line, markers=True)
     curves.label(
-        axes, words.axis("PEEQ", strain.symbol), words.axis("distance below the axis", depth.symbol)
+        axes,
+        labels.axis("PEEQ", strain.symbol),
+        labels.axis("distance below the axis", depth.symbol),
     )
     for ax in axes:
         values = [value for line in ax.lines for value in np.asarray(line.get_xdata())]

@@ -7,10 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import curves, responses_grid, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import known, responses
-from impactlab.figures.reading.plan import Plan, plan
+from impactlab.figures import access, curves, labels, responses_grid, scales, style
+from impactlab.figures.access import known, responses
+from impactlab.figures.curves import Plan, plan
 
 TITLE = "Convergence in integration points"
 _TOLERANCE = 1.0
@@ -29,7 +28,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         "Difference to the value with the most integration points over the depth (which is left "
         f"out, being its own reference), relative to it. Grey: {_TOLERANCE:g} %. A verdict is the "
         "worst over the whole grid, also over what is not drawn. "
-        f"{_plan(runs, names).note(runs)} {missing.note(runs, names)}".strip()
+        f"{_plan(runs, names).note(runs)} {access.missing_note(runs, names)}".strip()
     )
 
 
@@ -49,7 +48,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             if np.isfinite(values).any():
                 ax.plot(points, values, label=curve.label or "_only", **curves.marked(curve))
         _finish(ax, points, error)
-    figure.supxlabel(words.axis(words.parameter("points"), ""))
+    figure.supxlabel(labels.axis(labels.parameter("points"), ""))
     figure.supylabel("Error (%)")
     style.legend(figure, selected.title(), selected.labels())
     return figure

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import xarray as xr
 
-from impactlab.figures import curves
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import design_dims, usable
+from impactlab.figures import access, curves, labels
+from impactlab.figures.access import design_dims, usable
 
 STRAIN = "equivalent_plastic_strain"
 LOWEST = 1e-3
@@ -31,7 +30,11 @@ def plastic(runs: xr.Dataset) -> xr.Dataset:
 
 def note(runs: xr.Dataset) -> str:
     """The choice, the velocities left out because the beam stays elastic there, what is missing."""
-    parts = (curves.note(plastic(runs), STRAIN), _elastic(runs), missing.note(runs, [STRAIN]))
+    parts = (
+        curves.note(plastic(runs), STRAIN),
+        _elastic(runs),
+        access.missing_note(runs, [STRAIN]),
+    )
     return " ".join(filter(None, parts))
 
 
@@ -53,7 +56,7 @@ def _elastic(runs: xr.Dataset) -> str:
     if not bool(none.any()):
         return ""
     where = none.values.nonzero()[0].tolist()
-    return f"No fibre yields at {words.setting(runs['velocity'], where)}."
+    return f"No fibre yields at {labels.setting(runs['velocity'], where)}."
 
 
 def _largest(runs: xr.Dataset) -> xr.DataArray:

@@ -14,8 +14,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from impactlab.figures import curves, responses_grid, scales, style
-from impactlab.figures.reading.contents import known, responses, usable
-from impactlab.figures.reading.plan import Choice, Plan, plan
+from impactlab.figures.access import known, responses, usable
+from impactlab.figures.curves import Choice, Plan, plan
 
 FEWEST = 3
 CAPTION = (

@@ -8,9 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from impactlab.figures import responses_grid, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import is_sample, responses, usable
+from impactlab.figures import access, labels, responses_grid, scales, style
+from impactlab.figures.access import is_sample, responses, usable
 
 TITLE = "Distributions of the responses"
 _BINS = (10, 40)
@@ -32,7 +31,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown and what is missing."""
     return (
         "Histograms of the responses over the sample. Line: median; shaded: from the 5th to the "
-        f"95th percentile.{_jumps(runs)} {missing.note(runs, responses(runs))}".strip()
+        f"95th percentile.{_jumps(runs)} {access.missing_note(runs, responses(runs))}".strip()
     )
 
 
@@ -50,7 +49,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 def _panel(ax: Axes, values: Values) -> None:
     if values.size == 0 or np.ptp(values) <= responses_grid.ROUND_OFF * np.abs(values).max():
-        text = f"constant: {words.number(float(values[0]))}" if values.size else "no finite values"
+        text = f"constant: {labels.number(float(values[0]))}" if values.size else "no finite values"
         responses_grid.empty(ax, text)
         return
     distinct, counts = np.unique(values, return_counts=True)
@@ -75,7 +74,7 @@ def _beside(ax: Axes, values: Values, common: float) -> None:
     rest = values[values != common]
     ax.hist(rest, bins=_bins(rest), color=style.COLOURS[0], zorder=2)
     share = 100 * (1 - rest.size / values.size)
-    text = f"{share:.0f} % of the runs: {words.number(common)}\n(not drawn)"
+    text = f"{share:.0f} % of the runs: {labels.number(common)}\n(not drawn)"
     ax.margins(y=0.35)
     ax.text(0.98, 0.98, text, transform=ax.transAxes, ha="right", va="top", color=_WARNING)
     scales.linear(ax, "x")
@@ -100,9 +99,9 @@ def _jumps(runs: xr.Dataset) -> str:
         values = usable(runs, name).values
         distinct, counts = np.unique(values[np.isfinite(values)], return_counts=True)
         if 1 < distinct.size <= _FEW:
-            found["few"].append(words.response(name))
+            found["few"].append(labels.response(name))
         elif distinct.size > 1 and counts.max() >= _MOSTLY * counts.sum():
-            found["mostly"].append(words.response(name))
-    few = f" Bars, for there are few values: {words.listing(found['few'])}." * bool(found["few"])
-    mostly = f" Mostly one value, drawn without it: {words.listing(found['mostly'])}."
+            found["mostly"].append(labels.response(name))
+    few = f" Bars, for there are few values: {labels.listing(found['few'])}." * bool(found["few"])
+    mostly = f" Mostly one value, drawn without it: {labels.listing(found['mostly'])}."
     return few + mostly * bool(found["mostly"])

@@ -8,10 +8,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import style
-from impactlab.figures.reading import verdicts, words
-from impactlab.figures.reading.contents import usable
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, style
+from impactlab.figures.access import usable
+from impactlab.figures.labels import display
 
 COLUMNS = 3
 
@@ -31,7 +30,7 @@ def panels(
     figure.set_figheight(figure.get_figheight() + beneath * style.MILLIMETRE)
     found = dict(zip(names, axes, strict=True))
     for name, ax in found.items():
-        ax.set_title(words.sentence(words.response(name)), loc="left")
+        ax.set_title(labels.sentence(labels.response(name)), loc="left")
     return figure, found
 
 
@@ -39,15 +38,15 @@ def shown(runs: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
     """A response's usable values in display units, with its name and unit for a label."""
     values = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
     unit = display(values)
-    return values * unit.scale, words.axis(words.response(name), unit.symbol)
+    return values * unit.scale, labels.axis(labels.response(name), unit.symbol)
 
 
 def write_verdict(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> None:
     """The response's verdict under the panel's title, bold where it is a warning."""
-    found = verdicts.verdict(analysis, variable, name)
+    found = access.verdict(analysis, variable, name)
     if found is None:
         return
-    title = words.sentence(words.response(name))
+    title = labels.sentence(labels.response(name))
     ax.set_title(title, loc="left", pad=12)
     weight = "normal" if found.sound else "bold"
     colour = style.MUTED if found.sound else style.COLOURS[1]
@@ -65,7 +64,7 @@ def write_verdict(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> N
 
 def warn(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> None:
     """The response's verdict under the panel's title, where it is a warning."""
-    found = verdicts.verdict(analysis, variable, name)
+    found = access.verdict(analysis, variable, name)
     if found and not found.sound:
         write_verdict(ax, analysis, variable, name)
 

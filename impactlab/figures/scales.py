@@ -10,13 +10,13 @@ from matplotlib.axis import Axis
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import ArrayLike, NDArray
 
-from impactlab.figures.reading import words
+from impactlab.figures import labels
 
 Which = Literal["x", "y"]
 WIDE = 30.0
 """Ratio of the largest to the smallest value from which on an axis is logarithmic."""
-_PLAIN = FuncFormatter(lambda value, _: words.number(value))
-_POWERS = FuncFormatter(lambda value, _: words.number(value, plain=(1e-3, 1e5)))
+_PLAIN = FuncFormatter(lambda value, _: labels.number(value))
+_POWERS = FuncFormatter(lambda value, _: labels.number(value, plain=(1e-3, 1e5)))
 
 
 def fit(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:

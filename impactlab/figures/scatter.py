@@ -11,10 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from impactlab.figures import responses_grid, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import is_sample, responses, varied
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, responses_grid, scales, style
+from impactlab.figures.access import is_sample, responses, varied
+from impactlab.figures.labels import display
 
 Array = NDArray[np.float64]
 _SHOWN = 2000
@@ -39,7 +38,7 @@ class Scatter:
     @property
     def TITLE(self) -> str:  # noqa: N802  (what every figure's file calls it)
         """Heads the figure."""
-        return f"{words.sentence(words.response(self.response))} against each parameter"
+        return f"{labels.sentence(labels.response(self.response))} against each parameter"
 
     def applies(self, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
         """Whether the runs are a sample with this response."""
@@ -52,7 +51,7 @@ class Scatter:
         return (
             f"Points: {points}. Line: mean of the response over all runs with about this value of "
             "the parameter; where it is flat, the parameter alone changes nothing. "
-            f"{missing.note(runs, [self.response])}".strip()
+            f"{access.missing_note(runs, [self.response])}".strip()
         )
 
     @style.paper
@@ -64,7 +63,7 @@ class Scatter:
         for ax, name in zip(axes, names, strict=True):
             unit = display(runs[name])
             _panel(ax, unit(runs[name].values), values.values)
-            ax.set_xlabel(words.wrapped_axis(words.parameter(name), unit.symbol))
+            ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
         if self.response in runs and not np.isfinite(values.values).any():
             for ax in axes:
                 style.remark(ax, "no finite values")

@@ -8,10 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from impactlab.figures import curves, responses_grid, scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import is_sample, usable
-from impactlab.figures.reading.plan import Choice, Plan, plan
+from impactlab.figures import access, curves, labels, responses_grid, scales, style
+from impactlab.figures.access import is_sample, usable
+from impactlab.figures.curves import Choice, Plan, plan
 from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
@@ -48,8 +47,8 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         "one, minus one. Below, the same changes against how much shear and "
         "rotary inertia slow the wave that turns by π during the contact, which goes with depth "
         "over contact duration: if it decided alone, the curves would coincide. Grey: changes of "
-        f"{words.number(THRESHOLD)} %. {found} {_plan(runs).note(runs)} "
-        f"{missing.note(runs, _NAMES)}".strip()
+        f"{labels.number(THRESHOLD)} %. {found} {_plan(runs).note(runs)} "
+        f"{access.missing_note(runs, _NAMES)}".strip()
     )
 
 
@@ -65,10 +64,10 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             _draw(above, slenderness, change, curve)
             _draw(below, share, change, curve)
         for ax in (above, below):
-            ax.set_ylabel(words.axis(f"change of {words.response(name)}", "%"))
+            ax.set_ylabel(labels.axis(f"change of {labels.response(name)}", "%"))
             _finish(ax)
-        above.set_xlabel(words.axis("depth of the beam over its span", ""))
-        below.set_xlabel(words.axis("slowing of the wave of the contact", "%"))
+        above.set_xlabel(labels.axis("depth of the beam over its span", ""))
+        below.set_xlabel(labels.axis("slowing of the wave of the contact", "%"))
     style.legend(figure, selected.title(), selected.labels())
     return figure
 
@@ -144,12 +143,12 @@ def _finding(runs: xr.Dataset, name: str) -> str:
     matters = known & (abs(change) >= THRESHOLD)
     where = f" (depth over span {_range(slenderness[matters])})" if matters.any() else ""
     return (
-        f"The {words.response(name)} changes by {_range(change[known])} %, by "
-        f"{words.number(THRESHOLD)} % or more in {matters.sum()} of {known.sum()} impacts{where}, "
+        f"The {labels.response(name)} changes by {_range(change[known])} %, by "
+        f"{labels.number(THRESHOLD)} % or more in {matters.sum()} of {known.sum()} impacts{where}, "
         f"while the slowing goes from {_range(share[known])} %."
     )
 
 
 def _range(values: Array) -> str:
-    low, high = words.number(float(values.min()), 2), words.number(float(values.max()), 2)
+    low, high = labels.number(float(values.min()), 2), labels.number(float(values.max()), 2)
     return low if low == high else f"{low} to {high}"

@@ -10,10 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
-from impactlab.figures import responses_grid, style
+from impactlab.figures import access, labels, responses_grid, style
 from impactlab.figures.index_bars import undefined
-from impactlab.figures.reading import missing, verdicts, words
-from impactlab.figures.reading.measures import asked, parameters
+from impactlab.figures.measures import asked, parameters
 
 TITLE = "Sobol indices of second order"
 _INDEX = "second_order"
@@ -35,9 +34,9 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """What is shown and what is missing."""
     return (
         "Share of the variance, in %, that two parameters bring together; columns are "
-        f"numbered as the rows. Grey: zero lies within the {verdicts.confidence(analysis)} "
+        f"numbered as the rows. Grey: zero lies within the {access.confidence(analysis)} "
         "interval. "
-        f"{missing.note(runs, asked(runs, analysis))}".strip()
+        f"{access.missing_note(runs, asked(runs, analysis))}".strip()
     )
 
 
@@ -106,7 +105,7 @@ def _short(value: float) -> str:
 def _label(ax: Axes, listed: list[str], *, named: bool) -> None:
     count = len(listed)
     numbers = [str(at) for at in range(1, count + 1)]
-    rows = [f"{words.parameter(name)} {at}" for name, at in zip(listed, numbers, strict=True)]
+    rows = [f"{labels.parameter(name)} {at}" for name, at in zip(listed, numbers, strict=True)]
     ax.set_yticks(range(count), rows if named else numbers)
     ax.set_xticks(range(count), numbers)
     ax.set(xlim=(-0.5, count - 0.5), ylim=(count - 0.5, -0.5), aspect="auto")

@@ -7,11 +7,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import responses_grid, scales, style
-from impactlab.figures.reading import missing, verdicts, words
-from impactlab.figures.reading.contents import known, responses, usable
-from impactlab.figures.reading.plan import spread
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, responses_grid, scales, style
+from impactlab.figures.access import known, responses, usable
+from impactlab.figures.curves import spread
+from impactlab.figures.labels import display
 
 TITLE = "Surrogates against the solver"
 _MOST = 400
@@ -29,9 +28,9 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     shown = f", {_MOST} of them shown" if tests > _MOST else ""
     return (
         "Prediction of a polynomial chaos against the solver's answer, for "
-        f"{words.counted(tests, 'run')} that it was not fitted to{shown}; on the line both agree. "
+        f"{labels.counted(tests, 'run')} that it was not fitted to{shown}; on the line both agree. "
         "Q²: 1 less the mean squared error over the variance of all of them. "
-        f"{missing.note(runs, _names(runs, analysis))}".strip()
+        f"{access.missing_note(runs, _names(runs, analysis))}".strip()
     )
 
 
@@ -54,7 +53,7 @@ def _names(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 def _points(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
     answers = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
     unit = display(answers)
-    ax.set_title(words.axis(words.response(name), unit.symbol), loc="left")
+    ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
     found = analysis["surrogate_held_out"].sel(response=name)
     found = found[spread(found.size, min(found.size, _MOST))]
     computed = unit(answers.set_index(run="run").sel(run=found["held_out"].values))
@@ -82,13 +81,13 @@ def _points(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
 
 def _worth(ax: Axes, analysis: xr.Dataset, name: str) -> None:
     """Q2 in the corner that agreement leaves empty, with a warning where there is one."""
-    verdict = verdicts.verdict(analysis, "surrogate_verdict", name)
+    verdict = access.verdict(analysis, "surrogate_verdict", name)
     if not ax.lines:
         responses_grid.empty(ax, f"no surrogate:\n{verdict.words if verdict else 'unknown'}")
         return
     q2 = float(analysis["surrogate_q2"].sel(response=name))
     sound = verdict is None or verdict.sound
-    text = f"Q² = {words.number(q2)}"
+    text = f"Q² = {labels.number(q2)}"
     ax.annotate(
         text if sound or verdict is None else f"{text}\n{verdict.words}",
         (0.04, 0.96),

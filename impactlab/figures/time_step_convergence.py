@@ -5,8 +5,7 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import refinement, style
-from impactlab.figures.reading import missing, words
+from impactlab.figures import access, labels, refinement, style
 
 TITLE = "Convergence in the time step"
 _AXIS = refinement.Refined("time_step", "courant", ("scheme", "nodes", "velocity"))
@@ -22,12 +21,12 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "The nodes of a curve stay the same: its limit is the answer of these nodes. "
         f"{refinement.CAPTION} {_AXIS.plan(runs).note(runs)} "
-        f"{missing.note(runs, _AXIS.names(runs))}".strip()
+        f"{access.missing_note(runs, _AXIS.names(runs))}".strip()
     )
 
 
 @style.paper
 def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """A panel a response, a curve for each of a few other settings."""
-    label = words.axis(words.parameter("courant"), "")
+    label = labels.axis(labels.parameter("courant"), "")
     return refinement.draw(runs, analysis, _AXIS, runs["courant"].values.astype(float), label)

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import xarray as xr
 
+from impactlab.figures import labels
 from impactlab.figures.catalogue import FigureFile, applicable
 from impactlab.figures.draw import Drawing, draw
-from impactlab.figures.reading import setting
 
 Stored = Mapping[str, tuple[xr.Dataset, xr.Dataset]]
 """runs and analysis of each study by its name."""
@@ -63,4 +63,4 @@ def _caption(answer: Answer, file: FigureFile, runs: xr.Dataset, analysis: xr.Da
     """What is plotted, then what is the same in all runs, then why these runs."""
     shown = file.caption(runs, analysis)
     why = str(runs.attrs.get("description", ""))
-    return " ".join(filter(None, (shown, setting.note(runs), why, f"Study: {answer.study}.")))
+    return " ".join(filter(None, (shown, labels.fixed(runs), why, f"Study: {answer.study}.")))

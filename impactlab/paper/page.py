@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from impactlab.figures import labels
+from impactlab.figures.access import count
 from impactlab.figures.files import replaced
-from impactlab.figures.reading import words
-from impactlab.figures.reading.contents import count
-from impactlab.figures.reading.units import Display, display
+from impactlab.figures.labels import Display, display
 from impactlab.paper.statements.catalogue import Claim
 from impactlab.paper.statements.claim import Judgement, Number, Verdict
 from impactlab.report.table import Cell, Table
@@ -49,7 +49,7 @@ def section(claim: Claim) -> Section:
 
 def overview(caption: str, claims: Sequence[Claim]) -> Table:
     """A row a statement: how many of its cases came to which verdict."""
-    head = ["Statement of the paper", *(words.sentence(verdict) for verdict in Verdict)]
+    head = ["Statement of the paper", *(labels.sentence(verdict) for verdict in Verdict)]
     rows = []
     for claim in claims:
         found = Counter(entry.verdict for entry in claim.judgements)
@@ -136,9 +136,9 @@ def _told(number: Number) -> str:
     """Name, value and uncertainty: "peak force: 12.34 ± 0.11 kN"."""
     unit = _unit(number)
     value, width = float(unit(number.value)), float(unit(number.uncertainty))
-    text = words.number(value, _digits(value, width))
+    text = labels.number(value, _digits(value, width))
     if width:
-        text = f"{text} ± {words.number(width, 2) if np.isfinite(width) else 'unknown'}"
+        text = f"{text} ± {labels.number(width, 2) if np.isfinite(width) else 'unknown'}"
     return f"{number.name}: {text} {unit.symbol}".strip()
 
 

@@ -7,9 +7,9 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading import words
-from impactlab.figures.reading.contents import count, design_dims, is_sample, responses, usable
-from impactlab.figures.reading.units import Display, display
+from impactlab.figures import labels
+from impactlab.figures.access import count, design_dims, is_sample, responses, usable
+from impactlab.figures.labels import Display, display
 from impactlab.report.outcome import place
 from impactlab.report.table import Cell, Table
 
@@ -46,7 +46,7 @@ def _range(runs: xr.Dataset, name: str, sample: bool) -> list[Cell]:
     finite = np.isfinite(array.values)
     gaps = int(array.size - finite.sum())
     head = [
-        Cell(words.sentence(words.response(name)), detail=runs[name].attrs.get("long_name", "")),
+        Cell(labels.sentence(labels.response(name)), detail=runs[name].attrs.get("long_name", "")),
         Cell(unit.symbol or "–"),
     ]
     last = Cell(str(gaps), "warning" if gaps else "number")
@@ -56,7 +56,7 @@ def _range(runs: xr.Dataset, name: str, sample: bool) -> list[Cell]:
     if not sample:
         return [*head, low, high, last]
     quantiles = np.quantile(unit(array.values[finite]), list(_QUANTILES.values()))
-    middle = [Cell(words.number(float(value)), "number") for value in quantiles]
+    middle = [Cell(labels.number(float(value)), "number") for value in quantiles]
     return [*head, Cell(low.text, "number"), *middle, Cell(high.text, "number"), last]
 
 
@@ -65,7 +65,7 @@ def _extreme(runs: xr.Dataset, array: xr.DataArray, pick: object, unit: Display)
     at = int(pick(array.values))  # type: ignore[operator]
     position = np.unravel_index(at, array.shape)
     where = {str(dim): int(i) for dim, i in zip(array.dims, position, strict=True)}
-    value = words.number(float(unit(array.values[position])))
+    value = labels.number(float(unit(array.values[position])))
     same = np.nanmin(array.values) == np.nanmax(array.values)
     return Cell(value, "number", "in every run" if same else place(runs, where))
 
@@ -73,13 +73,15 @@ def _extreme(runs: xr.Dataset, array: xr.DataArray, pick: object, unit: Display)
 def _values(runs: xr.Dataset, names: list[str], part: str) -> Table:
     dims = [dim for dim in design_dims(runs) if runs.sizes[dim] > 1]
     units = {name: display(runs[name]) for name in names}
-    head = [words.sentence(words.parameter(dim)) + _bracket(words.unit(runs[dim])) for dim in dims]
-    head += [words.axis(words.response(name), units[name].symbol) for name in names]
+    head = [
+        labels.sentence(labels.parameter(dim)) + _bracket(labels.unit(runs[dim])) for dim in dims
+    ]
+    head += [labels.axis(labels.response(name), units[name].symbol) for name in names]
     arrays = {name: usable(runs, name).squeeze() for name in names}
     rows = []
     for position in product(*(range(runs.sizes[dim]) for dim in dims)):
         where = dict(zip(dims, position, strict=True))
-        place = [Cell(words.values(runs[dim], [at])[0], "number") for dim, at in where.items()]
+        place = [Cell(labels.values(runs[dim], [at])[0], "number") for dim, at in where.items()]
         found = [units[name](arrays[name].isel(where)) for name in names]
         rows.append([*place, *(_value(float(value)) for value in found)])
     return Table(f"Every run, responses {part}", head, rows)
@@ -90,4 +92,4 @@ def _bracket(unit: str) -> str:
 
 
 def _value(value: float) -> Cell:
-    return Cell(words.number(value), "number" if np.isfinite(value) else "warning")
+    return Cell(labels.number(value), "number" if np.isfinite(value) else "warning")

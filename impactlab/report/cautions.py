@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading import missing, verdicts, words
-from impactlab.figures.reading.contents import count, responses, usable
+from impactlab.figures import access, labels
+from impactlab.figures.access import count, responses, usable
 from impactlab.report import numerical
 from impactlab.solver.contact.about import ABOUT
 from impactlab.variables import MARKS, REMARKS
@@ -51,7 +51,7 @@ def _stale(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
 
 
 def _failures(runs: xr.Dataset) -> Iterator[str]:
-    if failed := int(missing.failed(runs).sum()):
+    if failed := int(access.failed(runs).sum()):
         yield (
             f"{failed} of {count(runs)} runs failed: they miss at least one response, and are left "
             "out of figures and tables of what they miss. They are listed below with the reason."
@@ -76,18 +76,18 @@ def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
     for variable, text in _JUDGED.items():
         flags: dict[str, list[str]] = defaultdict(list)
         for name in responses(runs):
-            verdict = verdicts.verdict(analysis, variable, name)
+            verdict = access.verdict(analysis, variable, name)
             if verdict and not verdict.sound:
                 meaning = f": {verdict.meaning}" if verdict.meaning else ""
-                flags[f"{verdict.words}{meaning}"].append(words.response(name))
+                flags[f"{verdict.words}{meaning}"].append(labels.response(name))
         for flag, names in flags.items():
-            yield f"{text} — {words.listing(names)} ({flag})."
+            yield f"{text} — {labels.listing(names)} ({flag})."
 
 
 def _imputed(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
     """A surrogate in the place of failed runs."""
     if "imputed_share" in analysis and bool((analysis["imputed_share"] > 0).any()):
-        worst = words.number(100 * float(analysis["imputed_share"].max()), 2)
+        worst = labels.number(100 * float(analysis["imputed_share"].max()), 2)
         yield (
             f"Values of failed runs, up to {worst} % of the runs of a response, come from a "
             "surrogate fitted to the good ones: the indices rest on it there."
@@ -99,14 +99,14 @@ def _numerical(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
     if number := len(numerical.warnings(runs, analysis)):
         yield (
             "Some indices are below what the numerical error could change, see “Numerical "
-            f"uncertainty” ({words.counted(number, 'warning')} there)."
+            f"uncertainty” ({labels.counted(number, 'warning')} there)."
         )
 
 
 def _strain(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
     """PEEQ without a verdict of its own, which it needs with hardening, too."""
     name = "peak_plastic_strain"
-    if name not in runs or verdicts.verdict(analysis, "nodes_summary", name):
+    if name not in runs or access.verdict(analysis, "nodes_summary", name):
         return
     if bool((usable(runs, name) > 0).any()):
         yield (
@@ -120,9 +120,9 @@ def _values(runs: xr.Dataset) -> Iterator[str]:
     if "energy_error" in runs:
         error = usable(runs, "energy_error")
         if number := int((error > ENERGY_LIMIT).sum()):
-            worst = words.number(float(np.nanmax(error.values)), digits=2)
+            worst = labels.number(float(np.nanmax(error.values)), digits=2)
             yield (
-                f"The energy balance is off by more than {words.number(ENERGY_LIMIT)} of the "
+                f"The energy balance is off by more than {labels.number(ENERGY_LIMIT)} of the "
                 f"initial kinetic energy in {number} of {count(runs)} runs (largest: {worst})."
             )
     if "restitution" in runs and (number := int((usable(runs, "restitution") > 1).sum())):

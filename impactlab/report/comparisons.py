@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading import words
-from impactlab.figures.reading.units import Display, display
+from impactlab.figures import labels
+from impactlab.figures.labels import Display, display
 from impactlab.report.table import Cell, Table
 from impactlab.verification.finding import Comparison
 
@@ -37,7 +37,7 @@ def _row(entry: Comparison) -> list[Cell]:
     unit = _display(entry, max(abs(entry.ours), abs(entry.independent)))
     error, tolerance = _gap(entry)
     return [
-        Cell(words.sentence(entry.quantity)),
+        Cell(labels.sentence(entry.quantity)),
         Cell(entry.where),
         Cell(_value(entry.ours, unit, _DIGITS), "number"),
         Cell(_value(entry.independent, unit, _DIGITS), "number"),
@@ -57,7 +57,7 @@ def _gap(entry: Comparison) -> tuple[str, str]:
 
 
 def _value(value: float, unit: Display, digits: int) -> str:
-    text = words.number(float(unit(value)), digits)
+    text = labels.number(float(unit(value)), digits)
     return f"{text} {unit.symbol}".strip() if np.isfinite(value) else text
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading import verdicts, words
-from impactlab.figures.reading.contents import known, responses
+from impactlab.figures import access, labels
+from impactlab.figures.access import known, responses
 from impactlab.report.table import Cell, Table
 
 
@@ -40,7 +40,7 @@ def meanings(analysis: xr.Dataset, axis: str) -> list[tuple[str, str]]:
     found: dict[str, str] = {}
     for kind in ("behaviour", "summary", "verdict"):
         if f"{axis}_{kind}" in analysis:
-            flags = verdicts.occurring(analysis[f"{axis}_{kind}"])
+            flags = access.occurring(analysis[f"{axis}_{kind}"])
             found |= {flag.words: flag.meaning for flag in flags if flag.meaning}
     return sorted(found.items())
 
@@ -50,7 +50,7 @@ def remarks(analysis: xr.Dataset, axis: str) -> list[str]:
     summary = analysis[f"{axis}_summary"]
     without = [line.partition(": ") for line in summary.attrs.get("without_limit", "").splitlines()]
     reasons = [
-        f"The {words.response(name)} is not convergent by design: {reason}."
+        f"The {labels.response(name)} is not convergent by design: {reason}."
         for name, _, reason in without
         if _counts(analysis, f"{axis}_behaviour", name).get("not convergent by design")
     ]
@@ -105,7 +105,7 @@ def _rules(analysis: xr.Dataset) -> dict[str, dict[str, int]]:
     """Each integration rule in words, with where it is; all at once where none is varied."""
     if "points_needed" not in analysis or "rule" not in analysis["points_needed"].dims:
         return {"": {}}
-    names = words.values(analysis["rule"], range(analysis.sizes["rule"]))
+    names = labels.values(analysis["rule"], range(analysis.sizes["rule"]))
     return {name: {"rule": at} for at, name in enumerate(names)}
 
 
@@ -131,11 +131,11 @@ _AXES: dict[str, tuple[str, _Table, str]] = {
 
 
 def _verdicts(analysis: xr.Dataset, axis: str, name: str) -> list[Cell]:
-    verdict = verdicts.verdict(analysis, f"{axis}_summary", name)
+    verdict = access.verdict(analysis, f"{axis}_summary", name)
     text = verdict.words if verdict else "not judged"
     kind = "" if verdict and verdict.sound else "warning"
     return [
-        Cell(words.sentence(words.response(name))),
+        Cell(labels.sentence(labels.response(name))),
         Cell(text, kind),
         Cell(_tally(analysis, axis, name), detail=_behaviours(analysis, axis, name)),
     ]
@@ -169,7 +169,7 @@ def _counts(analysis: xr.Dataset, variable: str, name: str) -> dict[str, int]:
     if variable not in analysis:
         return {}
     flags = analysis[variable].sel(response=name)
-    found = verdicts.occurring(flags)
+    found = access.occurring(flags)
     return {flag.words: int((flags == flag.value).sum()) for flag in found}
 
 
@@ -204,7 +204,7 @@ def _spread(analysis: xr.Dataset, variable: str, name: str) -> str:
     values = _finite(analysis, variable, name)
     if not values.size:
         return "–"
-    low, high = (words.number(float(end), digits=3) for end in (values.min(), values.max()))
+    low, high = (labels.number(float(end), digits=3) for end in (values.min(), values.max()))
     return low if low == high else f"{low} to {high}"
 
 
@@ -218,4 +218,4 @@ def _largest(analysis: xr.Dataset, variable: str, name: str) -> float:
 
 
 def _percent(share: float) -> str:
-    return "–" if np.isnan(share) else f"{words.number(100 * share, digits=2)} %"
+    return "–" if np.isnan(share) else f"{labels.number(100 * share, digits=2)} %"

@@ -7,7 +7,7 @@ import math
 from itertools import groupby
 from pathlib import Path
 
-from impactlab.figures.reading import words
+from impactlab.figures import labels
 from impactlab.report.table import Cell, Table
 
 _MOST = 80
@@ -54,10 +54,10 @@ def _keys(rows: list[Row]) -> list[str]:
 
 def _head(rows: list[Row], axis: str) -> str:
     """The axis's label where all panels share it, else its letter."""
-    labels = {row[f"{axis}_label"] for row in rows}
-    return labels.pop() or axis if len(labels) == 1 else axis
+    texts = {row[f"{axis}_label"] for row in rows}
+    return texts.pop() or axis if len(texts) == 1 else axis
 
 
 def _cells(row: Row, keys: list[str], axes: list[str]) -> list[Cell]:
-    numbers = [Cell(words.number(float(row[axis])), "number") for axis in axes]
+    numbers = [Cell(labels.number(float(row[axis])), "number") for axis in axes]
     return [*(Cell(row[key] or "–") for key in keys), *numbers]

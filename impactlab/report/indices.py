@@ -7,9 +7,9 @@ from itertools import combinations
 import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading import measures, verdicts, words
-from impactlab.figures.reading.measures import MORRIS, Family, Measure, asked
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, measures
+from impactlab.figures.labels import display
+from impactlab.figures.measures import MORRIS, Family, Measure, asked
 from impactlab.report.table import Cell, Table
 
 _FINE = 0.005
@@ -26,20 +26,20 @@ def tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Table
 def second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """A row a pair of parameters, a column a response; what is not significant is grey."""
     names, shown = measures.parameters(analysis), asked(runs, analysis)
-    head = ["Pair", *(words.sentence(words.response(name)) for name in shown)]
+    head = ["Pair", *(labels.sentence(labels.response(name)) for name in shown)]
     rows = []
     for first, second in combinations(range(len(names)), 2):
-        pair = f"{words.parameter(names[first])} and {words.parameter(names[second])}"
+        pair = f"{labels.parameter(names[first])} and {labels.parameter(names[second])}"
         at = {"parameter": first, "other_parameter": second}
-        rows.append([Cell(words.sentence(pair)), *(_pair(analysis.isel(at), n) for n in shown)])
+        rows.append([Cell(labels.sentence(pair)), *(_pair(analysis.isel(at), n) for n in shown)])
     return Table(_caption("Second-order Sobol indices", analysis), head, rows)
 
 
 def named(analysis: xr.Dataset, response: str) -> Cell:
     """The response, with its verdict where that is a warning."""
-    found = verdicts.verdict(analysis, "sensitivity_verdict", response)
+    found = access.verdict(analysis, "sensitivity_verdict", response)
     detail = found.words if found and not found.sound else ""
-    return Cell(words.sentence(words.response(response)), "warning" if detail else "", detail)
+    return Cell(labels.sentence(labels.response(response)), "warning" if detail else "", detail)
 
 
 def told(value: float, margin: float) -> str:
@@ -56,7 +56,7 @@ def told(value: float, margin: float) -> str:
 def _table(runs: xr.Dataset, analysis: xr.Dataset, family: Family, measure: Measure) -> Table:
     names = measures.parameters(analysis)
     dummy = [f"dummy_{measure.name}"] if f"dummy_{measure.name}" in analysis else []
-    head = ["Response", *(words.sentence(words.parameter(name)) for name in names)]
+    head = ["Response", *(labels.sentence(labels.parameter(name)) for name in names)]
     rows = []
     for response in asked(runs, analysis):
         cells = _cells(runs, analysis, family, measure.name, response)
@@ -67,7 +67,7 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset, family: Family, measure: Meas
 
 
 def _caption(title: str, analysis: xr.Dataset) -> str:
-    return f"{title}, with half-widths of the {verdicts.confidence(analysis)} intervals"
+    return f"{title}, with half-widths of the {access.confidence(analysis)} intervals"
 
 
 def _cells(
@@ -92,8 +92,8 @@ def in_units(response: xr.DataArray, value: float, margin: float) -> str:
         return "undefined"
     unit = display(response)
     symbol = f" {unit.symbol}" if unit.symbol else ""
-    text = words.number(float(unit(value)), 3) + symbol
-    return f"{text} ± {words.number(float(unit(margin)), 2)}" if np.isfinite(margin) else text
+    text = labels.number(float(unit(value)), 3) + symbol
+    return f"{text} ± {labels.number(float(unit(margin)), 2)}" if np.isfinite(margin) else text
 
 
 def _dummy(analysis: xr.Dataset, name: str, response: str) -> Cell:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import xarray as xr
 
+from impactlab.figures import access, labels
+from impactlab.figures.access import count
 from impactlab.figures.draw import draw_all, draw_findings
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import count
 from impactlab.report.report import write_report
 from impactlab.report.verification import tally, write_verification
 from impactlab.study.netcdf import read_netcdf
@@ -41,8 +41,8 @@ class Kind:
 
 
 def _runs(runs: xr.Dataset) -> tuple[str, str]:
-    method = words.method(str(runs.attrs.get("method", "grid")))
-    failed = int(missing.failed(runs).sum())
+    method = labels.method(str(runs.attrs.get("method", "grid")))
+    failed = int(access.failed(runs).sum())
     return f"{count(runs)} runs ({method})", f"{failed} failed" if failed else ""
 
 
@@ -50,10 +50,10 @@ def _findings(findings: xr.Dataset) -> tuple[str, str]:
     found = tally(unpacked(findings))
     pairs = (found.checks, found.comparisons), (found.bad_checks, found.failed)
     size, failed = (
-        [words.counted(checks, "check"), words.counted(comparisons, "comparison")]
+        [labels.counted(checks, "check"), labels.counted(comparisons, "comparison")]
         for checks, comparisons in pairs
     )
-    return ", ".join(size), "" if found.passed else f"{words.listing(failed)} failed"
+    return ", ".join(size), "" if found.passed else f"{labels.listing(failed)} failed"
 
 
 RUNS = Kind(("runs.nc", "analysis.nc"), draw_all, write_report, _runs)

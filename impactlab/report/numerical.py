@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading import measures, verdicts, words
-from impactlab.figures.reading.measures import SOBOL, asked
+from impactlab.figures import access, labels, measures
+from impactlab.figures.measures import SOBOL, asked
 from impactlab.report.indices import named
 from impactlab.report.section import Section
 from impactlab.report.table import Cell, Table
@@ -59,18 +59,18 @@ def warnings(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 
 def _lost(analysis: xr.Dataset, name: str, measure: str, label: str) -> Iterator[str]:
     index = measures.index(analysis, measure, name)
-    keys = np.array([words.parameter(key) for key in measures.parameters(analysis)])
+    keys = np.array([labels.parameter(key) for key in measures.parameters(analysis)])
     lost = index.numerically_lost
     if lost.any():
         told = [
             f"{key} ({value:.3f})".replace("-", "−")
             for key, value in zip(keys[lost], index.values[lost], strict=True)
         ]
-        bound = words.number(float(index.numerical[lost].max()), 2)
+        bound = labels.number(float(index.numerical[lost].max()), 2)
         yield (
-            f"{words.sentence(words.response(name))}, {label}: not resolved at this "
+            f"{labels.sentence(labels.response(name))}, {label}: not resolved at this "
             "discretisation, for the numerical error could change these indices by as much (up to "
-            f"{bound}): {words.listing(told)}."
+            f"{bound}): {labels.listing(told)}."
         )
 
 
@@ -78,7 +78,7 @@ def _lead(analysis: xr.Dataset) -> str:
     """With what the numbers of these indices rest on."""
     if _FROM not in analysis:
         return _LEAD
-    found = {each.flag for each in verdicts.occurring(analysis[_FROM])}
+    found = {each.flag for each in access.occurring(analysis[_FROM])}
     return _LEAD + _MEASURED * ("measured" in found) + _BOUND * ("bound" in found)
 
 
@@ -91,8 +91,8 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     for name in asked(runs, analysis):
         found = analysis.sel(response=name)
         cells = [_number(found, key, _percent) for key in _OF_RESPONSES]
-        cells += [_number(found, f"{order.name}_numerical", words.number) for order in orders]
-        rests = verdicts.verdict(analysis, _FROM, name)
+        cells += [_number(found, f"{order.name}_numerical", labels.number) for order in orders]
+        rests = access.verdict(analysis, _FROM, name)
         rows.append([named(analysis, name), *cells, *([Cell(rests.words)] if rests else [])])
     head += ["Which is"] * (_FROM in analysis)
     return Table("Numerical uncertainty of each response", head, rows)
@@ -105,4 +105,4 @@ def _number(found: xr.Dataset, key: str, told: Callable[[float], str]) -> Cell:
 
 
 def _percent(share: float) -> str:
-    return f"{words.number(100 * share, 2)} %"
+    return f"{labels.number(100 * share, 2)} %"

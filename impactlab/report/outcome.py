@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import count, design_dims, responses, usable, varied
+from impactlab.figures import access, labels
+from impactlab.figures.access import count, design_dims, responses, usable, varied
 from impactlab.report.table import Cell, Table
 
 _LISTED = 20
@@ -26,9 +26,9 @@ class Outcome:
 
 def outcome(runs: xr.Dataset) -> Outcome:
     """A run failed when its status says so, or when one of its responses is missing."""
-    failed = missing.failed(runs)
-    found = missing.causes(runs, failed)
-    rows = [[Cell(words.sentence(why)), Cell(str(n), "number")] for why, n in found.items()]
+    failed = access.failed(runs)
+    found = access.causes(runs, failed)
+    rows = [[Cell(labels.sentence(why)), Cell(str(n), "number")] for why, n in found.items()]
     reasons = Table("Why", ["Reason", "Runs"], rows)
     number = int(failed.sum())
     return Outcome(count(runs), number, reasons, _listed(runs, failed, number))
@@ -38,8 +38,8 @@ def place(runs: xr.Dataset, where: dict[str, int]) -> str:
     """Which run it is, by its varied parameters in words."""
     named = [f"run {where['run']}"] if "run" in where else []
     for name in varied(runs):
-        text = words.values(runs[name], [where[str(dim)] for dim in runs[name].dims])[0]
-        named.append(f"{words.parameter(name)} = {text}{words.unit(runs[name])}")
+        text = labels.values(runs[name], [where[str(dim)] for dim in runs[name].dims])[0]
+        named.append(f"{labels.parameter(name)} = {text}{labels.unit(runs[name])}")
     return ", ".join(named) or "the only run"
 
 
@@ -48,11 +48,11 @@ def _listed(runs: xr.Dataset, failed: xr.DataArray, number: int) -> Table:
     rows = []
     for position in list(zip(*failed.transpose(*dims).values.nonzero(), strict=True))[:_LISTED]:
         where = {dim: int(at) for dim, at in zip(dims, position, strict=True)}
-        why = missing.causes(runs.isel(where), xr.DataArray(True))
+        why = access.causes(runs.isel(where), xr.DataArray(True))
         absent = [
-            words.response(name)
+            labels.response(name)
             for name in responses(runs)
-            if bool(missing.absent(usable(runs, name).isel(where)))
+            if bool(access.absent(usable(runs, name).isel(where)))
         ]
         rows.append(
             [
@@ -66,4 +66,4 @@ def _listed(runs: xr.Dataset, failed: xr.DataArray, number: int) -> Table:
 
 
 def _all_or(names: list[str], total: int) -> str:
-    return "all" if len(names) == total else words.listing(names)
+    return "all" if len(names) == total else labels.listing(names)

@@ -13,8 +13,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.figures.reading import measures, verdicts, words
-from impactlab.figures.reading.measures import (
+from impactlab.figures import access, labels, measures
+from impactlab.figures.measures import (
     DELTA,
     MORRIS,
     PAWN,
@@ -45,7 +45,7 @@ def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
     """A row a response: the rank of each parameter, a range where intervals overlap."""
     measure = measures.ranking(family)
     names = measures.parameters(analysis)
-    head = ["Response", *(words.sentence(words.parameter(name)) for name in names)]
+    head = ["Response", *(labels.sentence(labels.parameter(name)) for name in names)]
     rows = [
         [named(analysis, name), *_ranks(measures.index(analysis, measure.name, name))]
         for name in asked(runs, analysis)
@@ -76,8 +76,8 @@ def _ranks(index: Index) -> list[Cell]:
 
 
 def _sentence(runs: xr.Dataset, analysis: xr.Dataset, family: Family, name: str) -> str:
-    response = words.response(name)
-    verdict = verdicts.verdict(analysis, "sensitivity_verdict", name)
+    response = labels.response(name)
+    verdict = access.verdict(analysis, "sensitivity_verdict", name)
     values = analysis[measures.ranking(family).name].sel(response=name).values
     if not np.isfinite(values).any():
         why = f": {verdict.meaning or verdict.words}" if verdict else ""
@@ -90,14 +90,14 @@ def _sentence(runs: xr.Dataset, analysis: xr.Dataset, family: Family, name: str)
 
 def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
     """What comes from single parameters, the largest share first; then interactions."""
-    response, index = words.response(name), measures.index(analysis, "first_order", name)
+    response, index = labels.response(name), measures.index(analysis, "first_order", name)
     found = _shares(analysis, index, index.significant)
     lost = _shares(analysis, index, index.numerically_lost)
     if found:
         (first, share), *rest = found
         head = f"{share} of the variance of the {response} comes from the {first} alone"
         others = [f"{share} from the {key}" for key, share in rest]
-        yield f"At these ranges {words.listing([head, *others])}."
+        yield f"At these ranges {labels.listing([head, *others])}."
     if lost:
         yield (
             f"The numerical error leaves open what share of the variance of the {response} comes "
@@ -117,26 +117,26 @@ def _interactions(analysis: xr.Dataset, name: str) -> Iterator[str]:
     beyond = total.significant & (surplus > np.maximum(reach, _WORTH))
     if beyond.any():
         at = int(np.argmax(np.where(beyond, surplus, -np.inf)))
-        parameter = words.parameter(measures.parameters(analysis)[at])
+        parameter = labels.parameter(measures.parameters(analysis)[at])
         yield f"With all its interactions the {parameter} takes part in {_share(total, at)}."
 
 
 def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
     """How far the response moves, and whose effects are uneven."""
-    response, found = words.response(name), _significant(analysis, "morris_mu_star", name)
+    response, found = labels.response(name), _significant(analysis, "morris_mu_star", name)
     if not found:
         yield f"No parameter moves the {response} significantly."
         return
     (first, value, margin), *rest = found[:_NAMED]
     moved = [f"the {first} moves the {response} by {in_units(runs[name], value, margin)}"]
     moved += [f"the {key} by {in_units(runs[name], v, m)}" for key, v, m in rest]
-    yield f"Going through its whole range, {words.listing(moved)} on average."
+    yield f"Going through its whole range, {labels.listing(moved)} on average."
     spread = analysis["morris_sigma"].sel(response=name).values
     sizes = dict(zip(measures.parameters(analysis), spread, strict=True))
-    keys = {words.parameter(key): float(value) for key, value in sizes.items()}
+    keys = {labels.parameter(key): float(value) for key, value in sizes.items()}
     if uneven := [f"the {key}" for key, value, _ in found if keys[key] > value]:
         yield (
-            f"The effect of {words.listing(uneven)} changes with the others or along the range by "
+            f"The effect of {labels.listing(uneven)} changes with the others or along the range by "
             "more than its mean (σ above µ*)."
         )
 
@@ -147,11 +147,11 @@ def _dependence(measure: str, label: str) -> Callable[..., Iterator[str]]:
     def tell(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
         found = _significant(analysis, measure, name)
         if not found:
-            yield f"No dependence of the {words.response(name)} stands out of the noise."
+            yield f"No dependence of the {labels.response(name)} stands out of the noise."
             return
         most = " most" * _leads(measures.index(analysis, measure, name))
         listed = [f"the {key} ({label} {told(v, m)})" for key, v, m in found[:_NAMED]]
-        yield f"The {words.response(name)} depends{most} on {_then(listed, bool(most))}."
+        yield f"The {labels.response(name)} depends{most} on {_then(listed, bool(most))}."
 
     return tell
 
@@ -164,9 +164,9 @@ def _regression(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[s
         for key, value, margin in found[:_NAMED]
     ]
     if told_:
-        yield f"The {words.response(name)} {words.listing(told_)}."
+        yield f"The {labels.response(name)} {labels.listing(told_)}."
     else:
-        yield f"The {words.response(name)} rises or falls with no parameter significantly."
+        yield f"The {labels.response(name)} rises or falls with no parameter significantly."
     if "regression_r_squared" in analysis:
         share = float(analysis["regression_r_squared"].sel(response=name))
         little = ": the coefficients do not tell what it depends on" * (share < POOR_FIT)
@@ -185,7 +185,9 @@ _TELLERS: dict[str, Callable[[xr.Dataset, xr.Dataset, str], Iterator[str]]] = {
 def _then(listed: list[str], ordered: bool) -> str:
     """The first before the others where it leads."""
     first, *rest = listed
-    return f"{first}, then on {words.listing(rest)}" if ordered and rest else words.listing(listed)
+    return (
+        f"{first}, then on {labels.listing(rest)}" if ordered and rest else labels.listing(listed)
+    )
 
 
 def _leads(index: Index) -> bool:
@@ -195,7 +197,7 @@ def _leads(index: Index) -> bool:
 
 def _significant(analysis: xr.Dataset, measure: str, name: str) -> Named:
     index = measures.index(analysis, measure, name)
-    keys = [words.parameter(key) for key in measures.parameters(analysis)]
+    keys = [labels.parameter(key) for key in measures.parameters(analysis)]
     rows = zip(keys, index.values, index.margins, index.significant, strict=True)
     found = [(key, float(v), float(m)) for key, v, m, stands in rows if stands]
     return sorted(found, key=lambda entry: -abs(entry[1]))
@@ -203,7 +205,7 @@ def _significant(analysis: xr.Dataset, measure: str, name: str) -> Named:
 
 def _shares(analysis: xr.Dataset, index: Index, asked: NDArray[np.bool_]) -> list[tuple[str, str]]:
     """(parameter, share) in words, the largest of those asked for first."""
-    keys = [words.parameter(key) for key in measures.parameters(analysis)]
+    keys = [labels.parameter(key) for key in measures.parameters(analysis)]
     order = [at for at in np.argsort(-np.abs(index.values)) if asked[at]]
     return [(keys[at], _share(index, at)) for at in order[:_NAMED]]
 

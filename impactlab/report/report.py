@@ -11,8 +11,8 @@ from typing import Any
 import xarray as xr
 
 from impactlab.analysis.sensitivity.table import indices
-from impactlab.figures.reading import words
-from impactlab.figures.reading.contents import count
+from impactlab.figures import labels
+from impactlab.figures.access import count
 from impactlab.report import cautions, convergence, inputs, notes, outcome, provenance, sections
 from impactlab.report.page import write_page
 from impactlab.report.pictures import Picture, pictures
@@ -60,7 +60,7 @@ def _about(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Any]:
         "study": name,
         "title": str(runs.attrs.get("title") or name),
         "description": str(runs.attrs.get("description", "")),
-        "method": words.method(str(runs.attrs.get("method", "grid"))),
+        "method": labels.method(str(runs.attrs.get("method", "grid"))),
         "runs": count(runs),
         "varied": inputs.varied_parameters(runs),
         "failed": outcome.outcome(runs).failed,

@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 
 from impactlab import wings
-from impactlab.figures.reading import words
-from impactlab.figures.reading.contents import is_sample
-from impactlab.figures.reading.measures import asked
+from impactlab.figures import labels
+from impactlab.figures.access import is_sample
+from impactlab.figures.measures import asked
 from impactlab.figures.scatter import scatters
 from impactlab.report import answers, inputs, outcome, sensitivity
 from impactlab.report.section import Section
@@ -86,6 +86,6 @@ def _imputed(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
         share = float(np.nan_to_num(analysis["imputed_share"].sel(response=name)))
         if share > 0:
             yield (
-                f"For the indices of the {words.response(name)}, a surrogate supplied the value of "
-                f"{words.number(100 * share, 2)} % of the runs."
+                f"For the indices of the {labels.response(name)}, a surrogate supplied the value "
+                f"of {labels.number(100 * share, 2)} % of the runs."
             )

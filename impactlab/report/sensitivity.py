@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import xarray as xr
 
-from impactlab.figures.reading import verdicts
-from impactlab.figures.reading.measures import (
+from impactlab.figures import access
+from impactlab.figures.measures import (
     DELTA,
     MORRIS,
     PAWN,
@@ -90,7 +90,7 @@ def _convergence() -> Section:
 def _ranking(runs: xr.Dataset, analysis: xr.Dataset, first: Family, file: str) -> Section:
     lead = (
         "Sentences name significant parameters only, with the half-width of the "
-        f"{verdicts.confidence(analysis)} interval. Ranks are a range where intervals, widened by "
+        f"{access.confidence(analysis)} interval. Ranks are a range where intervals, widened by "
         "the numerical error where that is known, overlap."
     )
     return Section(

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading import measures, words
-from impactlab.figures.reading.measures import SURROGATE, asked
+from impactlab.figures import labels, measures
+from impactlab.figures.measures import SURROGATE, asked
 from impactlab.report import indices
 from impactlab.report.section import Section
 from impactlab.report.table import Cell, Table
@@ -44,7 +44,7 @@ def _quality(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
         if np.isfinite(q2):
             poor = q2 < GOOD
             cell = Cell(
-                words.number(q2, 3), "warning" if poor else "number", "poor" if poor else ""
+                labels.number(q2, 3), "warning" if poor else "number", "poor" if poor else ""
             )
         error = "–"
         if "surrogate_rmse" in analysis:
@@ -59,7 +59,7 @@ def _quality(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
 def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """A sentence a response and order whose two estimates do not overlap."""
     found = []
-    keys = np.array([words.parameter(key) for key in measures.parameters(analysis)])
+    keys = np.array([labels.parameter(key) for key in measures.parameters(analysis)])
     for name in asked(runs, analysis):
         for order, label in _PAIRS:
             sampled = measures.index(analysis, order, name)
@@ -67,8 +67,8 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
             apart = np.abs(sampled.values - fitted.values) > sampled.margins + fitted.margins
             if apart.any():
                 response, where = (
-                    words.sentence(words.response(name)),
-                    words.listing(keys[apart].tolist()),
+                    labels.sentence(labels.response(name)),
+                    labels.listing(keys[apart].tolist()),
                 )
                 found.append(
                     f"{response}: the {label} indices of the runs and of the surrogate differ "

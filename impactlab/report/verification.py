@@ -9,8 +9,8 @@ from typing import Any
 
 import xarray as xr
 
+from impactlab.figures import labels
 from impactlab.figures.draw import OVERVIEW
-from impactlab.figures.reading import words
 from impactlab.report import comparisons, provenance
 from impactlab.report.page import write_page
 from impactlab.report.pictures import Picture, pictures
@@ -109,7 +109,7 @@ def _row(outcome: Outcome) -> list[Cell]:
         Cell(outcome.title),
         Cell(outcome.verdict.upper(), "warning") if bad else Cell("passed"),
         Cell(f"{total - len(outcome.failures)} of {total}", "number"),
-        Cell(words.number(worst.ratio, digits=2) if worst else "–", "number"),
+        Cell(labels.number(worst.ratio, digits=2) if worst else "–", "number"),
         Cell(f"{worst.quantity}, {worst.where}" if worst else outcome.reason),
         Cell(f"{outcome.seconds:.1f} s", "number"),
     ]

@@ -9,7 +9,7 @@ import pytest
 
 import impactlab as il
 from impactlab.analysis import failures
-from impactlab.figures.reading import missing
+from impactlab.figures import access
 from impactlab.report.cautions import cautions
 from impactlab.report.console import print_responses
 from impactlab.solver.contact import LAWS
@@ -62,7 +62,7 @@ def runs():
 def test_it_is_no_failure(runs):
     assert (runs.status.values & BIT).tolist() == [0, BIT, 0]
     assert not (runs.status.values & FAILED).any()
-    assert not missing.failed(runs).any()
+    assert not access.failed(runs).any()
     found = failures.analysis(runs)
     assert found.number_of_failed_runs == 0
     assert found.missing_runs.sum() == 0

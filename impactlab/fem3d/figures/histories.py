@@ -9,9 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import scales, style
-from impactlab.figures.reading import words
-from impactlab.figures.reading.units import display
+from impactlab.figures import labels, scales, style
+from impactlab.figures.labels import display
 
 TITLE = "The 3-D model beside the beam models"
 _PANELS = {
@@ -24,8 +23,8 @@ _SOLID = "3-D"
 
 def caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
     """What is shown, and what the quantities are in each model."""
-    velocity = words.number(float(solid["velocity"]))
-    size = words.number(1e3 * float(solid["element_size"]))
+    velocity = labels.number(float(solid["velocity"]))
+    size = labels.number(1e3 * float(solid["element_size"]))
     law = str(beams["contact"].item())
     return (
         f"Contact force, deflection of the beam's axis at mid-span and indentation (approach of "
@@ -43,8 +42,8 @@ def plot(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
         _draw(ax, solid, beams, name)
         time, unit = display(solid["time"]), display(solid[name])
         ax.set(
-            xlabel=words.axis("time since first touch", time.symbol),
-            ylabel=words.axis(label, unit.symbol),
+            xlabel=labels.axis("time since first touch", time.symbol),
+            ylabel=labels.axis(label, unit.symbol),
         )
     style.legend(figure)
     return figure
@@ -58,7 +57,7 @@ def _draw(ax: Axes, solid: xr.Dataset, beams: xr.Dataset, name: str) -> None:
     for at, model in enumerate(beams["beam_model"].values.tolist()):
         values = beams[name].sel(beam_model=model)
         if np.isfinite(values).any():
-            label = words.values(beams["beam_model"], [at])[0]
+            label = labels.values(beams["beam_model"], [at])[0]
             look: dict[str, Any] = {"color": style.COLOURS[at], "linestyle": style.LINES[at]}
             ax.plot(time(beams["time"]), unit(values), label=label, zorder=3, **look)
     scales.linear(ax, "x", ticks=4)

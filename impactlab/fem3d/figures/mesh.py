@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from impactlab.fem3d.figures import planes
-from impactlab.figures import scales, style
-from impactlab.figures.reading import words
+from impactlab.figures import labels, scales, style
 
 TITLE = "Mesh of the 3-D model"
 _COLOURS = {"beam": "#DCE9F2", "sphere": "#F7E3D4", "fully integrated": "#9CC4DD"}
@@ -24,10 +23,10 @@ def caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
     size, patch = 1e3 * float(solid["element_size"]), 1e3 * float(solid["patch"])
     return (
         f"The quarter model: {int(solid['number_of_elements']):,} hexahedra, "
-        f"{words.number(size)} mm about the contact. Above, the plane of symmetry along the beam; "
-        f"below, the same about the contact, and the beam's top face. Within {words.number(patch)} "
-        "mm (framed) the nodes of sphere and beam lie above each other; the elements of the darker "
-        "colour are fully integrated, the others have one point."
+        f"{labels.number(size)} mm about the contact. Above, the plane of symmetry along the beam; "
+        "below, the same about the contact, and the beam's top face. Within "
+        f"{labels.number(patch)} mm (framed) the nodes of sphere and beam lie above each other; the "
+        "elements of the darker colour are fully integrated, the others have one point."
     )
 
 
@@ -56,7 +55,7 @@ def plot(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
         (side, "The same at the contact", "height"),
         (top, "Top of the beam", "from mid-width"),
     ):
-        ax.set(xlabel=words.axis("from mid-span", "mm"), ylabel=words.axis(label, "mm"))
+        ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis(label, "mm"))
         ax.set_title(title, loc="left")
         scales.linear(ax, "x")
         scales.linear(ax, "y")

@@ -8,8 +8,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from impactlab.fem3d.figures import planes
-from impactlab.figures import scales, style
-from impactlab.figures.reading import words
+from impactlab.figures import labels, scales, style
 
 TITLE = "Plastic strain about the contact"
 THRESHOLD = 1e-5
@@ -25,15 +24,15 @@ def caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
     polygons, elements = planes.faces(solid, 1)
     plastic = _plastic(solid, elements)
     reach = (
-        f"In this plane it reaches {words.number(float(polygons[plastic, :, 0].max()), 3)} mm from "
-        f"mid-span and {words.number(-float(polygons[plastic, :, 1].min()), 3)} mm deep. "
+        f"In this plane it reaches {labels.number(float(polygons[plastic, :, 0].max()), 3)} mm "
+        f"from mid-span and {labels.number(-float(polygons[plastic, :, 1].min()), 3)} mm deep. "
         if plastic.any()
         else "There is none. "
     )
     return (
         "Equivalent plastic strain (PEEQ) of the elements in the plane of symmetry along the beam, "
         "means over each, at the end of the run; grey: below "
-        f"{words.number(100 * THRESHOLD)} %. {reach}The largest strain grows with finer elements."
+        f"{labels.number(100 * THRESHOLD)} %. {reach}The largest strain grows with finer elements."
     )
 
 
@@ -50,13 +49,13 @@ def plot(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     reach = _REACH * max(1e3 * float(solid["patch"]), _extent(solid, polygons[plastic]))
     ax.set(xlim=(0.0, reach), ylim=(-0.75 * reach, 0.25 * reach))
     ax.set_title(TITLE, loc="left")
-    ax.set(xlabel=words.axis("from mid-span", "mm"), ylabel=words.axis("height", "mm"))
+    ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis("height", "mm"))
     scales.linear(ax, "x")
     scales.linear(ax, "y")
     if plastic.any():
         shown = planes.draw(ax, polygons[plastic], edgecolors="0.75", linewidths=0.3)
         shown.set(array=strain[plastic], cmap="viridis", norm=Normalize(0.0, strain.max()))
-        figure.colorbar(shown, ax=ax, label=words.axis("PEEQ", "%"), shrink=0.9)
+        figure.colorbar(shown, ax=ax, label=labels.axis("PEEQ", "%"), shrink=0.9)
     else:
         ax.text(0.5, 0.05, "no plastic strain", transform=ax.transAxes, ha="center")
     return figure

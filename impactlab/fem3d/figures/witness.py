@@ -10,10 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from impactlab.fem3d.figures import differences as witness
-from impactlab.figures import scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import usable
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, scales, style
+from impactlab.figures.access import usable
+from impactlab.figures.labels import display
 
 TITLE = "The beam models and the 3-D witness"
 _NAMES = (
@@ -38,7 +37,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         "finite-element model, in parts of that; bars: the numerical uncertainty of both models "
         "together, left out where nothing bounds it and cut at the panel's edge. Markers are "
         "shifted sideways a little. "
-        f"{missing.note(runs, _drawn(runs))}".strip()
+        f"{access.missing_note(runs, _drawn(runs))}".strip()
     )
 
 
@@ -54,8 +53,8 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         for ax in (above, below):
             scales.logarithmic(ax, "x", runs["velocity"].values)
             scales.at(ax, "x", runs["velocity"].values)
-        below.set_xlabel(words.axis(words.parameter("velocity"), "m/s"))
-    axes[len(names)].set_ylabel(words.wrapped_axis("difference from the 3-D model", "%", 24))
+        below.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
+    axes[len(names)].set_ylabel(labels.wrapped_axis("difference from the 3-D model", "%", 24))
     style.legend(
         figure, "Model of the beam", [witness.label(model) for model in witness.models(runs)]
     )
@@ -78,8 +77,8 @@ def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
         values = unit(witness.side(runs, analysis, name, model).value)
         if np.isfinite(values).any():
             ax.plot(runs["velocity"].values, values, label=witness.label(model), **_look(at))
-    ax.set_title(words.sentence(words.response(name)), loc="left")
-    ax.set_ylabel(words.axis(words.response(name), unit.symbol))
+    ax.set_title(labels.sentence(labels.response(name)), loc="left")
+    ax.set_ylabel(labels.axis(labels.response(name), unit.symbol))
     if not ax.lines:
         style.remark(ax, "no finite values")
         return

@@ -9,10 +9,9 @@ from matplotlib.figure import Figure
 
 from impactlab.fem3d.figures import effects as parts
 from impactlab.fem3d.figures.differences import finest
-from impactlab.figures import scales, style
-from impactlab.figures.reading import missing, words
-from impactlab.figures.reading.contents import usable
-from impactlab.figures.reading.units import display
+from impactlab.figures import access, labels, scales, style
+from impactlab.figures.access import usable
+from impactlab.figures.labels import display
 from impactlab.model.impact import SOLID
 
 TITLE = "Where the 3-D witness differs from the paper's beam"
@@ -36,7 +35,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         "Timoshenko beam under Hertz's law; what the local compliance through the depth and the "
         "waves in the sphere do. Contact law in yielding: what yielding does to the solid over "
         f"what it does under the contact law. {_finding(runs, analysis)} "
-        f"{missing.note(runs, parts.NAMES)}".strip()
+        f"{access.missing_note(runs, parts.NAMES)}".strip()
     )
 
 
@@ -71,8 +70,8 @@ def _curves(ax: Axes, runs: xr.Dataset) -> None:
             )
     if not ax.lines:
         style.remark(ax, "no finite values")
-    ax.set_xlabel(words.axis("indentation", depth.symbol))
-    ax.set_ylabel(words.axis("contact force", force.symbol))
+    ax.set_xlabel(labels.axis("indentation", depth.symbol))
+    ax.set_ylabel(labels.axis("contact force", force.symbol))
     scales.linear(ax, "x")
     scales.linear(ax, "y")
 
@@ -92,11 +91,11 @@ def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
             color=style.COLOURS[1 + at],
             marker=style.MARKERS[1 + at],
         )
-        marks.set_label(words.response(name))
+        marks.set_label(labels.response(name))
     ax.axvline(0.0, label="_guide", **style.GUIDE)
     ax.set_yticks(range(len(parts.EFFECTS)), list(parts.EFFECTS.values()))
     ax.invert_yaxis()
-    ax.set_xlabel(words.axis("change of the beam's answer", "%"))
+    ax.set_xlabel(labels.axis("change of the beam's answer", "%"))
     scales.linear(ax, "x")
 
 
@@ -107,12 +106,12 @@ def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         found = parts.effects(runs, analysis, name)
         if not np.isfinite([float(each.value) for each in found.values()]).all():
             continue
-        listed = words.listing(
+        listed = labels.listing(
             [
-                f"{words.number(100.0 * float(found[key].value), 2)} % by the {parts.EFFECTS[key]}"
+                f"{labels.number(100.0 * float(found[key].value), 2)} % by the {parts.EFFECTS[key]}"
                 for key in ("shear", "flexibility", "law")
             ]
         )
-        total = words.number(100.0 * float(found["all"].value), 2)
-        sentences.append(f"The {words.response(name)} changes by {listed}; together {total} %.")
+        total = labels.number(100.0 * float(found["all"].value), 2)
+        sentences.append(f"The {labels.response(name)} changes by {listed}; together {total} %.")
     return " ".join(sentences)

@@ -13,8 +13,8 @@ from rich.table import Column, Table
 
 from impactlab.fem3d.comparison.comparison import SOLID
 from impactlab.fem3d.comparison.plan import Plan
-from impactlab.figures.reading import words
-from impactlab.figures.reading.units import display
+from impactlab.figures import labels
+from impactlab.figures.labels import display
 from impactlab.study.words import amount, time
 from impactlab.variables import UNLIKE, reasons
 
@@ -42,7 +42,7 @@ def print_plan(plan: Plan, workers: int | None, problems: Iterable[str]) -> None
         "time steps": f"about {cost.steps:,}",
     }
     if workers:
-        threads = words.counted(workers, "thread")
+        threads = labels.counted(workers, "thread")
         lines["wall"] = f"about {time(plan.seconds(workers))} on {threads}"
         lines["memory"] = f"about {amount(cost.memory_bytes)}"
     console = Console(soft_wrap=True)
@@ -66,7 +66,7 @@ def print_comparison(found: xr.Dataset) -> None:
     console.print(table)
     console.print("In %: difference from the 3-D model.", markup=False)
     for why in dict.fromkeys(UNLIKE.values()):
-        which = words.listing([name for name, given in UNLIKE.items() if given == why])
+        which = labels.listing([name for name, given in UNLIKE.items() if given == why])
         console.print(f"not compared: {which}: {why}", markup=False)
     for reason, lacking in _missing(found).items():
         who = "all models" if lacking == [*map(_named, models)] else ", ".join(lacking)

@@ -7,9 +7,9 @@ import xarray as xr
 
 from impactlab.fem3d.figures import differences as witness
 from impactlab.fem3d.figures import effects as parts
-from impactlab.figures.reading import words
-from impactlab.figures.reading.contents import usable
-from impactlab.figures.reading.units import Display, display
+from impactlab.figures import labels
+from impactlab.figures.access import usable
+from impactlab.figures.labels import Display, display
 from impactlab.report.section import Section
 from impactlab.report.table import Cell, Table
 from impactlab.variables import UNLIKE
@@ -49,8 +49,8 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     rows = []
     for at, speed in enumerate(runs["velocity"].values):
         cells = [_cell(unit, side, sides[0], at, name not in UNLIKE) for side in sides]
-        rows.append([Cell(f"{words.number(float(speed))} m/s", "number"), *cells])
-    caption = words.axis(words.response(name), unit.symbol)
+        rows.append([Cell(f"{labels.number(float(speed))} m/s", "number"), *cells])
+    caption = labels.axis(labels.response(name), unit.symbol)
     if name in UNLIKE:
         caption = f"{caption}: not compared, {UNLIKE[name]}"
     return Table(caption, ["Impact velocity", *map(witness.label, models)], rows)
@@ -60,10 +60,10 @@ def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, ali
     value = float(side.value[at])
     if not np.isfinite(value):
         return Cell("missing", "warning")
-    text = words.number(float(unit(value)))
+    text = labels.number(float(unit(value)))
     width = float(side.uncertainty[at])
     if value and not width <= _NOTHING * abs(value):
-        bound = f"{words.number(100.0 * width / abs(value), 2)} %" if np.isfinite(width) else "?"
+        bound = f"{labels.number(100.0 * width / abs(value), 2)} %" if np.isfinite(width) else "?"
         text = f"{text} ± {bound}"
     gap = float(witness.difference(side, against).value[at])
     shown = alike and side is not against and np.isfinite(gap)
@@ -75,10 +75,10 @@ def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """A row an effect, a column a response."""
     found = {name: parts.effects(runs, analysis, name) for name in parts.NAMES}
     rows = [
-        [Cell(words.sentence(text)), *(_share(found[name][key]) for name in parts.NAMES)]
+        [Cell(labels.sentence(text)), *(_share(found[name][key]) for name in parts.NAMES)]
         for key, text in parts.EFFECTS.items()
     ]
-    head = ["Effect", *(words.sentence(words.response(name)) for name in parts.NAMES)]
+    head = ["Effect", *(labels.sentence(labels.response(name)) for name in parts.NAMES)]
     return Table("Change of the answer of the paper's beam by each effect", head, rows)
 
 
@@ -86,10 +86,10 @@ def _share(side: witness.Side) -> Cell:
     value, width = float(side.value), float(side.uncertainty)
     if not np.isfinite(value):
         return Cell("missing", "warning")
-    bound = f"{words.number(100.0 * width, 2)} %" if np.isfinite(width) else "?"
+    bound = f"{labels.number(100.0 * width, 2)} %" if np.isfinite(width) else "?"
     return Cell(f"{_signed(value)} ± {bound}", "number")
 
 
 def _signed(share: float) -> str:
-    text = f"{words.number(100.0 * share, 2)} %"
+    text = f"{labels.number(100.0 * share, 2)} %"
     return text if share < 0 else f"+{text}"

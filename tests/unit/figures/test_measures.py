@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import samples
 
-from impactlab.figures.reading import measures
-from impactlab.figures.reading.measures import SURROGATE, Index
+from impactlab.figures import measures
+from impactlab.figures.measures import SURROGATE, Index
 
 
 def _index(values: list[float], margins: list[float], floor: float = 0.0) -> Index:

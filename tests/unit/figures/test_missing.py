@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.figures.reading import missing
-from impactlab.figures.reading.contents import usable
+from impactlab.figures import access
+from impactlab.figures.access import usable
 from impactlab.variables import STATUS_FLAGS
 
 Study = Any
@@ -14,7 +14,7 @@ Study = Any
 
 def test_nothing_is_said_when_nothing_is_missing(velocity_study: Study) -> None:
     runs, _ = velocity_study
-    assert missing.note(runs, ["peak_force", "contact_force"]) == ""
+    assert access.missing_note(runs, ["peak_force", "contact_force"]) == ""
 
 
 def test_missing_runs_are_counted_with_their_reasons(velocity_study: Study, failing: Any) -> None:
@@ -22,9 +22,9 @@ def test_missing_runs_are_counted_with_their_reasons(velocity_study: Study, fail
     broken = failing(failing(runs, {"velocity": 5, "contact": 1}), {"velocity": 6, "contact": 0})
     bit, words = STATUS_FLAGS["first_contact_unfinished"]
     broken["status"][{"velocity": 6, "contact": 0}] = bit
-    both = missing.note(broken, ["contact_duration", "peak_force"])
+    both = access.missing_note(broken, ["contact_duration", "peak_force"])
     assert both.startswith("2 of 16 runs are missing in one panel or more: ")
-    note = missing.note(broken, ["contact_duration"])
+    note = access.missing_note(broken, ["contact_duration"])
     assert note.startswith("2 of 16 runs are missing here: ")
     assert f"1 × “{words}”" in note
     assert f"1 × “{STATUS_FLAGS['diverged'][1]}”" in note
@@ -33,8 +33,8 @@ def test_missing_runs_are_counted_with_their_reasons(velocity_study: Study, fail
 def test_a_gap_without_a_status_is_not_silent(velocity_study: Study) -> None:
     runs, _ = velocity_study
     runs["peak_force"][0, 0] = np.nan
-    assert missing.UNEXPLAINED in missing.note(runs, ["peak_force"])
-    assert missing.UNEXPLAINED in missing.note(runs.drop_vars("status"), ["peak_force"])
+    assert access.UNEXPLAINED in access.missing_note(runs, ["peak_force"])
+    assert access.UNEXPLAINED in access.missing_note(runs.drop_vars("status"), ["peak_force"])
 
 
 def test_status_overrules_a_number(velocity_study: Study) -> None:
@@ -48,4 +48,4 @@ def test_status_overrules_a_number(velocity_study: Study) -> None:
 
 def test_a_history_is_missing_only_when_all_of_it_is() -> None:
     history = xr.DataArray([[np.nan, 1.0], [np.nan, np.nan]], dims=("velocity", "time"))
-    assert missing.absent(history).values.tolist() == [False, True]
+    assert access.absent(history).values.tolist() == [False, True]

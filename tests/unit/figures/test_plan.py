@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from impactlab.figures.reading.plan import plan, spread
+from impactlab.figures.curves import plan, spread
 
 Study = Any
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.figures.reading.units import display
+from impactlab.figures.labels import display
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from impactlab.figures.reading.verdicts import verdict
+from impactlab.figures.access import verdict
 
 Study = Any
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 import xarray as xr
 
-from impactlab.figures.reading import words
+from impactlab.figures import labels
 
 
 @pytest.mark.parametrize(
@@ -22,11 +22,11 @@ from impactlab.figures.reading import words
     ],
 )
 def test_numbers_are_typeset_to_four_digits(value: float, text: str) -> None:
-    assert words.number(value) == text
+    assert labels.number(value) == text
 
 
 def test_listing() -> None:
-    assert [words.listing(list(items)) for items in ("", "a", "ab", "abc")] == [
+    assert [labels.listing(list(items)) for items in ("", "a", "ab", "abc")] == [
         "",
         "a",
         "a and b",
@@ -36,21 +36,21 @@ def test_listing() -> None:
 
 def test_setting_shows_values_in_one_unit() -> None:
     stress = xr.DataArray([250e6, 345e6], dims="s", attrs={"units": "Pa"}, name="beam_yield_stress")
-    assert words.setting(stress, [0, 1]) == "yield stress of the beam = 250 and 345 MPa"
+    assert labels.setting(stress, [0, 1]) == "yield stress of the beam = 250 and 345 MPa"
 
 
 def test_laws_and_rules_are_named_as_in_papers() -> None:
     laws = xr.DataArray(["jackson_green"], dims="contact", name="contact")
     rules = xr.DataArray(["lobatto"], dims="rule", name="rule")
-    assert words.values(laws, [0]) == ["Jackson-Green"]
-    assert words.values(rules, [0]) == ["Gauss-Lobatto"]
+    assert labels.values(laws, [0]) == ["Jackson-Green"]
+    assert labels.values(rules, [0]) == ["Gauss-Lobatto"]
 
 
 def test_one_value_says_what_it_counts() -> None:
-    assert words.value(xr.DataArray([201], dims="nodes", name="nodes"), 0) == "201 nodes"
-    assert words.value(xr.DataArray([7], dims="run", name="run"), 0) == "run 7"
-    assert words.value(xr.DataArray([0.9], dims="courant", name="courant"), 0) == "0.9"
+    assert labels.value(xr.DataArray([201], dims="nodes", name="nodes"), 0) == "201 nodes"
+    assert labels.value(xr.DataArray([7], dims="run", name="run"), 0) == "run 7"
+    assert labels.value(xr.DataArray([0.9], dims="courant", name="courant"), 0) == "0.9"
 
 
 def test_axis_of_a_pure_number_says_so() -> None:
-    assert words.axis("restitution", "") == "Restitution (–)"
+    assert labels.axis("restitution", "") == "Restitution (–)"

@@ -12,7 +12,7 @@ from impactlab.fem3d.figures import effects as parts
 from impactlab.fem3d.figures.catalogue import FIGURES
 from impactlab.fem3d.report.study import _cell, sections
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.figures.reading.units import display
+from impactlab.figures.labels import display
 
 SPEEDS = np.array(witnesses.SPEEDS)
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.figures.reading.contents import known, responses
+from impactlab.figures.access import known, responses
 
 Array = NDArray[np.float64]
 

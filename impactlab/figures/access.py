@@ -1,0 +1,182 @@
+"""Data access: the responses, failed runs and verdicts that stored datasets hold."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from impactlab.figures import labels
+from impactlab.model.parameters import PARAMETERS
+from impactlab.variables import FAILED, RESPONSES, reasons, status_bits
+
+SAMPLED = ("time", "x", "z")
+"""Dimensions within a run; every other dimension of a variable of runs.nc is the design's."""
+UNEXPLAINED = "no reason is recorded"
+
+
+def names(runs: xr.Dataset, attribute: str) -> list[str]:
+    """Return a list attribute; netCDF stores a list of one as a plain string."""
+    return [str(name) for name in np.atleast_1d(runs.attrs.get(attribute, []))]
+
+
+def varied(runs: xr.Dataset) -> list[str]:
+    """Return the names of the varied parameters of the dataset, in the study file's order."""
+    return [name for name in names(runs, "varied") if name in runs.coords]
+
+
+def responses(runs: xr.Dataset) -> list[str]:
+    """Return the names of the stored responses, in the order of the table of variables.
+
+    Those that the table does not know, the responses of another solver, come last.
+    """
+    others = [name for name in names(runs, "responses") if name not in RESPONSES]
+    return [name for name in [*RESPONSES, *others] if name in runs.data_vars]
+
+
+def known(analysis: xr.Dataset, response: str) -> bool:
+    """Return whether the analysis has a response."""
+    return "response" in analysis.coords and response in analysis["response"].values
+
+
+def design_dims(runs: xr.Dataset, dims: Iterable[object] | None = None) -> list[str]:
+    """Return the dimensions that number the runs (of `dims`, if given), in their order."""
+    return [str(dim) for dim in (runs.dims if dims is None else dims) if dim not in SAMPLED]
+
+
+def is_sample(runs: xr.Dataset) -> bool:
+    """Return whether the runs are a random sample (dimension `run`) and not a grid."""
+    return "run" in runs.dims
+
+
+def physical(runs: xr.Dataset) -> list[str]:
+    """Return the varied parameters that are numbers and belong to the impact, not the numerics."""
+    return [name for name in varied(runs) if _physical(name) and runs[name].dtype.kind in "if"]
+
+
+def _physical(name: str) -> bool:
+    """Return False for parameters of the discretisation; parameters of functions are physical."""
+    return name not in PARAMETERS or PARAMETERS[name].path[0] == "impact"
+
+
+def count(runs: xr.Dataset) -> int:
+    """Return the number of runs of the design."""
+    return int(np.prod([runs.sizes[dim] for dim in design_dims(runs)], dtype=int))
+
+
+def usable(runs: xr.Dataset, name: str) -> xr.DataArray:
+    """Return a variable of the runs, NaN where the run's status says that it does not hold."""
+    if "status" not in runs:
+        return runs[name]
+    bits = status_bits([name] if name in RESPONSES else [])
+    return runs[name].where((runs["status"] & bits) == 0)
+
+
+def absent(array: xr.DataArray) -> xr.DataArray:
+    """Return True for each run (design dimensions) in which the variable has no finite value."""
+    within = [dim for dim in array.dims if dim in SAMPLED]
+    present = xr.apply_ufunc(np.isfinite, array)
+    return xr.DataArray(~present.any(within))
+
+
+def failed(runs: xr.Dataset) -> xr.DataArray:
+    """Return True for each run that failed by its status, or that lacks a response.
+
+    Returns bool on the design dimensions.
+    """
+    marks = [absent(usable(runs, name)) for name in responses(runs)]
+    if "status" in runs:
+        marks.append((runs["status"] & FAILED) != 0)
+    if not marks:
+        return xr.DataArray(False)
+    return xr.concat(marks, "mark", coords="minimal", compat="override").any("mark")
+
+
+def causes(runs: xr.Dataset, mask: xr.DataArray) -> Counter[str]:
+    """Return the number of the marked runs per reason; mask: bool on the design dimensions."""
+    if "status" not in runs:
+        return Counter({UNEXPLAINED: int(mask.sum())}) if bool(mask.any()) else Counter()
+    status, chosen = xr.broadcast(runs["status"], mask)
+    bits, counts = np.unique(status.values[chosen.values], return_counts=True)
+    found: Counter[str] = Counter()
+    for bit, number in zip(bits.tolist(), counts.tolist(), strict=True):
+        found["; ".join(reasons(int(bit))) or UNEXPLAINED] += number
+    return found
+
+
+def missing_note(runs: xr.Dataset, variables: Sequence[str]) -> str:
+    """Return a caption's sentence on the runs that lack one of the variables; "" without any."""
+    held = [absent(usable(runs, name)) for name in variables if name in runs]
+    mask = xr.concat(held, "variable").any("variable") if held else xr.DataArray(False)
+    if not bool(mask.any()):
+        return ""
+    found = [f"{number} × “{why}”" for why, number in causes(runs, mask).items()]
+    total = int(mask.sum())
+    verb = "is" if total == 1 else "are"
+    where = "here" if len(held) == 1 else "in one panel or more"
+    return f"{total} of {count(runs)} runs {verb} missing {where}: {labels.listing(found)}."
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A verdict of the analysis, from its CF flags.
+
+    flag: its name. sound: False where it is a warning. meaning: a sentence or "". value: the
+    number that stands for it in the dataset.
+    """
+
+    flag: str
+    sound: bool
+    meaning: str = ""
+    value: int = -1
+
+    @property
+    def words(self) -> str:
+        """The flag's name as text."""
+        return self.flag.replace("_", " ")
+
+
+def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | None:
+    """Return a response's verdict; None where the analysis gives none.
+
+    variable: one on `response` alone, with CF flag_values and flag_meanings, and with
+    sound_flags and flag_descriptions ("flag: sentence", one line per flag).
+    """
+    if variable not in analysis or not known(analysis, response):
+        return None
+    return _read(analysis[variable], int(analysis[variable].sel(response=response)))
+
+
+def occurring(flags: xr.DataArray) -> list[Verdict]:
+    """Return every flag that occurs in a variable of CF flags, by rising value."""
+    return [_read(flags, int(value)) for value in np.unique(flags.values)]
+
+
+def _read(array: xr.DataArray, value: int) -> Verdict:
+    flags = dict(zip(_integers(array), str(array.attrs["flag_meanings"]).split(), strict=True))
+    flag = flags.get(value, "unknown")
+    sound = str(array.attrs.get("sound_flags", "converged usable")).split()
+    return Verdict(flag, flag in sound, _descriptions(array).get(flag, ""), value)
+
+
+def _integers(array: xr.DataArray) -> list[int]:
+    return [int(flag) for flag in np.atleast_1d(array.attrs["flag_values"])]
+
+
+def _descriptions(array: xr.DataArray) -> dict[str, str]:
+    lines = str(array.attrs.get("flag_descriptions", "")).splitlines()
+    return {line.partition(": ")[0]: line.partition(": ")[2] for line in lines}
+
+
+def confidence(analysis: xr.Dataset) -> str:
+    """Return the confidence level of the intervals of the indices as text: "95 %"."""
+    found = (
+        array.attrs["confidence"]
+        for name, array in analysis.data_vars.items()
+        if str(name).endswith("_interval") and "confidence" in array.attrs
+    )
+    level = next(found, analysis.attrs.get("confidence", 0.95))
+    return f"{100 * float(level):.4g} %"

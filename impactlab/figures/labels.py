@@ -1,0 +1,207 @@
+"""Labels of a dataset's variables, values and units, as papers print them.
+
+Force is shown in kN, time in ms, lengths in mm or µm, strain in %.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from impactlab.model.parameters import PARAMETERS
+
+_STEPS: dict[str, tuple[tuple[float, float, str], ...]] = {
+    "N": ((100.0, 1e-3, "kN"), (0.0, 1.0, "N")),
+    "s": ((1e-4, 1e3, "ms"), (0.0, 1e6, "µs")),
+    "m": ((1e-3, 1e3, "mm"), (0.0, 1e6, "µm")),
+    "Pa": ((1e10, 1e-9, "GPa"), (0.0, 1e-6, "MPa")),
+    "J": ((0.1, 1.0, "J"), (0.0, 1e3, "mJ")),
+    "m s-1": ((0.0, 1.0, "m/s"),),
+    "m s-2": ((0.0, 1.0, "m/s²"),),
+    "m-1": ((0.0, 1.0, "1/m"),),
+    "N m": ((1e3, 1e-3, "kN m"), (0.0, 1.0, "N m")),
+    "kg m-3": ((0.0, 1.0, "kg/m³"),),
+    "1": ((0.0, 1.0, ""),),
+}
+"""By `units` attribute: (smallest magnitude, factor from SI, symbol), the largest step first."""
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SPELLED = {
+    "lobatto": "Gauss-Lobatto",
+    "legendre": "Gauss-Legendre",
+    "layers": "uniform layers",
+    "semi_implicit": "semi-implicit",
+}
+_METHODS = {
+    "sobol": "Sobol sample",
+    "morris": "Morris trajectories",
+    "fast": "extended FAST curves",
+    "delta": "Latin hypercube for delta indices",
+    "pawn": "Latin hypercube for PAWN indices",
+    "regression": "Latin hypercube for regression",
+}
+_NAMES = {"mjg": "MJG", "stronge_original": "Stronge (original)"}
+_FIXED = (
+    "velocity",
+    "contact",
+    "beam_model",
+    "sphere_radius",
+    "beam_span",
+    "beam_width",
+    "beam_depth",
+    "beam_yield_stress",
+    "nodes",
+    "points",
+    "rule",
+    "scheme",
+    "courant",
+    "duration",
+)
+"""Parameters that `fixed` lists, in this order; the paper's tables hold the rest of its case."""
+
+
+@dataclass(frozen=True)
+class Display:
+    """A display unit: SI values times `scale` are in the unit `symbol` ("" for pure numbers)."""
+
+    scale: float
+    symbol: str
+
+    def __call__(self, values: ArrayLike) -> NDArray[np.float64]:
+        """Return SI values in the display unit, in the same shape."""
+        return np.asarray(values, dtype=float) * self.scale
+
+
+def display(array: xr.DataArray) -> Display:
+    """Return the display unit of a variable, by its `units` attribute and largest magnitude.
+
+    A plastic strain is shown in %; a unit that is not in the table is shown as it is stored.
+    """
+    if "plastic_strain" in str(array.name):
+        return Display(100.0, "%")
+    units = str(array.attrs.get("units", "1"))
+    largest = _largest(array.values)
+    for smallest, scale, symbol in _STEPS.get(units, ((0.0, 1.0, units),)):
+        if largest >= smallest:
+            return Display(scale, symbol)
+    return Display(1.0, units)
+
+
+def _largest(values: Any) -> float:
+    if values.dtype.kind not in "if":
+        return 0.0
+    finite = np.abs(values[np.isfinite(values)])
+    return float(finite.max()) if finite.size else 0.0
+
+
+def response(name: str) -> str:
+    """Return a response's name in words: "peak force"."""
+    return name.replace("_", " ")
+
+
+def parameter(name: str) -> str:
+    """Return a parameter's meaning: "yield stress of the beam"."""
+    return PARAMETERS[name].long_name if name in PARAMETERS else name.replace("_", " ")
+
+
+def method(name: str) -> str:
+    """Return the name of a sampling method in words: "grid", "Sobol sample"."""
+    return _METHODS.get(name, name)
+
+
+def sentence(text: str) -> str:
+    """Return the text with a capital first letter."""
+    return text[:1].upper() + text[1:]
+
+
+def axis(text: str, symbol: str) -> str:
+    """Return an axis label with its unit: "Peak force (kN)"; a pure number has the unit "–"."""
+    return f"{sentence(text)} ({symbol or '–'})"
+
+
+def wrapped_axis(text: str, symbol: str, width: int = 30) -> str:
+    """Return an axis label in lines of at most `width` letters, for panels side by side."""
+    return textwrap.fill(axis(text, symbol), width, break_long_words=False)
+
+
+def number(value: float, digits: int = 4, plain: tuple[float, float] = (1e-4, 1e5)) -> str:
+    """Return a number to `digits` significant digits: "−0.0125", "3.1×10⁻⁶"; NaN is "missing".
+
+    plain: range of magnitudes, the upper end excluded, that are written without a power of ten.
+    """
+    if math.isnan(value):
+        return "missing"
+    rounded = float(f"{value:.{digits}g}")
+    if rounded == 0 or plain[0] <= abs(rounded) < plain[1] or math.isinf(rounded):
+        text = np.format_float_positional(rounded, trim="-")
+    else:
+        text = np.format_float_scientific(rounded, trim="-")
+    mantissa, _, exponent = text.partition("e")
+    text = mantissa.replace("-", "−").replace("inf", "∞")
+    if not exponent:
+        return text
+    power = f"10{str(int(exponent)).translate(_RAISED)}"
+    return power if text == "1" else f"{text}×{power}"
+
+
+def counted(number: int, what: str) -> str:
+    """Return a number of things: "1 check", "1,024 checks"."""
+    return f"{number:,} {what}" if number == 1 else f"{number:,} {what}s"
+
+
+def listing(items: Sequence[str]) -> str:
+    """Return the items as a list in words: "a, b and c"."""
+    return " and ".join(filter(None, (", ".join(items[:-1]), *items[-1:])))
+
+
+def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
+    """Return the values at these positions as text, in the display unit, without its symbol."""
+    if coordinate.dtype.kind not in "if":
+        return [_name(str(coordinate.name), str(coordinate.values[at])) for at in where]
+    shown = display(coordinate)(coordinate.values)
+    return [number(float(shown[at])) for at in where]
+
+
+def _name(parameter: str, value: str) -> str:
+    """Return a word of a study file as papers spell it; laws and beam models have proper names."""
+    if parameter in ("contact", "beam_model"):
+        return _NAMES.get(value) or "-".join(part.capitalize() for part in value.split("_"))
+    return _SPELLED.get(value, value.replace("_", " "))
+
+
+def unit(coordinate: xr.DataArray) -> str:
+    """Return a space and the symbol of the display unit, "" for pure numbers and words."""
+    symbol = display(coordinate).symbol
+    return f" {symbol}" if symbol else ""
+
+
+def value(coordinate: xr.DataArray, at: int) -> str:
+    """Return one value with its unit, or with the name of what it counts: "5 m/s", "601 nodes"."""
+    name, text = str(coordinate.name), values(coordinate, [at])[0]
+    if name == "run":
+        return f"run {text}"
+    counted = name in PARAMETERS and PARAMETERS[name].whole
+    return f"{text} {name}" if counted else text + unit(coordinate)
+
+
+def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:
+    """Return a parameter with some of its values: "impact velocity = 1, 5 and 20 m/s"."""
+    listed = listing(values(coordinate, where))
+    return f"{parameter(str(coordinate.name))} = {listed}{unit(coordinate)}"
+
+
+def fixed(runs: xr.Dataset) -> str:
+    """Return a sentence on the parameters, numerics included, that are the same in all runs."""
+    single = [name for name in _FIXED if name in runs.coords and runs[name].size == 1]
+    flat = {name: runs[name].variable.values.reshape(1) for name in single}
+    listed = [
+        setting(xr.DataArray(array, dims="one", name=name, attrs=runs[name].attrs), [0])
+        for name, array in flat.items()
+    ]
+    return f"In all runs: {'; '.join(listed)}." if listed else ""
