@@ -23,7 +23,7 @@ def clean(
     from contextlib import ExitStack
 
     from impactlab.report.console import print_files
-    from impactlab.study.lock import held
+    from impactlab.study.store import held
 
     if not any(folder.glob("*.yaml")):
         raise FileNotFoundError(f"{folder}: no study files (*.yaml) there: nothing was removed")
@@ -49,7 +49,7 @@ def _folders(results: Path) -> list[Path]:
 
 def _study_of(shards: Path, folder: Path) -> Path | None:
     """Its file, there or where it was when its runs were solved; None where it is in neither."""
-    from impactlab.study.stale import noted_study
+    from impactlab.study.runs import noted_study
 
     file = folder / f"{shards.parent.name}.yaml"
     return file if file.exists() else noted_study(shards.with_name(SHARDS))
@@ -58,9 +58,9 @@ def _study_of(shards: Path, folder: Path) -> Path | None:
 def _stale(file: Path | None, shards: Path) -> dict[Path, str]:
     """What can go of one study's shards; nothing while its discretisation has to be found."""
     from impactlab.study.declaration import read_study
+    from impactlab.study.runs import outdated, stale
     from impactlab.study.sampling import design
     from impactlab.study.sampling.stages import stages
-    from impactlab.study.stale import outdated, stale
 
     if file is None:
         return stale(shards, ())

@@ -19,9 +19,8 @@ def allowed(
     Raises StudyError where the study is wrong or, without `force`, beyond bearing.
     """
     from impactlab.report.console import print_estimate
-    from impactlab.study.bearable import remarks, room, unbearable
     from impactlab.study.errors import StudyError
-    from impactlab.study.estimate import estimate
+    from impactlab.study.estimate import estimate, remarks, room, unbearable
 
     study = _found(study, output.with_name("resolution.nc"))
     cost = estimate(study, workers)
@@ -37,7 +36,7 @@ def allowed(
 
 def _found(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy:
     """The study, with the discretisation that trials have found for it, where they have."""
-    from impactlab.study.adaptive.resolving import fits, resolved
+    from impactlab.study.adaptive.recommendation import fits, resolved
     from impactlab.study.declaration import FunctionStudy
     from impactlab.study.netcdf import read_netcdf
 

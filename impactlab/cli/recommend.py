@@ -38,7 +38,7 @@ def recommend(
     evidence.
     """
     from impactlab.report.recommendation import print_recommendation
-    from impactlab.study.adaptive.recommending import recommend as recommended
+    from impactlab.study.adaptive.recommendation import recommend as recommended
     from impactlab.study.declaration import Auto, read_impacts
     from impactlab.study.engine import Engine
     from impactlab.study.netcdf import write_netcdf

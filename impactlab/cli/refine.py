@@ -32,7 +32,7 @@ def refine(
 
     from impactlab.study.adaptive.refining import refined
     from impactlab.study.engine import Engine
-    from impactlab.study.execution import execute
+    from impactlab.study.execute import execute
     from impactlab.study.netcdf import read_netcdf, write_netcdf
 
     solved, path = read_netcdf(runs), output or runs.with_name("refinement.nc")

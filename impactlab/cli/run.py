@@ -44,14 +44,13 @@ def run(
     from functools import partial
 
     from impactlab.study.declaration import read_study
-    from impactlab.study.engine import Engine
-    from impactlab.study.execution import execute, executed
-    from impactlab.study.lock import held
+    from impactlab.study.engine import Engine, read_profile
+    from impactlab.study.execute import execute, executed
     from impactlab.study.netcdf import read_netcdf, write_netcdf
+    from impactlab.study.runs import note_study
     from impactlab.study.sampling import design as sampled
     from impactlab.study.sampling.doubling import declared
-    from impactlab.study.slurm import read_profile
-    from impactlab.study.stale import note_study
+    from impactlab.study.store import held
 
     stored = read_netcdf(design_file) if design_file.suffix == ".nc" else None
     study = read_study(design_file) if stored is None else declared(stored, design_file)

@@ -25,8 +25,7 @@ def settled(study: Study | FunctionStudy, evidence: Path, engine: Engine) -> Stu
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
     from impactlab.report.recommendation import print_recommendation
-    from impactlab.study.adaptive.recommending import recommend
-    from impactlab.study.adaptive.resolving import resolved
+    from impactlab.study.adaptive.recommendation import recommend, resolved
     from impactlab.study.netcdf import write_netcdf
 
     found = _kept(study, evidence)
@@ -44,7 +43,7 @@ def settled_before(study: Study | FunctionStudy, evidence: Path) -> Study | Func
 
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
-    from impactlab.study.adaptive.resolving import resolved
+    from impactlab.study.adaptive.recommendation import resolved
 
     found = _kept(study, evidence)
     return None if found is None else resolved(study, found)
@@ -52,7 +51,7 @@ def settled_before(study: Study | FunctionStudy, evidence: Path) -> Study | Func
 
 def _kept(study: Study, evidence: Path) -> xr.Dataset | None:
     """What was found before for this very study."""
-    from impactlab.study.adaptive.resolving import fits
+    from impactlab.study.adaptive.recommendation import fits
     from impactlab.study.netcdf import read_netcdf
 
     found = read_netcdf(evidence) if evidence.exists() else None

@@ -21,9 +21,9 @@ def status(
     """
     from impactlab.report.console import print_status
     from impactlab.study.declaration import read_study
+    from impactlab.study.runs import status as status_of
     from impactlab.study.sampling import design
     from impactlab.study.sampling.stages import stages
-    from impactlab.study.status import status as status_of
 
     folder = results / study.stem
     declared = settled_before(read_study(study), folder / "resolution.nc")

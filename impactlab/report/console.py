@@ -11,14 +11,14 @@ from rich.filesize import decimal
 from rich.markup import escape
 from rich.table import Column, Table
 
-from impactlab.study.words import amount, time
+from impactlab.study.quantities import amount, time
 from impactlab.variables import RESPONSES, marks, reasons, remarked
 from impactlab.verification.outcome import Outcome, gravest_first
 
 if TYPE_CHECKING:
     from impactlab.study.errors import Problem
     from impactlab.study.estimate import Estimate
-    from impactlab.study.status import Status
+    from impactlab.study.runs import Status
 
 
 def print_responses(run: Any) -> None:

@@ -7,7 +7,7 @@ import xarray as xr
 from rich.console import Console
 from rich.table import Column, Table
 
-from impactlab.study.adaptive.candidates import relative
+from impactlab.study.adaptive.levels import relative
 
 _AXES = ("nodes", "points", "courant")
 

@@ -1,23 +1,30 @@
-"""What the runs of a study will cost, before anything is drawn or solved."""
+"""The cost of a study, before anything is drawn or solved, and its limits."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from pathlib import Path
+from shutil import disk_usage
+from typing import Any, Protocol
 
 import numpy as np
+from distributed.system import MEMORY_LIMIT
 
 from impactlab import wings
+from impactlab.model import cost as beam_cost
 from impactlab.model.cost import A_SECOND
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID
 from impactlab.model.paper import paper_impact
-from impactlab.model.parameters import PARAMETERS
-from impactlab.study.declaration import FunctionStudy, Sobol, Study
-from impactlab.study.declaration.plausible import stated_at
+from impactlab.model.parameters import PARAMETERS, Value, with_values
+from impactlab.simulate import case_table
+from impactlab.study.declaration import FunctionStudy, Grid, Sample, Sobol, Study
+from impactlab.study.declaration.plausible import doubts, ends_of, stated_at
 from impactlab.study.declaration.solid import asks_for_solid
-from impactlab.study.looking import costliest, costs, looked_at, table, tabled
+from impactlab.study.errors import Problem, StudyError
+from impactlab.study.quantities import amount, time
+from impactlab.study.runs import disk_size
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
 Array = np.ndarray[Any, Any]
@@ -171,3 +178,120 @@ def _key(study: Study, gains: Mapping[str, float]) -> str:
     """Where in the file the largest of them stands."""
     name = max(gains, key=gains.__getitem__)
     return stated_at(name, study.sampling) if name in PARAMETERS else name
+
+
+_MOST = 4096
+_TAIL = 1e-3
+"""Of a distribution, on either side: left out."""
+
+
+class Costs(Protocol):
+    """What tells the costs of a table of cases."""
+
+    def work(self, cases: Array) -> Array:
+        """Time of each run, in node-steps of the paper's beam."""
+        ...
+
+    def memory(self, cases: Array) -> Array:
+        """Bytes that each run takes."""
+        ...
+
+
+def costs(study: Study) -> Costs:
+    """Of the runs of a study."""
+    found: Costs = wings.load(wings.SOLID["costs"]) if asks_for_solid(study) else beam_cost
+    return found
+
+
+def table(study: Study) -> Callable[..., Array]:
+    """What makes the table of its cases: simulate.case_table, or as that."""
+    if not asks_for_solid(study):
+        return case_table
+    found: Callable[..., Array] = wings.load(wings.SOLID["cases"]).table
+    return found
+
+
+def looked_at(study: Study) -> dict[str, Array]:
+    """Values by varied parameter, one a run: all of a small grid, else some 4096 drawn ones."""
+    sampling, random = study.sampling, np.random.default_rng(0)
+    if isinstance(sampling, Sample):
+        number = min(study.runs, _MOST)
+        return {
+            name: given.quantile(random.uniform(_TAIL, 1 - _TAIL, number))
+            for name, given in sampling.varied.items()
+        }
+    values = {name: np.array(listed) for name, listed in sampling.parameters.items()}
+    if study.runs <= _MOST:
+        all_of_them = np.meshgrid(*values.values(), indexing="ij")
+        return {name: grid.ravel() for name, grid in zip(values, all_of_them, strict=True)}
+    return {name: random.choice(listed, _MOST) for name, listed in values.items()}
+
+
+def tabled(study: Study, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
+    """The table of cases of these runs. Raises StudyError where one of them is impossible."""
+    base = with_values(study.impact, study.discretisation, study.sampling.fixed)
+    try:
+        return table(study)(*base, duration=study.duration, varied=columns)
+    except ValueError as error:
+        reason = f"gives runs that are impossible ({error}): take bounded distributions"
+        raise StudyError(Problem(str(study.path), "sampling.parameters", reason)) from None
+
+
+def costliest(study: Study, looked: Mapping[str, Array], cost: Array) -> dict[str, Value]:
+    """The largest run, by parameter: from the largest one looked at, each to its costliest end."""
+    found = {name: column[int(np.argmax(cost))].item() for name, column in looked.items()}
+    for name in found:
+        ends = _ends(study, name)
+        columns = {key: [value] * len(ends) for key, value in found.items()} | {name: ends}
+        found[name] = ends[int(np.argmax(costs(study).work(tabled(study, columns))))]
+    return found
+
+
+def _ends(study: Study, name: str) -> list[Value]:
+    """A parameter's least and greatest value, or all its words."""
+    sampling = study.sampling
+    if isinstance(sampling, Grid):
+        values = sampling.parameters[name]
+        return list(values) if isinstance(values[0], str) else [min(values), max(values)]
+    ends: list[Value] = sampling.varied[name].quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
+    return ends
+
+
+MOST_TIME = 30 * 86400.0
+"""Of one core, in s: a month."""
+
+
+def remarks(study: Study | FunctionStudy) -> list[Problem]:
+    """What of a study's impacts is hardly meant, though it can be."""
+    if isinstance(study, FunctionStudy):
+        return []
+    found = doubts(ends_of((study.impact, study.discretisation), study.sampling))
+    file = str(study.path)
+    return [Problem(file, stated_at(each.name, study.sampling), each.reason) for each in found]
+
+
+def unbearable(cost: Estimate, folder: Path) -> list[Problem]:
+    """What is beyond a month of one core, this machine's memory, or the free disk at `folder`.
+
+    One problem each, at the key that drives it.
+    """
+    return [
+        Problem(cost.file, key, f"{reason}; see --dry-run, and --force runs it all the same")
+        for key, reason in _beyond(cost, room(folder))
+    ]
+
+
+def _beyond(cost: Estimate, disk: float) -> Iterator[tuple[str, str]]:
+    if cost.seconds > MOST_TIME:
+        limit = f"above the {time(MOST_TIME)} that a study may take"
+        yield cost.slow, f"about {time(cost.seconds)} of one core for {cost.runs:,} runs, {limit}"
+    if cost.memory > MEMORY_LIMIT:
+        yield cost.large, f"about {amount(cost.memory)} of memory, of {amount(MEMORY_LIMIT)}"
+    if cost.disk > disk:
+        yield cost.large, f"about {amount(cost.disk)} of disk, of {amount(disk)} that it may take"
+
+
+def room(folder: Path) -> float:
+    """Bytes that a study may take: those free on the disk of its folder, and its own there."""
+    there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
+    return float(disk_usage(there).free + disk_size(folder.rglob("*")))

@@ -1,14 +1,13 @@
-"""Numbers with units: what a person writes, as a plain SI number."""
+"""Quantities with units: from text to SI numbers, and amounts in words."""
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from decimal import Decimal
 from functools import cache
-from typing import TYPE_CHECKING
-
-from impactlab.study.si_units import scale
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
@@ -141,3 +140,77 @@ def _registry() -> UnitRegistry[Decimal]:
     from pint import UnitRegistry
 
     return UnitRegistry(non_int_type=Decimal)
+
+
+class Scale(NamedTuple):
+    """A unit as 10^ten m^metre kg^kilogram s^second."""
+
+    ten: int = 0
+    metre: int = 0
+    kilogram: int = 0
+    second: int = 0
+
+    @property
+    def dimension(self) -> tuple[int, int, int]:
+        """The exponents of metre, kilogram and second."""
+        return self[1:]
+
+
+UNITS: dict[str, Scale] = {
+    "m": Scale(metre=1),
+    "cm": Scale(-2, metre=1),
+    "mm": Scale(-3, metre=1),
+    "um": Scale(-6, metre=1),
+    "µm": Scale(-6, metre=1),
+    "kg": Scale(kilogram=1),
+    "g": Scale(-3, kilogram=1),
+    "s": Scale(second=1),
+    "ms": Scale(-3, second=1),
+    "us": Scale(-6, second=1),
+    "µs": Scale(-6, second=1),
+    "Pa": Scale(metre=-1, kilogram=1, second=-2),
+    "kPa": Scale(3, metre=-1, kilogram=1, second=-2),
+    "MPa": Scale(6, metre=-1, kilogram=1, second=-2),
+    "GPa": Scale(9, metre=-1, kilogram=1, second=-2),
+}
+"""By name, as pint would have them."""
+
+
+def scale(factors: Iterable[tuple[str, int]]) -> Scale | None:
+    """The product of units, each to a power; None where a name is not of this table."""
+    total = Scale()
+    for name, power in factors:
+        if name not in UNITS:
+            return None
+        total = Scale(*(sum_ + power * part for sum_, part in zip(total, UNITS[name], strict=True)))
+    return total
+
+
+_PERIODS = (
+    (365.25 * 86400, "years"),
+    (86400, "days"),
+    (3600, "hours"),
+    (60, "minutes"),
+    (1, "s"),
+)
+_BYTES = ((1e15, "PB"), (1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB"))
+
+
+def time(seconds: float) -> str:
+    """Two digits of the largest unit that fits: 90 s is "1.5 minutes"."""
+    for size, unit in _PERIODS:
+        if seconds >= size:
+            return f"{_two_digits(seconds / size)} {unit}"
+    return f"{_two_digits(1e3 * seconds)} ms"
+
+
+def amount(size: float) -> str:
+    """Bytes, likewise, in decimal units."""
+    for unit, name in _BYTES:
+        if size >= unit:
+            return f"{_two_digits(size / unit)} {name}"
+    return f"{size:.0f} bytes"
+
+
+def _two_digits(number: float) -> str:
+    return f"{float(f'{number:.2g}'):,g}"

@@ -24,9 +24,9 @@ import impactlab as il
 from impactlab.simulate import case_table
 from impactlab.solver.leapfrog import run_all
 from impactlab.solver.responses import RESPONSE
-from impactlab.study.fanout import solve_batch
+from impactlab.study.execute import solve_batch
 from impactlab.study.solvers import impact
-from impactlab.study.storage import Form, run_keys
+from impactlab.study.store import Form, run_keys
 
 RUNS = 1000
 TASKS = 20

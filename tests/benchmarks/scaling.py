@@ -30,11 +30,10 @@ from rich.table import Table
 import impactlab as il
 from impactlab.model.parameters import flatten
 from impactlab.study.engine import Engine
-from impactlab.study.execution import executed
-from impactlab.study.netcdf import write_netcdf
-from impactlab.study.shard import Columns
+from impactlab.study.execute import executed
+from impactlab.study.netcdf import Columns, write_netcdf
 from impactlab.study.solvers import impact
-from impactlab.study.storage import Form
+from impactlab.study.store import Form
 
 KINDS = {"memory": (11, 1e-3), "short": (101, 1e-3), "long": (101, 8e-3)}
 """Nodes and duration, in s."""

@@ -12,7 +12,7 @@ from impactlab.figures.draw import draw_all
 from impactlab.report.report import write_report
 from impactlab.study.declaration import read_study
 from impactlab.study.engine import Engine
-from impactlab.study.execution import execute
+from impactlab.study.execute import execute
 from impactlab.study.netcdf import read_netcdf, write_netcdf
 from impactlab.study.sampling import design
 from impactlab.variables import FAILURES

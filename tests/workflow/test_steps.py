@@ -8,9 +8,9 @@ import xarray as xr
 from command_line import SMALL, here
 from command_line import done as impactlab
 
-from impactlab.study.adaptive import extending, recommending
+from impactlab.study.adaptive import extending, recommendation
 from impactlab.study.engine import Engine
-from impactlab.study.lock import holder
+from impactlab.study.store import holder
 
 GROWING = """
 title: Growing
@@ -167,7 +167,7 @@ def test_trials_of_an_auto_discretisation_are_solved_where_the_study_is(folder, 
         engines.append(engine)
         raise OSError("seen enough")
 
-    monkeypatch.setattr(recommending, "recommend", looking)
+    monkeypatch.setattr(recommendation, "recommend", looking)
     assert here("run", "studies/automatic.yaml", "--cluster", "none.yaml") == 1
     assert not engines  # what is wrong with a profile is told before anything is solved
     asked = ("--workers", "3", "--scheduler", "tcp://127.0.0.1:1")

@@ -16,7 +16,7 @@ from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, least_cos
 from impactlab.fem3d.solver.mesh.extent import checked_patch, contact_radius
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
-from impactlab.study.words import amount, time
+from impactlab.study.quantities import amount, time
 
 USUAL_TIME = 120.0
 """Seconds of one core that a run may take where no element size is asked for."""

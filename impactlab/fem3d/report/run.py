@@ -15,7 +15,7 @@ from impactlab.fem3d.comparison.comparison import SOLID
 from impactlab.fem3d.comparison.plan import Plan
 from impactlab.figures import labels
 from impactlab.figures.labels import display
-from impactlab.study.words import amount, time
+from impactlab.study.quantities import amount, time
 from impactlab.variables import UNLIKE, reasons
 
 _NAMES = {SOLID: "3-D"}

@@ -16,9 +16,9 @@ from impactlab.fem3d.study.running import answers
 from impactlab.simulate import solve as solve_cases
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.design import flattened, run_shape, varied_names
-from impactlab.study.shard import Columns
+from impactlab.study.netcdf import Columns
 from impactlab.study.solvers import impact
-from impactlab.study.storage import Form
+from impactlab.study.store import Form
 from impactlab.variables import WITNESS, described
 
 Array = np.ndarray[Any, Any]

@@ -11,7 +11,7 @@ from impactlab.study.declaration.plausible import doubts, ends_of, stated_at
 from impactlab.study.declaration.schema import StudyForm
 from impactlab.study.declaration.solid import solid_problems
 from impactlab.study.errors import Problem, unknown
-from impactlab.study.possible import refused_corner
+from impactlab.study.validity import refused_corner
 from impactlab.variables import ANALYSES
 
 _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")

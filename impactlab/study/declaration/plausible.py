@@ -16,7 +16,7 @@ import numpy as np
 from impactlab.model.parameters import PARAMETERS, Value, flatten
 from impactlab.study.declaration.distributions import Distribution
 from impactlab.study.declaration.methods.sampling import Sampling
-from impactlab.study.possible import Base
+from impactlab.study.validity import Base
 
 LIGHT = 299_792_458.0
 """Speed of light, m/s."""

@@ -15,7 +15,7 @@ from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS, Parameter, with_values
 from impactlab.study.declaration.form import Form, Number, at_key, between, names, one_of
 from impactlab.study.declaration.values import VALUES
-from impactlab.study.possible import Base, refusal
+from impactlab.study.validity import Base, refusal
 from impactlab.variables import RESPONSES
 
 BASES = {"paper": paper_impact}

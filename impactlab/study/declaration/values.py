@@ -11,7 +11,7 @@ from pydantic import AfterValidator
 
 from impactlab.model.parameters import PARAMETERS, Parameter, Value
 from impactlab.study.declaration.form import Whole, one_of, quantity
-from impactlab.study.possible import check_alone
+from impactlab.study.validity import check_alone
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from impactlab.model.parameters import flatten, with_values
 from impactlab.study.declaration import Grid, Sample, Study
 from impactlab.study.declaration.solid import asks_for_solid
 from impactlab.study.errors import Problem, StudyError
-from impactlab.study.possible import Base, Refusal, check_alone, refused_run
 from impactlab.study.sampling.columns import columns, coordinates, declared_attributes, grid
 from impactlab.study.sampling.cube import Draws
+from impactlab.study.validity import Base, Refusal, check_alone, refused_run
 from impactlab.variables import described
 
 
@@ -26,7 +26,7 @@ def impact_design(study: Study) -> xr.Dataset:
     of the study.
 
     Raises StudyError, naming parameter and value, when a drawn run is physically impossible; and
-    for a study whose discretisation is still to be found (impactlab.study.adaptive.resolving).
+    for a study whose discretisation is still to be found (impactlab.study.adaptive.recommendation).
     """
     if study.auto is not None:
         reason = "is auto: it has to be found before the runs are drawn (impactlab design)"

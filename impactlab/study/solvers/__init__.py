@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab import wings
-from impactlab.study.shard import Columns
-from impactlab.study.storage import Form
+from impactlab.study.netcdf import Columns
+from impactlab.study.store import Form
 
 Array = np.ndarray[Any, Any]
 

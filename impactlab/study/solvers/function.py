@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab.study.design import flattened, run_shape
-from impactlab.study.shard import Columns
-from impactlab.study.storage import Form
+from impactlab.study.netcdf import Columns
+from impactlab.study.store import Form
 from impactlab.variables import described, provenance
 from impactlab.verification.functions import FUNCTIONS, sources_hash
 

@@ -22,8 +22,8 @@ from impactlab.simulate import (
 from impactlab.simulate import solve as solve_cases
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.design import flattened, run_shape, varied_names
-from impactlab.study.shard import Columns
-from impactlab.study.storage import Form
+from impactlab.study.netcdf import Columns
+from impactlab.study.store import Form
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 
 VERSION = SOURCES_HASH

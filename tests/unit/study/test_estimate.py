@@ -10,9 +10,16 @@ import numpy as np
 import pytest
 
 from impactlab.model.cost import memory, work
-from impactlab.study.bearable import MOST_TIME, room, unbearable
 from impactlab.study.declaration import study_of_text
-from impactlab.study.estimate import _ITSELF, A_SECOND, Estimate, estimate
+from impactlab.study.estimate import (
+    _ITSELF,
+    A_SECOND,
+    MOST_TIME,
+    Estimate,
+    estimate,
+    room,
+    unbearable,
+)
 from impactlab.study.sampling import design
 from impactlab.study.solvers import solver_named
 
@@ -59,7 +66,7 @@ def test_a_small_grid_costs_the_sum_of_its_runs():
 def test_runs_that_are_looked_at_stand_for_all(monkeypatch):
     study = grid({"nodes": range(11, 211, 2), "beam_depth": np.linspace(0.02, 0.03, 50).tolist()})
     sampled = estimate(study, 1)
-    monkeypatch.setattr("impactlab.study.looking._MOST", 10_000)
+    monkeypatch.setattr("impactlab.study.estimate._MOST", 10_000)
     whole = estimate(study, 1)
     assert sampled.runs == whole.runs == 5000
     assert sampled.seconds == pytest.approx(whole.seconds, rel=0.1)
@@ -121,7 +128,7 @@ def test_more_room_than_there_is_is_told(tmp_path):
 
 
 def test_what_a_study_has_on_disk_already_is_no_more_to_be_found(tmp_path, monkeypatch):
-    monkeypatch.setattr("impactlab.study.bearable.disk_usage", lambda path: Namespace(free=1000))
+    monkeypatch.setattr("impactlab.study.estimate.disk_usage", lambda path: Namespace(free=1000))
     (tmp_path / "shards").mkdir()
     (tmp_path / "shards" / "some.nc").write_bytes(bytes(500))
     assert room(tmp_path) == 1500

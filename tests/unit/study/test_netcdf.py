@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from impactlab.study.netcdf import read_netcdf, write_netcdf
-from impactlab.study.storage import Form, Shards
+from impactlab.study.store import Form, Shards
 
 
 def noise(size):

@@ -4,16 +4,15 @@ import math
 import re
 import subprocess
 import sys
-import time
 from decimal import Decimal
 from itertools import product
+from time import perf_counter
 
 import pytest
 
 from impactlab.model.parameters import PARAMETERS
 from impactlab.study import quantities
-from impactlab.study.quantities import KINDS, si, whole
-from impactlab.study.si_units import UNITS
+from impactlab.study.quantities import KINDS, UNITS, amount, si, time, whole
 from impactlab.variables import VARIABLES
 
 
@@ -121,10 +120,10 @@ def test_anything_else_is_refused_with_what_was_expected(written, units, words):
 )
 def test_expressions_are_refused_without_being_computed(text):
     si("1 inch", "m")  # pint is loaded
-    start = time.perf_counter()
+    start = perf_counter()
     with pytest.raises(ValueError, match="cannot be read"):
         si(text, "m")
-    assert time.perf_counter() - start < 0.5
+    assert perf_counter() - start < 0.5
 
 
 @pytest.mark.parametrize(
@@ -147,3 +146,24 @@ def test_every_unit_that_a_study_can_need_has_words_and_a_true_example():
     assert needed <= KINDS.keys()
     for units, (_, example) in KINDS.items():
         assert si(example, units) > 0
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.0021, "2.1 ms"),
+        (12.3, "12 s"),
+        (90, "1.5 minutes"),
+        (7200, "2 hours"),
+        (4e9, "130 years"),
+    ],
+)
+def test_times(seconds, words):
+    assert time(seconds) == words
+
+
+@pytest.mark.parametrize(
+    ("size", "words"), [(12, "12 bytes"), (1.26e9, "1.3 GB"), (2e18, "2,000 PB")]
+)
+def test_amounts(size, words):
+    assert amount(size) == words

@@ -16,10 +16,10 @@ from impactlab.model.cost import A_SECOND
 from impactlab.study.declaration import study_of_text
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate
-from impactlab.study.execution import execute
+from impactlab.study.execute import execute
+from impactlab.study.runs import Work
 from impactlab.study.sampling import design
-from impactlab.study.storage import Form
-from impactlab.study.work import Work
+from impactlab.study.store import Form
 from impactlab.variables import STATUS_FLAGS
 
 TEXT = """

@@ -1,13 +1,14 @@
 from __future__ import annotations
 
 import json
+import math
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from impactlab.analysis.analyse import analyse
-from impactlab.study.adaptive.extending import extended
+from impactlab.study.adaptive.extending import extended, widest
 from impactlab.study.declaration import study_of_text
 from impactlab.study.sampling import design
 
@@ -134,3 +135,55 @@ def test_the_analysis_of_the_package_decides(sample, solve, tmp_path):
     # S = (a_i width_i)^2 / sum for a linear function
     first = analysis["first_order"].sel(response="peak_force")
     np.testing.assert_allclose(first, [0.8, 0.2], atol=0.08)
+
+
+NAN = [np.nan, np.nan]
+
+
+@pytest.fixture
+def analysis():
+    """Intervals of three responses, of which `still` has none."""
+    dims = ("response", "parameter")
+    flags = {"flag_values": [0, 2], "flag_descriptions": "usable: fine\nconstant: does not vary"}
+    return xr.Dataset(
+        {
+            "total_order_interval": (dims, [[0.1, 0.2], NAN, [0.3, 0.1]]),
+            "first_order_interval": (dims, [[0.5, 0.2], NAN, [0.3, 0.4]]),
+            "sensitivity_verdict": ("response", [0, 2, 0], flags),
+        },
+        {"response": ["force", "still", "time"], "parameter": ["a", "b"]},
+    )
+
+
+def test_the_widest_is_named(analysis):
+    found = widest(analysis, ["force", "still", "time"])
+    assert found.half_width == 0.5
+    assert (found.index, found.response, found.parameter) == ("first_order", "force", "a")
+    assert found.left_out == ("still (constant: does not vary)",)
+    assert str(found) == (
+        "the widest interval is that of the first-order index of force to a, ± 0.5"
+    )
+
+
+def test_only_what_is_asked_counts(analysis):
+    found = widest(analysis, ["time"])
+    assert (found.half_width, found.index, found.parameter) == (0.4, "first_order", "b")
+    assert found.left_out == ()
+
+
+def test_total_order_counts_too(analysis):
+    analysis["first_order_interval"] *= 0
+    assert widest(analysis, ["time", "force"]).index == "total_order"
+
+
+def test_without_any_index_there_is_none(analysis):
+    found = widest(analysis, ["still"])
+    assert math.isnan(found.half_width)
+    assert (found.index, found.response, found.parameter) == ("", "", "")
+    assert found.left_out == ("still (constant: does not vary)",)
+
+
+def test_a_gap_among_numbers_is_not_narrow(analysis):
+    analysis["total_order_interval"][2, 1] = np.nan
+    found = widest(analysis, ["force", "time"])
+    assert (found.half_width, found.response, found.parameter) == (math.inf, "time", "b")

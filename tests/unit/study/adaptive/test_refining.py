@@ -9,7 +9,7 @@ from impactlab.analysis.analyse import analyse
 from impactlab.study.adaptive.refining import base_samples, refined
 from impactlab.study.declaration import study_of_text
 from impactlab.study.engine import Engine
-from impactlab.study.execution import execute
+from impactlab.study.execute import execute
 from impactlab.study.sampling import design
 
 STUDY = """

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from impactlab.study.bearable import remarks
+from impactlab.study.estimate import remarks
 
 IMPOSSIBLE = [
     ("velocity", 1e9, "above the speed of a bar wave in the sphere (5164 m/s)"),

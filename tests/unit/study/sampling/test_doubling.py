@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from impactlab.study.runs import Work
 from impactlab.study.sampling.doubling import doubled
-from impactlab.study.work import Work
 
 
 @pytest.mark.parametrize("second_order", [True, False])

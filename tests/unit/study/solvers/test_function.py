@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 
 from impactlab.study.engine import Engine
-from impactlab.study.execution import execute
+from impactlab.study.execute import execute
 from impactlab.study.solvers import function
-from impactlab.study.storage import Form
+from impactlab.study.store import Form
 from impactlab.verification.functions import ishigami
 
 

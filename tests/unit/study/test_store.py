@@ -1,6 +1,9 @@
 """Shards: found again by content, and never when damaged."""
 
+import os
 import shutil
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -8,10 +11,10 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.simulate import case_table
-from impactlab.study import storage
-from impactlab.study.shard import Shard
+from impactlab.study import store
+from impactlab.study.netcdf import KEY, Shard
 from impactlab.study.solvers import impact
-from impactlab.study.storage import Form, Shards, run_keys
+from impactlab.study.store import Form, Ledger, Shards, held, holder, run_keys
 
 FORM = Form(samples=11, profiles=True)
 
@@ -114,7 +117,7 @@ def test_other_forms_are_not_seen(shards, tmp_path):
 def test_one_shard_takes_the_place_of_all_small_ones(shards, monkeypatch, tmp_path):
     first, columns, _ = written(shards, cases(0.5, 1.0))
     with monkeypatch.context() as any_is_large:
-        any_is_large.setattr(storage, "_SMALL", 0)
+        any_is_large.setattr(store, "_SMALL", 0)
         *_, large = written(Shards(tmp_path, FORM, impact.VERSION), cases(2.0))
     second, *_ = written(shards, cases(1.0, 3.0))
     shards.merge()
@@ -127,7 +130,7 @@ def test_one_shard_takes_the_place_of_all_small_ones(shards, monkeypatch, tmp_pa
 
 
 def test_small_shards_are_merged_while_they_come(shards, monkeypatch):
-    monkeypatch.setattr(storage, "_MANY", 4)
+    monkeypatch.setattr(store, "_MANY", 4)
     velocities = np.linspace(1, 2, 10)
     for velocity in velocities:
         written(shards, cases(velocity))
@@ -172,3 +175,100 @@ def test_what_was_not_written_to_its_end_is_cleared(shards):
     (path.parent / ".some.nc.1234").write_bytes(b"half")
     assert len(list(shards.recover())) == 1
     assert list(path.parent.iterdir()) == [path]
+
+
+def keys(*numbers):
+    """Some end in zero bytes, as hashes do."""
+    return np.array([number.to_bytes(2, "big") + bytes(14) for number in numbers], dtype=KEY)
+
+
+def test_answers_find_the_runs_of_their_keys():
+    ledger = Ledger(keys(256, 1, 512, 2))
+    assert ledger.missing().tolist() == [0, 1, 2, 3]
+    asked, runs = ledger.find(keys(2, 999, 256))
+    assert asked.tolist() == [True, False, True]
+    assert runs.tolist() == [3, 0]
+    ledger.mark(runs)
+    assert ledger.missing().tolist() == [1, 2]
+    assert ledger.left() == 2
+
+
+def test_the_first_of_equal_runs_stands_for_all():
+    ledger = Ledger(keys(7, 3, 7, 3, 7))
+    assert ledger.missing().tolist() == [0, 1]
+    assert ledger.left() == 5
+    assert ledger.distinct == 2
+    ledger.mark(ledger.find(keys(3))[1])
+    assert ledger.left() == 3
+    values = np.array([[7.0, 70.0], [3.0, 30.0], [0, 0], [0, 0], [0, 0]])
+    assert ledger.spread(values)[:, 1].tolist() == [70.0, 30.0, 70.0, 30.0, 70.0]
+
+
+def test_keys_beyond_the_last_are_not_taken_for_it():
+    asked, runs = Ledger(keys(1, 2)).find(keys(3))
+    assert not asked.any()
+    assert runs.size == 0
+
+
+HOLD = """
+import sys
+from pathlib import Path
+from impactlab.study.store import held
+with held(Path(sys.argv[1])):
+    print("held", flush=True)
+    sys.stdin.read()
+"""
+
+
+@pytest.fixture
+def other(tmp_path):
+    """Another process at work in the folder."""
+    command = [sys.executable, "-c", HOLD, str(tmp_path)]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "held\n"
+    yield process
+    process.kill()
+    process.communicate()
+
+
+def test_a_second_process_is_told_who_works(tmp_path, other):
+    assert f"process {other.pid} on " in holder(tmp_path)
+    with pytest.raises(BlockingIOError, match=rf"process {other.pid} on .*wait"), held(tmp_path):
+        pass
+
+
+def test_a_killed_process_leaves_the_folder_free(tmp_path, other, caplog):
+    caplog.set_level("INFO")
+    other.kill()
+    other.wait()
+    assert holder(tmp_path) == ""
+    with held(tmp_path):
+        assert f"process {other.pid}" in caplog.text
+    caplog.clear()
+    with held(tmp_path):
+        assert not caplog.text
+
+
+def test_steps_within_a_longer_work_leave_the_folder_held(tmp_path, caplog):
+    caplog.set_level("INFO")
+    with held(tmp_path):
+        for _ in range(2):
+            with held(tmp_path):
+                pass
+            assert f"process {os.getpid()} on " in holder(tmp_path)
+    assert holder(tmp_path) == ""
+    assert not caplog.text
+
+
+def test_a_disk_too_full_for_a_note_is_left_to_what_is_more_than_one(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(type(tmp_path), "write_text", full)
+    with held(tmp_path):
+        assert holder(tmp_path) == "another process"
+
+
+def test_nobody_works_in_an_unknown_folder(tmp_path):
+    assert holder(tmp_path / "none") == ""
+    assert not (tmp_path / "none").exists()

@@ -5,7 +5,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from impactlab.study.adaptive.corner_cases import corner_cases, corners
+from impactlab.study.adaptive.pilot_runs import corner_cases, corners
 from impactlab.study.declaration import read_study
 
 STUDY = """

@@ -6,14 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from impactlab.study.adaptive import recommending
-from impactlab.study.adaptive.recommending import recommend, recommended
-from impactlab.study.adaptive.resolving import fits, resolved
+from impactlab.study.adaptive import recommendation
+from impactlab.study.adaptive.recommendation import fits, recommend, recommended, resolved
 from impactlab.study.declaration import read_study
 from impactlab.study.engine import Engine
 from impactlab.study.errors import StudyError
-from impactlab.study.lock import holder
 from impactlab.study.sampling import design
+from impactlab.study.store import holder
 from impactlab.verification.solutions import modal
 
 ELASTIC = """
@@ -55,7 +54,7 @@ def test_nobody_gets_between_two_trials(study, tmp_path, monkeypatch):
     def looking(*_):
         raise OSError(holder(tmp_path / "trials"))
 
-    monkeypatch.setattr(recommending, "_tried", looking)
+    monkeypatch.setattr(recommendation, "_tried", looking)
     with pytest.raises(OSError, match=f"process {os.getpid()} on "):
         recommend(study(PLASTIC), tmp_path / "trials", Engine())
 

@@ -1,4 +1,4 @@
-"""What the model refuses, told in the names of parameters."""
+"""Values that the model refuses, by the names of parameters."""
 
 from __future__ import annotations
 

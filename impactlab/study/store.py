@@ -1,23 +1,29 @@
-"""Finished runs on disk: found again by content, never lost, never taken for another's.
+"""Finished runs on disk, in shards that are found by content and written by one process at a time.
 
-A run's key is a hash of its case, its form and the version of its solver, so that a changed study
-finds what still fits. Small shards are merged while a study is solved: thousands are slow to open.
+A run's key is a hash of its case, its output and the version of its solver, so that a changed study
+finds the runs that still fit. Small shards are merged while a study is solved: opening thousands
+takes long.
 """
 
 from __future__ import annotations
 
 import hashlib
 import logging
+import os
+import socket
 from collections.abc import Collection, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from datetime import datetime
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from filelock import FileLock, Timeout
 
-from impactlab.study.shard import DAMAGE, KEY, KEYS, LAYOUT, Columns, Shard, write_shard
+from impactlab.study.netcdf import DAMAGE, KEY, KEYS, LAYOUT, Columns, Shard, write_shard
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
@@ -162,3 +168,103 @@ def _sound(path: Path, names: Collection[str] = ()) -> tuple[Array, Columns] | N
     except DAMAGE as error:
         log.warning("%s is damaged, and its runs will be solved again (%s)", path, error)
         return None
+
+
+class Ledger:
+    """A place for each run of a design; runs come by key, in whatever order."""
+
+    def __init__(self, keys: Array) -> None:
+        """keys: of the design's runs, shape (runs,)."""
+        self._keys = keys
+        self._order = np.argsort(keys, kind="stable")
+        ascending = keys[self._order]
+        self._repeats = self._order[1:][ascending[1:] == ascending[:-1]]
+        self._done = np.zeros(keys.size, dtype=bool)
+        self._done[self._repeats] = True
+
+    @property
+    def size(self) -> int:
+        """The number of runs."""
+        return int(self._keys.size)
+
+    @property
+    def distinct(self) -> int:
+        """The number of runs that are equal to none before them."""
+        return self.size - int(self._repeats.size)
+
+    def find(self, keys: Array) -> tuple[Array, Array]:
+        """Which of the keys are the design's, shape (keys,), and the first run of each of those."""
+        places = np.searchsorted(self._keys, keys, sorter=self._order)
+        runs = self._order[np.minimum(places, self._keys.size - 1)]
+        asked: Array = self._keys[runs] == keys
+        return asked, runs[asked]
+
+    def mark(self, runs: Array) -> None:
+        """These runs, by number, are answered."""
+        self._done[runs] = True
+
+    def missing(self) -> Array:
+        """The runs without an answer, ascending; of equal runs the first stands for all."""
+        return np.flatnonzero(~self._done)
+
+    def left(self) -> int:
+        """How many runs of the design lack an answer, equal ones counted each."""
+        return int(np.count_nonzero(~self._done) + np.count_nonzero(~self._done[self._firsts()]))
+
+    def spread(self, values: Array) -> Array:
+        """The same array, shape (runs, ...): equal runs get the row of the first of them."""
+        values[self._repeats] = values[self._firsts()]
+        return values
+
+    def _firsts(self) -> Array:
+        return self.find(self._keys[self._repeats])[1]
+
+
+_PATIENCE = 1.0
+"""Seconds to wait: `holder` takes the lock for a moment."""
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Work in `folder` alone, in steps that may hold it again. Raises BlockingIOError: who does."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lock, owner = FileLock(folder / "lock", is_singleton=True), folder / "owner"
+    try:
+        lock.acquire(timeout=_PATIENCE)
+    except Timeout:
+        raise BlockingIOError(
+            f"{folder}: {_read(owner)} is at work here: wait until it ends, or end it; "
+            "the same command then goes on from there"
+        ) from None
+    try:
+        if lock.lock_counter == 1:
+            _sign(owner)
+        yield
+        if lock.lock_counter == 1:
+            owner.unlink(missing_ok=True)
+    finally:
+        lock.release()
+
+
+def _sign(owner: Path) -> None:
+    if owner.exists():
+        log.info("%s did not finish: going on from what it kept", _read(owner))
+    now = datetime.now().astimezone().isoformat(" ", "seconds")
+    with suppress(OSError):  # a note for people, which a full disk may not take
+        owner.write_text(f"process {os.getpid()} on {socket.gethostname()}, since {now}")
+
+
+def holder(folder: Path) -> str:
+    """Who works in the folder: process, host and since when; "" when nobody does."""
+    if not (folder / "lock").exists():
+        return ""
+    lock = FileLock(folder / "lock")
+    with suppress(Timeout), lock.acquire(timeout=0):
+        return ""
+    return _read(folder / "owner")
+
+
+def _read(owner: Path) -> str:
+    with suppress(OSError):
+        return owner.read_text().strip() or "another process"
+    return "another process"

@@ -1,17 +1,81 @@
-"""Every combination of rungs: what it costs and how uncertain its answers are."""
+"""Refinement levels of the discretisation, and the cost and uncertainty of their combinations."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
+from impactlab.analysis.convergence import points
+from impactlab.analysis.convergence.uncertainty import numerical_uncertainty
 from impactlab.model.cost import node_steps
+from impactlab.model.discretisation import Discretisation
 from impactlab.simulate import case_table
-from impactlab.study.adaptive.axes import AXES
 from impactlab.study.declaration import Study
+
+_COARSEST, _FINEST = 50, 800
+"""Spans between nodes: the finer the last rung, the less has to be added for what lies beyond."""
+_POINTS = (3, 5, 7, 9, 13, 17, 25)
+_COURANTS = (0.9, 0.45, 0.225)
+
+
+@dataclass(frozen=True)
+class Ladders:
+    """Rungs of each axis, rising in cost."""
+
+    nodes: tuple[int, ...]
+    points: tuple[int, ...]
+    courant: tuple[float, ...]
+
+
+def ladders(own: Discretisation) -> Ladders:
+    """The rungs to try for a study of this discretisation.
+
+    Spacings fall by half, with one about half-way between. The study's own, a half and a quarter
+    of it are among them, if need be beyond the finest: its error is told from finer ones.
+    """
+    spans = {(own.nodes - 1) * factor for factor in (1, 2, 4)}
+    at = _COARSEST
+    while at <= _FINEST:
+        spans |= {at, 3 * at // 4 * 2}
+        at *= 2
+    most = max(_FINEST, 4 * (own.nodes - 1))
+    return Ladders(
+        tuple(sorted(each + 1 for each in spans if each <= most)),
+        tuple(sorted({*_POINTS, own.points})),
+        tuple(sorted({own.courant / factor for factor in (1, 2, 4)} | {*_COURANTS}, reverse=True)),
+    )
+
+
+Array = NDArray[np.float64]
+
+AXES = ("nodes", "points", "courant")
+
+
+def uncertainty(values: xr.DataArray, axis: str) -> xr.DataArray:
+    """Of the value on every rung, in its unit, infinite where nothing can be said.
+
+    values: on (response, case, axis), the rungs rising in cost. Points and time step are judged
+    by the differences to the costliest rung: once fibres yield, the error falls by no power of the
+    points; and what the time step changes at fixed nodes is too little (some 1e-6) and too
+    irregular for one.
+    """
+    finest_first = values.isel({axis: slice(None, None, -1)})
+    rungs = finest_first[axis].values.astype(float)
+    judge = partial(_by_spacing, nodes=rungs) if axis == "nodes" else points.numerical_uncertainty
+    found: xr.DataArray = xr.apply_ufunc(
+        judge, finest_first, input_core_dims=[[axis]], output_core_dims=[[axis]], vectorize=True
+    )
+    return found.isel({axis: slice(None, None, -1)}).fillna(np.inf)
+
+
+def _by_spacing(values: Array, nodes: Array) -> Array:
+    return numerical_uncertainty(values, 1.0 / (nodes - 1.0)).amounts
+
 
 FLOOR = 0.1
 """Uncertainties are relative to the value, or to this share of the largest over the cases."""

@@ -1,4 +1,4 @@
-"""Batches of runs over dask: few under way at a time, sized by what they take."""
+"""From a design to its runs: batches are solved by dask, kept, and none is solved twice."""
 
 from __future__ import annotations
 
@@ -7,21 +7,83 @@ import logging
 import time
 from collections.abc import Iterator
 from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
+import dask
 import numpy as np
+import xarray as xr
 from distributed import Client, Future, KilledWorker, as_completed
 from distributed.comm.core import CommClosedError
 
-from impactlab.study.batches import Batches
 from impactlab.study.engine import Engine
-from impactlab.study.shard import Columns
-from impactlab.study.solvers import solver_named
-from impactlab.study.storage import Form, joined
-from impactlab.study.work import Work
+from impactlab.study.netcdf import Columns
+from impactlab.study.progress import Progress
+from impactlab.study.runs import Answers, Work
+from impactlab.study.solvers import solver_named, solver_of
+from impactlab.study.store import Form, Ledger, Shards, held, joined
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
+
+
+@contextmanager
+def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterator[xr.Dataset]:
+    """Solve what of the design has not been solved yet; within, all of it as runs.nc holds it.
+
+    design: see impactlab.study.sampling.design. Every finished batch is in `shards_folder`
+    before it is counted, so that an interrupted study goes on from there. Answers are read from
+    there, too, when they are computed, a column at a time: held in memory are some 40 bytes a run,
+    and no other process works in the folder meanwhile.
+
+    Raises ValueError when the model refuses a run; OSError when the disk is full, when no
+    scheduler answers or its workers fail, or when a shard is damaged while it is read;
+    BlockingIOError when another process is at work in `shards_folder`.
+    """
+    name = solver_of(design)
+    solver = solver_named(name)
+    with held(shards_folder):
+        work = Work.of(design)
+        shards, ledger = Shards(shards_folder, work.form, solver.VERSION), Ledger(work.keys)
+        for keys in shards.recover():
+            ledger.mark(ledger.find(keys)[1])
+        log.info("%s", _found(ledger))
+        for runs, columns in _followed(work, ledger, engine):
+            shards.write(work.keys[runs], columns)
+            ledger.mark(runs)
+        shards.merge()
+        # HDF5 is not for two threads
+        with Answers(shards, ledger) as answers, dask.config.set(scheduler="synchronous"):
+            yield solver.labelled(design, answers.columns(solver.columns(design)))
+
+
+def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Dataset:
+    """As `executed`, all of it in memory."""
+    with executed(design, shards_folder, engine) as runs:
+        return runs.load()
+
+
+def _found(ledger: Ledger) -> str:
+    """What there is to do."""
+    before = ledger.distinct - ledger.missing().size
+    repeats = ledger.size - ledger.distinct
+    runs = f"{ledger.distinct} runs" + f" ({repeats} more are equal to one of them)" * bool(repeats)
+    return f"{runs}, {before} of them solved before"
+
+
+def _followed(work: Work, ledger: Ledger, engine: Engine) -> Iterator[tuple[Array, Columns]]:
+    """Numbers and answers of the missing runs as they come in; a bar tells how far they are."""
+    missing, total = ledger.missing(), ledger.distinct
+    if not missing.size:
+        return
+    bits = solver_named(work.solver).failures(work.design)
+    with Progress(total=total, done=total - missing.size) as progress:
+        for runs, columns in solved(work, missing, engine):
+            yield runs, columns
+            progress.advance(runs.size, int(np.count_nonzero(columns["status"] & bits)))
+
+
 Result = tuple[Columns, float]
 Task = Future[Result]
 
@@ -153,3 +215,65 @@ def _next(queue: as_completed) -> tuple[Task, Result]:
     if isinstance(result, CancelledError | asyncio.CancelledError):  # returned, not raised
         raise ConnectionError(_GONE) from result
     return future, result
+
+
+_FIRST_SECONDS = 0.1
+"""Of the first tasks, which measure."""
+_LEAST_SECONDS = 0.05
+"""Of a task near the end."""
+_SHARE = 2
+"""A task is at most this part of a worker's share of what is left: none idles at the end."""
+_SPEED = 3e8
+"""Cost a second, before it is measured."""
+_MEMORY = 0.8
+"""Weight of all measurements so far beside the next one."""
+_VALUES = 4_000_000
+"""Stored numbers a task, at most: bounds its memory."""
+_RUNS = 10_000
+"""Runs a task, at most: its cases travel with it, and take 2 MB."""
+
+
+class Batches:
+    """Cuts runs into batches, sized when they are asked for: consecutive, after the costly ones.
+
+    A run that is a task of its own comes first, the costliest of all ahead: none is left to one
+    worker while the others idle.
+    """
+
+    def __init__(self, runs: Array, cost: Array, values: int, seconds: float = 1.0) -> None:
+        """runs: their numbers, out of those that `cost` holds, in a solver's unit.
+
+        values: stored numbers a run; seconds: of a batch, long beside what dask and the disk take
+        for one.
+        """
+        alone = np.where(cost[runs] > _SPEED * seconds, cost[runs], 0.0)
+        self._runs, self._costs = runs[np.argsort(-alone, kind="stable")], cost
+        self._wished = seconds
+        self._most = max(1, min(_RUNS, _VALUES // values))
+        self._at, self._left = 0, float(cost[runs].sum())
+        self._cost, self._seconds = 0.0, 0.0
+
+    def take(self, workers: int) -> Array:
+        """The numbers of the next runs; empty when all are taken."""
+        ahead = self._runs[self._at : self._at + self._most]
+        until = np.cumsum(self._costs[ahead])
+        limit = self._speed * self._target(self._left / self._speed / workers)
+        taken = max(1, int(np.searchsorted(until, limit, side="right")))
+        runs = ahead[:taken]
+        self._at += runs.size
+        self._left -= float(self._costs[runs].sum())
+        return runs
+
+    def learn(self, cost: float, seconds: float) -> None:
+        """Size further batches by one that took so long."""
+        self._cost = _MEMORY * self._cost + cost
+        self._seconds = _MEMORY * self._seconds + seconds
+
+    @property
+    def _speed(self) -> float:
+        return self._cost / self._seconds if self._seconds else _SPEED
+
+    def _target(self, share: float) -> float:
+        """Seconds of the next task; share: a worker's share of what is left, in s."""
+        wished = self._wished if self._seconds else min(self._wished, _FIRST_SECONDS)
+        return min(wished, max(share / _SHARE, _LEAST_SECONDS))

@@ -15,14 +15,12 @@ from impactlab.solver import SCHEMES
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.leapfrog import discretise
 from impactlab.solver.section import make_section
-from impactlab.study import batches as batching
-from impactlab.study import execution, fanout
+from impactlab.study import execute as executing
 from impactlab.study.engine import Engine
-from impactlab.study.execution import execute
-from impactlab.study.fanout import solve_batch
+from impactlab.study.execute import Batches, execute, solve_batch
+from impactlab.study.runs import Work
 from impactlab.study.solvers import impact
-from impactlab.study.storage import Form
-from impactlab.study.work import Work
+from impactlab.study.store import Form
 from impactlab.variables import RESPONSES
 
 RESPONSES_ASKED = ["peak_force", "contact_duration", "restitution"]
@@ -50,13 +48,13 @@ def design(velocities=(0.5, 1.0, 5.0), nodes=(11, 21), **attrs):
 def solved(monkeypatch):
     """How many runs were sent out, a study each."""
     counts = []
-    original = execution.solved
+    original = executing.solved
 
     def counted(work, missing, engine):
         counts.append(missing.size)
         return original(work, missing, engine)
 
-    monkeypatch.setattr(execution, "solved", counted)
+    monkeypatch.setattr(executing, "solved", counted)
     return counts
 
 
@@ -74,8 +72,8 @@ def test_runs_carry_the_labels_of_the_design(tmp_path):
 
 
 def test_workers_that_come_later_need_not_wait_for_a_task_to_end(tmp_path, monkeypatch):
-    monkeypatch.setattr(batching, "_RUNS", 1)  # a run a task
-    monkeypatch.setattr(fanout, "_LOOK_AGAIN", 0.05)
+    monkeypatch.setattr(executing, "_RUNS", 1)  # a run a task
+    monkeypatch.setattr(executing, "_LOOK_AGAIN", 0.05)
     solve, all_at_once = impact.solve, Barrier(6)
 
     def together(cases, form):
@@ -94,7 +92,7 @@ def test_workers_that_come_later_need_not_wait_for_a_task_to_end(tmp_path, monke
 @pytest.mark.parametrize("engine", [Engine("threads", 3), Engine("processes", 2)])
 def test_same_bits_for_any_engine_and_batch_size(tmp_path, engine, monkeypatch):
     whole = execute(design(), tmp_path / "one", Engine("threads", 1))
-    monkeypatch.setattr(batching, "_RUNS", 1)  # a run a task
+    monkeypatch.setattr(executing, "_RUNS", 1)  # a run a task
     split = execute(design(), tmp_path / "two", engine)
     for name in whole.data_vars:
         assert whole[name].values.tobytes() == split[name].values.tobytes(), name
@@ -119,8 +117,8 @@ def test_a_change_solves_just_what_it_touches(tmp_path, solved):
 
 
 def test_interrupted_studies_go_on(tmp_path, solved, monkeypatch):
-    monkeypatch.setattr(batching, "_RUNS", 1)
-    write = execution.Shards.write
+    monkeypatch.setattr(executing, "_RUNS", 1)
+    write = executing.Shards.write
     kept = []
 
     def failing(self, keys, columns):
@@ -130,7 +128,7 @@ def test_interrupted_studies_go_on(tmp_path, solved, monkeypatch):
         return write(self, keys, columns)
 
     with monkeypatch.context() as interrupted:
-        interrupted.setattr(execution.Shards, "write", failing)
+        interrupted.setattr(executing.Shards, "write", failing)
         with pytest.raises(KeyboardInterrupt):
             execute(design(), tmp_path, Engine())
     solved.clear()
@@ -171,3 +169,62 @@ def test_the_estimated_cost_is_that_of_the_kernels_steps(scheme, nodes):
 def test_workers_with_other_kernels_are_refused():
     with pytest.raises(RuntimeError, match="another version"):
         solve_batch("impact", Work.of(design()).cases(np.arange(2)), Form(0, False), "other")
+
+
+def simulated(cost, speed, workers, values=20):
+    """Batches taken and learnt from one after the other by workers of this speed."""
+    batches = Batches(np.arange(cost.size), cost, values)
+    taken = []
+    while (runs := batches.take(workers)).size:
+        taken.append(runs)
+        batches.learn(cost[runs].sum(), cost[runs].sum() / speed)
+    assert np.array_equal(np.concatenate(taken), np.arange(cost.size))
+    return taken, np.array([cost[runs].sum() / speed for runs in taken])
+
+
+@pytest.mark.parametrize("speed", [3e6, 3e8, 3e10])  # 3e8 is what is expected
+def test_tasks_take_about_a_second_once_measured(speed):
+    cost = np.full(100_000, speed / 1000)  # 100 s
+    _, seconds = simulated(cost, speed, workers=2)
+    settled = seconds[2:-20]
+    assert settled.size > 50
+    assert settled == pytest.approx(1.0, abs=0.05)
+
+
+def test_the_first_tasks_measure_and_the_last_are_small():
+    speed = 3e8
+    _, seconds = simulated(np.full(30_000, speed / 1000), speed, workers=2)
+    assert seconds[0] == pytest.approx(0.1, rel=0.05)
+    assert seconds[-1] <= 0.06
+    left = seconds.sum() - seconds.cumsum() + seconds
+    assert (seconds <= np.maximum(left / 4, 0.05) + 0.001).all()  # to a run
+
+
+def test_dear_runs_come_first_the_dearest_ahead():
+    cost = np.array([3e7, 6e9, 3e7, 9e9, 3e7])
+    batches = Batches(np.arange(5), cost, 20)
+    assert [batches.take(2).tolist() for _ in range(2)] == [[3], [1]]
+    assert np.concatenate([batches.take(2) for _ in range(3)]).tolist() == [0, 2, 4]
+
+
+def test_a_dear_run_is_a_task_of_its_own():
+    taken, _ = simulated(np.full(7, 3e10), 3e8, workers=2)
+    assert [runs.size for runs in taken] == [1] * 7
+
+
+def test_sizes_follow_a_change_of_cost():
+    """Where a run costs ten times what it was said to, from the middle on."""
+    batches = Batches(np.arange(200_000), np.full(200_000, 3e5), 20)
+    seconds = []
+    while (runs := batches.take(2)).size:
+        seconds.append(runs.size * (1e-3 if runs[0] < 100_000 else 1e-2))
+        batches.learn(3e5 * runs.size, seconds[-1])
+    assert np.median(seconds) == pytest.approx(1.0, abs=0.05)
+    assert max(seconds) < 11
+
+
+def test_memory_bounds_a_task():
+    taken, _ = simulated(np.full(1000, 1.0), 3e8, workers=1, values=executing._VALUES // 10)
+    assert max(runs.size for runs in taken) == 10
+    taken, _ = simulated(np.full(100_000, 1e-3), 3e8, workers=1, values=1)
+    assert max(runs.size for runs in taken) == executing._RUNS

@@ -1,8 +1,8 @@
-"""The cheapest discretisation that is fine enough, from trials on the study's corner cases.
+"""The cheapest discretisation that is fine enough, from pilot runs on the study's corner cases.
 
-The uncertainties of the axes are told apart and added: that of the nodes (at the study's
-courant, so that the time step shrinks with the spacing), that of the points and that of the time
-step (both at the nodes that would do by themselves).
+The uncertainties of the three axes are found separately and added: that of the nodes (at the
+study's courant, so that the time step shrinks with the spacing), that of the points and that of the
+time step (both at the fewest nodes that suffice by themselves).
 """
 
 from __future__ import annotations
@@ -18,14 +18,20 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import with_values
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.adaptive.axes import AXES, uncertainty
-from impactlab.study.adaptive.candidates import candidates, cheapest, relative
-from impactlab.study.adaptive.corner_cases import corner_cases
-from impactlab.study.adaptive.ladders import Ladders, ladders
-from impactlab.study.adaptive.trials import Trials
+from impactlab.study.adaptive.levels import (
+    AXES,
+    Ladders,
+    candidates,
+    cheapest,
+    ladders,
+    relative,
+    uncertainty,
+)
+from impactlab.study.adaptive.pilot_runs import Trials, corner_cases
 from impactlab.study.declaration import Auto, Study
 from impactlab.study.engine import Engine
-from impactlab.study.lock import held
+from impactlab.study.errors import Problem, StudyError
+from impactlab.study.store import held
 from impactlab.variables import provenance
 
 
@@ -127,3 +133,41 @@ def _check(found: xr.Dataset, trials: Trials, rungs: Ladders, own: Discretisatio
     ours = trials.along("nodes", (chosen.nodes,), chosen).values
     theirs = trials.along("nodes", rungs.nodes[-1:], last).values
     return abs(ours.isel(nodes=0, drop=True) - theirs.isel(nodes=0, drop=True))
+
+
+def fits(found: xr.Dataset, study: Study) -> bool:
+    """Whether trials were made for this very study, by these kernels."""
+    same = found.attrs.get("study_sha256") == study.sha256
+    return same and found.attrs.get("kernels_sha256") == SOURCES_HASH
+
+
+def resolved(study: Study, found: xr.Dataset) -> Study:
+    """The study with the discretisation that its trials recommend (see `recommend`).
+
+    Raises StudyError where no discretisation meets the tolerance for an asked response, naming
+    what comes nearest; ValueError where the study asks for none.
+    """
+    auto = study.auto
+    if auto is None:
+        raise ValueError(f"{study.path}: its discretisation is stated: there is none to find")
+    if missed := _unreached(found):
+        most, told = int(found["nodes"].max()), ", ".join(missed)
+        reason = (
+            f"no discretisation up to {most} nodes meets {100 * auto.tolerance:g} % for {told}: "
+            "raise tolerance, or list other responses under discretisation.auto.responses"
+        )
+        raise StudyError(Problem(str(study.path), "discretisation.auto", reason))
+    grid = recommended(found, study.discretisation)
+    assert grid is not None  # something is asked, and all of it is reached
+    return replace(study, discretisation=grid, auto=None)
+
+
+def _unreached(found: xr.Dataset) -> list[str]:
+    """The asked responses that no candidate is good enough for, with the least uncertainty."""
+    missed = found["response"].values[(found["asked"] & ~found["reached"]).values]
+    least = found["candidate_uncertainty"].min("candidate")
+    return [f"{name} ({_percent(least.sel(response=name).item())})" for name in missed]
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} % at best" if np.isfinite(share) else "nothing bounds its error"

@@ -1,0 +1,147 @@
+"""Pilot runs: the corner cases of a study, solved along one axis of the discretisation.
+
+Corner cases are the numbers of a study at their extremes. With more than four numbers all corners
+would be too many. Then the columns of a Hadamard matrix and their negatives are taken (a two-level
+design of resolution IV: any three parameters meet in all eight combinations of their extremes; Box,
+Hunter and Hunter (2005), Statistics for Experimenters, ch. 6), and the case in the middle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.linalg import hadamard
+
+from impactlab.analysis.convergence import by_design
+from impactlab.analysis.responses import usable
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.parameters import Value, flatten
+from impactlab.study.declaration import Grid, Study
+from impactlab.study.engine import Engine
+from impactlab.study.execute import execute
+from impactlab.variables import described
+
+Cases = Mapping[str, Sequence[Value]]
+
+
+class Answered(NamedTuple):
+    """Responses of all cases along an axis of the discretisation.
+
+    values: on (response, case, axis), NaN where a run failed, in SI units; without_limit: on
+    (response, case), where the model itself has none along this axis.
+    """
+
+    values: xr.DataArray
+    without_limit: xr.DataArray
+
+
+class Trials:
+    """Solves the corner cases of a study with other discretisations; what is solved is kept."""
+
+    def __init__(self, study: Study, cases: Cases, folder: Path, engine: Engine) -> None:
+        """cases: values by parameter, one a case; folder: for the shards."""
+        self._study, self._cases, self._folder, self._engine = study, cases, folder, engine
+
+    def along(self, axis: str, rungs: Sequence[float], at: Discretisation) -> Answered:
+        """The answers with these values of nodes, points or courant.
+
+        rungs: the values; the other two are those of `at`. Raises OSError when the disk is full or
+        no scheduler answers.
+        """
+        runs = execute(self._design(axis, rungs, at), self._folder, self._engine)
+        values = usable(runs).transpose("response", "case", axis)
+        without = by_design.mask(runs, values, axis, axis)
+        labels = [name for name in values.coords if name not in values.dims]
+        others = [name for name in labels if values[name].dims != ("response",)]
+        return Answered(values.drop_vars(others), without.drop_vars(others, errors="ignore"))
+
+    def _design(self, axis: str, rungs: Sequence[float], at: Discretisation) -> xr.Dataset:
+        study = replace(self._study, discretisation=at)
+        scalars = flatten(study.impact, study.discretisation) | {"duration": study.duration}
+        count = len(next(iter(self._cases.values()), [None]))
+        varied: dict[str, Any] = {
+            name: ("case", np.array(values)) for name, values in self._cases.items()
+        }
+        varied |= {"case": np.arange(count), axis: (axis, np.array(rungs))}
+        attrs = {
+            "study": study.name,
+            "varied": [*self._cases, axis],
+            "responses": list(study.responses),
+            "histories": 0,
+            "profiles": 0,
+            "history_samples": study.store.samples,
+        }
+        scalars_kept = {name: ((), value) for name, value in scalars.items() if name not in varied}
+        return described(xr.Dataset(coords=scalars_kept | varied, attrs=attrs))
+
+
+_ALL = 4
+"""Up to so many numbers all corners are taken."""
+_TAIL = 0.005
+"""Where a distribution has no end, its extremes are the quantiles of this and of its complement."""
+NUMERICS = ("nodes", "points", "courant")
+"""What the discretisation is sought in: not varied between cases."""
+
+
+def corner_cases(study: Study) -> dict[str, list[Value]]:
+    """Values by parameter, one a case: numbers at their extremes and in the middle, each word.
+
+    Where only the discretisation is varied, the study's own impact is the one case.
+    """
+    ends = {name: values for name, values in _extremes(study).items() if name not in NUMERICS}
+    words = {name: values for name, values in ends.items() if isinstance(values[0], str)}
+    numbers = {name: values for name, values in ends.items() if name not in words}
+    signs = corners(len(numbers))
+    rows = [
+        (
+            *combination,
+            *(values[1 + sign] for values, sign in zip(numbers.values(), row, strict=True)),
+        )
+        for combination in product(*words.values())
+        for row in signs.tolist()
+    ]
+    names = [*words, *numbers]
+    if not names:
+        return {"velocity": [study.impact.velocity]}
+    return {name: [row[at] for row in rows] for at, name in enumerate(names)}
+
+
+def corners(count: int) -> NDArray[np.int64]:
+    """Signs (cases, count) of the corners of a cube, or of some, and the middle (zeros) last."""
+    middle = np.zeros((1, count), dtype=np.int64)
+    if count == 0:
+        return middle
+    if count <= _ALL:
+        signs = np.array(list(product((-1, 1), repeat=count)))
+    else:
+        half = hadamard(1 << (count - 1).bit_length())[:, :count]
+        signs = np.concatenate([half, -half])
+    return np.concatenate([signs, middle])
+
+
+def _extremes(study: Study) -> Mapping[str, Sequence[Any]]:
+    """(least, middle, greatest) of each number, all words of the others."""
+    sampling = study.sampling
+    if isinstance(sampling, Grid):
+        return {name: _of_values(values) for name, values in sampling.parameters.items()}
+    chances = np.array([_TAIL, 0.5, 1.0 - _TAIL])
+    found = {}
+    for name, given in sampling.varied.items():
+        low, middle, high = given.quantile(chances).tolist()
+        ends = given.bounds()
+        found[name] = (ends.get("low", low), middle, ends.get("high", high))
+    return found
+
+
+def _of_values(values: Sequence[Any]) -> Sequence[Any]:
+    if isinstance(values[0], str):
+        return values
+    ordered = sorted(values)
+    return ordered[0], ordered[len(ordered) // 2], ordered[-1]

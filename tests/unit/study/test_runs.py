@@ -1,0 +1,143 @@
+"""Answers are read from shards, column by column; what is lost meanwhile is an error, no hole."""
+
+import numpy as np
+import pytest
+
+from impactlab.study.engine import Engine
+from impactlab.study.execute import execute
+from impactlab.study.runs import (
+    NO_STUDY,
+    OTHER_RUNS,
+    OTHER_SOLVER,
+    SET_ASIDE,
+    UNFINISHED,
+    Answers,
+    Work,
+    disk_size,
+    outdated,
+    stale,
+    status,
+)
+from impactlab.study.store import Form, Ledger, Shards, held
+
+KEYS = np.array([b"a" * 16, b"b" * 16, b"c" * 16, b"b" * 16])
+
+
+@pytest.fixture
+def shards(tmp_path):
+    kept = Shards(tmp_path, Form(0, False), "version")
+    kept.write(KEYS[[2]], {"force": np.array([3.0]), "status": np.array([1], np.int32)})
+    kept.write(KEYS[[1, 0]], {"force": np.array([2.0, 1.0]), "status": np.zeros(2, np.int32)})
+    return kept
+
+
+@pytest.mark.parametrize("opened", [0, 1, 2])
+def test_columns_are_in_the_order_of_the_runs(shards, monkeypatch, opened):
+    """opened: shards that may stay so, of two."""
+    monkeypatch.setattr("impactlab.study.runs._OPEN", opened)
+    with Answers(shards, Ledger(KEYS)) as answers:
+        columns = answers.columns(["status", "force"])
+        assert [*columns] == ["status", "force"]
+        assert columns["force"].compute().tolist() == [1.0, 2.0, 3.0, 2.0]
+        assert columns["status"].compute().tolist() == [0, 0, 1, 0]
+        assert columns["status"].dtype == np.int32
+
+
+def test_a_run_without_answers_is_an_error(shards):
+    with pytest.raises(OSError, match="run the same command again"):
+        Answers(shards, Ledger(np.append(KEYS, [b"d" * 16])))
+
+
+def test_a_shard_that_is_damaged_meanwhile_is_an_error(shards):
+    first, second = shards.files()
+    with Answers(shards, Ledger(KEYS)) as answers:
+        columns = answers.columns(["force"])
+        first.write_bytes(second.read_bytes())
+        with pytest.raises(OSError, match=f"{first.name} was damaged"):
+            columns["force"].compute(scheduler="synchronous")
+
+
+def test_a_study_not_begun(small_design, tmp_path):
+    found = status(small_design(1.0, 2.0), tmp_path / "shards")
+    assert (found.runs, found.done, found.failed, found.size) == (4, 0, 0, 0)
+    assert found.age is None
+    assert found.holder == ""
+    assert not (tmp_path / "shards").exists()
+
+
+def test_a_study_that_grew(small_design, tmp_path):
+    execute(small_design(1.0, 2.0), tmp_path, Engine())
+    found = status(small_design(1.0, 2.0, 3.0, 3.0), tmp_path)
+    assert (found.runs, found.done, found.failed) == (8, 4, 0)
+    assert 0 <= found.age < 60
+    assert found.size == sum(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file())
+
+
+def test_runs_without_an_asked_response_failed(small_design, tmp_path):
+    unfinished = {"responses": ["contact_duration"]}
+    design = small_design(1.0, 2.0, **unfinished).assign_coords(duration=1e-4)
+    execute(design, tmp_path, Engine())
+    assert status(design, tmp_path).failed == 4
+
+
+def test_it_names_who_is_at_work(small_design, tmp_path):
+    with held(tmp_path):
+        assert "process" in status(small_design(1.0), tmp_path).holder
+
+
+@pytest.mark.parametrize("chunk", [1, 3, 100])
+def test_work_is_the_same_in_chunks(small_design, monkeypatch, chunk):
+    whole = Work.of(small_design(1.0, 2.0, 3.0))
+    monkeypatch.setattr("impactlab.study.runs._CHUNK", chunk)
+    parts = Work.of(small_design(1.0, 2.0, 3.0))
+    assert parts.keys.tobytes() == whole.keys.tobytes()
+    assert parts.cost.tobytes() == whole.cost.tobytes()
+    picked = whole.cases(np.array([4, 1]))
+    assert picked["velocity"].tolist() == [3.0, 1.0]
+    assert picked["nodes"].tolist() == [11, 21]
+
+
+def test_a_refused_run_is_named_by_its_number(small_design, monkeypatch):
+    monkeypatch.setattr("impactlab.study.runs._CHUNK", 2)
+    with pytest.raises(ValueError, match=r"run 4: .*velocity"):
+        Work.of(small_design(1.0, 2.0, -3.0))
+
+
+def test_a_file_that_has_gone_has_no_size(tmp_path):
+    (tmp_path / "here").write_bytes(b"123")
+    assert disk_size([tmp_path / "here", tmp_path / "gone", tmp_path]) == 3
+
+
+def test_what_is_asked_for_stays(small_design, tmp_path):
+    execute(small_design(1.0, 2.0), tmp_path, Engine())
+    assert stale(tmp_path, [small_design(1.0, 2.0)]) == {}
+    assert stale(tmp_path, [small_design(7.0), small_design(2.0)]) == {}
+
+
+def test_what_is_not_is_named_with_the_reason(small_design, tmp_path):
+    execute(small_design(1.0, 2.0), tmp_path, Engine())
+    (shard,) = tmp_path.glob("*/*.nc")
+    assert stale(tmp_path, [small_design(3.0)]) == {shard: OTHER_RUNS}
+    assert stale(tmp_path, [small_design(1.0, profiles=1)]) == {shard: OTHER_SOLVER}
+    assert stale(tmp_path, []) == {shard: NO_STUDY}
+
+
+def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path, caplog):
+    execute(small_design(1.0), tmp_path, Engine())
+    (shard,) = tmp_path.glob("*/*.nc")
+    unfinished, damaged = shard.with_name(".some.nc.12"), shard.with_name("some.nc.damaged")
+    unfinished.touch()
+    damaged.touch()
+    shard.write_bytes(shard.read_bytes()[:-10])
+    expected = {unfinished: UNFINISHED, damaged: SET_ASIDE}
+    assert stale(tmp_path, [small_design(3.0)]) == expected
+    assert str(shard) in caplog.text
+
+
+def test_of_runs_beside_a_study_only_those_of_another_solver_can_go(small_design, tmp_path):
+    execute(small_design(1.0), tmp_path, Engine())
+    assert outdated(tmp_path) == {}
+    (shard,) = tmp_path.glob("*/*.nc")
+    other = shard.parent.with_name("0" * 16)
+    shard.parent.rename(other)
+    assert outdated(tmp_path) == {other / shard.name: OTHER_SOLVER}
