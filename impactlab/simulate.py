@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from impactlab.jit.apart import compile_apart
+from impactlab.jit.compiler import precompile
 from impactlab.model.checks import integer, positive
 from impactlab.model.columns import anywhere, column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import Value, flatten, with_values
 from impactlab.solver import BEAM_MODELS, RULES, SCHEMES
-from impactlab.solver.case import CASE, REAL, WHOLE
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT
+from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.leapfrog import run_all
 from impactlab.solver.quadrature import rule_points
 from impactlab.solver.responses import RESPONSE
-from impactlab.solver.track import TRACK
+from impactlab.solver.types import CASE, REAL, WHOLE
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def case_table(
     varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]] | None = None,
     first_run: int = 0,
 ) -> np.ndarray[Any, Any]:
-    """The kernels' table of cases, one record (solver.case.CASE) a run; each run is checked.
+    """The kernels' table of cases, one record (solver.types.CASE) a run; each run is checked.
 
     first_run: the number that messages give the first one.
 
@@ -169,9 +169,9 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
     deflection = np.full((runs, half), np.nan)
     strains = np.full((2, runs, half, fibres), np.nan)
-    compile_apart(run_all, _COMPILE)
-    contacts, tracks = np.zeros(runs, CONTACT), np.zeros(runs, TRACK)
-    run_all(cases, responses, contacts, tracks, histories, deflection, strains[0], strains[1])
+    precompile(run_all, _COMPILE)
+    contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
+    run_all(cases, responses, contacts, events, histories, deflection, strains[0], strains[1])
     return Answers(
         responses,
         dict(zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)) if samples else {},

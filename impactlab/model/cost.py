@@ -15,7 +15,7 @@ A_SECOND = 3e8
 def node_steps(cases: Any) -> Any:
     """Estimated cost of a run, or of each: half the nodes times the time steps.
 
-    cases: a record of solver.case.CASE, or an array of them. Their largest step is that of bending
+    cases: a record of solver.types.CASE, or an array of them. Their largest step is that of bending
     for the paper's beam by leapfrog; half a bar wave's for the semi-implicit scheme and, roughly,
     for the other models of the beam.
     """

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.beam import Beam, Grid
 from impactlab.solver.energy import bending_energy, kinetic_energy, plastic_energy
+from impactlab.solver.fibre_plasticity import PlasticState
 from impactlab.solver.jit import allocating, compiled
 from impactlab.solver.lumped import Lumped, lumped_energy, lumped_step, make_lumped
 from impactlab.solver.section import Section
@@ -22,7 +23,6 @@ from impactlab.solver.semi_implicit import (
 )
 from impactlab.solver.timoshenko import Shear, make_shear, shear_energy, shear_step
 from impactlab.solver.types import Record
-from impactlab.solver.yielding import Yielding
 
 ELASTIC = BEAM_MODELS.index("elastic")
 TIMOSHENKO = BEAM_MODELS.index("timoshenko")
@@ -31,7 +31,7 @@ RIGID = BEAM_MODELS.index("rigid")
 SEMI_IMPLICIT = SCHEMES.index("semi_implicit")
 
 
-class Others(NamedTuple):
+class ModelState(NamedTuple):
     """What the models and schemes beside the paper's need; empty where a case does not ask."""
 
     filter: Filter
@@ -46,10 +46,10 @@ def is_explicit(case: Record) -> bool:
 
 
 @allocating
-def make_others(case: Record, section: Section, grid: Grid) -> Others:
+def make_model_state(case: Record, section: Section, grid: Grid) -> ModelState:
     """At rest."""
     filtered = case.beam_model <= ELASTIC and case.scheme == SEMI_IMPLICIT
-    return Others(
+    return ModelState(
         make_filter(grid, section.stiffness) if filtered else no_filter(),
         make_shear(case, grid.mid + 3 if case.beam_model == TIMOSHENKO else 0),
         make_lumped(case, case.beam_model == RIGID, section.stiffness, grid),
@@ -57,33 +57,33 @@ def make_others(case: Record, section: Section, grid: Grid) -> Others:
 
 
 @compiled
-def other_step(
+def model_step(
     model: int,
     beam: Beam,
-    held: Yielding,
+    plastic_state: PlasticState,
     section: Section,
     grid: Grid,
-    others: Others,
+    model_state: ModelState,
     now: int,
     F: float,
 ) -> None:
     """One step of the beam under the contact force F (N)."""
     if model == TIMOSHENKO:
-        shear_step(beam, others.shear, held, section, grid, now, F)
+        shear_step(beam, model_state.shear, plastic_state, section, grid, now, F)
     elif model <= ELASTIC:
-        filtered_step(beam, held, section, grid, others.filter, now, F)
+        filtered_step(beam, plastic_state, section, grid, model_state.filter, now, F)
     else:
-        lumped_step(beam, others.lumped, grid, now, F)
+        lumped_step(beam, model_state.lumped, grid, now, F)
 
 
 @compiled
 def beam_energy(
     model: int,
     beam: Beam,
-    held: Yielding,
+    plastic_state: PlasticState,
     section: Section,
     grid: Grid,
-    others: Others,
+    model_state: ModelState,
     now: int,
     F: float,
     u_mid: float,
@@ -92,15 +92,15 @@ def beam_energy(
 
     u_mid (m): u at mid-span before that step.
     """
-    stored, dissipated = plastic_energy(held, section, grid)
+    stored, dissipated = plastic_energy(plastic_state, section, grid)
     if model > TIMOSHENKO:
-        return lumped_energy(beam, others.lumped, grid, now)
+        return lumped_energy(beam, model_state.lumped, grid, now)
     if model == TIMOSHENKO:
-        elastic = shear_energy(beam, others.shear, held.M_0, section.stiffness, grid)
+        elastic = shear_energy(beam, model_state.shear, plastic_state.M_0, section.stiffness, grid)
         return stored + dissipated + elastic
-    elastic = bending_energy(beam, held, section, grid, now)
-    if others.filter.length > 0:
-        moving = filtered_kinetic_energy(beam, grid, others.filter, now, F)
+    elastic = bending_energy(beam, plastic_state, section, grid, now)
+    if model_state.filter.length > 0:
+        moving = filtered_kinetic_energy(beam, grid, model_state.filter, now, F)
     else:
         moving = kinetic_energy(beam, grid, now, u_mid)
     return stored + dissipated + elastic + moving

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from impactlab.solver import fibre
 from impactlab.solver.beam import Beam, Grid
+from impactlab.solver.fibre_plasticity import PlasticState
 from impactlab.solver.jit import compiled, vectorised
-from impactlab.solver.section import Section
+from impactlab.solver.section import Section, dissipated_energy, stored_energy
 from impactlab.solver.types import ONE, TWO, Array
-from impactlab.solver.yielding import Yielding
 
 
 @compiled
@@ -34,21 +33,27 @@ def _kinetic_sum(w: Array, now: int, u: Array, plastic: Array, grid: Grid, u_mid
 
 
 @compiled
-def bending_energy(beam: Beam, held: Yielding, section: Section, grid: Grid, now: int) -> float:
+def bending_energy(
+    beam: Beam, plastic_state: PlasticState, section: Section, grid: Grid, now: int
+) -> float:
     """What the sections store in J over what their plastic strains store at zero curvature.
 
     Within the elastic interval, EI kappa^2/2 - M_0 kappa per length.
     """
-    return grid.dx * _bending_sum(beam.w, now, held.M_0, section.stiffness, grid)
+    return grid.dx * _bending_sum(beam.w, now, plastic_state.M_0, section.stiffness, grid)
 
 
 @compiled
-def plastic_energy(held: Yielding, section: Section, grid: Grid) -> tuple[float, float]:
+def plastic_energy(
+    plastic_state: PlasticState, section: Section, grid: Grid
+) -> tuple[float, float]:
     """(stored at zero curvature, dissipated) energy in J, of fibres that are up to date."""
     stored, dissipated = 0.0, 0.0
     for i in range(2, grid.mid + 1):
-        if held.peeq[i, 0] > 0.0:  # the outermost fibre yields first
-            kept, lost = plastic_energies(section, held.plastic_strain, held.peeq, i)
+        if plastic_state.peeq[i, 0] > 0.0:  # the outermost fibre yields first
+            kept, lost = plastic_energies(
+                section, plastic_state.plastic_strain, plastic_state.peeq, i
+            )
             times = 1.0 if i == grid.mid else 2.0
             stored += times * kept
             dissipated += times * lost
@@ -72,7 +77,7 @@ def plastic_energies(
     """(stored at zero curvature, dissipated) energy per length of section i, J/m."""
     stored, dissipated, moduli = 0.0, 0.0, section.moduli
     for j in range(section.z.size):
-        stored += section.area[j] * fibre.stored_energy(plastic_strain[i, j], moduli.E, moduli.H_k)
-        lost = fibre.dissipated_energy(peeq[i, j], moduli.S_y, moduli.H_i)
+        stored += section.area[j] * stored_energy(plastic_strain[i, j], moduli.E, moduli.H_k)
+        lost = dissipated_energy(peeq[i, j], moduli.S_y, moduli.H_i)
         dissipated += section.area[j] * lost
     return stored, dissipated

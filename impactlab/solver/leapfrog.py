@@ -9,23 +9,31 @@ import math
 
 import numpy as np
 
-from impactlab.solver import responses
-from impactlab.solver import track as watch
+from impactlab.solver import event_tracker, responses
 from impactlab.solver.beam import Beam, Grid, make_beam, make_grid, move, move_virgin, reach, strike
 from impactlab.solver.beam_models import (
     RIGID,
     SEMI_IMPLICIT,
     SPRING_MASS,
     TIMOSHENKO,
-    Others,
+    ModelState,
     beam_energy,
     is_explicit,
-    make_others,
-    other_step,
+    make_model_state,
+    model_step,
 )
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact.history import Pair, make_pair
 from impactlab.solver.energy import plastic_energy
+from impactlab.solver.fibre_plasticity import (
+    PlasticState,
+    begin_tangents,
+    catch_up,
+    curvature,
+    follow_tangents,
+    leave_tangents,
+    make_plastic_state,
+)
 from impactlab.solver.jit import allocating, compiled
 from impactlab.solver.lumped import mid_span
 from impactlab.solver.section import Section, make_section
@@ -38,15 +46,6 @@ from impactlab.solver.stability import (
 from impactlab.solver.status import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.solver.timoshenko import shear_stiffness
 from impactlab.solver.types import Array, Record
-from impactlab.solver.yielding import (
-    Yielding,
-    begin_tangents,
-    catch_up,
-    curvature,
-    follow_tangents,
-    leave_tangents,
-    make_yielding,
-)
 
 _AUDITS = 500
 _LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
@@ -108,8 +107,8 @@ def _imbalance(
     section: Section,
     grid: Grid,
     beam: Beam,
-    held: Yielding,
-    others: Others,
+    plastic_state: PlasticState,
+    model_state: ModelState,
     contact: Record,
     now: int,
     sphere: tuple[float, float, float, float],
@@ -123,20 +122,22 @@ def _imbalance(
     w_s, v_before, v_after, delta = sphere
     start = 0.5 * case.sphere_mass * case.velocity**2
     falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
-    in_beam = beam_energy(case.beam_model, beam, held, section, grid, others, now, F, u_mid)
+    in_beam = beam_energy(
+        case.beam_model, beam, plastic_state, section, grid, model_state, now, F, u_mid
+    )
     kept, lost = contact_history.energies(contact, pair, delta)
     return abs(falling + in_beam + kept + lost - start) / start
 
 
 @compiled
 def _contact_force(
-    contact: Record, track: Record, pair: Pair, delta: float, t: float, dt: float
+    contact: Record, events: Record, pair: Pair, delta: float, t: float, dt: float
 ) -> float:
     """Contact force (N) at the step of time t; a peak just passed is taken between the steps."""
-    if watch.passed_peak(track, delta, contact.delta_m):
-        offset, peak = watch.vertex(track.delta_before, track.delta, delta)
+    if event_tracker.passed_peak(events, delta, contact.delta_m):
+        offset, peak = event_tracker.vertex(events.delta_before, events.delta, delta)
         contact_history.load(contact, pair, peak)
-        track.t_peak = t + (offset - 1.0) * dt
+        events.t_peak = t + (offset - 1.0) * dt
     return contact_history.force(contact, pair, delta)
 
 
@@ -147,19 +148,19 @@ def _answer(
     pair: Pair,
     section: Section,
     grid: Grid,
-    held: Yielding,
+    plastic_state: PlasticState,
     contact: Record,
-    track: Record,
+    events: Record,
 ) -> None:
     """All responses, or none and why, at the end of a run that has not diverged."""
-    _, dissipated = plastic_energy(held, section, grid)
+    _, dissipated = plastic_energy(plastic_state, section, grid)
     responses.clear(answer, 0)
-    responses.read_contact(answer, track, contact, pair)
-    responses.read_rebound(answer, case, track)
-    responses.read_beam(answer, case, track, held.peeq, grid, dissipated)
-    if track.energy_error > WORST_ENERGY_ERROR:
+    responses.read_contact(answer, events, contact, pair)
+    responses.read_rebound(answer, case, events)
+    responses.read_beam(answer, case, events, plastic_state.peeq, grid, dissipated)
+    if events.energy_error > WORST_ENERGY_ERROR:
         responses.clear(answer, ENERGY_OUT_OF_BALANCE)
-    answer.energy_error = track.energy_error
+    answer.energy_error = events.energy_error
 
 
 @allocating
@@ -167,7 +168,7 @@ def run(
     case: Record,
     answer: Record,
     contact: Record,
-    track: Record,
+    events: Record,
     samples: Array,
     deflection: Array,
     plastic_strain: Array,
@@ -175,8 +176,8 @@ def run(
 ) -> None:
     """Solve one case.
 
-    case: a CASE record. answer: a RESPONSE record, filled. contact, track: zeros, of CONTACT and
-    TRACK, for the run to work in. samples: shape (5, S), filled with
+    case: a CASE record. answer: a RESPONSE record, filled. contact, events: zeros, of CONTACT and
+    EVENTS, for the run to work in. samples: shape (5, S), filled with
     force, mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
     intervals from 0 to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq
     (n + 1, P // 2): filled with the half beam's final state; length 0 for none. A run that
@@ -184,18 +185,18 @@ def run(
     """
     pair, section = make_pair(case), make_section(case)
     grid, steps = discretise(case, pair, section)
-    beam, held = make_beam(grid), make_yielding(grid, section)
-    others = make_others(case, section, grid)
+    beam, plastic_state = make_beam(grid), make_plastic_state(grid, section)
+    model_state = make_model_state(case, section, grid)
     now = march(
         case,
         pair,
         section,
         grid,
         beam,
-        held,
-        others,
+        plastic_state,
+        model_state,
         contact,
-        track,
+        events,
         samples,
         steps,
     )
@@ -203,12 +204,12 @@ def run(
         responses.clear(answer, DIVERGED)
         samples[:] = np.nan
         return
-    _answer(answer, case, pair, section, grid, held, contact, track)
+    _answer(answer, case, pair, section, grid, plastic_state, contact, events)
     if deflection.size > 0:
         along = slice(1, grid.mid + 1)
         deflection[:] = beam.w[now, along]
-        plastic_strain[:] = held.plastic_strain[along]
-        peeq[:] = held.peeq[along]
+        plastic_strain[:] = plastic_state.plastic_strain[along]
+        peeq[:] = plastic_state.peeq[along]
 
 
 @compiled
@@ -218,20 +219,24 @@ def march(
     section: Section,
     grid: Grid,
     beam: Beam,
-    held: Yielding,
-    others: Others,
+    plastic_state: PlasticState,
+    model_state: ModelState,
     contact: Record,
-    track: Record,
+    events: Record,
     samples: Array,
     steps: int,
 ) -> int:
     """From first touch to the end of the duration; which row of beam.w is the last, or -1.
 
-    -1: it diverged. contact and track are kept up to date.
+    -1: it diverged. contact and events are kept up to date.
     """
     w, u, plastic = beam.w, beam.u, beam.plastic
-    kappa_min, kappa_max, M_0 = held.kappa_min, held.kappa_max, held.M_0
-    on_tangent, tangent, psi = held.on_tangent, held.tangent, others.shear.psi
+    kappa_min, kappa_max, M_0 = plastic_state.kappa_min, plastic_state.kappa_max, plastic_state.M_0
+    on_tangent, tangent, psi = (
+        plastic_state.on_tangent,
+        plastic_state.tangent,
+        model_state.shear.psi,
+    )
     explicit = is_explicit(case)
     kappa_y, dt, mid = section.yield_curvature, grid.dt, grid.mid
     stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
@@ -240,13 +245,13 @@ def march(
     now, first, yielded, to_audit = 0, mid, mid + 1, stride
     here = (0.0, 0.0, 0.0, 0.0, 0.0)
     contact.n = 1.5
-    watch.start(track)
+    event_tracker.start(events)
     for step in range(steps + 1):
         w_mid, u_mid = w[now, mid], u[mid]
         delta = w_s - w_mid
-        F = _contact_force(contact, track, pair, delta, step * dt, dt)
+        F = _contact_force(contact, events, pair, delta, step * dt, dt)
         v_after = v_s + dt * (case.gravity - F * per_mass)
-        watch.watch(track, delta, contact.delta_r, w_mid, F, v_s, step * dt, dt)
+        event_tracker.update_events(events, delta, contact.delta_r, w_mid, F, v_s, step * dt, dt)
         kappa = curvature(w, now, psi, grid, np.uint64(mid))
         before, here = here, (F, w_mid, kappa, w_s, delta)
         _sample(samples, step, steps, before, here)
@@ -255,27 +260,40 @@ def march(
             if on_tangent[0] > 0 and follow_tangents(
                 w, now, psi, plastic, M_0, on_tangent, tangent, grid
             ):
-                leave_tangents(beam, now, psi, held, section, grid)
+                leave_tangents(beam, now, psi, plastic_state, section, grid)
             outside = move_virgin(w, now, u, first, yielded, grid, kappa_y)
             if yielded <= mid:
                 outside += move(w, now, u, plastic, kappa_min, kappa_max, yielded, grid)
             if outside > 0.0:
-                bent = begin_tangents(beam, now, psi, outside, held, section, grid, u, w[1 - now])
+                bent = begin_tangents(
+                    beam, now, psi, outside, plastic_state, section, grid, u, w[1 - now]
+                )
                 yielded = min(yielded, max(bent - 1, 2))
             strike(w, now, u, F, grid)
         else:
-            other_step(case.beam_model, beam, held, section, grid, others, now, F)
+            model_step(case.beam_model, beam, plastic_state, section, grid, model_state, now, F)
 
         to_audit -= 1
         if to_audit == 0 or step == steps:
             to_audit = stride
-            catch_up(held, section)
-            track.v_s, track.v_mid = v_s, u_mid / dt
+            catch_up(plastic_state, section)
+            events.v_s, events.v_mid = v_s, u_mid / dt
             sphere = (w_s, v_s, v_after, delta)
             error = _imbalance(
-                case, pair, section, grid, beam, held, others, contact, now, sphere, F, u_mid
+                case,
+                pair,
+                section,
+                grid,
+                beam,
+                plastic_state,
+                model_state,
+                contact,
+                now,
+                sphere,
+                F,
+                u_mid,
             )
-            track.energy_error = max(track.energy_error, error)
+            events.energy_error = max(events.energy_error, error)
             if not error < 1.0:
                 return -1
         w_s, v_s, now = w_s + dt * v_after, v_after, 1 - now
@@ -288,7 +306,7 @@ def run_all(
     cases: Array,
     answers: Array,
     contacts: Array,
-    tracks: Array,
+    events: Array,
     samples: Array,
     deflection: Array,
     plastic_strain: Array,
@@ -304,7 +322,7 @@ def run_all(
             cases[r],
             answers[r],
             contacts[r],
-            tracks[r],
+            events[r],
             samples[r],
             deflection[r],
             plastic_strain[r],

@@ -78,27 +78,27 @@ def clear(answer: Record, status: int) -> None:
 
 
 @compiled
-def read_contact(answer: Record, track: Record, contact: Record, pair: Pair) -> None:
+def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) -> None:
     """Force, indentation and contact times; marked where the contact law does not hold."""
     if contact.delta_m > limit(pair.law, pair.E, pair.R, pair.S_y, pair.nu):
         answer.status |= OUTSIDE_CONTACT_LAW
-    if track.delta == contact.delta_m:
+    if events.delta == contact.delta_m:
         answer.status |= INDENTATION_STILL_GROWING
     else:
         answer.peak_force = contact.F_m
-        answer.time_of_peak_force = track.t_peak
+        answer.time_of_peak_force = events.t_peak
         answer.maximum_indentation = contact.delta_m
-    answer.number_of_contacts = track.contacts
-    answer.contact_duration = track.t_first_end
-    if np.isnan(track.t_first_end):
+    answer.number_of_contacts = events.contacts
+    answer.contact_duration = events.t_first_end
+    if np.isnan(events.t_first_end):
         answer.status |= FIRST_CONTACT_UNFINISHED
-    if track.touching == 1.0:
+    if events.touching == 1.0:
         answer.status |= IN_CONTACT_AT_END
     else:
-        answer.total_contact_time = track.time_in_contact
+        answer.total_contact_time = events.time_in_contact
         answer.permanent_indentation = contact.delta_r
-        answer.impulse = track.impulse
-        _, answer.contact_dissipation = energies(contact, pair, track.delta)
+        answer.impulse = events.impulse
+        _, answer.contact_dissipation = energies(contact, pair, events.delta)
         if answer.contact_dissipation < -_ROUNDING * contact.work:
             answer.remarks |= CONTACT_CREATED_ENERGY
         if contact.delta_r < 0.0:
@@ -106,24 +106,24 @@ def read_contact(answer: Record, track: Record, contact: Record, pair: Pair) -> 
 
 
 @compiled
-def read_rebound(answer: Record, case: Record, track: Record) -> None:
+def read_rebound(answer: Record, case: Record, events: Record) -> None:
     """Rebound, once the sphere moves upwards and away from the beam."""
-    if track.touching == 1.0 or track.v_s >= 0.0 or track.v_s >= track.v_mid:
+    if events.touching == 1.0 or events.v_s >= 0.0 or events.v_s >= events.v_mid:
         answer.status |= SPHERE_NOT_LEAVING
     else:
-        answer.rebound_velocity = -track.v_exit
-        answer.restitution = -track.v_exit / case.velocity
+        answer.rebound_velocity = -events.v_exit
+        answer.restitution = -events.v_exit / case.velocity
 
 
 @compiled
 def read_beam(
-    answer: Record, case: Record, track: Record, peeq: Array, grid: Grid, dissipated: float
+    answer: Record, case: Record, events: Record, peeq: Array, grid: Grid, dissipated: float
 ) -> None:
-    """Deflection and plastic strain; peeq: of the half beam, see Yielding."""
-    if track.w > track.w_max:
+    """Deflection and plastic strain; peeq: of the half beam, see PlasticState."""
+    if events.w > events.w_max:
         answer.status |= DEFLECTION_STILL_GROWING
     else:
-        answer.maximum_deflection = track.w_max
+        answer.maximum_deflection = events.w_max
     answer.peak_plastic_strain = 0.0
     answer.remote_plastic_strain = 0.0
     answer.plastic_zone_length = 0.0

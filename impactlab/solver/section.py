@@ -5,15 +5,21 @@ antisymmetric about the axis, so only the fibres with z > 0 are kept, each count
 While no fibre yields, M = M_0 - EI kappa: a section remembers M_0 and the interval
 [kappa_min, kappa_max] of curvature (1/m) in which that holds, and only leaving it costs a loop
 over the fibres.
+
+A fibre is mapped back to the yield surface, with linear hardening, in one dimension:
+stress = E (strain - plastic_strain); yield: |stress - H_k plastic_strain| <= S_y + H_i peeq.
+All moduli and stresses in Pa. Source: the standard closest-point return, exact for linear
+hardening (Simo and Hughes, Computational Inelasticity, box 1.5).
 """
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver import BEAM_MODELS, fibre
+from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import allocating, compiled, vectorised
 from impactlab.solver.quadrature import upper_half
 from impactlab.solver.types import Array, Record
@@ -78,6 +84,42 @@ def make_section(case: Record) -> Section:
 
 
 @vectorised
+def return_mapping(
+    strain: float, plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
+) -> tuple[float, float]:
+    """(plastic_strain, peeq) after the fibre has been taken to `strain`."""
+    relative = E * (strain - plastic_strain) - H_k * plastic_strain
+    excess = abs(relative) - (S_y + H_i * peeq)
+    if excess > 0.0:
+        slip = excess / (E + H_i + H_k)
+        plastic_strain += math.copysign(slip, relative)
+        peeq += slip
+    return plastic_strain, peeq
+
+
+@vectorised
+def elastic_range(
+    plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
+) -> tuple[float, float]:
+    """(least, largest) strain that the fibre can take without yielding."""
+    centre = plastic_strain * (1.0 + H_k / E)
+    radius = (S_y + H_i * peeq) / E
+    return centre - radius, centre + radius
+
+
+@compiled
+def stored_energy(plastic_strain: float, E: float, H_k: float) -> float:
+    """Energy density (J/m3) at zero total strain: residual stress and back stress."""
+    return 0.5 * (E + H_k) * plastic_strain * plastic_strain
+
+
+@compiled
+def dissipated_energy(peeq: float, S_y: float, H_i: float) -> float:
+    """Energy density (J/m3) dissipated: the integral of S_y + H_i peeq over peeq."""
+    return (S_y + 0.5 * H_i * peeq) * peeq
+
+
+@vectorised
 def bend(
     section: Section, kappa: float, plastic_strain: Array, peeq: Array, i: int
 ) -> tuple[float, float, float]:
@@ -91,10 +133,10 @@ def bend(
     M_0, kappa_min, kappa_max = 0.0, -FAR, FAR
     for j in range(z.size):
         strain, slipped = plastic_strain[i, j], peeq[i, j]
-        strain, slipped = fibre.return_mapping(-z[j] * kappa, strain, slipped, E, S_y, H_i, H_k)
+        strain, slipped = return_mapping(-z[j] * kappa, strain, slipped, E, S_y, H_i, H_k)
         plastic_strain[i, j], peeq[i, j] = strain, slipped
         M_0 -= lever[j] * strain
-        least, largest = fibre.elastic_range(strain, slipped, E, S_y, H_i, H_k)
+        least, largest = elastic_range(strain, slipped, E, S_y, H_i, H_k)
         kappa_min = max(kappa_min, -largest / z[j])
         kappa_max = min(kappa_max, -least / z[j])
     return M_0, kappa_min, kappa_max
@@ -112,7 +154,7 @@ def tangent(
     z, (E, S_y, H_i, H_k) = section.z, section.moduli
     growth, limit = 0.0, direction * FAR
     for j in range(z.size):
-        least, largest = fibre.elastic_range(plastic_strain[i, j], peeq[i, j], E, S_y, H_i, H_k)
+        least, largest = elastic_range(plastic_strain[i, j], peeq[i, j], E, S_y, H_i, H_k)
         end = -(least if direction > 0.0 else largest) / z[j]
         if direction * (end - kappa) <= _ROUND_OFF * S_y / (E * z[j]):
             growth += section.lever[j] * z[j] * E / (E + H_i + H_k)

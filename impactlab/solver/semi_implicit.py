@@ -18,10 +18,15 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import Beam, Grid, mirror
+from impactlab.solver.fibre_plasticity import (
+    PlasticState,
+    begin_tangents,
+    follow_tangents,
+    leave_tangents,
+)
 from impactlab.solver.jit import allocating, compiled, ordered, vectorised
 from impactlab.solver.section import Section
 from impactlab.solver.types import ONE, TWO, Array
-from impactlab.solver.yielding import Yielding, begin_tangents, follow_tangents, leave_tangents
 
 BETA = 0.5
 """Weight of the filter."""
@@ -195,7 +200,7 @@ def advance(
 @compiled
 def filtered_step(
     beam: Beam,
-    held: Yielding,
+    plastic_state: PlasticState,
     section: Section,
     grid: Grid,
     filter: Filter,
@@ -204,13 +209,20 @@ def filtered_step(
 ) -> None:
     """One step of the beam under the contact force F (N)."""
     w, u, du, plastic = beam.w, beam.u, beam.du, beam.plastic
-    if held.on_tangent[0] > 0 and follow_tangents(
-        w, now, du[:0], plastic, held.M_0, held.on_tangent, held.tangent, grid
+    if plastic_state.on_tangent[0] > 0 and follow_tangents(
+        w,
+        now,
+        du[:0],
+        plastic,
+        plastic_state.M_0,
+        plastic_state.on_tangent,
+        plastic_state.tangent,
+        grid,
     ):
-        leave_tangents(beam, now, du[:0], held, section, grid)
-    outside = pull(w, now, du, plastic, held.kappa_min, held.kappa_max, grid)
+        leave_tangents(beam, now, du[:0], plastic_state, section, grid)
+    outside = pull(w, now, du, plastic, plastic_state.kappa_min, plastic_state.kappa_max, grid)
     if outside > 0.0:
-        begin_tangents(beam, now, du[:0], outside, held, section, grid, du, du[:0])
+        begin_tangents(beam, now, du[:0], outside, plastic_state, section, grid, du, du[:0])
     du[grid.mid] += grid.push * F
     solve(du, filter, grid)
     advance(w, now, u, du, filter.by_s, filter.by_t, filter.first + filter.length, grid)

@@ -13,10 +13,15 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import Beam, Grid, mirror
+from impactlab.solver.fibre_plasticity import (
+    PlasticState,
+    begin_tangents,
+    follow_tangents,
+    leave_tangents,
+)
 from impactlab.solver.jit import allocating, compiled, vectorised
 from impactlab.solver.section import Section
 from impactlab.solver.types import ONE, Array, Record
-from impactlab.solver.yielding import Yielding, begin_tangents, follow_tangents, leave_tangents
 
 
 class Shear(NamedTuple):
@@ -62,7 +67,7 @@ def make_shear(case: Record, size: int) -> Shear:
 def shear_step(
     beam: Beam,
     shear: Shear,
-    held: Yielding,
+    plastic_state: PlasticState,
     section: Section,
     grid: Grid,
     now: int,
@@ -70,15 +75,33 @@ def shear_step(
 ) -> None:
     """One step under the contact force F (N)."""
     psi, M, mid = shear.psi, shear.M, grid.mid
-    if held.on_tangent[0] > 0 and follow_tangents(
-        beam.w, now, psi, beam.plastic, held.M_0, held.on_tangent, held.tangent, grid
+    if plastic_state.on_tangent[0] > 0 and follow_tangents(
+        beam.w,
+        now,
+        psi,
+        beam.plastic,
+        plastic_state.M_0,
+        plastic_state.on_tangent,
+        plastic_state.tangent,
+        grid,
     ):
-        leave_tangents(beam, now, psi, held, section, grid)
+        leave_tangents(beam, now, psi, plastic_state, section, grid)
     EI, per_dx = section.stiffness, 1.0 / grid.dx
-    outside = _moments(psi, M, held.M_0, held.kappa_min, held.kappa_max, EI, per_dx, mid)
+    outside = _moments(
+        psi, M, plastic_state.M_0, plastic_state.kappa_min, plastic_state.kappa_max, EI, per_dx, mid
+    )
     if outside > 0.0:
-        begin_tangents(beam, now, psi, outside, held, section, grid, beam.du, beam.du[:0])
-        _moments(psi, M, held.M_0, held.kappa_min, held.kappa_max, EI, per_dx, mid)
+        begin_tangents(beam, now, psi, outside, plastic_state, section, grid, beam.du, beam.du[:0])
+        _moments(
+            psi,
+            M,
+            plastic_state.M_0,
+            plastic_state.kappa_min,
+            plastic_state.kappa_max,
+            EI,
+            per_dx,
+            mid,
+        )
     turn = grid.dt**2 / shear.inertia
     Q, kGA = shear.Q, shear.stiffness
     _rotate(beam.w, now, psi, shear.spin, shear.d_spin, Q, M, kGA, turn, per_dx, mid)

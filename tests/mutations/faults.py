@@ -35,7 +35,7 @@ FAULTS = (
     ),
     Fault(
         "fibre: sign of the back stress",
-        "fibre.py",
+        "section.py",
         "(strain - plastic_strain) - H_k * plastic_strain\n",
         "(strain - plastic_strain) + H_k * plastic_strain\n",
     ),
@@ -109,7 +109,7 @@ FAULTS = (
     ),
     Fault(
         "rigid beam: gives way as the spring-mass model",
-        "others.py",
+        "beam_models.py",
         "make_lumped(case, case.beam_model == RIGID,",
         "make_lumped(case, False,",
     ),
@@ -132,8 +132,8 @@ FAULTS = (
         "u[grid.mid] * u[grid.mid]",
     ),
     Fault(
-        "track: the end of contact is not interpolated",
-        "track.py",
+        "event tracker: the end of contact is not interpolated",
+        "event_tracker.py",
         "end = t - dt * gap / (gap - gap_before)",
         "end = t",
     ),

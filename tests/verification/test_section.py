@@ -8,8 +8,8 @@ import pytest
 import impactlab as il
 from impactlab.simulate import case_table
 from impactlab.solver import RULES, section
-from impactlab.solver.case import CASE
 from impactlab.solver.section import bend as bend_row
+from impactlab.solver.types import CASE
 from impactlab.verification.solutions import bending, quadrature
 
 IMPACT = il.paper_impact()

@@ -1,6 +1,6 @@
 """The table of cases of a study in which some runs are of the 3-D model.
 
-A record is that of the kernels (solver.case.CASE) with the size of the solid elements. What a run
+A record is that of the kernels (solver.types.CASE) with the size of the solid elements. What a run
 does not depend on is zero in it, so that runs which differ in that alone are one case.
 """
 
@@ -21,7 +21,7 @@ from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import case_table
 from impactlab.solver import BEAM_MODELS
-from impactlab.solver.case import CASE
+from impactlab.solver.types import CASE
 
 Array = np.ndarray[Any, Any]
 

@@ -6,8 +6,8 @@ import pytest
 
 from impactlab.model.parameters import ELEMENTS, PARAMETERS
 from impactlab.solver import BEAM_MODELS, RULES, SCHEMES
-from impactlab.solver.case import CASE
 from impactlab.solver.contact import LAWS
+from impactlab.solver.types import CASE
 
 OF_KERNELS = {name: entry for name, entry in PARAMETERS.items() if name not in ELEMENTS}
 """The others are of the 3-D model alone."""

@@ -7,8 +7,8 @@ import pytest
 
 from impactlab.solver.beam import make_beam, make_grid, strike
 from impactlab.solver.energy import bending_energy, kinetic_energy, plastic_energy
+from impactlab.solver.fibre_plasticity import make_plastic_state
 from impactlab.solver.section import bend, make_section
-from impactlab.solver.yielding import make_yielding
 
 GRID = make_grid(20, 0.02, 1e-6, 13.0, 2e4)
 MID = GRID.mid
@@ -35,7 +35,7 @@ def test_kinetic_energy_counts_both_halves():
 def test_strain_energy_counts_both_halves_and_what_was_dissipated(make_case):
     """Against the fibres' own energy, E/2 (strain - plastic strain)^2 over the section."""
     section = make_section(make_case(points=5))
-    beam, held = make_beam(GRID), make_yielding(GRID, section)
+    beam, plastic_state = make_beam(GRID), make_plastic_state(GRID, section)
     random = np.random.default_rng(3)
     half = np.cumsum(np.cumsum(random.uniform(-3, 3, MID))) * section.yield_curvature * GRID.dx**2
     beam.w[1, 1 : MID + 1] = half - half[0]
@@ -43,12 +43,14 @@ def test_strain_energy_counts_both_halves_and_what_was_dissipated(make_case):
     curvatures = np.concatenate([[0], np.diff(beam.w[1], 2), [0]]) * GRID.per_dx2
     stored, dissipated = 0.0, 0.0
     for i in range(2, MID + 1):
-        held.M_0[i], _, _ = bend(section, curvatures[i], held.plastic_strain, held.peeq, i)
+        plastic_state.M_0[i], _, _ = bend(
+            section, curvatures[i], plastic_state.plastic_strain, plastic_state.peeq, i
+        )
         times = (1 if i == MID else 2) * GRID.dx
-        elastic = -section.z * curvatures[i] - held.plastic_strain[i]
+        elastic = -section.z * curvatures[i] - plastic_state.plastic_strain[i]
         stored += times * np.sum(section.area * 0.5 * section.moduli.E * elastic**2)
-        dissipated += times * np.sum(section.area * section.moduli.S_y * held.peeq[i])
+        dissipated += times * np.sum(section.area * section.moduli.S_y * plastic_state.peeq[i])
     assert dissipated > 0
-    left, lost = plastic_energy(held, section, GRID)
-    bending = bending_energy(beam, held, section, GRID, 1)
+    left, lost = plastic_energy(plastic_state, section, GRID)
+    bending = bending_energy(beam, plastic_state, section, GRID, 1)
     assert (bending + left, lost) == pytest.approx((stored, dissipated), rel=1e-12)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from impactlab.solver.fibre import dissipated_energy, elastic_range, return_mapping, stored_energy
+from impactlab.solver.section import dissipated_energy, elastic_range, return_mapping, stored_energy
 
 E, S_y = 210e9, 345e6
 YIELD_STRAIN = S_y / E

@@ -8,6 +8,7 @@ import pytest
 from impactlab.solver import remarks, status
 from impactlab.solver.beam import make_grid
 from impactlab.solver.contact.history import CONTACT, load, make_pair
+from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.responses import (
     ANSWERS,
     PLASTIC_ZONE_STRAIN,
@@ -18,7 +19,6 @@ from impactlab.solver.responses import (
     read_rebound,
     share_above,
 )
-from impactlab.solver.track import TRACK
 from impactlab.variables import RESPONSES
 
 DX = 0.01
@@ -39,9 +39,9 @@ def answer():
 
 
 @pytest.fixture
-def track():
+def events():
     """Of a run that ended well: one contact, over, and the beam on its way back."""
-    record = np.zeros(1, TRACK)[0]
+    record = np.zeros(1, EVENTS)[0]
     record.contacts, record.touching = 1, 0
     record.t_first_end, record.time_in_contact, record.t_peak = 3e-4, 3e-4, 1e-4
     record.delta, record.w, record.w_max = -1e-4, 1e-4, 2e-4
@@ -56,10 +56,10 @@ def contact(case):
     return record
 
 
-def read_everything(answer, case, track, contact, peeq):
-    read_contact(answer, track, contact, make_pair(case))
-    read_rebound(answer, case, track)
-    read_beam(answer, case, track, peeq, GRID, 0.7)
+def read_everything(answer, case, events, contact, peeq):
+    read_contact(answer, events, contact, make_pair(case))
+    read_rebound(answer, case, events)
+    read_beam(answer, case, events, peeq, GRID, 0.7)
 
 
 @pytest.fixture
@@ -83,8 +83,8 @@ def test_clear_leaves_no_number_but_the_reason(answer):
     assert np.isnan([answer[name] for name in ANSWERS]).all()
 
 
-def test_a_run_that_ended_well_gives_every_answer(answer, case, track, contact, peeq):
-    read_everything(answer, case, track, contact, peeq)
+def test_a_run_that_ended_well_gives_every_answer(answer, case, events, contact, peeq):
+    read_everything(answer, case, events, contact, peeq)
     assert answer.status == 0
     assert answer.peak_force == contact.F_m
     assert answer.time_of_peak_force == 1e-4
@@ -114,25 +114,27 @@ def test_a_run_that_ended_well_gives_every_answer(answer, case, track, contact, 
         ("stronge", 2.69, False, False),
     ],
 )
-def test_flaws_of_the_contact_law_are_marked(answer, make_case, track, law, times, creates, bulges):
+def test_flaws_of_the_contact_law_are_marked(
+    answer, make_case, events, law, times, creates, bulges
+):
     """times: largest indentation over that of first yield."""
     pair = make_pair(make_case(contact=law))
     yield_indentation = (0.75 * np.pi * 1.1 * pair.S_y / pair.E) ** 2 * pair.R
     contact = np.zeros(1, CONTACT)[0]
     load(contact, pair, times * yield_indentation)
-    read_contact(answer, track, contact, pair)
+    read_contact(answer, events, contact, pair)
     assert bool(answer.remarks & remarks.CONTACT_CREATED_ENERGY) == creates
     assert bool(answer.remarks & remarks.CONTACT_LEFT_A_BULGE) == bulges
     assert (answer.permanent_indentation < 0) == bulges
     assert (answer.contact_dissipation < -1e-4 * contact.work) == creates
 
 
-def test_no_remark_on_an_answer_that_is_missing(answer, make_case, track):
+def test_no_remark_on_an_answer_that_is_missing(answer, make_case, events):
     pair = make_pair(make_case(contact="stronge"))
     contact = np.zeros(1, CONTACT)[0]
     load(contact, pair, 1.5 * (0.75 * np.pi * 1.1 * pair.S_y / pair.E) ** 2 * pair.R)
-    track.touching = 1
-    read_contact(answer, track, contact, pair)
+    events.touching = 1
+    read_contact(answer, events, contact, pair)
     assert answer.remarks == 0
 
 
@@ -146,11 +148,11 @@ UNFINISHED = {
 
 @pytest.mark.parametrize(("changes", "bits"), UNFINISHED.values(), ids=UNFINISHED)
 def test_what_is_missing_is_what_the_status_explains(
-    answer, case, track, contact, peeq, changes, bits
+    answer, case, events, contact, peeq, changes, bits
 ):
     for name, value in changes.items():
-        track[name] = value
-    read_everything(answer, case, track, contact, peeq)
+        events[name] = value
+    read_everything(answer, case, events, contact, peeq)
     assert answer.status == bits
     flags = {bit: name.lower() for name, bit in vars(status).items() if name.isupper()}
     expected = {
@@ -172,29 +174,29 @@ def split(bits):
     ids=["up and away", "down", "up, the beam faster", "at rest"],
 )
 def test_the_rebound_is_over_once_the_sphere_moves_up_and_away(
-    answer, case, track, v_s, v_mid, leaves
+    answer, case, events, v_s, v_mid, leaves
 ):
-    track.v_s, track.v_mid = v_s, v_mid
-    read_rebound(answer, case, track)
+    events.v_s, events.v_mid = v_s, v_mid
+    read_rebound(answer, case, events)
     assert np.isfinite(answer.rebound_velocity) == leaves
     assert answer.status == (0 if leaves else status.SPHERE_NOT_LEAVING)
 
 
-def test_strains_of_the_beam(answer, case, track, peeq):
+def test_strains_of_the_beam(answer, case, events, peeq):
     """The peak in any fibre; the remote one farther than a depth (2.78 DX) from mid-span."""
     peeq[MID - 3, 0] = 3e-3
     peeq[MID - 2, 1] = 9e-3
     peeq[MID, 0] = 7e-3
-    read_beam(answer, case, track, peeq, GRID, 0.0)
+    read_beam(answer, case, events, peeq, GRID, 0.0)
     assert answer.peak_plastic_strain == 9e-3
     assert answer.remote_plastic_strain == 3e-3
 
 
-def test_plastic_zone_is_measured_between_the_nodes(answer, case, track, peeq):
+def test_plastic_zone_is_measured_between_the_nodes(answer, case, events, peeq):
     """PEEQ linear in x around mid-span, zero from 6 DX on either side."""
     slope = 4e-5
     peeq[: MID + 1, 0] = slope * np.maximum(6.0 - np.arange(MID, -1, -1), 0)
-    read_beam(answer, case, track, peeq, GRID, 0.0)
+    read_beam(answer, case, events, peeq, GRID, 0.0)
     reaches = 6.0 - PLASTIC_ZONE_STRAIN / slope
     assert answer.plastic_zone_length == pytest.approx(2 * reaches * DX, rel=1e-12)
     assert PLASTIC_ZONE_STRAIN == 1e-5  # as dataset.py tells the reader

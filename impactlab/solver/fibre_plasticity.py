@@ -19,7 +19,7 @@ from impactlab.solver.section import FAR, Section, bend, tangent
 from impactlab.solver.types import ONE, TWO, Array, Index
 
 
-class Yielding(NamedTuple):
+class PlasticState(NamedTuple):
     """What each section remembers; indices as in beam.py.
 
     M_0 (N m) and kappa_min, kappa_max (1/m): the elastic interval, (n + 4,); without limits in a
@@ -39,10 +39,10 @@ class Yielding(NamedTuple):
 
 
 @allocating
-def make_yielding(grid: Grid, section: Section) -> Yielding:
+def make_plastic_state(grid: Grid, section: Section) -> PlasticState:
     """Sections never yielded."""
     size, fibres = grid.mid + 3, section.z.size
-    return Yielding(
+    return PlasticState(
         np.zeros(size),
         np.full(size, -section.yield_curvature),
         np.full(size, section.yield_curvature),
@@ -105,23 +105,27 @@ def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: Grid) -
 
 @compiled
 def leave_tangents(
-    beam: Beam, now: int, psi: Array, held: Yielding, section: Section, grid: Grid
+    beam: Beam, now: int, psi: Array, plastic_state: PlasticState, section: Section, grid: Grid
 ) -> None:
     """Bend the sections that follow_tangents has left, before the beam makes its step."""
     k = np.uint64(1)
-    while k <= held.on_tangent[0]:
-        i = held.on_tangent[k]
-        if held.tangent[i, 0] == 0.0:
+    while k <= plastic_state.on_tangent[0]:
+        i = plastic_state.on_tangent[k]
+        if plastic_state.tangent[i, 0] == 0.0:
             kappa = curvature(beam.w, now, psi, grid, i)
-            M_0, held.kappa_min[i], held.kappa_max[i] = bend(
-                section, held.tangent[i, 3], held.plastic_strain, held.peeq, i
+            M_0, plastic_state.kappa_min[i], plastic_state.kappa_max[i] = bend(
+                section,
+                plastic_state.tangent[i, 3],
+                plastic_state.plastic_strain,
+                plastic_state.peeq,
+                i,
             )
-            if held.kappa_min[i] <= kappa <= held.kappa_max[i]:
-                _add_moment(beam.plastic, held.M_0, i, M_0 - held.M_0[i], grid)
-                held.on_tangent[k] = held.on_tangent[held.on_tangent[0]]
-                held.on_tangent[0] -= ONE
+            if plastic_state.kappa_min[i] <= kappa <= plastic_state.kappa_max[i]:
+                _add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
+                plastic_state.on_tangent[k] = plastic_state.on_tangent[plastic_state.on_tangent[0]]
+                plastic_state.on_tangent[0] -= ONE
                 continue
-            _begin_tangent(beam, held, section, grid, i, kappa)
+            _begin_tangent(beam, plastic_state, section, grid, i, kappa)
         k += ONE
 
 
@@ -131,7 +135,7 @@ def begin_tangents(
     now: int,
     psi: Array,
     outside: float,
-    held: Yielding,
+    plastic_state: PlasticState,
     section: Section,
     grid: Grid,
     u: Array,
@@ -146,37 +150,45 @@ def begin_tangents(
     while outside > 0.0 and i > TWO:  # from mid-span, near which they most often are
         i -= ONE
         kappa = curvature(beam.w, now, psi, grid, i)
-        if kappa > held.kappa_max[i] or kappa < held.kappa_min[i]:
+        if kappa > plastic_state.kappa_max[i] or kappa < plastic_state.kappa_min[i]:
             outside -= 1.0
             near = (beam.plastic[i - ONE], beam.plastic[i], beam.plastic[i + ONE])
-            _begin_tangent(beam, held, section, grid, i, kappa)
+            _begin_tangent(beam, plastic_state, section, grid, i, kappa)
             for j in range(max(i - ONE, TWO), i + TWO):  # the support does not move
                 change = beam.plastic[j] - near[j + ONE - i]
                 u[j] += change
                 if w.size > 0:
                     w[j] += change
-            held.on_tangent[0] += ONE
-            held.on_tangent[held.on_tangent[0]] = i
+            plastic_state.on_tangent[0] += ONE
+            plastic_state.on_tangent[plastic_state.on_tangent[0]] = i
     return int(i)
 
 
 @compiled
 def _begin_tangent(
-    beam: Beam, held: Yielding, section: Section, grid: Grid, i: Index, kappa: float
+    beam: Beam, plastic_state: PlasticState, section: Section, grid: Grid, i: Index, kappa: float
 ) -> None:
     """Bend section i out of its elastic interval to kappa, where its tangent begins."""
-    direction = 1.0 if kappa > held.kappa_max[i] else -1.0
-    M_0, _, _ = bend(section, kappa, held.plastic_strain, held.peeq, i)
-    _add_moment(beam.plastic, held.M_0, i, M_0 - held.M_0[i], grid)
-    growth, limit = tangent(section, kappa, direction, held.plastic_strain, held.peeq, i)
-    line = held.tangent[i]
+    direction = 1.0 if kappa > plastic_state.kappa_max[i] else -1.0
+    M_0, _, _ = bend(section, kappa, plastic_state.plastic_strain, plastic_state.peeq, i)
+    _add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
+    growth, limit = tangent(
+        section, kappa, direction, plastic_state.plastic_strain, plastic_state.peeq, i
+    )
+    line = plastic_state.tangent[i]
     line[0], line[1], line[2], line[3] = direction, growth, limit, kappa
-    held.kappa_min[i], held.kappa_max[i] = -FAR, FAR
+    plastic_state.kappa_min[i], plastic_state.kappa_max[i] = -FAR, FAR
 
 
 @compiled
-def catch_up(held: Yielding, section: Section) -> None:
+def catch_up(plastic_state: PlasticState, section: Section) -> None:
     """Bring the fibres of the sections on a tangent up to date."""
-    for k in range(ONE, held.on_tangent[0] + ONE):
-        i = held.on_tangent[k]
-        bend(section, held.tangent[i, 3], held.plastic_strain, held.peeq, i)
+    for k in range(ONE, plastic_state.on_tangent[0] + ONE):
+        i = plastic_state.on_tangent[k]
+        bend(
+            section,
+            plastic_state.tangent[i, 3],
+            plastic_state.plastic_strain,
+            plastic_state.peeq,
+            i,
+        )

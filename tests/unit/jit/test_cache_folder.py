@@ -9,7 +9,7 @@ from pathlib import Path
 import numba
 import pytest
 
-from impactlab.jit import folder as cache
+from impactlab.jit import cache
 
 SOURCES, OTHERS = 64 * "a", 64 * "b"
 

@@ -7,7 +7,7 @@ import numpy as np
 from impactlab.solver.jit import compiled
 from impactlab.solver.types import Record
 
-TRACK = np.dtype(
+EVENTS = np.dtype(
     (
         np.record,
         [
@@ -43,13 +43,13 @@ energy_error: largest imbalance over the initial energy."""
 
 
 @compiled
-def start(track: Record) -> None:
+def start(events: Record) -> None:
     """First touch: the sphere rests on the beam at t = 0."""
-    track.contacts = 1.0
-    track.touching = 1.0
-    track.t_first_end = np.nan
-    track.v_exit = np.nan
-    track.t_peak = np.nan
+    events.contacts = 1.0
+    events.touching = 1.0
+    events.t_first_end = np.nan
+    events.v_exit = np.nan
+    events.t_peak = np.nan
 
 
 @compiled
@@ -63,14 +63,14 @@ def vertex(before: float, here: float, after: float) -> tuple[float, float]:
 
 
 @compiled
-def passed_peak(track: Record, delta: float, delta_m: float) -> bool:
+def passed_peak(events: Record, delta: float, delta_m: float) -> bool:
     """Whether the largest indentation so far lies between the last two steps and this one."""
-    return track.delta == delta_m and delta < track.delta and track.delta >= track.delta_before
+    return events.delta == delta_m and delta < events.delta and events.delta >= events.delta_before
 
 
 @compiled
-def watch(
-    track: Record,
+def update_events(
+    events: Record,
     delta: float,
     delta_r: float,
     w: float,
@@ -80,42 +80,42 @@ def watch(
     dt: float,
 ) -> None:
     """Note what happened in the step that ends at t."""
-    watch_contact(track, delta, delta_r, v_s, t, dt)
-    watch_deflection(track, w)
-    shift(track, delta, w, F, dt)
+    update_contact(events, delta, delta_r, v_s, t, dt)
+    update_deflection(events, w)
+    shift(events, delta, w, F, dt)
 
 
 @compiled
-def watch_contact(
-    track: Record, delta: float, delta_r: float, v_s: float, t: float, dt: float
+def update_contact(
+    events: Record, delta: float, delta_r: float, v_s: float, t: float, dt: float
 ) -> None:
     """Note where, in the step that ends at t, a contact ended or a new one began."""
-    gap_before, gap = delta_r - track.delta, delta_r - delta
-    if track.touching == 1.0 and gap >= 0.0 and t > 0.0:
+    gap_before, gap = delta_r - events.delta, delta_r - delta
+    if events.touching == 1.0 and gap >= 0.0 and t > 0.0:
         end = t - dt * gap / (gap - gap_before)
-        track.touching = 0.0
-        track.time_in_contact += end - track.t_touch
-        track.v_exit = v_s
-        if np.isnan(track.t_first_end):
-            track.t_first_end = end
-    elif track.touching == 0.0 and gap < 0.0:
-        track.t_touch = t - dt * gap / (gap - gap_before)
-        track.touching = 1.0
-        track.contacts += 1.0
+        events.touching = 0.0
+        events.time_in_contact += end - events.t_touch
+        events.v_exit = v_s
+        if np.isnan(events.t_first_end):
+            events.t_first_end = end
+    elif events.touching == 0.0 and gap < 0.0:
+        events.t_touch = t - dt * gap / (gap - gap_before)
+        events.touching = 1.0
+        events.contacts += 1.0
 
 
 @compiled
-def watch_deflection(track: Record, w: float) -> None:
+def update_deflection(events: Record, w: float) -> None:
     """Note a largest mid-span deflection that lies between the last two steps and this one."""
-    if track.w > track.w_before and w <= track.w:
-        _, value = vertex(track.w_before, track.w, w)
-        track.w_max = max(track.w_max, value)
+    if events.w > events.w_before and w <= events.w:
+        _, value = vertex(events.w_before, events.w, w)
+        events.w_max = max(events.w_max, value)
 
 
 @compiled
-def shift(track: Record, delta: float, w: float, F: float, dt: float) -> None:
+def shift(events: Record, delta: float, w: float, F: float, dt: float) -> None:
     """This step becomes the last one."""
-    track.impulse += 0.5 * dt * (track.F + F)
-    track.delta_before, track.delta = track.delta, delta
-    track.w_before, track.w = track.w, w
-    track.F = F
+    events.impulse += 0.5 * dt * (events.F + F)
+    events.delta_before, events.delta = events.delta, delta
+    events.w_before, events.w = events.w, w
+    events.F = F

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from impactlab.solver.beam import make_beam, make_grid, move, move_virgin, strike
-from impactlab.solver.section import bend, make_section
-from impactlab.solver.yielding import (
+from impactlab.solver.fibre_plasticity import (
     begin_tangents,
     catch_up,
     follow_tangents,
     leave_tangents,
-    make_yielding,
+    make_plastic_state,
 )
+from impactlab.solver.section import bend, make_section
 
 N = 12
 GRID = make_grid(N, 0.02, 1e-6, 13.0, 2e4)
@@ -57,16 +57,25 @@ def bent(kappa):
     return w
 
 
-def step(beam, held, section, now):
+def step(beam, plastic_state, section, now):
     """What the time loop does."""
     if follow_tangents(
-        beam.w, now, NONE, beam.plastic, held.M_0, held.on_tangent, held.tangent, GRID
+        beam.w,
+        now,
+        NONE,
+        beam.plastic,
+        plastic_state.M_0,
+        plastic_state.on_tangent,
+        plastic_state.tangent,
+        GRID,
     ):
-        leave_tangents(beam, now, NONE, held, section, GRID)
-    intervals = (held.kappa_min, held.kappa_max)
+        leave_tangents(beam, now, NONE, plastic_state, section, GRID)
+    intervals = (plastic_state.kappa_min, plastic_state.kappa_max)
     outside = move(beam.w, now, beam.u, beam.plastic, *intervals, 2, GRID)
     if outside:
-        begin_tangents(beam, now, NONE, outside, held, section, GRID, beam.u, beam.w[1 - now])
+        begin_tangents(
+            beam, now, NONE, outside, plastic_state, section, GRID, beam.u, beam.w[1 - now]
+        )
     return outside
 
 
@@ -82,31 +91,39 @@ def path(section, steps=400):
 
 
 def test_moments_and_fibres_are_those_of_bending_at_every_step(section):
-    beam, held, every = make_beam(GRID), make_yielding(GRID, section), EverySection(section)
+    beam, plastic_state, every = (
+        make_beam(GRID),
+        make_plastic_state(GRID, section),
+        EverySection(section),
+    )
     seen = set()
     for count, kappa in enumerate(path(section)):
         now = count % 2
         beam.w[now] = bent(kappa)
         # the time loop's own differences, with their rounding
         kappa = np.concatenate([[0], np.diff(beam.w[now], 2), [0]]) * GRID.per_dx2
-        seen.add(int(held.on_tangent[0]))
-        step(beam, held, section, now)
+        seen.add(int(plastic_state.on_tangent[0]))
+        step(beam, plastic_state, section, now)
         M_0 = every.moments(kappa)
         scale = section.stiffness * section.yield_curvature
-        assert held.M_0[INNER] == pytest.approx(M_0[INNER], rel=1e-9, abs=1e-9 * scale)
+        assert plastic_state.M_0[INNER] == pytest.approx(M_0[INNER], rel=1e-9, abs=1e-9 * scale)
         share = GRID.factor * np.diff(M_0, 2)[1:MID]
         assert beam.plastic[INNER] == pytest.approx(share, rel=1e-9, abs=1e-9 * GRID.factor * scale)
     assert len(seen) > 5  # sections come and go
-    catch_up(held, section)
+    catch_up(plastic_state, section)
     limit = section.moduli.S_y / section.moduli.E
-    assert held.peeq == pytest.approx(every.peeq, rel=1e-9, abs=1e-9 * limit)
-    assert held.plastic_strain == pytest.approx(every.plastic, rel=1e-9, abs=1e-9 * limit)
+    assert plastic_state.peeq == pytest.approx(every.peeq, rel=1e-9, abs=1e-9 * limit)
+    assert plastic_state.plastic_strain == pytest.approx(every.plastic, rel=1e-9, abs=1e-9 * limit)
     assert np.all(every.peeq[INNER, 0] > 0)
 
 
 def test_the_step_is_that_of_the_moments_after_bending(section):
     """u and w take the new moments, also of sections that left their interval in this step."""
-    beam, held, every = make_beam(GRID), make_yielding(GRID, section), EverySection(section)
+    beam, plastic_state, every = (
+        make_beam(GRID),
+        make_plastic_state(GRID, section),
+        EverySection(section),
+    )
     for now, share in ((0, 2.0), (1, 2.5), (0, 1.0), (1, -3.0)):
         kappa = share * section.yield_curvature * np.cos(np.arange(MID + 3.0))
         beam.w[now] = bent(kappa)
@@ -114,7 +131,7 @@ def test_the_step_is_that_of_the_moments_after_bending(section):
         beam.w[now, 0] = -beam.w[now, 2]
         kappa = np.concatenate([[0], np.diff(beam.w[now], 2), [0]]) * GRID.per_dx2
         before = beam.u.copy()
-        step(beam, held, section, now)
+        step(beam, plastic_state, section, now)
         M = every.moments(kappa) - GRID.stiffness / GRID.factor / GRID.per_dx2 * kappa
         M[1] = 0.0
         expected = before[INNER] + GRID.factor * np.diff(M, 2)[1:MID]
@@ -126,28 +143,28 @@ def test_the_step_is_that_of_the_moments_after_bending(section):
 
 
 def test_a_section_on_its_tangent_leaves_its_fibres_until_asked(section):
-    beam, held = make_beam(GRID), make_yielding(GRID, section)
+    beam, plastic_state = make_beam(GRID), make_plastic_state(GRID, section)
     kappa = np.zeros(MID + 3)
     for count, share in enumerate((1.02, 1.04, 1.06)):
         kappa[MID] = share * section.yield_curvature
         beam.w[count % 2] = bent(kappa)
-        step(beam, held, section, count % 2)
+        step(beam, plastic_state, section, count % 2)
         if count == 0:
-            first = held.peeq[MID].copy()
-    assert held.on_tangent[0] == 1
-    assert held.on_tangent[1] == MID
-    assert np.array_equal(held.peeq[MID], first)
-    catch_up(held, section)
-    assert held.peeq[MID, 0] > first[0]
+            first = plastic_state.peeq[MID].copy()
+    assert plastic_state.on_tangent[0] == 1
+    assert plastic_state.on_tangent[1] == MID
+    assert np.array_equal(plastic_state.peeq[MID], first)
+    catch_up(plastic_state, section)
+    assert plastic_state.peeq[MID, 0] > first[0]
 
 
 def test_virgin_and_yielded_steps_agree_where_nothing_yields(section):
     values = 1e-9 * np.sin(np.arange(MID + 3.0))
-    one, other, held = make_beam(GRID), make_beam(GRID), make_yielding(GRID, section)
+    one, other, plastic_state = make_beam(GRID), make_beam(GRID), make_plastic_state(GRID, section)
     for beam in (one, other):
         beam.w[0] = values
     assert move_virgin(one.w, 0, one.u, 2, MID + 1, GRID, section.yield_curvature) == 0
-    assert step(other, held, section, 0) == 0
+    assert step(other, plastic_state, section, 0) == 0
     for beam in (one, other):
         strike(beam.w, 0, beam.u, 3.0, GRID)
     assert one.w == pytest.approx(other.w, rel=1e-14)
