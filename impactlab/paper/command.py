@@ -1,4 +1,4 @@
-"""The answer to the paper."""
+"""The command that answers the paper."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ def paper(
         list[Path],
         typer.Argument(metavar="RESULTS...", help="results/NAME of each study of the paper."),
     ],
-    output: Annotated[Path, typer.Option(help="A folder.")] = RESULTS / "paper",
+    output: Annotated[Path, typer.Option(help="The folder to write to.")] = RESULTS / "paper",
 ) -> None:
-    """Answer the paper: its figures, its statements tested.
+    """Draw the paper's figures and test its statements.
 
-    A study that is not there leaves its figures out, and its statements unjudged.
+    A missing study leaves its figures out and its statements unjudged.
     """
-    from impactlab.paper.answer import read_solved, write_paper
+    from impactlab.paper.page import write_paper
 
-    write_paper(read_solved(folders), output)
+    write_paper(folders, output)

@@ -1,10 +1,11 @@
-"""Judged statements as tables: for the page, and as CSV."""
+"""The answer to the paper: its figures, claims.html, claims.csv and numbers.csv in one folder."""
 
 from __future__ import annotations
 
 import csv
+import logging
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,66 +16,124 @@ from impactlab.figures import labels
 from impactlab.figures.access import count
 from impactlab.figures.files import replaced
 from impactlab.figures.labels import Display, display
-from impactlab.paper.statements.catalogue import Claim
-from impactlab.paper.statements.claim import Judgement, Number, Verdict
+from impactlab.paper.figures import Stored, draw_paper
+from impactlab.paper.statements import judge_all
+from impactlab.paper.statements.statement import (
+    Data,
+    JudgedStatement,
+    Judgement,
+    Number,
+    Statement,
+    Verdict,
+)
+from impactlab.report import provenance
+from impactlab.report.page import write_page
+from impactlab.report.pictures import pictures
 from impactlab.report.table import Cell, Table
+from impactlab.study.netcdf import read_netcdf
+from impactlab.variables import provenance as made_now
 
-_PERCENT = ("error of", "PEEQ", "jump of")
-"""Beginnings of the names of numbers that are told in %."""
-_BAD = (Verdict.FAILS, Verdict.UNKNOWN)
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class Section:
     """One statement on the page."""
 
-    claim: Claim
+    statement: Statement
     table: Table
 
 
-def section(claim: Claim) -> Section:
-    """A statement with a row a case."""
+def write_paper(folders: Sequence[Path], output: Path) -> None:
+    """Draw the figures, judge the statements, and write both to the folder `output`.
+
+    folders: runs.nc and analysis.nc of one study each, under the study's name. Raises OSError
+    where a file cannot be read or written.
+    """
+    stored = _read_studies(folders)
+    runs = {name: runs for name, (runs, _) in stored.items()}
+    judged = judge_all(runs)
+    statements = [entry for entry in judged if not entry.statement.holds]
+    misprints = [entry for entry in judged if entry.statement.holds]
+    draw_paper(stored, output / "figures")
+    write_csv(judged, output / "claims.csv")
+    write_numbers(judged, output / "numbers.csv")
+    write_page(
+        "claims.html.j2",
+        output / "claims.html",
+        overviews=[_overview(statements), _misprints(misprints)],
+        statements=[_section(entry) for entry in statements],
+        misprints=[_section(entry) for entry in misprints],
+        pictures=pictures(output / "figures"),
+        tally=_tally(statements),
+        solved=_solved(runs),
+        provenance=provenance.provenance(xr.Dataset(attrs=made_now()), "page"),
+    )
+
+
+def _read_studies(folders: Sequence[Path]) -> Stored:
+    stored: dict[str, tuple[xr.Dataset, xr.Dataset]] = {}
+    for folder in folders:
+        paths = folder / "runs.nc", folder / "analysis.nc"
+        if all(path.exists() for path in paths):
+            stored[folder.name] = (read_netcdf(paths[0]), read_netcdf(paths[1]))
+        else:
+            log.warning("%s holds no runs.nc with an analysis.nc: it is left out", folder)
+    return stored
+
+
+def _section(entry: JudgedStatement) -> Section:
+    """Return a statement with one row per case."""
     head = ["Case or reading", "Our number", "Verdict", "Why"]
     rows = [
         [
-            Cell(entry.case),
-            Cell("; ".join(map(_told, entry.numbers)) or "–"),
-            _verdict(entry),
-            Cell(entry.why),
+            Cell(judgement.case),
+            Cell(_numbers_text(judgement) or "–"),
+            Cell(str(judgement.verdict), _class(judgement.verdict)),
+            Cell(judgement.why),
         ]
-        for entry in claim.judgements
+        for judgement in entry.judgements
     ]
-    return Section(claim, Table("Judged cases", head, rows))
+    return Section(entry.statement, Table("Judged cases", head, rows))
 
 
-def overview(caption: str, claims: Sequence[Claim]) -> Table:
-    """A row a statement: how many of its cases came to which verdict."""
+def _class(verdict: Verdict) -> str:
+    return "warning" if verdict in (Verdict.FAILS, Verdict.UNKNOWN) else ""
+
+
+def _overview(judged: Sequence[JudgedStatement]) -> Table:
+    """Return one row per statement: the number of its cases with each verdict."""
     head = ["Statement of the paper", *(labels.sentence(verdict) for verdict in Verdict)]
     rows = []
-    for claim in claims:
-        found = Counter(entry.verdict for entry in claim.judgements)
-        rows.append([Cell(claim.says), *(Cell(str(found[v] or "–"), "number") for v in Verdict)])
-    return Table(f"{caption}: number of cases or readings with each verdict", head, rows)
+    for entry in judged:
+        counts = Counter(judgement.verdict for judgement in entry.judgements)
+        cells = (Cell(str(counts[verdict] or "–"), "number") for verdict in Verdict)
+        rows.append([Cell(entry.statement.text), *cells])
+    return Table("Statements: number of cases or readings with each verdict", head, rows)
 
 
-def misprints(claims: Sequence[Claim]) -> Table:
-    """A row a misprint: what is printed, what holds, and what the check says of the print."""
-    head = ["Printed, or left open", "Holds", "The check of it"]
+def _misprints(judged: Sequence[JudgedStatement]) -> Table:
+    """Return one row per misprint: the print, what holds, and the verdict on the print."""
+    head = ["Printed, or left open", "What holds", "Verdict on the print"]
     rows = [
-        [Cell(claim.says), Cell(claim.holds), Cell(claim.judgements[0].verdict, detail=claim.name)]
-        for claim in claims
+        [
+            Cell(entry.statement.text),
+            Cell(entry.statement.holds),
+            Cell(entry.judgements[0].verdict, detail=entry.statement.name),
+        ]
+        for entry in judged
     ]
     return Table("Misprints and open points of the paper", head, rows)
 
 
-def tally(claims: Iterable[Claim]) -> list[tuple[int, str]]:
-    """How many cases came to each verdict."""
-    found = Counter(entry.verdict for claim in claims for entry in claim.judgements)
-    return [(found[verdict], str(verdict)) for verdict in Verdict]
+def _tally(judged: Iterable[JudgedStatement]) -> list[tuple[int, str]]:
+    """Return the number of cases with each verdict."""
+    counts = Counter(judgement.verdict for entry in judged for judgement in entry.judgements)
+    return [(counts[verdict], str(verdict)) for verdict in Verdict]
 
 
-def solved(data: Mapping[str, xr.Dataset]) -> Table:
-    """A row a study that the page takes: its runs, and where they come from."""
+def _solved(data: Data) -> Table:
+    """Return one row per study: its runs, and where they come from."""
     head = ["Study", "Title", "Runs", "Solved", "Source revision"]
     rows = [
         [
@@ -89,33 +148,40 @@ def solved(data: Mapping[str, xr.Dataset]) -> Table:
     return Table("Studies that the verdicts are computed from", head, rows)
 
 
-def write_csv(claims: Iterable[Claim], path: Path) -> None:
-    """A row a judgement, numbers in words."""
+def write_csv(judged: Iterable[JudgedStatement], path: Path) -> None:
+    """Write one row per judgement, with its numbers as text."""
     head = ["claim", "statement", "case", "test", "numbers", "verdict", "why"]
     rows = (
         [
-            claim.name,
-            claim.says,
-            entry.case,
-            claim.test,
-            "; ".join(map(_told, entry.numbers)),
-            str(entry.verdict),
-            entry.why,
+            entry.statement.name,
+            entry.statement.text,
+            judgement.case,
+            entry.statement.test,
+            _numbers_text(judgement),
+            str(judgement.verdict),
+            judgement.why,
         ]
-        for claim in claims
-        for entry in claim.judgements
+        for entry in judged
+        for judgement in entry.judgements
     )
     _write(path, head, rows)
 
 
-def write_numbers(claims: Iterable[Claim], path: Path) -> None:
-    """A row a number, in SI units; an uncertainty that is not known is "nan"."""
+def write_numbers(judged: Iterable[JudgedStatement], path: Path) -> None:
+    """Write one row per number, in SI units; an unknown uncertainty is "nan"."""
     head = ["claim", "case", "number", "value", "uncertainty", "units"]
     rows = (
-        [claim.name, entry.case, n.name, f"{n.value:.9g}", f"{n.uncertainty:.3g}", n.units]
-        for claim in claims
-        for entry in claim.judgements
-        for n in entry.numbers
+        [
+            entry.statement.name,
+            judgement.case,
+            number.name,
+            f"{number.value:.9g}",
+            f"{number.uncertainty:.3g}",
+            number.units,
+        ]
+        for entry in judged
+        for judgement in entry.judgements
+        for number in judgement.numbers
     )
     _write(path, head, rows)
 
@@ -128,12 +194,12 @@ def _write(path: Path, head: list[str], rows: Iterable[list[str]]) -> None:
         writer.writerows(rows)
 
 
-def _verdict(entry: Judgement) -> Cell:
-    return Cell(str(entry.verdict), "warning" if entry.verdict in _BAD else "")
+def _numbers_text(judgement: Judgement) -> str:
+    return "; ".join(map(_number_text, judgement.numbers))
 
 
-def _told(number: Number) -> str:
-    """Name, value and uncertainty: "peak force: 12.34 ± 0.11 kN"."""
+def _number_text(number: Number) -> str:
+    """Return name, value and uncertainty: "peak force: 12.34 ± 0.11 kN"."""
     unit = _unit(number)
     value, width = float(unit(number.value)), float(unit(number.uncertainty))
     text = labels.number(value, _digits(value, width))
@@ -143,13 +209,13 @@ def _told(number: Number) -> str:
 
 
 def _unit(number: Number) -> Display:
-    if number.units == "1" and number.name.startswith(_PERCENT):
+    if number.percent:
         return Display(100.0, "%")
     return display(xr.DataArray([number.value], attrs={"units": number.units}))
 
 
 def _digits(value: float, width: float) -> int:
-    """Significant digits down to the second of the uncertainty, 2 to 5."""
+    """Return the significant digits down to the second of the uncertainty, 2 to 5."""
     if not (value and width and np.isfinite(value) and np.isfinite(width)):
         return 5
     value_power, width_power = np.floor(np.log10([abs(value), width]))

@@ -1,29 +1,63 @@
-"""Numbers out of solved studies, each with its uncertainty from the convergence in nodes."""
+"""Numbers from solved studies, each with its uncertainty from the convergence in nodes."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
+from numpy.typing import NDArray
 
 from impactlab.analysis.convergence.axis import judge
 from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL
 from impactlab.analysis.responses import relevant_bits
-from impactlab.paper.statements.claim import Data, Number, UnknownError
+from impactlab.paper.statements.statement import Data, Number, UnknownError
 from impactlab.variables import RESPONSES, reasons
+
+Floats = NDArray[np.float64]
+BEAM = "euler_bernoulli"
+"""The paper's beam, among `beam_model`."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A response against the velocity.
+
+    velocity (m/s, ascending), value and uncertainty (SI): each of shape (velocities,).
+    """
+
+    velocity: Floats
+    value: Floats
+    uncertainty: Floats
+
+    @property
+    def low(self) -> Floats:
+        """The smallest values that the uncertainty allows."""
+        return self.value - self.uncertainty
+
+    @property
+    def high(self) -> Floats:
+        """The largest values that the uncertainty allows."""
+        return self.value + self.uncertainty
+
+    def number(self, at: int, name: str, units: str) -> Number:
+        """Return the value at one velocity, given by its index."""
+        return Number(name, float(self.value[at]), units, float(self.uncertainty[at]))
 
 
 def runs_of(data: Data, study: str) -> xr.Dataset:
-    """The runs of a study. Raises UnknownError where there are none."""
+    """Return the runs of a study. Raises UnknownError where there are none."""
     if study not in data:
         raise UnknownError(f"the study {study} has not been solved")
     return data[study]
 
 
-def answers(runs: xr.Dataset, response: str, **where: Any) -> xr.DataArray:
-    """A response at the labels `where`. Raises UnknownError, saying why, where a run lacks it."""
+def select_response(runs: xr.Dataset, response: str, **where: Any) -> xr.DataArray:
+    """Return a response at the labels `where`.
+
+    Raises UnknownError, with the reasons, where a run lacks it.
+    """
     try:
         chosen = runs[[response, "status"]].sel(where)
     except KeyError as error:
@@ -32,13 +66,13 @@ def answers(runs: xr.Dataset, response: str, **where: Any) -> xr.DataArray:
     bits = chosen["status"].values & relevant_bits(response)
     gaps = (bits != 0) | ~np.isfinite(chosen[response].values)
     if gaps.any():
-        said = reasons(int(np.bitwise_or.reduce(np.ravel(bits)))) or ["no reason is recorded"]
-        raise UnknownError(f"{int(gaps.sum())} of {gaps.size} runs lack it: {'; '.join(said)}")
+        found = reasons(int(np.bitwise_or.reduce(np.ravel(bits)))) or ["no reason is recorded"]
+        raise UnknownError(f"{int(gaps.sum())} of {gaps.size} runs lack it: {'; '.join(found)}")
     return chosen[response]
 
 
-def number(runs: xr.Dataset, response: str, **where: Any) -> Number:
-    """A response on the finest grid, with its uncertainty; see `uncertainty`.
+def finest_grid(runs: xr.Dataset, response: str, **where: Any) -> Number:
+    """Return a response on the finest grid with its uncertainty; see `grid_uncertainty`.
 
     where: a label for every varied parameter but `nodes`. Raises UnknownError where a run of the
     grids is missing.
@@ -46,25 +80,52 @@ def number(runs: xr.Dataset, response: str, **where: Any) -> Number:
     if "nodes" not in runs.dims:
         study = runs.attrs.get("study", "?")
         raise UnknownError(f"the study {study} does not vary the nodes: no uncertainty is known")
-    values = answers(runs, response, **where).sortby("nodes", ascending=False)
-    found = values.values.astype(float)
+    by_grid = select_response(runs, response, **where).sortby("nodes", ascending=False)
+    values = by_grid.values.astype(float)
     return Number(
         RESPONSES[response].long_name,
-        float(found[0]),
+        float(values[0]),
         RESPONSES[response].units,
-        uncertainty(found, values["nodes"].values),
+        grid_uncertainty(values, by_grid["nodes"].values),
     )
 
 
-def uncertainty(values: npt.NDArray[np.float64], nodes: npt.NDArray[Any]) -> float:
-    """Half-width about the value on the finest grid: the grid convergence index in its unit.
+def grid_uncertainty(values: Floats, nodes: NDArray[Any]) -> float:
+    """Return the half-width about the value on the finest grid, in the unit of the values.
 
-    values, nodes: (grids,), finest first. Where the grids show no convergence, three times the
-    range of the three finest (Eca and Hoekstra's bound for scattered data), so that a value which
-    still grows has an uncertainty of its own size. NaN with fewer than three grids.
+    values, nodes: (grids,), finest first. The half-width is the grid convergence index. Where the
+    grids show no convergence, it is three times the range of the three finest (Eca and Hoekstra's
+    bound for scattered data), so that a value which still grows has an uncertainty of its own
+    size. NaN with fewer than three grids.
     """
     if len(values) < 3:
         return float("nan")
     index = judge(values, 1.0 / (nodes - 1.0)).gci
     scatter = SAFETY_DOUBTFUL * float(np.ptp(values[:3]))
     return float(index * abs(values[0])) if np.isfinite(index) else scatter
+
+
+def response_curve(data: Data, study: str, response: str, **where: Any) -> Curve:
+    """Return a response over the velocities of a study, on the paper's beam unless `where` differs.
+
+    Raises UnknownError where a run or an uncertainty is missing, naming the velocity.
+    """
+    runs = runs_of(data, study)
+    if "beam_model" in runs.dims:
+        where = {"beam_model": BEAM} | where
+    velocities = np.sort(runs["velocity"].values.astype(float))
+    found = [_at_velocity(runs, response, float(velocity), where) for velocity in velocities]
+    values, uncertainties = np.array(found).T
+    return Curve(velocities, values, uncertainties)
+
+
+def _at_velocity(
+    runs: xr.Dataset, response: str, velocity: float, where: dict[str, Any]
+) -> tuple[float, float]:
+    try:
+        number = finest_grid(runs, response, velocity=velocity, **where)
+    except UnknownError as reason:
+        raise UnknownError(f"at {velocity:g} m/s {reason}") from None
+    if np.isnan(number.uncertainty):
+        raise UnknownError(f"at {velocity:g} m/s there are fewer than three grids")
+    return number.value, number.uncertainty

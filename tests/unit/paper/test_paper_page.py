@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from impactlab.paper.answer import read_solved, write_paper
+from impactlab.paper.page import write_paper
 from impactlab.study.netcdf import write_netcdf
 
 Study = Any
@@ -18,7 +18,7 @@ def folder(velocity_study: Study, tmp_path: Path) -> Path:
     runs, analysis = velocity_study
     for name, dataset in (("runs", runs.drop_dims(["time", "x"])), ("analysis", analysis)):
         write_netcdf(dataset, tmp_path / "fig08" / f"{name}.nc")
-    write_paper(read_solved([tmp_path / "fig08", tmp_path / "fig05"]), tmp_path / "paper")
+    write_paper([tmp_path / "fig08", tmp_path / "fig05"], tmp_path / "paper")
     return tmp_path / "paper"
 
 
@@ -34,7 +34,7 @@ def test_page_tables_and_figures(folder: Path) -> None:
     assert "10.929 kg" in text
 
 
-def test_csv_has_a_row_a_judgement(folder: Path) -> None:
+def test_csv_has_one_row_per_judgement(folder: Path) -> None:
     with (folder / "claims.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert {"nodes_suffice", "time_step"} < {row["claim"] for row in rows}

@@ -1,0 +1,55 @@
+"""The checks of misprints show what is wrong, and pass what is right."""
+
+from __future__ import annotations
+
+import pytest
+
+from impactlab.paper.statements import misprints
+from impactlab.paper.statements.statement import Statement, Verdict
+from impactlab.verification.solutions import explicit_beam
+
+HOLDS, READING, FAILS, UNKNOWN = Verdict
+
+
+@pytest.mark.parametrize(
+    ("statement", "expected"),
+    [
+        (misprints.TIME_STEP, [FAILS, HOLDS]),
+        (misprints.UNLOADING_RADIUS, [UNKNOWN, HOLDS, FAILS]),
+        (misprints.ELASTIC_PHASE, [FAILS, HOLDS]),
+        (misprints.FULLY_PLASTIC, [FAILS, HOLDS]),
+        (misprints.BEAM_MASS, [FAILS]),
+        (misprints.FEW_POINTS, [FAILS] * 4),
+        (misprints.RESTITUTION, [FAILS]),
+    ],
+)
+def test_verdicts(statement: Statement, expected: list[Verdict]) -> None:
+    assert [entry.verdict for entry in statement.judge({})] == expected
+
+
+def test_the_numbers_of_physics() -> None:
+    numbers = {
+        (statement.name, n.name): n.value
+        for statement in (misprints.FEW_POINTS, misprints.BEAM_MASS, misprints.TIME_STEP)
+        for n in next(iter(statement.judge({}))).numbers
+    }
+    assert numbers["few_points", "stiffness over the exact one"] == pytest.approx(3.0)
+    assert numbers["beam_mass", "ρ B H L"] == pytest.approx(10.148, abs=1e-3)
+    assert numbers["time_step", "ω dt"] > 20.0
+
+
+def test_a_right_mass_would_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(misprints, "PRINTED_MASS", 10.15)
+    assert [entry.verdict for entry in misprints.BEAM_MASS.judge({})] == [HOLDS]
+
+
+def test_a_stable_rule_would_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(explicit_beam, "bar_wave_step", explicit_beam.bending_step)
+    assert [entry.verdict for entry in misprints.TIME_STEP.judge({})] == [HOLDS, HOLDS]
+
+
+def test_one_contact_would_pass(grid_runs) -> None:  # type: ignore[no-untyped-def]
+    for count, verdict in ((1.0, HOLDS), (2.0, FAILS)):
+        runs = grid_runs({"velocity": [0.99]}, number_of_contacts=lambda velocity, n=count: n)
+        (found,) = misprints.SUB_IMPACTS.judge({"fig05": runs.assign_coords(duration=5e-3)})
+        assert found.verdict == verdict
