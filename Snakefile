@@ -88,7 +88,7 @@ def code(*patterns):
 MODEL = ("variables.py", "model/*.py")
 SOLVER = (*MODEL, "simulate.py", "solver/**/*.py", "jit/*.py")
 CHECKING = ("study/checking.py", "study/declaration/**/*.py", "study/storage.py")
-FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcome", "stored"))
+FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "stored"))
 REPORTING = ("report/**/*.py", "report/templates/*")
 STUDIES = asked_studies(config.get("studies"))
 PAPER = [*(path.stem for path in sorted(Path("studies").glob("fig*.yaml"))), "witness", "witness_mesh"]

@@ -15,7 +15,7 @@ from impactlab.figures import data, findings_curves, findings_overview, style
 from impactlab.figures.alt import alt
 from impactlab.figures.catalogue import applicable
 from impactlab.figures.files import replaced
-from impactlab.verification.outcome import gravest_first
+from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 
 FORMATS = ("svg", "png")

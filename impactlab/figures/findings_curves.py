@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from impactlab.figures import labels, scales, style
 from impactlab.figures.labels import Display, display
-from impactlab.verification.finding import Curve, Panel
-from impactlab.verification.outcome import Outcome
+from impactlab.verification.finding import Curve, Outcome, Panel
 
 _COLUMNS = 2
 _HEIGHT = 58.0

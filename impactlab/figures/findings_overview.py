@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from impactlab.figures import labels, scales, style
-from impactlab.verification.outcome import Outcome
+from impactlab.verification.finding import Outcome
 
 TITLE = "All comparisons"
 _ROW = 8.0

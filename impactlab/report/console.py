@@ -13,7 +13,7 @@ from rich.table import Column, Table
 
 from impactlab.study.quantities import amount, time
 from impactlab.variables import RESPONSES, marks, reasons, remarked
-from impactlab.verification.outcome import Outcome, gravest_first
+from impactlab.verification.finding import Outcome, gravest_first
 
 if TYPE_CHECKING:
     from impactlab.study.errors import Problem

@@ -15,7 +15,7 @@ from impactlab.report import comparisons, provenance
 from impactlab.report.page import write_page
 from impactlab.report.pictures import Picture, pictures
 from impactlab.report.table import Cell, Table
-from impactlab.verification.outcome import Outcome, gravest_first
+from impactlab.verification.finding import Outcome, gravest_first
 from impactlab.verification.stored import unpacked
 
 _SHORT = 12

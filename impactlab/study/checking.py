@@ -11,8 +11,8 @@ from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.declaration import Verification
 from impactlab.study.progress import Progress
 from impactlab.variables import provenance
-from impactlab.verification.outcome import Outcome
-from impactlab.verification.running import run
+from impactlab.verification.catalogue import run
+from impactlab.verification.finding import Outcome
 from impactlab.verification.stored import packed
 
 log = logging.getLogger(__name__)

@@ -1,23 +1,31 @@
-"""What a check found: numbers beside their independent values, and curves to draw."""
+"""A check, what it finds (numbers beside independent values, curves to draw), and how it ends."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import logging
+import traceback
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from time import perf_counter
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from impactlab.types import Floats
+
+log = logging.getLogger(__name__)
+
+Verdict = Literal["passed", "failed", "error"]
+_GRAVITY = {"error": 0, "failed": 1, "passed": 2}
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """One quantity, ours beside an independent value.
+    """One quantity of the solver beside an independent value.
 
-    ours, independent: in `units` (UDUNITS). error: how far they are apart, in the measure that
-    `measure` names ("relative", "absolute", or such as "of the peak"). tolerance: the largest
-    error that passes. where: the case, in words.
+    ours, independent: in `units` (UDUNITS). error: the difference in the measure that `measure`
+    names ("relative", "absolute", or such as "of the peak"). tolerance: the largest error that
+    passes. where: the case, in words.
     """
 
     quantity: str
@@ -31,12 +39,12 @@ class Comparison:
 
     @property
     def passed(self) -> bool:
-        """Whether the error is within the tolerance; never with a NaN."""
+        """True if the error is within the tolerance; a NaN never is."""
         return bool(abs(self.error) <= self.tolerance)
 
     @property
     def ratio(self) -> float:
-        """The error in tolerances: above 1 it fails; infinite where there is no number."""
+        """Error over tolerance: above 1 the comparison fails; infinite for a NaN."""
         size = abs(self.error)
         if size == 0.0:
             return 0.0
@@ -46,7 +54,7 @@ class Comparison:
 def relative(
     quantity: str, where: str, units: str, ours: float, independent: float, tolerance: float
 ) -> Comparison:
-    """A comparison by the relative difference."""
+    """Compare by the relative difference, which is infinite where the independent value is zero."""
     error = ours / independent - 1.0 if independent else np.inf
     return Comparison(quantity, where, units, ours, independent, error, tolerance)
 
@@ -54,7 +62,7 @@ def relative(
 def absolute(
     quantity: str, where: str, units: str, ours: float, independent: float, tolerance: float
 ) -> Comparison:
-    """A comparison by the difference, in `units`."""
+    """Compare by the difference, in `units`."""
     error = ours - independent
     return Comparison(quantity, where, units, ours, independent, error, tolerance, "absolute")
 
@@ -62,19 +70,19 @@ def absolute(
 def curve(
     quantity: str, where: str, units: str, ours: Floats, independent: Floats, tolerance: float
 ) -> Comparison:
-    """Two curves at the same points, by their largest difference over the largest value.
+    """Compare two curves at the same points by their largest difference over the largest value.
 
-    The values told are those where they differ most.
+    The comparison holds the values at the point where they differ most.
     """
     gap = np.abs(ours - independent)
-    worst = int(np.argmax(np.where(np.isnan(gap), np.inf, gap)))
+    worst = int(np.argmax(gap))  # the first NaN where there is one
     error = float(gap[worst] / np.max(np.abs(independent)))
     values = float(ours[worst]), float(independent[worst])
     return Comparison(quantity, where, units, *values, error, tolerance, "of the largest value")
 
 
 def worst(entries: Sequence[Comparison]) -> Comparison:
-    """The one nearest to failing, for a table that would else be long; a NaN comes first."""
+    """Return the comparison nearest to failing, to shorten a table; a NaN comes first."""
     entry = max(entries, key=lambda entry: entry.ratio)
     return replace(entry, where=f"{entry.where} (the worst of {len(entries)})")
 
@@ -109,5 +117,75 @@ class Finding:
 
     @property
     def passed(self) -> bool:
-        """Whether there is a comparison, and all pass."""
+        """True if there is at least one comparison, and all of them pass."""
         return bool(self.comparisons) and all(entry.passed for entry in self.comparisons)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A check that was run, and its result.
+
+    name, title, source: those of the check. seconds: the time it took. finding: empty if an error
+    ended the check; reason: that error in words, otherwise "".
+    """
+
+    name: str
+    title: str
+    source: str
+    seconds: float
+    finding: Finding
+    reason: str = ""
+
+    @property
+    def verdict(self) -> Verdict:
+        """Passed if every comparison passed, "error" if an error ended the check."""
+        if self.reason:
+            return "error"
+        return "passed" if self.finding.passed else "failed"
+
+    @property
+    def failures(self) -> list[Comparison]:
+        """The comparisons that failed, the worst first."""
+        failed = (entry for entry in self.finding.comparisons if not entry.passed)
+        return sorted(failed, key=lambda entry: -entry.ratio)
+
+    @property
+    def worst(self) -> Comparison | None:
+        """The comparison with the largest error over tolerance, None without comparisons."""
+        return max(self.finding.comparisons, key=lambda entry: entry.ratio, default=None)
+
+
+@dataclass(frozen=True)
+class Check:
+    """A check of the solver.
+
+    name: the one in study files. source: of the independent values. check: runs the solver and the
+    independent solution, and compares them.
+    """
+
+    name: str
+    title: str
+    source: str
+    check: Callable[[], Finding]
+
+    def run(self) -> Outcome:
+        """Run the check. An exception becomes the reason of the outcome."""
+        start, finding, reason = perf_counter(), Finding(()), ""
+        try:
+            finding = self.check()
+        except Exception as error:
+            reason = _describe(error)
+            log.debug("the check %s ended in an error", self.name, exc_info=True)
+        return Outcome(self.name, self.title, self.source, perf_counter() - start, finding, reason)
+
+
+def gravest_first(outcomes: Iterable[Outcome]) -> list[Outcome]:
+    """Return errors, then failures, then passed checks, each group in the order given."""
+    return sorted(outcomes, key=lambda outcome: _GRAVITY[outcome.verdict])
+
+
+def _describe(error: Exception) -> str:
+    """Return an error in words, with the innermost place that it came from."""
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    file = place.filename.replace("\\", "/").rpartition("/")[2]
+    return f"{type(error).__name__}: {error} ({file}, line {place.lineno})"

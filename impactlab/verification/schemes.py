@@ -21,8 +21,9 @@ from impactlab.simulate import simulate, simulate_many
 from impactlab.solver import RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.verification import modal_series
-from impactlab.verification import series as series_of
+from impactlab.verification.cases import node_steps
 from impactlab.verification.finding import (
+    Check,
     Comparison,
     Curve,
     Finding,
@@ -33,10 +34,6 @@ from impactlab.verification.finding import (
     worst,
 )
 from impactlab.verification.solutions.modal import ModalSolution, solve
-from impactlab.verification.stepping import node_steps
-
-TITLE = "Schemes in time"
-SOURCE = "the elastic beam's modal series; leapfrog with 1601 nodes; conservation of energy"
 
 ELASTIC_NODES = (201, 601)
 YIELDING_NODES, FINE = 601, 1601
@@ -65,10 +62,18 @@ NODES = (51, 101, 201, 401, 601, 801)
 _NAMES = {scheme: scheme.replace("_", "-") for scheme in SCHEMES}
 
 
-def check() -> Finding:
+def check_schemes() -> Finding:
     """Errors at the nodes that the tolerances are for, energy of drawn cases, errors by cost."""
     found = [*_elastic(), *_yielding(), stable(drawn(DRAWN, SEED))]
     return Finding(found, [_elastic_panel(), _yielding_panel()])
+
+
+SCHEMES_IN_TIME = Check(
+    "schemes",
+    "Schemes in time",
+    "the elastic beam's modal series; leapfrog with 1601 nodes; conservation of energy",
+    check_schemes,
+)
 
 
 def _run(
@@ -81,7 +86,7 @@ def _run(
 def _elastic() -> list[Comparison]:
     """Histories of each beam at its second velocity; the beam that comes out worst is told."""
     table = []
-    for beam, case in modal_series.CASES.items():
+    for beam, case in modal_series.BERNOULLI_CASES.items():
         impact = replace(case.impact, velocity=case.velocities[1])
         series = solve(impact, case.duration)
         where = f"{beam}, {impact.velocity:g} m/s"
@@ -103,9 +108,9 @@ def _elastic() -> list[Comparison]:
 def _histories(
     where: str, run: xr.Dataset, series: ModalSolution, nodes: int
 ) -> Iterator[Comparison]:
-    for name, (quantity, units, tolerance) in series_of.HISTORIES.items():
+    for name, (quantity, units, tolerance) in modal_series.HISTORIES.items():
         histories = run[name].values, series.at(name, run.time.values)
-        tolerance *= (series_of.MIDDLE / nodes) ** series_of.ORDER
+        tolerance *= (modal_series.MIDDLE / nodes) ** modal_series.ORDER
         yield curve(f"history of {quantity}", where, units, *histories, tolerance)
 
 
@@ -166,14 +171,14 @@ def _told(run: xr.Dataset) -> str:
 
 
 def _elastic_panel() -> Panel:
-    case, velocity = modal_series.CASES["the paper's beam"], 0.99
+    case, velocity = modal_series.BERNOULLI_CASES["the paper's beam"], 0.99
     impact = replace(case.impact, velocity=velocity)
     series = solve(impact, case.duration)
     names = ("contact_force", "midspan_curvature")
 
     def errors(run: xr.Dataset) -> dict[str, float]:
         return {
-            f"history of {series_of.HISTORIES[name][0]}": series_of.error(name, series, run)
+            f"history of {modal_series.HISTORIES[name][0]}": modal_series.error(name, series, run)
             for name in names
         }
 

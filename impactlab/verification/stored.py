@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.verification.finding import Comparison, Curve, Finding, Panel
-from impactlab.verification.outcome import Outcome
+from impactlab.verification.finding import Comparison, Curve, Finding, Outcome, Panel
 
 Row = dict[str, Any]
 Kinds = dict[str, tuple[type, str]]

@@ -7,14 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.simulate import simulate
-from impactlab.verification.cases import elastic
+from impactlab.types import Floats
+from impactlab.verification.cases import elastic, timoshenko_impact
 from impactlab.verification.finding import (
+    Check,
     Comparison,
     Curve,
     Finding,
@@ -23,13 +24,6 @@ from impactlab.verification.finding import (
     relative,
 )
 from impactlab.verification.solutions.modal import ModalSolution, solve
-from impactlab.verification.solutions.timoshenko_1913 import timoshenko_impact
-
-TITLE = "Sub-impacts"
-SOURCE = (
-    "Timoshenko, Z. Math. Phys. 62 (1913) 198, his two spheres; series in "
-    "impactlab.verification.solutions.modal"
-)
 
 _GRID = Discretisation(nodes=801, points=3)
 _SAMPLES = 4001
@@ -61,7 +55,7 @@ def timoshenko_spheres() -> dict[str, tuple[Impact, float]]:
     }
 
 
-def check() -> Finding:
+def check_sub_impacts() -> Finding:
     """Number of contacts; begin, end and peak force of each; time in contact."""
     found: list[Comparison] = []
     panels: list[Panel] = []
@@ -71,6 +65,15 @@ def check() -> Finding:
         found += _compare(where, ours, series)
         panels.append(_panel(where, ours, series))
     return Finding(found, panels)
+
+
+SUB_IMPACTS = Check(
+    "sub_impacts",
+    "Sub-impacts",
+    "Timoshenko, Z. Math. Phys. 62 (1913) 198, his two spheres; series in "
+    "impactlab.verification.solutions.modal",
+    check_sub_impacts,
+)
 
 
 def _compare(where: str, ours: xr.Dataset, series: ModalSolution) -> list[Comparison]:
@@ -91,9 +94,7 @@ def _compare(where: str, ours: xr.Dataset, series: ModalSolution) -> list[Compar
     return found
 
 
-def contacts(
-    time: NDArray[np.float64], indentation: NDArray[np.float64], force: NDArray[np.float64]
-) -> list[Contact]:
+def contacts(time: Floats, indentation: Floats, force: Floats) -> list[Contact]:
     """The contacts in histories (s, m, N) of shape (time,), taken between the samples.
 
     The last one must have ended.

@@ -25,9 +25,9 @@ PATIENCE = 1800
 """Seconds for one fault; a run that never ends counts as caught."""
 CHECKS = """
 from impactlab.verification.catalogue import CATALOGUE
-for name, file in CATALOGUE.items():
+for name, check in CATALOGUE.items():
     try:
-        found = file.check().passed
+        found = check.check().passed
     except Exception as error:
         found = False
     print("caught" if not found else "passed", name, flush=True)

@@ -22,8 +22,15 @@ from made_runs import (
 from impactlab.solver.contact import LAWS
 from impactlab.solver.status import OUTSIDE_CONTACT_LAW
 from impactlab.variables import RESPONSES, described
-from impactlab.verification.finding import Comparison, Curve, Finding, Panel, absolute, relative
-from impactlab.verification.outcome import Outcome
+from impactlab.verification.finding import (
+    Comparison,
+    Curve,
+    Finding,
+    Outcome,
+    Panel,
+    absolute,
+    relative,
+)
 from impactlab.verification.stored import packed
 
 Study = tuple[xr.Dataset, xr.Dataset]

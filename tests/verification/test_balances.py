@@ -14,7 +14,7 @@ from impactlab.model.parameters import with_values
 from impactlab.solver import RULES
 from impactlab.solver.contact import LAWS
 from impactlab.variables import STATUS_FLAGS
-from impactlab.verification.audit import audit
+from impactlab.verification.energy import audit
 
 from .test_plain_beam import FIXED, VALUES
 

@@ -11,8 +11,7 @@ import pytest
 import xarray as xr
 
 from impactlab.study.netcdf import write_netcdf
-from impactlab.verification.finding import Finding, relative
-from impactlab.verification.outcome import Outcome
+from impactlab.verification.finding import Finding, Outcome, relative
 from impactlab.verification.stored import packed
 
 ROOT = Path(__file__).parents[2]

@@ -2,7 +2,6 @@
 
 import re
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 import xarray as xr
@@ -10,7 +9,7 @@ from command_line import CHECKS, here
 from command_line import done as impactlab
 
 from impactlab.verification.catalogue import CATALOGUE
-from impactlab.verification.finding import Finding, relative
+from impactlab.verification.finding import Check, Finding, relative
 
 
 def test_checks_from_the_file_to_the_index(folder):
@@ -41,7 +40,7 @@ def breaks():
     [(fails, "bad: 1 of 2 comparisons"), (breaks, "bad: RuntimeError: of all things")],
 )
 def test_a_failing_check_is_told_everywhere(folder, check, words, monkeypatch, capsys):
-    file = SimpleNamespace(TITLE="A bad check", SOURCE="made up", check=check)
+    file = Check("bad", "A bad check", "made up", check)
     monkeypatch.setitem(CATALOGUE, "bad", file)
     monkeypatch.chdir(folder)
     (folder / "studies" / "checks.yaml").write_text(CHECKS.replace("half_space", "half_space, bad"))

@@ -8,7 +8,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from impactlab.analysis.convergence import by_design, least_squares
@@ -17,8 +16,7 @@ from impactlab.analysis.convergence.richardson import Behaviour, Estimate, estim
 from impactlab.analysis.convergence.uncertainty import How, numerical_uncertainty
 from impactlab.analysis.responses import usable
 from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict, flagged, verdict_variables
-
-Array = npt.NDArray[np.float64]
+from impactlab.types import Floats
 
 VANISHING = 0.1
 """Richardson value over finest value up to which a shrinking response is on its way to zero."""
@@ -59,7 +57,7 @@ class Axis:
     name: str
     dim: str
     words: str
-    spacing: Callable[[Array], Array]
+    spacing: Callable[[Floats], Floats]
 
 
 class Judgement(NamedTuple):
@@ -80,7 +78,7 @@ class Judgement(NamedTuple):
     verdict: AxisVerdict
 
 
-def judge(values: Array, spacings: Array) -> Judgement:
+def judge(values: Floats, spacings: Floats) -> Judgement:
     """All that three or more grids show of one response.
 
     values: in any unit, spacings: in any unit, both (grids,) and finest first. Order, Richardson
@@ -144,7 +142,7 @@ def relative(amount: float, value: float) -> float:
     return float(amount / abs(value)) if value else float(np.inf * amount if amount else 0.0)
 
 
-def _fit(values: Array, spacings: Array) -> Fit | None:
+def _fit(values: Floats, spacings: Floats) -> Fit | None:
     """The fit over all grids; None for fewer than four, a missing one, or equal values."""
     if values.size < least_squares.FEWEST or not np.isfinite(values).all():
         return None

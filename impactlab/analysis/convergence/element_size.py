@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from impactlab.analysis.convergence import axis
 from impactlab.model.parameters import ELEMENTS
+from impactlab.types import Floats
 
-SPACINGS: dict[str, Callable[[Array], Array]] = {
+SPACINGS: dict[str, Callable[[Floats], Floats]] = {
     "element_size": lambda size: size,
     "elements_per_radius": lambda count: 1.0 / count,
 }
 """What tends to zero, by what is varied."""
-Array = NDArray[np.float64]
 _COMMENT = (
     "The elements of the 3-D model shrink about the contact, and the time step with them; beyond "
     "they keep their largest size. Models of the beam do not know the element size, and agree."

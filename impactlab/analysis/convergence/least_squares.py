@@ -17,6 +17,7 @@ from scipy.optimize import minimize_scalar
 
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL
 from impactlab.analysis.verdicts import Verdict
+from impactlab.types import Floats
 
 FEWEST = 4
 """Grids that a fit of three coefficients needs."""
@@ -27,7 +28,6 @@ _HIGHEST_RELIABLE = 2.1
 _SEARCHED = np.linspace(-4.0, 8.0, 97)
 """Orders between which the free one is looked for: far beyond any that is kept."""
 
-Array = npt.NDArray[np.float64]
 
 
 class Expansion(Verdict):
@@ -52,8 +52,8 @@ class Fit:
     order: float
     free_order: float
     extrapolated: float
-    errors: Array
-    residuals: Array
+    errors: Floats
+    residuals: Floats
     deviation: float
 
 
@@ -82,7 +82,7 @@ def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
     )
 
 
-def uncertainty(found: Fit, values: npt.ArrayLike) -> Array:
+def uncertainty(found: Fit, values: npt.ArrayLike) -> Floats:
     """Half-width of the interval about each value that holds the limit in about 95 % of cases.
 
     F eps + sigma + |residual| with F = 1.25 where the fitted order is reliable (0.5 to 2.1) and
@@ -103,9 +103,9 @@ def _best(fits: Iterable[Fit]) -> Fit:
 
 
 def _fit(
-    f: Array,
-    h: Array,
-    weights: Array,
+    f: Floats,
+    h: Floats,
+    weights: Floats,
     powers: tuple[float, ...],
     expansion: Expansion = Expansion.FREE,
     free_order: float | None = None,
@@ -125,7 +125,7 @@ def _fit(
     )
 
 
-def _solved(f: Array, terms: Array, weights: Array) -> tuple[Array, Array]:
+def _solved(f: Floats, terms: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """Coefficients of 1 and the terms, (1 + terms,), and residuals f - fit, (grids,)."""
     design = np.column_stack([np.ones_like(f), terms])
     root = np.sqrt(weights)
@@ -133,10 +133,10 @@ def _solved(f: Array, terms: Array, weights: Array) -> tuple[Array, Array]:
     return coefficients, f - design @ coefficients
 
 
-def _free_order(f: Array, h: Array, weights: Array) -> float:
+def _free_order(f: Floats, h: Floats, weights: Floats) -> float:
     """The power of least weighted residual, looked for around the best of a few dozen."""
 
-    def misfit(orders: npt.ArrayLike) -> Array:
+    def misfit(orders: npt.ArrayLike) -> Floats:
         return _misfits(f, h, weights, np.atleast_1d(orders))
 
     at = int(np.argmin(misfit(_SEARCHED)))
@@ -147,7 +147,7 @@ def _free_order(f: Array, h: Array, weights: Array) -> float:
     return float(found.x)
 
 
-def _misfits(f: Array, h: Array, weights: Array, orders: Array) -> Array:
+def _misfits(f: Floats, h: Floats, weights: Floats, orders: Floats) -> Floats:
     """Weighted sum of squared residuals at the best f0 and a for each order, (orders,).
 
     The curve is (h^p - 1)/p: with a constant the same as h^p, and ln h at p = 0.

@@ -12,6 +12,7 @@ import xarray as xr
 
 from impactlab.analysis.responses import usable
 from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict, verdict_variables
+from impactlab.types import Floats
 
 SAFETY = 3.0
 """Uncertainty over difference to the most points: holds where these halve the error at least."""
@@ -77,7 +78,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     return dataset
 
 
-def numerical_uncertainty(values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def numerical_uncertainty(values: npt.ArrayLike) -> Floats:
     """How far the value of each number of points may lie from the limit of many points.
 
     values: in any unit, NaN where a run is missing, (numbers,), most points first. SAFETY times the

@@ -28,8 +28,7 @@ from impactlab.analysis.convergence.richardson import (
     safety,
 )
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict
-
-Array = npt.NDArray[np.float64]
+from impactlab.types import Floats
 
 
 class How(Verdict):
@@ -52,7 +51,7 @@ class How(Verdict):
 class Uncertainty(NamedTuple):
     """amounts: half-width about each value that holds the limit, in its unit, (grids,)."""
 
-    amounts: Array
+    amounts: Floats
     how: How
 
 
@@ -73,7 +72,7 @@ def numerical_uncertainty(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Unc
     return Uncertainty(amounts, how)
 
 
-def _of_present(f: Array, h: Array) -> Uncertainty:
+def _of_present(f: Floats, h: Floats) -> Uncertainty:
     if f.size < 2:
         return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
     if np.ptp(f) <= ROUND_OFF * np.max(abs(f)):
@@ -84,7 +83,7 @@ def _of_present(f: Array, h: Array) -> Uncertainty:
     return _of_three_or_more(f, h)
 
 
-def _of_three_or_more(f: Array, h: Array) -> Uncertainty:
+def _of_three_or_more(f: Floats, h: Floats) -> Uncertainty:
     triples = [estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
     finest = triples[0]
     fitted = least_squares.fit(f, h) if f.size >= least_squares.FEWEST else None
@@ -110,10 +109,10 @@ def _slows_down(finest: Estimate, fitted: Fit | None) -> bool:
     return seen or (fitted is not None and fitted.free_order >= least)
 
 
-def _one_way(f: Array) -> bool:
+def _one_way(f: Floats) -> bool:
     steps = np.diff(f)
     return bool((steps > 0).all() or (steps < 0).all())
 
 
-def _from_finest(f: Array, amount: float, how: How) -> Uncertainty:
+def _from_finest(f: Floats, amount: float, how: How) -> Uncertainty:
     return Uncertainty(abs(f - f[0]) + amount, how)

@@ -55,8 +55,8 @@ def function_study(source: Source) -> FunctionStudy:
 
 @cache
 def _form(name: str) -> type[Heading]:
-    title = FUNCTIONS[name].TITLE
-    factors = {key: _factor(key, title) for key in FUNCTIONS[name].RANGES}
+    title = FUNCTIONS[name].title
+    factors = {key: _factor(key, title) for key in FUNCTIONS[name].ranges}
     sampling = Annotated[Grid | Sample, PlainValidator(sampling_reader(factors))]
     fields: Any = {
         "function": (str, ...),

@@ -11,7 +11,7 @@ from impactlab.verification.functions import FUNCTIONS
 
 def function_design(study: FunctionStudy) -> xr.Dataset:
     """As of impacts; a parameter that the study does not name keeps the middle of its range."""
-    ranges = FUNCTIONS[study.function].RANGES
+    ranges = FUNCTIONS[study.function].ranges
     scalars = {name: ((), 0.5 * (low + high)) for name, (low, high) in ranges.items()}
     scalars |= {name: ((), float(value)) for name, value in study.sampling.fixed.items()}
     if isinstance(study.sampling, Grid):

@@ -19,7 +19,7 @@ Array = np.ndarray[Any, Any]
 VALUE = "value"
 """The name of the one response."""
 VERSION = sources_hash()
-_MOST = max(len(function.RANGES) for function in FUNCTIONS.values())
+_MOST = max(len(function.ranges) for function in FUNCTIONS.values())
 _CASE = np.dtype([("function", "U20"), ("x", "f8", (_MOST,))])
 _COST = 100.0
 
@@ -37,7 +37,7 @@ def failures(design: xr.Dataset) -> int:
 def cases(design: xr.Dataset, runs: Array) -> Array:
     """The function's name and its point, a record a run; a shorter point is filled with zeros."""
     name = str(design.attrs["function"])
-    points = np.array([flattened(design, key, runs) for key in FUNCTIONS[name].RANGES])
+    points = np.array([flattened(design, key, runs) for key in FUNCTIONS[name].ranges])
     table = np.zeros(points.shape[1], dtype=_CASE)
     table["function"] = name
     table["x"][:, : len(points)] = points.T
@@ -60,14 +60,14 @@ def solve(cases: Array, form: Form) -> Columns:
     for name in np.unique(cases["function"]).tolist():
         here = cases["function"] == name
         function = FUNCTIONS[name]
-        value[here] = function.value(cases["x"][here, : len(function.RANGES)])
+        value[here] = function.value(cases["x"][here, : len(function.ranges)])
     return {VALUE: value, "status": np.zeros(cases.size, dtype=np.int32)}
 
 
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """`value` and `status` on the design's dimensions."""
     dims, shape = run_shape(design)
-    title = FUNCTIONS[str(design.attrs["function"])].TITLE
+    title = FUNCTIONS[str(design.attrs["function"])].title
     value = answers[VALUE].reshape(shape)
     status = answers["status"].reshape(shape)
     attrs = {"long_name": f"value of the {title}", "units": "1"}

@@ -12,11 +12,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from impactlab.model.beam import Beam
-
-Floats = NDArray[np.float64]
+from impactlab.types import Floats
 
 
 def bar_wave_step(beam: Beam, nodes: int) -> float:

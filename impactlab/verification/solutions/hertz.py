@@ -36,6 +36,11 @@ def stiffness(modulus: float, radius: float) -> float:
     return 4.0 / 3.0 * modulus * math.sqrt(radius)
 
 
+def contact_stiffness(impact: Impact) -> float:
+    """Hertz stiffness k in N m^-1.5 of the two bodies of `impact`."""
+    return stiffness(effective_modulus(impact), effective_radius(impact))
+
+
 def maximum_indentation(mass: float, velocity: float, modulus: float, radius: float) -> float:
     """delta_m = (15 m v^2/(16 E* sqrt(R*)))^(2/5) in m; kg, m/s, Pa, m.
 

@@ -10,13 +10,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import fresnel
 
 from impactlab.model.beam import Beam
 from impactlab.model.checks import number
-
-Floats = NDArray[np.float64]
+from impactlab.types import Floats
 
 
 def deflection_under_impulse(beam: Beam, impulse: float, time: ArrayLike) -> Floats:

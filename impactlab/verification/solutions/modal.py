@@ -1,7 +1,9 @@
 """Elastic beam struck at mid-span under Hertz contact: the modal series.
 
-Source: S. Timoshenko, Zur Frage nach der Wirkung eines Stosses auf einen Balken, Z. Math. Phys. 62
-(1913) 198; Goldsmith, Impact (1960). Modes in beam_modes, march in time in modal_march.
+For the beam of Euler and Bernoulli and that of Timoshenko, the latter with both spectra of modes.
+Sources: S. Timoshenko, Zur Frage nach der Wirkung eines Stosses auf einen Balken, Z. Math. Phys. 62
+(1913) 198; Goldsmith, Impact (1960); S. Timoshenko, Phil. Mag. 43 (1922) 125, for shear. Modes in
+beam_modes, march in time in modal_march.
 """
 
 from __future__ import annotations
@@ -10,16 +12,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
+from impactlab.types import Floats
 from impactlab.verification.solutions import hertz
-from impactlab.verification.solutions.beam_modes import BeamModes, odd_modes
-from impactlab.verification.solutions.modal_march import Path, contact_stiffness, march
-
-Floats = NDArray[np.float64]
+from impactlab.verification.solutions.beam_modes import BeamModes, odd_modes, timoshenko_odd_modes
+from impactlab.verification.solutions.modal_march import Path, march
 
 
 @dataclass(frozen=True)
@@ -127,7 +128,7 @@ def _solution(
         amplitudes=amplitudes,
         rates=path.v[:, 1:],
         contacts=_contacts(delta),
-        peak_force=contact_stiffness(impact) * float(delta(peak_time)) ** 1.5,
+        peak_force=hertz.contact_stiffness(impact) * float(delta(peak_time)) ** 1.5,
         time_of_peak_force=peak_time,
     )
 
@@ -151,3 +152,23 @@ def _default_step(impact: Impact) -> float:
     mass, radius = impact.sphere.total_mass, hertz.effective_radius(impact)
     modulus = hertz.effective_modulus(impact)
     return hertz.contact_duration(mass, impact.velocity, modulus, radius) / 1000.0
+
+
+def solve_timoshenko(
+    impact: Impact,
+    duration: float,
+    *,
+    modes: int = 100,
+    step: float | None = None,
+    compliance: float = 0.0,
+) -> ModalSolution:
+    """The impact on an elastic Timoshenko beam over `duration` (s), with that many odd n.
+
+    step as in solve, compliance as in solve_with. Errors fall with modes^-3; in the
+    paper's case 100 leave below 1e-7 of peak force and contact duration, and 1e-5 of the largest
+    curvature. amplitudes and rates of the solution have the shape (time, 2 modes): the lower
+    spectrum, then the higher one.
+
+    Raises ValueError as solve does.
+    """
+    return solve_with(timoshenko_odd_modes(impact.beam, modes), impact, duration, step, compliance)

@@ -14,13 +14,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from impactlab.model.impact import Impact
+from impactlab.types import Floats
 from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.beam_modes import BeamModes
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -41,7 +39,7 @@ def march(impact: Impact, modes: BeamModes, h: float, steps: int, compliance: fl
 
     compliance: see modal.solve_with.
     """
-    move, k = _motion(impact, modes, h), contact_stiffness(impact)
+    move, k = _motion(impact, modes, h), hertz.contact_stiffness(impact)
     bodies = move.fall.size
     approach = np.concatenate(([1.0], -np.ones(bodies - 1)))
     flexibility = modes.residual_flexibility + compliance - float(approach @ move.position[3])
@@ -114,8 +112,3 @@ def _contact(gap: float, flexibility: float, k: float) -> tuple[float, float]:
             break
         delta -= change
     return delta, k * delta * math.sqrt(delta)
-
-
-def contact_stiffness(impact: Impact) -> float:
-    """Hertz stiffness k in N m^-1.5 of the two bodies of `impact`."""
-    return hertz.stiffness(hertz.effective_modulus(impact), hertz.effective_radius(impact))

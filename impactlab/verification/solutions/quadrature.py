@@ -6,12 +6,12 @@ Source: Davis and Rabinowitz, Methods of Numerical Integration (1984), section 2
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import roots_jacobi, roots_legendre
 
 from impactlab.model.checks import integer, one_of
+from impactlab.types import Floats
 
-Rule = tuple[NDArray[np.float64], NDArray[np.float64]]
+Rule = tuple[Floats, Floats]
 """Positions in ascending order and weights adding up to 2, both of shape (points,)."""
 
 

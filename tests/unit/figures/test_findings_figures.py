@@ -16,8 +16,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import findings_curves, findings_overview, style
 from impactlab.figures.draw import draw_findings
-from impactlab.verification.finding import Curve, Finding, Panel
-from impactlab.verification.outcome import gravest_first
+from impactlab.verification.finding import Curve, Finding, Panel, gravest_first
 from impactlab.verification.stored import packed
 
 Outcomes = Any

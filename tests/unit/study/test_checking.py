@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
@@ -9,11 +8,11 @@ from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.checking import check, failure
 from impactlab.study.declaration import Verification
 from impactlab.verification.catalogue import CATALOGUE
-from impactlab.verification.finding import Finding, relative
+from impactlab.verification.finding import Check, Finding, relative
 from impactlab.verification.stored import unpacked
 
 
-def made(value):
+def made(name, value):
     """A check of one comparison with 1; a NaN value raises."""
 
     def check():
@@ -21,13 +20,13 @@ def made(value):
             raise RuntimeError("no value")
         return Finding([relative("a", "b", "1", value, 1.0, 0.1)])
 
-    return SimpleNamespace(TITLE="t", SOURCE="s", check=check)
+    return Check(name, "t", "s", check)
 
 
 @pytest.fixture
 def verification(monkeypatch):
     for name, value in {"first": 1.0, "second": float("nan"), "third": 2.0}.items():
-        monkeypatch.setitem(CATALOGUE, name, made(value))
+        monkeypatch.setitem(CATALOGUE, name, made(name, value))
     checks = ("first", "second", "third")
     return Verification("some", Path("studies/some.yaml"), "Title", "Words", checks, "title: x\n")
 

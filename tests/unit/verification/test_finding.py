@@ -1,8 +1,24 @@
-"""The comparison that stands for many."""
+"""Comparisons, checks and their outcomes."""
+
+from __future__ import annotations
 
 import math
 
-from impactlab.verification.finding import Comparison, worst
+import numpy as np
+import pytest
+
+from impactlab.verification.catalogue import CATALOGUE, run
+from impactlab.verification.finding import (
+    Check,
+    Comparison,
+    Finding,
+    Outcome,
+    absolute,
+    curve,
+    gravest_first,
+    relative,
+    worst,
+)
 
 
 def entry(where, error, tolerance):
@@ -25,3 +41,89 @@ def test_a_tolerance_of_zero_is_one():
     found = worst([entry("a", 0.0, 0.0), entry("b", 0.1, 1.0), entry("c", -1e-16, 0.0)])
     assert found.where.startswith("c")
     assert worst([entry("a", 0.0, 0.0), entry("b", 0.1, 1.0)]).where.startswith("b")
+
+
+@pytest.mark.parametrize("ours", [0.0, 1e-300, 1.0, -2.0, np.nan])
+def test_no_value_is_relatively_close_to_zero(ours):
+    """A relative error against zero is infinite: use `absolute` there."""
+    entry = relative("a", "b", "1", ours, 0.0, 1e9)
+    assert entry.error == np.inf
+    assert not entry.passed
+
+
+@pytest.mark.parametrize(("ours", "error"), [(2.0, 0.0), (2.5, 0.25), (-2.0, -2.0), (0.0, -1.0)])
+def test_relative_error_is_a_share_of_the_independent_value(ours, error):
+    entry = relative("a", "b", "1", ours, 2.0, 0.3)
+    assert (entry.error, entry.measure) == (error, "relative")
+
+
+def test_curves_are_compared_where_they_differ_most():
+    ours, independent = np.array([1.0, -2.0, 3.5]), np.array([1.0, -1.0, 4.0])
+    entry = curve("a", "b", "m", ours, independent, 0.1)
+    assert (entry.ours, entry.independent, entry.error) == (-2.0, -1.0, 0.25)
+    assert not curve("a", "b", "m", np.array([1.0, np.nan, 4.0]), independent, 0.1).passed
+
+
+@pytest.mark.parametrize(
+    ("error", "tolerance", "ratio", "passed"),
+    [
+        (0.5, 1.0, 0.5, True),
+        (-0.5, 1.0, 0.5, True),
+        (1.0, 1.0, 1.0, True),
+        (2.0, 1.0, 2.0, False),
+        (0.0, 0.0, 0.0, True),
+        (1e-16, 0.0, np.inf, False),
+        (np.nan, 1.0, np.inf, False),
+        (np.inf, 1.0, np.inf, False),
+    ],
+)
+def test_ratio_is_above_one_where_it_fails(error, tolerance, ratio, passed):
+    entry = absolute("a", "b", "1", error, 0.0, tolerance)
+    assert entry.ratio == pytest.approx(ratio)
+    assert entry.passed is passed
+    assert (entry.ratio <= 1) is passed
+
+
+def outcome(*values, reason=""):
+    entries = [relative("a", f"{value}", "1", value, 1.0, 0.1) for value in values]
+    return Outcome("name", "title", "source", 0.0, Finding(entries), reason)
+
+
+def test_verdicts():
+    assert outcome(1.0, 1.05).verdict == "passed"
+    assert outcome(1.0, 2.0).verdict == "failed"
+    assert outcome().verdict == "failed"
+    assert outcome(reason="no").verdict == "error"
+
+
+def test_failures_and_the_worst_come_first():
+    found = outcome(1.0, 1.5, np.nan, 0.2)
+    assert [entry.where for entry in found.failures] == ["nan", "0.2", "1.5"]
+    assert found.worst is not None
+    assert found.worst.where == "nan"
+    assert outcome().worst is None
+
+
+def test_gravest_first_keeps_the_order_otherwise(outcomes):
+    assert [found.name for found in gravest_first(outcomes)] == ["broken", "bad", "void", "good"]
+
+
+def test_a_check_that_raises_is_an_outcome(monkeypatch):
+    def check():
+        return 1 / 0
+
+    monkeypatch.setitem(CATALOGUE, "made_up", Check("made_up", "A title", "a source", check))
+    found = run("made_up")
+    assert (found.name, found.title, found.source) == ("made_up", "A title", "a source")
+    assert found.verdict == "error"
+    assert "ZeroDivisionError" in found.reason
+    assert "test_finding.py, line" in found.reason
+
+
+def test_ctrl_c_is_no_outcome(monkeypatch):
+    def check():
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(CATALOGUE, "made_up", Check("made_up", "", "", check))
+    with pytest.raises(KeyboardInterrupt):
+        run("made_up")

@@ -5,7 +5,7 @@ from dataclasses import asdict
 import numpy as np
 
 from impactlab.study.netcdf import read_netcdf, write_netcdf
-from impactlab.verification.outcome import gravest_first
+from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import packed, unpacked
 
 

@@ -16,7 +16,7 @@ from impactlab.model.impact import Impact
 from impactlab.model.material import Material
 from impactlab.model.paper import paper_impact
 from impactlab.model.sphere import Sphere
-from impactlab.verification.solutions import hertz, timoshenko_modal
+from impactlab.verification.solutions import hertz, modal
 
 STEEL = Material(density=7800.0, youngs_modulus=210e9, poissons_ratio=0.3, yield_stress=200e9)
 RADIUS, TOUCH, BLOCK = 0.04, 1.9e-3, 0.6
@@ -136,7 +136,7 @@ def test_the_elastic_beam_answers_as_timoshenkos_modes():
     touch = math.sqrt(impact.sphere.radius * 40e-6)
     sphere = finite_sphere(impact.sphere.material, impact.sphere.radius, touch)
     compliance = -(sphere + below_the_axis(impact))
-    modes = timoshenko_modal.solve(impact, duration, compliance=compliance)
+    modes = modal.solve_timoshenko(impact, duration, compliance=compliance)
     assert float(answer["peak_force"]) == pytest.approx(modes.peak_force, rel=0.015)
     assert float(answer["contact_duration"]) == pytest.approx(modes.contact_duration, rel=0.01)
     time = answer["time"].values

@@ -8,7 +8,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.solvers import function
 from impactlab.study.store import Form
-from impactlab.verification.functions import ishigami
+from impactlab.verification.functions import FUNCTIONS
 
 
 def design(**coords):
@@ -23,7 +23,7 @@ def test_values_are_the_functions_under_the_designs_labels(tmp_path):
     x1, x2 = np.linspace(-3, 3, 40), np.cos(np.arange(40))
     runs = execute(design(x2=x2, x1=x1), tmp_path, Engine(workers=2))
     points = np.stack([x1, x2, np.full(40, 0.5)], axis=1)
-    np.testing.assert_array_equal(runs["value"], ishigami.value(points))
+    np.testing.assert_array_equal(runs["value"], FUNCTIONS["ishigami"].value(points))
     assert runs["value"].dims == ("run",)
     assert (runs["status"] == 0).all()
     assert "Ishigami" in runs["value"].attrs["long_name"]

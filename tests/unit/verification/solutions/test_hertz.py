@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from impactlab.model.paper import paper_impact
+from impactlab.verification.cases import timoshenko_impact
 from impactlab.verification.solutions import hertz
-from impactlab.verification.solutions.timoshenko_1913 import timoshenko_impact
 
 MASS, VELOCITY, MODULUS, RADIUS = 1.4, 2.0, 1.15e11, 0.035
 

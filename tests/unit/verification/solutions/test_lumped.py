@@ -10,11 +10,11 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from impactlab.model.paper import paper_impact
-from impactlab.verification.solutions import hertz, lumped, modal, rigid_beam, spring_mass
-from impactlab.verification.solutions.beam_modes import BeamModes
+from impactlab.verification.cases import timoshenko_impact
+from impactlab.verification.solutions import hertz, lumped, modal
+from impactlab.verification.solutions.beam_modes import BeamModes, odd_modes
+from impactlab.verification.solutions.hertz import contact_stiffness
 from impactlab.verification.solutions.lumped import Oscillator
-from impactlab.verification.solutions.modal_march import contact_stiffness
-from impactlab.verification.solutions.timoshenko_1913 import timoshenko_impact
 
 PAPER, TIMOSHENKO = paper_impact(contact="hertz"), timoshenko_impact()
 CASES = pytest.mark.parametrize(
@@ -44,16 +44,16 @@ def test_mass_and_stiffness_by_quadrature_of_the_static_shape():
 
     energy, _ = quad(lambda x: 2 * shape(x) ** 2, 0, L / 2)
     bending, _ = quad(lambda x: 2 * (24 * x / L**3) ** 2, 0, L / 2)
-    found = spring_mass.oscillator(beam)
+    found = lumped.spring_mass(beam)
     assert found.mass == pytest.approx(beam.mass_per_length * energy, rel=1e-12)
     assert found.stiffness == pytest.approx(beam.bending_stiffness * bending, rel=1e-12)
     # phi'' at mid-span
-    assert spring_mass.midspan_curvature(beam, 1e-3) == pytest.approx(-24 * L / 2 / L**3 * 1e-3)
+    assert lumped.midspan_curvature(beam, 1e-3) == pytest.approx(-24 * L / 2 / L**3 * 1e-3)
 
 
 def test_frequency_is_rayleighs_estimate():
     """Above the first of the modes, and close to it."""
-    found, first = spring_mass.oscillator(PAPER.beam), modal.odd_modes(PAPER.beam, 1)
+    found, first = lumped.spring_mass(PAPER.beam), odd_modes(PAPER.beam, 1)
     ratio = np.sqrt(found.stiffness / found.mass) / first.frequencies[0]
     assert ratio == pytest.approx(1.0072, abs=1e-4)
 
@@ -63,7 +63,7 @@ def test_rigid_beam_without_gravity_is_hertz(impact):
     impact = replace(impact, gravity=0.0)
     arguments = hertz_arguments(impact)
     peak, duration = hertz.peak_force(*arguments), hertz.contact_duration(*arguments)
-    solution = rigid_beam.solve(impact, 1.5 * duration)
+    solution = lumped.solve_rigid_beam(impact, 1.5 * duration)
     np.testing.assert_allclose(answers(solution), [peak, duration], rtol=1e-10)
     assert solution.time_of_peak_force == pytest.approx(duration / 2, rel=1e-9)
     left = solution.at("sphere_velocity", [1.2 * duration])
@@ -76,7 +76,7 @@ def test_rigid_beam_with_gravity_by_energy():
     impact, mass = replace(PAPER, velocity=0.01), PAPER.sphere.total_mass
     k, energy = contact_stiffness(impact), 0.5 * mass * 0.01**2
     depth = brentq(lambda d: 0.4 * k * d**2.5 - mass * 9.81 * d - energy, 1e-9, 1e-3, xtol=1e-18)
-    solution = rigid_beam.solve(impact, 2e-3)
+    solution = lumped.solve_rigid_beam(impact, 2e-3)
     assert solution.peak_force == pytest.approx(k * depth**1.5, rel=1e-10)
     bare = hertz.peak_force(*hertz_arguments(impact))
     assert solution.peak_force > 1.01 * bare
@@ -96,7 +96,7 @@ def test_a_free_mass_is_hertz_with_the_reduced_mass():
 @CASES
 def test_agrees_with_the_march_of_one_mode(impact, duration):
     """The same model, as a beam with one mode that holds all of the static deflection."""
-    beam, found = impact.beam, spring_mass.oscillator(impact.beam)
+    beam, found = impact.beam, lumped.spring_mass(impact.beam)
     table = BeamModes(
         beam,
         np.array([np.pi / beam.span]),
@@ -105,7 +105,7 @@ def test_agrees_with_the_march_of_one_mode(impact, duration):
         np.array([-12 / beam.span**2]),
     )
     marched = modal.solve_with(table, impact, duration, duration / 10_000)
-    solution = spring_mass.solve(impact, duration)
+    solution = lumped.solve_spring_mass(impact, duration)
     np.testing.assert_allclose(answers(solution), answers(marched), rtol=3e-7)
     times = marched.time[::100]
     for name in ("contact_force", "midspan_deflection", "sphere_velocity", "indentation"):
@@ -117,8 +117,8 @@ def test_agrees_with_the_march_of_one_mode(impact, duration):
     "impact", [PAPER, TIMOSHENKO, slender()], ids=["paper", "timoshenko", "slender"]
 )
 def test_energy_is_conserved(impact):
-    solution, time = spring_mass.solve(impact, 5e-3), np.linspace(0, 5e-3, 2001)
-    struck, mass = spring_mass.oscillator(impact.beam), impact.sphere.total_mass
+    solution, time = lumped.solve_spring_mass(impact, 5e-3), np.linspace(0, 5e-3, 2001)
+    struck, mass = lumped.spring_mass(impact.beam), impact.sphere.total_mass
     w, v = solution.at("midspan_deflection", time), solution.at("midspan_velocity", time)
     speed, place = solution.at("sphere_velocity", time), solution.at("sphere_displacement", time)
     contact = np.maximum(solution.at("indentation", time), 0)
@@ -128,7 +128,7 @@ def test_energy_is_conserved(impact):
 
 
 def test_contacts_are_where_the_force_is():
-    solution, time = spring_mass.solve(slender(), 20e-3), np.linspace(0, 20e-3, 20_001)
+    solution, time = lumped.solve_spring_mass(slender(), 20e-3), np.linspace(0, 20e-3, 20_001)
     assert len(solution.contacts) >= 2
     ends = np.nan_to_num(solution.contacts, nan=np.inf)
     inside = np.any((ends[:, :1] < time) & (time < ends[:, 1:]), axis=0)
@@ -141,7 +141,7 @@ def test_contacts_are_where_the_force_is():
 
 
 def test_contact_that_outlasts_the_duration_has_no_end():
-    solution = spring_mass.solve(PAPER, 5e-5)
+    solution = lumped.solve_spring_mass(PAPER, 5e-5)
     assert np.isnan(solution.contact_duration)
     np.testing.assert_allclose(solution.at("contact_force", [5e-5]), solution.peak_force)
 
@@ -152,20 +152,20 @@ def test_a_slow_contact_bends_the_beam_as_its_model_does():
     impact = replace(PAPER, sphere=replace(PAPER.sphere, material=soft))
     impact = replace(impact, beam=replace(impact.beam, span=0.2))
     duration = 2e-3
-    model, series = spring_mass.solve(impact, duration), modal.solve(impact, duration)
+    model, series = lumped.solve_spring_mass(impact, duration), modal.solve(impact, duration)
     np.testing.assert_allclose(answers(model), answers(series), rtol=2e-3)
 
 
 @pytest.mark.parametrize(
     ("call", "word"),
     [
-        (lambda: spring_mass.solve(PAPER, 0.0), "duration"),
-        (lambda: spring_mass.solve(paper_impact(contact="stronge"), 1e-4), "contact"),
-        (lambda: rigid_beam.solve(paper_impact(contact="stronge"), 1e-4), "contact"),
+        (lambda: lumped.solve_spring_mass(PAPER, 0.0), "duration"),
+        (lambda: lumped.solve_spring_mass(paper_impact(contact="stronge"), 1e-4), "contact"),
+        (lambda: lumped.solve_rigid_beam(paper_impact(contact="stronge"), 1e-4), "contact"),
         (lambda: lumped.solve(PAPER, Oscillator(0.0, 1.0), 1e-4), "mass"),
         (lambda: lumped.solve(PAPER, Oscillator(np.nan, 1.0), 1e-4), "mass"),
         (lambda: lumped.solve(PAPER, Oscillator(1.0, np.inf), 1e-4), "stiffness"),
-        (lambda: spring_mass.solve(PAPER, 1e-5).at("contact_force", [2e-5]), "time:"),
+        (lambda: lumped.solve_spring_mass(PAPER, 1e-5).at("contact_force", [2e-5]), "time:"),
     ],
 )
 def test_wrong_arguments_are_named(call, word):

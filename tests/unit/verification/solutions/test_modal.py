@@ -10,10 +10,10 @@ from scipy.integrate import solve_ivp, trapezoid
 from scipy.optimize import brentq
 
 from impactlab.model.paper import paper_impact
+from impactlab.verification.cases import timoshenko_impact
 from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.beam_modes import odd_modes
 from impactlab.verification.solutions.modal import solve, solve_with
-from impactlab.verification.solutions.timoshenko_1913 import timoshenko_impact
 
 PAPER, TIMOSHENKO = paper_impact(contact="hertz"), timoshenko_impact()
 CASES = pytest.mark.parametrize(

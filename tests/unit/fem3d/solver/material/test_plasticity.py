@@ -8,7 +8,7 @@ import pytest
 from impactlab.fem3d.solver.material.plasticity import mises, radial_return
 from impactlab.fem3d.solver.stepping.groups import metal
 from impactlab.model.material import Material
-from impactlab.verification.solutions.cyclic import fibre_stresses
+from impactlab.verification.solutions.bending import path_stresses
 
 E, NU, SIGMA = 200e9, 0.25, 300e6
 G = E / 2 / (1 + NU)
@@ -68,7 +68,7 @@ def test_cycles_along_one_axis_follow_the_fibre(isotropic, kinematic):
     )
     strains = 1e-3 * np.concatenate([[0.0], turns])
     material = steel(isotropic, kinematic)
-    fibre = fibre_stresses(steel(isotropic, kinematic, modulus=3 * G), strains)
+    fibre = path_stresses(steel(isotropic, kinematic, modulus=3 * G), strains)
     s, a, p, stresses, along = NONE, NONE, 0.0, [0.0], 0.0
     for step in np.diff(strains):
         trial = tuple(np.array(s) + 2 * G * step * np.array([1, -0.5, -0.5, 0, 0, 0]))

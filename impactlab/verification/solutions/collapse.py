@@ -1,8 +1,16 @@
-"""The simply supported beam under a load that grows slowly at mid-span, beyond yield.
+"""The beam beyond yield: a slowly growing load at mid-span, and one plastic hinge under a striker.
 
-Statically determinate: the moment is P x/2 at a distance x from the support, whatever yields. The
-deflection follows from the curvature by the unit-load theorem.
-Source: Prager and Hodge, Theory of Perfectly Plastic Solids (1951), chapter 2.
+Static load: the beam is statically determinate, the moment is P x/2 at a distance x from the
+support, whatever yields. The deflection follows from the curvature by the unit-load theorem.
+
+Striker: the rigid-plastic beam deflects as a triangle with one hinge at mid-span. Striking, the
+momentum goes over into that mode: v_1 = m v_0/(m + mu L/3), the velocity that leaves the least
+difference of kinetic energy; then the hinge's 4 M_p/L brakes striker and beam evenly. The hinges
+that travel outwards at first are left out, and so is elasticity: it holds where the striker is
+heavy against the beam, its energy large against what the beam can store, and the rotation small.
+Sources: Prager and Hodge, Theory of Perfectly Plastic Solids (1951), chapter 2; Martin and Symonds,
+Mode approximations for impulsively loaded rigid-plastic structures, J. Eng. Mech. Div. ASCE 92
+(1966); Jones, Structural Impact (1989), chapter 3.
 """
 
 from __future__ import annotations
@@ -14,6 +22,7 @@ from scipy.optimize import brentq
 
 from impactlab.model.beam import Beam
 from impactlab.model.checks import positive
+from impactlab.model.impact import Impact
 from impactlab.verification.solutions import bending
 
 _FAR = 1e6
@@ -28,7 +37,7 @@ def midspan_deflection(beam: Beam, load: float) -> float:
 
     Raises ValueError when the load is not above zero, or the beam cannot carry it.
     """
-    highest = positive("static_loading", "load", load) * beam.span / 4.0
+    highest = positive("collapse", "load", load) * beam.span / 4.0
     curvature = _curvature(beam, highest)
     first = min(curvature, bending.yield_curvature(beam))
     work = beam.bending_stiffness**2 * first**3 / 3.0 + _squares(beam, first, curvature)
@@ -43,7 +52,7 @@ def load_at(beam: Beam, deflection: float) -> float:
 
     Raises ValueError when the deflection is not above zero.
     """
-    target = positive("static_loading", "deflection", deflection)
+    target = positive("collapse", "deflection", deflection)
     elastic = target / bending.static_deflection(beam, 1.0)  # no beam carries more
     farthest = 4.0 / beam.span * float(bending.moment(beam, 0.5 * _hinge(beam)))
     most = min(elastic, farthest)
@@ -91,3 +100,46 @@ def _curvature(beam: Beam, moment: float) -> float:
     if moment > float(bending.moment(beam, far)):
         raise ValueError(f"the beam cannot carry a moment of {moment:g} N m")
     return float(brentq(lambda kappa: float(bending.moment(beam, kappa)) - moment, first, far))
+
+
+def mode_mass(impact: Impact) -> float:
+    """m + mu L/3 in kg: the striker and the triangle's share of the beam."""
+    return impact.sphere.total_mass + impact.beam.mass_per_length * impact.beam.span / 3.0
+
+
+def mode_velocity(impact: Impact) -> float:
+    """v_1 = m v_0/(m + mu L/3) in m/s: at mid-span once the mode has formed."""
+    return impact.sphere.total_mass * impact.velocity / mode_mass(impact)
+
+
+def mode_energy(impact: Impact) -> float:
+    """(m + mu L/3) v_1^2/2 in J: what the striking leaves for the hinge."""
+    return 0.5 * mode_mass(impact) * mode_velocity(impact) ** 2
+
+
+def mode_deflection(impact: Impact) -> float:
+    """w_f in m: the hinge takes all of the mode's energy, 4 M_p/L w_f. Gravity is left out."""
+    return mode_energy(impact) / bending.collapse_load(impact.beam)
+
+
+def mode_duration(impact: Impact) -> float:
+    """Time in s until the beam stands still: v_1 (m + mu L/3)/(4 M_p/L)."""
+    return mode_velocity(impact) * mode_mass(impact) / bending.collapse_load(impact.beam)
+
+
+def energy_ratio(impact: Impact) -> float:
+    """Kinetic energy of the striker over what the beam stores elastically at 4 M_p/L."""
+    load = bending.collapse_load(impact.beam)
+    stored = 0.5 * load * bending.static_deflection(impact.beam, load)
+    return 0.5 * impact.sphere.total_mass * impact.velocity**2 / stored
+
+
+def elastic_plastic_deflection(impact: Impact) -> float:
+    """Permanent deflection in m when the mode's energy follows the static load-deflection curve.
+
+    w_f and what that curve's rise adds, less the elastic spring back from 4 M_p/L: a beam whose
+    striker is so slow that inertia forces are those of the mode alone. Holds above its collapse.
+    """
+    beam, load = impact.beam, bending.collapse_load(impact.beam)
+    rise = missing_work(beam) / load
+    return mode_deflection(impact) + rise - bending.static_deflection(beam, load)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from impactlab.verification.solutions.timoshenko_1913 import timoshenko_impact
+from impactlab.verification.cases import timoshenko_impact
 
 
 def test_values_are_those_of_the_example_in_si():

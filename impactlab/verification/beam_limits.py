@@ -1,4 +1,4 @@
-"""A long elastic beam struck by a small sphere: the infinite beam, before the supports answer."""
+"""Limits of the elastic beam: endlessly long, and endlessly slender."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
 from impactlab.simulate import simulate
-from impactlab.verification.cases import elastic
+from impactlab.types import Floats
+from impactlab.verification.cases import elastic, slimmer
 from impactlab.verification.finding import (
+    Check,
     Comparison,
     Curve,
     Finding,
@@ -24,6 +25,7 @@ from impactlab.verification.finding import (
     curve,
     relative,
 )
+from impactlab.verification.solutions import modal
 from impactlab.verification.solutions.infinite_beam import (
     curvature_under_force,
     deflection_under_force,
@@ -31,14 +33,9 @@ from impactlab.verification.solutions.infinite_beam import (
     profile_under_impulse,
 )
 
-TITLE = "Infinite beam under an impulse"
-SOURCE = "Boussinesq 1885; closed forms in impactlab.verification.solutions.infinite_beam"
-
-Floats = NDArray[np.float64]
-
-NODES = (801, 1601, 3201)
-FINEST = NODES[-1]
-DURATION = 150e-6
+LONG_NODES = (801, 1601, 3201)
+FINEST = LONG_NODES[-1]
+IMPULSE_DURATION = 150e-6
 """In s: six times the contact. Waves that cross 3.12 m in this time are those of frequencies above
 60 over the contact's duration, of which the force holds next to nothing."""
 NEAR = 0.3
@@ -80,21 +77,31 @@ class Struck:
         return float(np.trapezoid(self.force * self.time, self.time)) / self.impulse
 
 
-def check() -> Finding:
+def check_infinite_beam() -> Finding:
     """The histories under the solver's own force; deflections as if all of it struck at once.
 
     The convolution is exact, whatever the force. An impulse at the force's centroid leaves out the
     second moment of the force: 1/8 of its variance over the square of the time since.
     """
     impact = long_impact()
-    runs = {nodes: _strike(impact, nodes) for nodes in NODES}
+    runs = {nodes: _strike(impact, nodes) for nodes in LONG_NODES}
     found = [*_convolved(runs), *_at_once(runs[FINEST])]
-    return Finding(found, [_histories(runs[FINEST]), _profiles(runs[FINEST]), _errors(runs)])
+    return Finding(
+        found, [_long_histories(runs[FINEST]), _profiles(runs[FINEST]), _long_errors(runs)]
+    )
+
+
+INFINITE_BEAM = Check(
+    "infinite_beam",
+    "Infinite beam under an impulse",
+    "Boussinesq 1885; closed forms in impactlab.verification.solutions.infinite_beam",
+    check_infinite_beam,
+)
 
 
 def _strike(impact: Impact, nodes: int) -> Struck:
     grid = Discretisation(nodes=nodes, points=3)
-    run = simulate(impact, grid, duration=DURATION)
+    run = simulate(impact, grid, duration=IMPULSE_DURATION)
     return Struck(run, impact.beam, run.time.values, run.contact_force.values)
 
 
@@ -105,14 +112,14 @@ def _convolved(runs: Mapping[int, Struck]) -> list[Comparison]:
     w, kappa = struck.run.midspan_deflection.values, struck.run.midspan_curvature.values
     x, profile = _profile(struck)
     where, order = f"{FINEST} nodes, under the solver's own force", "order of convergence"
-    errors = [_error(runs[nodes]) for nodes in NODES]
+    errors = [_long_error(runs[nodes]) for nodes in LONG_NODES]
     return [
         curve("history of deflection", where, "m", w, deflection_under_force(*args), 1e-4),
         curve("history of curvature", where, "m-1", kappa, curvature_under_force(*args), 1e-3),
         curve("deflected shape", where, "m", profile, _profile_under_force(struck, x), 2e-4),
         absolute(
             f"{order} of the deflection",
-            f"{NODES[-2]} to {FINEST} nodes",
+            f"{LONG_NODES[-2]} to {FINEST} nodes",
             "1",
             float(np.log2(errors[-2] / errors[-1])),
             2.0,
@@ -123,12 +130,12 @@ def _convolved(runs: Mapping[int, Struck]) -> list[Comparison]:
 
 def _at_once(struck: Struck) -> list[Comparison]:
     """Deflection and deflected shape at the end, as if the impulse struck at the centroid."""
-    since = DURATION - struck.centroid
+    since = IMPULSE_DURATION - struck.centroid
     x, profile = _profile(struck)
     ours = struck.run.midspan_deflection[-1].item()
     expected = deflection_under_impulse(struck.beam, struck.impulse, since).item()
     shape = profile_under_impulse(struck.beam, struck.impulse, since, x)
-    where = f"{DURATION * 1e6:g} us after first touch, impulse at the force's centroid"
+    where = f"{IMPULSE_DURATION * 1e6:g} us after first touch, impulse at the force's centroid"
     return [
         relative("mid-span deflection", where, "m", ours, expected, 5e-4),
         curve("deflected shape", where, "m", profile, shape, 3e-3),
@@ -146,20 +153,20 @@ def _profile_under_force(struck: Struck, x: Floats) -> Floats:
     """Response to an impulse at each time, times the force then, by the trapezoidal rule."""
     pushed = struck.force > 0.0
     time, force = struck.time[pushed], struck.force[pushed, np.newaxis]
-    since = DURATION - time[:, np.newaxis]
+    since = IMPULSE_DURATION - time[:, np.newaxis]
     return np.asarray(
         np.trapezoid(force * profile_under_impulse(struck.beam, 1.0, since, x), time, axis=0)
     )
 
 
-def _error(struck: Struck) -> float:
+def _long_error(struck: Struck) -> float:
     """Root mean square of the deflection's error over its largest value."""
     expected = deflection_under_force(struck.beam, struck.time, struck.force)
     gap: Floats = struck.run.midspan_deflection.values - expected
     return float(np.sqrt(np.mean(gap**2)) / np.max(expected))
 
 
-def _histories(struck: Struck) -> Panel:
+def _long_histories(struck: Struck) -> Panel:
     time, beam = struck.time, struck.beam
     since = time[time > struck.centroid]
     at_once = deflection_under_impulse(beam, struck.impulse, since - struck.centroid)
@@ -179,7 +186,7 @@ def _histories(struck: Struck) -> Panel:
 def _profiles(struck: Struck) -> Panel:
     x, profile = _profile(struck)
     return Panel(
-        f"shape {DURATION * 1e6:g} us after first touch",
+        f"shape {IMPULSE_DURATION * 1e6:g} us after first touch",
         ("distance from mid-span", "m"),
         ("deflection", "m"),
         [
@@ -189,9 +196,9 @@ def _profiles(struck: Struck) -> Panel:
     )
 
 
-def _errors(runs: Mapping[int, Struck]) -> Panel:
-    nodes = np.array(NODES, dtype=np.float64)
-    errors = np.array([_error(runs[n]) for n in NODES])
+def _long_errors(runs: Mapping[int, Struck]) -> Panel:
+    nodes = np.array(LONG_NODES, dtype=np.float64)
+    errors = np.array([_long_error(runs[n]) for n in LONG_NODES])
     return Panel(
         "deflection history",
         ("nodes", "1"),
@@ -200,5 +207,104 @@ def _errors(runs: Mapping[int, Struck]) -> Panel:
             Curve("solver against convolved force", nodes, errors),
             Curve("second order", nodes, errors[0] * (nodes[0] / nodes) ** 2, independent=True),
         ],
+        log=True,
+    )
+
+
+SHEAR_HISTORIES = {
+    "contact_force": ("contact force", "N"),
+    "midspan_deflection": ("mid-span deflection", "m"),
+}
+SLENDERNESS = (1, 2, 4, 8, 16)
+"""How many times as slender as the paper's beam."""
+SHEAR_DURATION = 0.4e-3
+"""In s."""
+SHEAR_TOLERANCE = 5e-3
+"""Of the largest difference that shear makes: it is the difference of two errors of dx^2."""
+_GRID = Discretisation(nodes=401, points=3)
+_SAMPLES = 401
+
+
+def check_slender_limit() -> Finding:
+    """What shear and rotary inertia change: as in the series, and how it falls.
+
+    All beams of the family are one to bending (see slimmer), so that the difference of the two
+    models has no other cause.
+    """
+    impact = elastic(paper_impact())
+    bare = _run(impact, "elastic")
+    runs = {times: _run(slimmer(impact, times), "timoshenko") for times in SLENDERNESS}
+    found = [
+        *(_difference(name, impact, runs[1], bare) for name in SHEAR_HISTORIES),
+        *(_order(name, runs, bare) for name in SHEAR_HISTORIES),
+    ]
+    return Finding(found, [_shear_histories(impact, runs[1], bare), _fall(runs, bare)])
+
+
+SLENDER_LIMIT = Check(
+    "slender_limit",
+    "Slender limit of the Timoshenko beam",
+    "shear and rotary inertia go with (depth/span)^2; difference of the two modal series, in "
+    "impactlab.verification.solutions.modal",
+    check_slender_limit,
+)
+
+
+def _run(impact: Impact, model: str) -> xr.Dataset:
+    """The solver's histories with that model of the beam."""
+    modelled = replace(impact, beam_model=model)
+    return simulate(modelled, _GRID, duration=SHEAR_DURATION, samples=_SAMPLES)
+
+
+def _difference(name: str, impact: Impact, ours: xr.Dataset, bare: xr.Dataset) -> Comparison:
+    (quantity, units), time = SHEAR_HISTORIES[name], ours.time.values
+    one, other = modal.solve_timoshenko(impact, SHEAR_DURATION), modal.solve(impact, SHEAR_DURATION)
+    gap, expected = (ours[name] - bare[name]).values, one.at(name, time) - other.at(name, time)
+    label = f"what shear and rotary inertia change in the {quantity}"
+    return curve(label, "the paper's beam, 0.99 m/s", units, gap, expected, SHEAR_TOLERANCE)
+
+
+def _order(name: str, runs: dict[int, xr.Dataset], bare: xr.Dataset) -> Comparison:
+    coarse, fine = (_size(name, runs[times], bare) for times in SLENDERNESS[-2:])
+    label = f"order in depth/span of the change in the {SHEAR_HISTORIES[name][0]}"
+    where = f"{SLENDERNESS[-2]} and {SLENDERNESS[-1]} times as slender"
+    return absolute(label, where, "1", float(np.log2(coarse / fine)), 2.0, 0.02)
+
+
+def _size(name: str, ours: xr.Dataset, bare: xr.Dataset) -> float:
+    """Root mean square of a history's change over its largest value."""
+    gap: Floats = (ours[name] - bare[name]).values
+    return float(np.sqrt(np.mean(gap**2)) / np.max(np.abs(bare[name].values)))
+
+
+def _shear_histories(impact: Impact, ours: xr.Dataset, bare: xr.Dataset) -> Panel:
+    time = ours.time.values
+    one, other = modal.solve_timoshenko(impact, SHEAR_DURATION), modal.solve(impact, SHEAR_DURATION)
+    expected = one.at("contact_force", time) - other.at("contact_force", time)
+    return Panel(
+        "what shear and rotary inertia change: the paper's beam, 0.99 m/s",
+        ("time", "s"),
+        ("change of the contact force", "N"),
+        [
+            Curve("solver", time, (ours.contact_force - bare.contact_force).values),
+            Curve("modal series", time, expected, independent=True),
+        ],
+    )
+
+
+def _fall(runs: dict[int, xr.Dataset], bare: xr.Dataset) -> Panel:
+    beam = elastic(paper_impact()).beam
+    ratios = beam.depth / beam.span / np.array(SLENDERNESS, dtype=np.float64)
+    changes = {
+        quantity: np.array([_size(name, runs[times], bare) for times in SLENDERNESS])
+        for name, (quantity, _) in SHEAR_HISTORIES.items()
+    }
+    lines = [Curve(label, ratios, values) for label, values in changes.items()]
+    slope = lines[0].y[-1] * (ratios / ratios[-1]) ** 2
+    return Panel(
+        "change with shear and rotary inertia",
+        ("depth over span", "1"),
+        ("change (root mean square over the largest value)", "1"),
+        [*lines, Curve("second order", ratios, slope, independent=True)],
         log=True,
     )

@@ -10,12 +10,11 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from impactlab.model.paper import paper_impact
-from impactlab.verification.cases import slimmer
+from impactlab.verification.cases import slimmer, timoshenko_impact
 from impactlab.verification.solutions import modal
-from impactlab.verification.solutions.modal_march import contact_stiffness
+from impactlab.verification.solutions.hertz import contact_stiffness
+from impactlab.verification.solutions.modal import solve_timoshenko as solve
 from impactlab.verification.solutions.shear import shear_stiffness
-from impactlab.verification.solutions.timoshenko_1913 import timoshenko_impact
-from impactlab.verification.solutions.timoshenko_modal import solve
 
 PAPER, TIMOSHENKO = paper_impact(contact="hertz"), timoshenko_impact()
 STUBBY = replace(PAPER, beam=replace(PAPER.beam, span=0.2))

@@ -1,0 +1,9 @@
+"""Array types that several modules name in their signatures."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+"""An array of real numbers; docstrings tell its shape and units."""

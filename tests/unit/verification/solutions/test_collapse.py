@@ -1,0 +1,114 @@
+"""Load and deflection beyond yield against the closed form, integrals and balances of energy."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from impactlab.model.paper import paper_impact
+from impactlab.verification.solutions import bending, collapse
+
+BEAM = paper_impact().beam
+HARDENING = replace(BEAM, material=replace(BEAM.material, kinematic_hardening_modulus=5e9))
+AT_YIELD = 4 * bending.yield_moment(BEAM) / BEAM.span
+W_YIELD = bending.static_deflection(BEAM, AT_YIELD)
+
+
+@pytest.mark.parametrize("ratio", [0.2, 1.0, 1.1, 1.3, 1.49, 1.4999])
+def test_deflection_is_the_closed_form_without_hardening(ratio):
+    """w/w_y = (5 - (3 + p) sqrt(3 - 2 p))/p^2, p = P/P_y: Prager and Hodge."""
+    expected = (5 - (3 + ratio) * np.sqrt(3 - 2 * ratio)) / ratio**2 if ratio > 1 else ratio
+    deflection = collapse.midspan_deflection(BEAM, ratio * AT_YIELD)
+    assert deflection == pytest.approx(expected * W_YIELD, rel=1e-9)
+
+
+def test_deflection_is_the_integral_along_a_hardening_beam():
+    load = 1.7 * AT_YIELD
+
+    def curvature(x):
+        target = load * x / 2
+        return brentq(lambda kappa: float(bending.moment(HARDENING, kappa)) - target, 0, 10)
+
+    edge = 2 * bending.yield_moment(BEAM) / load
+    expected, _ = quad(lambda x: curvature(x) * x, 0, BEAM.span / 2, points=[edge])
+    found = collapse.midspan_deflection(HARDENING, load)
+    assert found == pytest.approx(expected, rel=1e-8)
+
+
+@pytest.mark.parametrize("beam", [BEAM, HARDENING], ids=["perfect", "hardening"])
+@pytest.mark.parametrize("ratio", [0.1, 0.999, 1.001, 1.2, 1.499])
+def test_load_is_the_inverse(beam, ratio):
+    deflection = collapse.midspan_deflection(beam, ratio * AT_YIELD)
+    assert collapse.load_at(beam, deflection) == pytest.approx(ratio * AT_YIELD, rel=1e-9)
+
+
+def test_collapse_begins_at_20_9_of_the_deflection_at_yield():
+    limit = bending.collapse_load(BEAM)
+    assert collapse.load_at(BEAM, 2.23 * W_YIELD) == pytest.approx(limit, rel=1e-9)
+    assert collapse.load_at(BEAM, 2.2 * W_YIELD) < limit * (1 - 1e-5)
+    assert collapse.load_at(HARDENING, 10 * W_YIELD) > 1.1 * limit
+
+
+def test_missing_work_is_the_area_above_the_curve():
+    limit = bending.collapse_load(BEAM)
+    area, _ = quad(lambda w: limit - collapse.load_at(BEAM, w), 1e-9, 20 / 9 * W_YIELD, limit=200)
+    assert collapse.missing_work(BEAM) == pytest.approx(area, rel=1e-5)
+
+
+def test_what_the_beam_cannot_carry_is_refused():
+    with pytest.raises(ValueError, match="cannot carry a moment"):
+        collapse.midspan_deflection(BEAM, 1.001 * bending.collapse_load(BEAM))
+    with pytest.raises(ValueError, match="load = 0"):
+        collapse.midspan_deflection(BEAM, 0.0)
+    with pytest.raises(ValueError, match="deflection = -1"):
+        collapse.load_at(BEAM, -1.0)
+
+
+BASE = paper_impact(2.0)
+IMPACT = replace(BASE, sphere=replace(BASE.sphere, mass=200.0))
+
+
+def test_mode_mass_is_that_of_the_triangle():
+    """Integral of mu (x/(L/2))^2 over the beam, and the striker."""
+    beam = IMPACT.beam
+    half, _ = quad(lambda x: beam.mass_per_length * (2 * x / beam.span) ** 2, 0, beam.span / 2)
+    assert collapse.mode_mass(IMPACT) == pytest.approx(200 + 2 * half, rel=1e-12)
+
+
+def test_mode_leaves_the_least_kinetic_energy_of_the_difference():
+    beam, v = IMPACT.beam, collapse.mode_velocity(IMPACT)
+
+    def difference(velocity):
+        triangle = beam.mass_per_length * beam.span / 3 * velocity**2
+        return 0.5 * (200 * (2.0 - velocity) ** 2 + triangle)
+
+    assert difference(v) < min(difference(v * 1.001), difference(v * 0.999))
+
+
+def test_a_constant_force_brakes_it():
+    w, v, t = (
+        getattr(collapse, name)(IMPACT)
+        for name in ("mode_deflection", "mode_velocity", "mode_duration")
+    )
+    assert w == pytest.approx(0.5 * v * t, rel=1e-12)
+    work = 4 * 345e6 * 0.06 * 0.0278**2 / 4 / 0.78 * w
+    assert collapse.mode_energy(IMPACT) == pytest.approx(work, rel=1e-12)
+
+
+def test_energy_ratio_by_hand():
+    load = bending.collapse_load(IMPACT.beam)
+    stored = load**2 * 0.78**3 / (96 * 210e9 * 0.06 * 0.0278**3 / 12)
+    assert collapse.energy_ratio(IMPACT) == pytest.approx(400 / stored, rel=1e-12)
+
+
+def test_elastic_plastic_deflection_balances_energy():
+    """The static curve's work up to the largest deflection is the mode's energy."""
+    heavy = replace(IMPACT, velocity=4.0)
+    beam, load = heavy.beam, bending.collapse_load(heavy.beam)
+    largest = collapse.elastic_plastic_deflection(heavy) + bending.static_deflection(beam, load)
+    work, _ = quad(lambda w: collapse.load_at(beam, w), 1e-9, largest, limit=200)
+    assert work == pytest.approx(collapse.mode_energy(heavy), rel=1e-5)
