@@ -17,7 +17,7 @@ COMMANDS = {
     "witness": "impactlab.fem3d.command:witness",
 }
 """Commands, by name: module and function."""
-SOLVERS = {"witness": "impactlab.fem3d.study.solver"}
+SOLVERS = {"witness": "impactlab.fem3d.study.solver:SOLVER"}
 """Solvers of runs, see study.solvers, by the name that designs hold."""
 SOLID = {
     "cases": "impactlab.fem3d.study.cases",

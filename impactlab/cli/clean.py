@@ -23,14 +23,14 @@ def clean(
     from contextlib import ExitStack
 
     from impactlab.report.console import print_files
-    from impactlab.study.store import held
+    from impactlab.study.store import locked
 
     if not any(folder.glob("*.yaml")):
         raise FileNotFoundError(f"{folder}: no study files (*.yaml) there: nothing was removed")
     with ExitStack() as locks:
         found: dict[Path, str] = {}
         for shards in _folders(results):
-            locks.enter_context(held(shards))
+            locks.enter_context(locked(shards))
             found |= _stale(_study_of(shards, folder), shards)
         if not found:
             print("Nothing to remove: every shard is asked for.")

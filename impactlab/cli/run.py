@@ -50,7 +50,7 @@ def run(
     from impactlab.study.runs import note_study
     from impactlab.study.sampling import design as sampled
     from impactlab.study.sampling.doubling import declared
-    from impactlab.study.store import held
+    from impactlab.study.store import locked
 
     stored = read_netcdf(design_file) if design_file.suffix == ".nc" else None
     study = read_study(design_file) if stored is None else declared(stored, design_file)
@@ -71,7 +71,7 @@ def run(
         from impactlab.study.adaptive.extending import extended
 
         solve = partial(execute, shards_folder=shards, engine=engine)
-        with held(shards):  # over all its steps
+        with locked(shards):  # over all its steps
             write_netcdf(extended(samples, solve, analysed), path)
     else:
         with executed(samples, shards, engine) as runs:

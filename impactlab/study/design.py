@@ -1,4 +1,4 @@
-"""What is read off a design, whatever solves it."""
+"""The runs of a design, as any solver reads them."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import xarray as xr
 
 
 def varied_names(design: xr.Dataset) -> tuple[str, ...]:
-    """The varied parameters, in the order of the study."""
+    """Return the varied parameters, in the order of the study."""
     return tuple(str(name) for name in np.atleast_1d(design.attrs["varied"]))
 
 
 def run_shape(design: xr.Dataset) -> tuple[tuple[str, ...], tuple[int, ...]]:
-    """The dimensions that number the runs and their sizes; the last one varies fastest.
+    """Return the dimensions that number the runs and their sizes; the last one varies fastest.
 
-    In the study's order: the order of a dataset's own dimensions is not kept by netCDF.
+    They are in the study's order: netCDF does not keep the order of a dataset's own dimensions.
     """
     dims = (str(dim) for name in varied_names(design) for dim in design[name].dims)
     once = tuple(dict.fromkeys(dims))
@@ -25,12 +25,12 @@ def run_shape(design: xr.Dataset) -> tuple[tuple[str, ...], tuple[int, ...]]:
 
 
 def run_count(design: xr.Dataset) -> int:
-    """How many runs there are."""
+    """Return the number of runs."""
     return math.prod(run_shape(design)[1])
 
 
 def flattened(design: xr.Dataset, name: str, runs: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """A parameter's value in these runs, numbered with the dimensions in C order: shape (runs,)."""
+    """Return a parameter in these runs, numbered along the dimensions in C order: shape (runs,)."""
     dims, shape = run_shape(design)
     places = np.unravel_index(runs, shape)
     own = tuple(places[dims.index(str(dim))] for dim in design[name].dims)

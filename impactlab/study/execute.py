@@ -22,7 +22,7 @@ from impactlab.study.netcdf import Columns
 from impactlab.study.progress import Progress
 from impactlab.study.runs import Answers, Work
 from impactlab.study.solvers import solver_named, solver_of
-from impactlab.study.store import Form, Ledger, Shards, held, joined
+from impactlab.study.store import OutputSpec, RunIndex, Shards, joined, locked
 
 log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
@@ -30,12 +30,12 @@ Array = np.ndarray[Any, Any]
 
 @contextmanager
 def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterator[xr.Dataset]:
-    """Solve what of the design has not been solved yet; within, all of it as runs.nc holds it.
+    """Solve the runs of a design that are not solved yet, and give all of them as a context.
 
-    design: see impactlab.study.sampling.design. Every finished batch is in `shards_folder`
-    before it is counted, so that an interrupted study goes on from there. Answers are read from
-    there, too, when they are computed, a column at a time: held in memory are some 40 bytes a run,
-    and no other process works in the folder meanwhile.
+    design: see impactlab.study.sampling.design. Every finished batch is in `shards_folder` before
+    it is counted: interrupted studies resume where they stopped. Answers are read from there, one
+    column at a time, when they are computed: memory holds about 40 bytes per run, and no other
+    process works in the folder meanwhile.
 
     Raises ValueError when the model refuses a run; OSError when the disk is full, when no
     scheduler answers or its workers fail, or when a shard is damaged while it is read;
@@ -43,38 +43,37 @@ def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterato
     """
     name = solver_of(design)
     solver = solver_named(name)
-    with held(shards_folder):
+    with locked(shards_folder):
         work = Work.of(design)
-        shards, ledger = Shards(shards_folder, work.form, solver.VERSION), Ledger(work.keys)
+        shards, index = Shards(shards_folder, work.output, solver.version), RunIndex(work.keys)
         for keys in shards.recover():
-            ledger.mark(ledger.find(keys)[1])
-        log.info("%s", _found(ledger))
-        for runs, columns in _followed(work, ledger, engine):
+            index.mark(index.find(keys)[1])
+        log.info("%s", _summary(index))
+        for runs, columns in _with_progress(work, index, engine):
             shards.write(work.keys[runs], columns)
-            ledger.mark(runs)
+            index.mark(runs)
         shards.merge()
         # HDF5 is not for two threads
-        with Answers(shards, ledger) as answers, dask.config.set(scheduler="synchronous"):
+        with Answers(shards, index) as answers, dask.config.set(scheduler="synchronous"):
             yield solver.labelled(design, answers.columns(solver.columns(design)))
 
 
 def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Dataset:
-    """As `executed`, all of it in memory."""
+    """Return all runs of a design in memory; see `executed`."""
     with executed(design, shards_folder, engine) as runs:
         return runs.load()
 
 
-def _found(ledger: Ledger) -> str:
-    """What there is to do."""
-    before = ledger.distinct - ledger.missing().size
-    repeats = ledger.size - ledger.distinct
-    runs = f"{ledger.distinct} runs" + f" ({repeats} more are equal to one of them)" * bool(repeats)
+def _summary(index: RunIndex) -> str:
+    before = index.distinct - index.missing().size
+    repeats = index.size - index.distinct
+    runs = f"{index.distinct} runs" + f" ({repeats} more are equal to one of them)" * bool(repeats)
     return f"{runs}, {before} of them solved before"
 
 
-def _followed(work: Work, ledger: Ledger, engine: Engine) -> Iterator[tuple[Array, Columns]]:
-    """Numbers and answers of the missing runs as they come in; a bar tells how far they are."""
-    missing, total = ledger.missing(), ledger.distinct
+def _with_progress(work: Work, index: RunIndex, engine: Engine) -> Iterator[tuple[Array, Columns]]:
+    """Yield numbers and answers of the missing runs as they come in, and show a progress bar."""
+    missing, total = index.missing(), index.distinct
     if not missing.size:
         return
     bits = solver_named(work.solver).failures(work.design)
@@ -88,74 +87,74 @@ Result = tuple[Columns, float]
 Task = Future[Result]
 
 _AHEAD = 3
-"""Batches under way or waiting, a worker: the graph does not grow with the study."""
+"""Batches per worker under way or waiting: the graph does not grow with the study."""
 _LOOK_AGAIN = 1.0
-"""Seconds between counts of the workers, which may come and go."""
+"""Seconds between counts of the workers, which come and go."""
 _PAUSE = 0.001, 0.05
-"""Seconds between looks at what has finished, first and last: a look takes 0.1 ms."""
-_KEPT = "Finished runs are kept: the same command goes on from there."
+"""Seconds between checks for finished batches, first and last: a check takes 0.1 ms."""
+_KEPT = "Finished runs are kept: the same command resumes where it stopped."
 _GONE = f"the dask scheduler is gone. {_KEPT}"
 
 
-def solve_batch(solver: str, cases: Array, form: Form, version: str) -> Result:
-    """The task that dask runs: the answers, and the seconds that they took.
+def solve_batch(solver: str, cases: Array, output: OutputSpec, version: str) -> Result:
+    """Return the answers and the seconds that they took: the task that dask runs.
 
-    Raises RuntimeError where the solver is not the caller's.
+    Raises RuntimeError where the solver has another version than the caller's.
     """
-    if version != solver_named(solver).VERSION:
+    if version != solver_named(solver).version:
         raise RuntimeError(
             "this dask worker has another version of impactlab: install the same one on all of them"
         )
     start = time.perf_counter()
-    columns = solver_named(solver).solve(cases, form)
+    columns = solver_named(solver).solve(cases, output)
     return columns, time.perf_counter() - start
 
 
 def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, Columns]]:
-    """Numbers and answers of the missing runs, as their batches finish; all that have, together.
+    """Yield numbers and answers of the missing runs, those of all batches that finished together.
 
     Raises OSError when no scheduler answers, or when its workers fail.
     """
     solver = solver_named(work.solver)
     first = work.cases(missing[:1])
-    compiled_for = Form(work.form.samples, profiles=False)
-    solver.solve(first[:0], compiled_for)  # before workers ask for it
-    values = solver.values(first, work.form)
+    solver.solve(first[:0], OutputSpec(work.output.samples, profiles=False))  # compile only once
+    values = solver.values(first, work.output)
     batches = Batches(missing, work.cost, values, engine.batch_seconds)
     with engine.client() as client:
-        crew = _Crew(client, work, batches)
-        # with results: to wait for one of a worker that is gone would be to wait for ever
-        queue = as_completed(crew.more(), loop=client.loop, with_results=True)
-        for finished in _finished(queue, crew):
-            yield joined([crew.took(future, result) for future, result in finished])
-            queue.update(crew.more())
+        pool = WorkerPool(client, work, batches)
+        # with results: waiting for the result of a lost worker would never end
+        queue = as_completed(pool.submit(), loop=client.loop, with_results=True)
+        for finished in _finished(queue, pool):
+            yield joined([pool.take(future, result) for future, result in finished])
+            queue.update(pool.submit())
 
 
-def _finished(queue: as_completed, crew: _Crew) -> Iterator[list[tuple[Task, Result]]]:
-    """Tasks as they finish; meanwhile, more of them for workers that have come."""
+def _finished(queue: as_completed, pool: WorkerPool) -> Iterator[list[tuple[Task, Result]]]:
+    """Yield tasks as they finish; meanwhile, submit more for workers that have come."""
     while not queue.is_empty():
         pause, longest = _PAUSE
         while not queue.has_ready():
-            queue.update(crew.more())
+            queue.update(pool.submit())
             time.sleep(pause)
-            pause = min(1.1 * pause, longest)  # a tenth of what it has waited
+            pause = min(1.1 * pause, longest)  # about a tenth of the time waited so far
         ready = [_next(queue)]
         while queue.has_ready():
             ready.append(_next(queue))
         yield ready
 
 
-class _Crew:
-    """The workers of a client, and what they are at."""
+class WorkerPool:
+    """The workers of a client, and the batches that they solve."""
 
     def __init__(self, client: Client, work: Work, batches: Batches) -> None:
+        """Count the workers with the first submission."""
         self._client, self._work, self._batches = client, work, batches
         self._under_way: dict[Any, Array] = {}
         self._threads, self._counted = 1, 0.0
 
-    def more(self) -> list[Task]:
-        """New tasks, as many as the workers need to be busy."""
-        self._look()
+    def submit(self) -> list[Task]:
+        """Submit and return new tasks, as many as keep the workers busy."""
+        self._count_threads()
         workers = max(1, self._threads)
         futures = []
         while len(self._under_way) < _AHEAD * workers:
@@ -165,8 +164,8 @@ class _Crew:
             futures.append(self._submit(runs))
         return futures
 
-    def _look(self) -> None:
-        """Count the threads of all workers, now and then; a study without any says so, and waits.
+    def _count_threads(self) -> None:
+        """Count the threads of all workers now and then; log where there are none, and wait.
 
         Workers come and go: on a busy cluster the first one may take hours.
         """
@@ -177,8 +176,8 @@ class _Crew:
         if before and not self._threads:
             log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
 
-    def took(self, future: Task, result: Result) -> tuple[Array, Columns]:
-        """Numbers and answers of a finished batch."""
+    def take(self, future: Task, result: Result) -> tuple[Array, Columns]:
+        """Return numbers and answers of a finished batch."""
         runs, (columns, seconds) = self._under_way.pop(future.key), result
         future.release()
         self._batches.learn(float(self._work.cost[runs].sum()), seconds)
@@ -186,9 +185,9 @@ class _Crew:
 
     def _submit(self, runs: Array) -> Task:
         work = self._work
-        version = solver_named(work.solver).VERSION
+        version = solver_named(work.solver).version
         future = self._client.submit(
-            solve_batch, work.solver, work.cases(runs), work.form, version, pure=False
+            solve_batch, work.solver, work.cases(runs), work.output, version, pure=False
         )
         self._under_way[future.key] = runs
         return future
@@ -202,12 +201,12 @@ def _threads(client: Client) -> int:
 
 
 def _next(queue: as_completed) -> tuple[Task, Result]:
-    """A finished task. Raises OSError where its workers, or the scheduler, failed."""
+    """Return a finished task. Raises OSError where its workers, or the scheduler, failed."""
     try:
         future, result = next(queue)
     except KilledWorker as error:
-        said = "a batch of runs ended every dask worker that took it (too little memory?)"
-        raise OSError(f"{said}: {error} {_KEPT}") from error
+        message = "a batch of runs ended every dask worker that took it (too little memory?)"
+        raise OSError(f"{message}: {error} {_KEPT}") from error
     except (CancelledError, CommClosedError) as error:
         raise ConnectionError(_GONE) from error
     except (ImportError, RuntimeError) as error:
@@ -218,33 +217,33 @@ def _next(queue: as_completed) -> tuple[Task, Result]:
 
 
 _FIRST_SECONDS = 0.1
-"""Of the first tasks, which measure."""
+"""Duration of the first tasks, which measure the speed."""
 _LEAST_SECONDS = 0.05
-"""Of a task near the end."""
+"""Duration of a task near the end."""
 _SHARE = 2
-"""A task is at most this part of a worker's share of what is left: none idles at the end."""
+"""A task takes at most one part in so many of a worker's share of the rest: none idles at last."""
 _SPEED = 3e8
-"""Cost a second, before it is measured."""
+"""Cost per second, before it is measured."""
 _MEMORY = 0.8
 """Weight of all measurements so far beside the next one."""
 _VALUES = 4_000_000
-"""Stored numbers a task, at most: bounds its memory."""
+"""Most stored numbers per task: bounds its memory."""
 _RUNS = 10_000
-"""Runs a task, at most: its cases travel with it, and take 2 MB."""
+"""Most runs per task: its cases travel with it, and take 2 MB."""
 
 
 class Batches:
-    """Cuts runs into batches, sized when they are asked for: consecutive, after the costly ones.
+    """Runs cut into batches as they are taken: consecutive runs, after the costly ones.
 
-    A run that is a task of its own comes first, the costliest of all ahead: none is left to one
-    worker while the others idle.
+    A run that is a task of its own comes first, the costliest of all ahead, so that none is left
+    to one worker while the others idle.
     """
 
     def __init__(self, runs: Array, cost: Array, values: int, seconds: float = 1.0) -> None:
-        """runs: their numbers, out of those that `cost` holds, in a solver's unit.
+        """Take the numbers of the runs, out of those that `cost` holds, in a solver's unit.
 
-        values: stored numbers a run; seconds: of a batch, long beside what dask and the disk take
-        for one.
+        values: stored numbers per run; seconds: of a batch, long beside the overhead of dask and
+        the disk.
         """
         alone = np.where(cost[runs] > _SPEED * seconds, cost[runs], 0.0)
         self._runs, self._costs = runs[np.argsort(-alone, kind="stable")], cost
@@ -254,7 +253,7 @@ class Batches:
         self._cost, self._seconds = 0.0, 0.0
 
     def take(self, workers: int) -> Array:
-        """The numbers of the next runs; empty when all are taken."""
+        """Return the numbers of the next runs; empty when all are taken."""
         ahead = self._runs[self._at : self._at + self._most]
         until = np.cumsum(self._costs[ahead])
         limit = self._speed * self._target(self._left / self._speed / workers)
@@ -265,7 +264,7 @@ class Batches:
         return runs
 
     def learn(self, cost: float, seconds: float) -> None:
-        """Size further batches by one that took so long."""
+        """Size further batches by the duration of one."""
         self._cost = _MEMORY * self._cost + cost
         self._seconds = _MEMORY * self._seconds + seconds
 
@@ -274,6 +273,6 @@ class Batches:
         return self._cost / self._seconds if self._seconds else _SPEED
 
     def _target(self, share: float) -> float:
-        """Seconds of the next task; share: a worker's share of what is left, in s."""
+        """Return the seconds of the next task; share: a worker's share of the rest, in s."""
         wished = self._wished if self._seconds else min(self._wished, _FIRST_SECONDS)
         return min(wished, max(share / _SHARE, _LEAST_SECONDS))

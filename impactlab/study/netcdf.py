@@ -24,15 +24,15 @@ from rich.filesize import decimal
 from impactlab.variables import HISTORIES, PROFILES
 
 _CACHE = 1_000_000
-"""Bytes of a variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
+"""Bytes per variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
 
 
 @contextmanager
 def whole(path: Path, size: int) -> Iterator[Path]:
-    """A temporary name to write to, renamed in the end: readers see all of a file or none of it.
+    """Give a temporary name to write to, renamed in the end: readers see all of a file or nothing.
 
-    size: about what is written, in bytes. Raises OSError, naming the file and the space left, when
-    the disk does not take it; an older file then stays as it was.
+    size: of what is written, in bytes, roughly. Raises OSError, naming the file and the space left,
+    when the disk does not take it; an older file then stays as it was.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{path.name}.{uuid4().hex}")
@@ -48,7 +48,7 @@ def whole(path: Path, size: int) -> Iterator[Path]:
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
-    """Write all of it or nothing; large variables are compressed. Raises OSError: see whole."""
+    """Write the whole dataset or nothing, large variables compressed. Raises OSError: see whole."""
     large = {
         str(name): {"zlib": True, "complevel": 1}
         for name, values in dataset.data_vars.items()
@@ -61,20 +61,20 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
 
 def _unwritten(path: Path, size: int, error: Exception) -> str:
     free = shutil.disk_usage(path.parent).free
-    said = f"{path}: could not be written ({error}); {decimal(free)} are free on its disk"
+    message = f"{path}: could not be written ({error}); {decimal(free)} are free on its disk"
     if free < size:
-        return f"{said}, {decimal(size)} are needed: make room, then run the same command again"
-    return said
+        return f"{message}, {decimal(size)} are needed: make room, then run the same command again"
+    return message
 
 
 def read_netcdf(path: Path) -> xr.Dataset:
-    """A dataset in memory, its file closed. Raises OSError, naming a file that cannot be read."""
+    """Return a dataset in memory, its file closed. Raises OSError naming an unreadable file."""
     with _opened(path) as dataset:
         return dataset.load()
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
-    """Those of a dataset. Raises OSError, naming a file that cannot be read."""
+    """Return the attributes of a dataset. Raises OSError naming an unreadable file."""
     with _opened(path) as dataset:
         return {str(name): value for name, value in dataset.attrs.items()}
 
@@ -92,18 +92,18 @@ Array = np.ndarray[Any, Any]
 Columns = dict[str, Array]
 """Answers by name, each of shape (runs, ...)."""
 KEY = np.dtype("S16")
-"""Of the key of a run."""
+"""The type of a run's key."""
 KEYS = "key"
 """The column of keys."""
 DAMAGE = (OSError, RuntimeError, ValueError, TypeError, LookupError, AttributeError)
-"""What read_shard raises on a file that is no sound shard: HDF5 knows many ways to stumble."""
+"""Errors that reading a damaged shard may raise: HDF5 has many."""
 LAYOUT = 2
-"""Changes with the layout of a file: one of another layout is not looked for."""
+"""Version of a shard's layout; shards of another layout are not looked for."""
 _DIMS = {KEYS: ("byte",)} | {name: entry.dims for name, entry in (HISTORIES | PROFILES).items()}
 
 
 def write_shard(path: Path, keys: Array, columns: Columns) -> None:
-    """Write all of it or nothing. Raises OSError, naming the file, when the disk is full."""
+    """Write the whole shard or nothing. Raises OSError, naming the file, when the disk is full."""
     arrays = {KEYS: _bytes(keys)} | columns
     size = sum(values.nbytes for values in arrays.values())
     with whole(path, size) as unfinished, Dataset(unfinished, "w") as file:
@@ -117,7 +117,7 @@ def write_shard(path: Path, keys: Array, columns: Columns) -> None:
 
 
 def _alike(arrays: Columns) -> Collection[list[str]]:
-    """Names of columns, those of one type and the same dimensions together."""
+    """Group the names of columns by type and dimensions."""
     names: dict[tuple[str, ...], list[str]] = {}
     for name, values in arrays.items():
         names.setdefault((values.dtype.name, *_DIMS.get(name, ())), []).append(name)
@@ -125,7 +125,7 @@ def _alike(arrays: Columns) -> Collection[list[str]]:
 
 
 def _written(file: Dataset, columns: list[Array], others: tuple[str, ...]) -> str:
-    """The name of a variable that takes them as rows: to make one takes half a millisecond.
+    """Write columns as rows of one variable and return its name: each variable takes 0.5 ms.
 
     others: dimensions beside that of the runs.
     """
@@ -141,19 +141,19 @@ def _written(file: Dataset, columns: list[Array], others: tuple[str, ...]) -> st
 
 
 class Shard:
-    """A file that is open for reading, which takes longer than a column of it.
+    """A shard open for reading. Opening takes longer than reading a column.
 
-    All raise one of DAMAGE where it is no sound shard.
+    Every method raises one of DAMAGE where the file is no sound shard.
     """
 
     def __init__(self, path: Path) -> None:
-        """Open it. Columns that it lacks, or has too many, are found here."""
+        """Open the file. Missing and surplus columns are noticed here."""
         self._path, self._file = path, Dataset(path)
         self._file.set_auto_maskandscale(False)
         self._checksums = json.loads(self._file.getncattr("checksums"))
         self._places = json.loads(self._file.getncattr("places"))
-        held = [variable.shape[0] for variable in self._file.variables.values()]
-        if self._checksums.keys() != self._places.keys() or len(self._places) != sum(held):
+        rows = [variable.shape[0] for variable in self._file.variables.values()]
+        if self._checksums.keys() != self._places.keys() or len(self._places) != sum(rows):
             raise ValueError("it lacks a column, or has one too many")
 
     def __enter__(self) -> Shard:
@@ -163,14 +163,14 @@ class Shard:
         self._file.close()
 
     def layout(self, name: str) -> tuple[tuple[int, ...], np.dtype[Any]]:
-        """Shape beside that of the runs, and type, of a column."""
+        """Return the shape of a column's row and its type."""
         variable = self._file[self._places[name][0]]
         return tuple(variable.shape[2:]), variable.dtype
 
     def read(self, name: str) -> Array:
-        """A column.
+        """Return a column.
 
-        Its checksum covers folder and name: a sound shard in another's place is found, too.
+        Its checksum covers folder and name, so that a sound shard in another's place is noticed.
         """
         table, row = self._places[name]
         values: Array = self._file[table][row]
@@ -179,7 +179,7 @@ class Shard:
         return np.frombuffer(values.tobytes(), dtype=KEY) if name == KEYS else values
 
     def columns(self, names: Collection[str] = ()) -> Columns:
-        """Those of these names; all without any, keys under KEYS."""
+        """Return the columns of these names, or all of them; keys are under KEYS."""
         return {name: self.read(name) for name in names or self._checksums}
 
 

@@ -19,7 +19,7 @@ from dask.delayed import delayed
 from impactlab.study.design import run_count
 from impactlab.study.netcdf import DAMAGE, KEYS, Shard
 from impactlab.study.solvers import SOLVERS, solver_named, solver_of
-from impactlab.study.store import DAMAGED, Form, Ledger, Shards, holder, run_keys
+from impactlab.study.store import DAMAGED, OutputSpec, RunIndex, Shards, holder, run_keys
 
 Array = np.ndarray[Any, Any]
 _CHUNK = 10_000
@@ -28,59 +28,63 @@ _CHUNK = 10_000
 
 @dataclass(frozen=True)
 class Work:
-    """The runs of a design: the key of each, shape (runs,), and its cost in the solver's unit."""
+    """The runs of a design: the key of each, shape (runs,), and its cost in the solver's unit.
+
+    Cases are made as they are needed: a table of all would fill the memory.
+    """
 
     design: xr.Dataset
     solver: str
-    form: Form
+    output: OutputSpec
     keys: Array
     cost: Array
 
     @staticmethod
     def of(design: xr.Dataset) -> Work:
-        """Every run is checked. Raises ValueError naming one that the model refuses."""
-        name, form = solver_of(design), Form.of(design)
+        """Check every run. Raises ValueError naming one that the model refuses."""
+        name, output = solver_of(design), OutputSpec.of(design)
         solver = solver_named(name)
         keys, cost = [], []
         for start in range(0, run_count(design), _CHUNK):
             stop = min(start + _CHUNK, run_count(design))
             cases = solver.cases(design, np.arange(start, stop))
-            keys.append(run_keys(cases, form, solver.VERSION))
+            keys.append(run_keys(cases, output, solver.version))
             cost.append(solver.cost(cases))
-        return Work(design, name, form, np.concatenate(keys), np.concatenate(cost))
+        return Work(design, name, output, np.concatenate(keys), np.concatenate(cost))
 
     @property
     def size(self) -> int:
-        """The number of runs."""
+        """Return the number of runs."""
         return int(self.keys.size)
 
     def cases(self, runs: Array) -> Array:
-        """The cases of these runs, by number."""
+        """Return the cases of these runs, by number."""
         return solver_named(self.solver).cases(self.design, runs)
 
 
 _OPEN = 100
-"""Shards that stay open: to open one takes longer than to read a column of it."""
+"""Shards that stay open: opening one takes longer than reading a column."""
+_AGAIN = "run the same command again: what is lost is solved again"
 
 
 class Answers:
-    """All answers of a design, a column at a time in memory. To be closed in the end."""
+    """All answers of a design, as a context; one column at a time is in memory."""
 
-    def __init__(self, shards: Shards, ledger: Ledger) -> None:
-        """Look up where each run's answers lie. Raises OSError where a run has none."""
-        self._ledger = ledger
+    def __init__(self, shards: Shards, index: RunIndex) -> None:
+        """Find the answers of each run. Raises OSError where a run has none."""
+        self._index = index
         self._open: dict[Path, Shard] = {}
         self._parts: list[tuple[Path, Array, Array]] = []
         self._closing = ExitStack()
         for path in shards.files():
-            asked, runs = ledger.find(self._read(path, KEYS))
+            requested, runs = index.find(self._read(path, KEYS))
             if runs.size:
-                self._parts.append((path, np.flatnonzero(asked), runs))
-        found = np.zeros(ledger.size, dtype=bool)
+                self._parts.append((path, np.flatnonzero(requested), runs))
+        found = np.zeros(index.size, dtype=bool)
         for _, _, runs in self._parts:
             found[runs] = True
-        if not ledger.spread(found).all():
-            raise OSError(f"{shards.folder}: shards went while they were read: {_AGAIN}")
+        if not index.spread(found).all():
+            raise OSError(f"{shards.folder}: shards disappeared while they were read: {_AGAIN}")
 
     def __enter__(self) -> Answers:
         return self
@@ -89,13 +93,13 @@ class Answers:
         self._closing.close()
 
     def columns(self, names: Sequence[str]) -> dict[str, da.Array]:
-        """Answers by name, each of shape (runs, ...), in one block that is read when computed."""
+        """Return answers by name, each of shape (runs, ...), in one block read when computed."""
         with self._shard(self._parts[0][0]) as shard:
             layouts = {name: shard.layout(name) for name in names}
         return {name: self._column(name, *layout) for name, layout in layouts.items()}
 
     def _column(self, name: str, shape: tuple[int, ...], kind: np.dtype[Any]) -> da.Array:
-        whole = (self._ledger.size, *shape)
+        whole = (self._index.size, *shape)
         values = delayed(self._values)(name, whole, kind)
         column: da.Array = da.from_delayed(values, whole, kind)  # type: ignore[no-untyped-call]
         return column
@@ -104,7 +108,7 @@ class Answers:
         values = np.empty(shape, kind)
         for path, rows, runs in self._parts:
             values[runs] = self._read(path, name)[rows]
-        return self._ledger.spread(values)
+        return self._index.spread(values)
 
     def _read(self, path: Path, name: str) -> Array:
         with self._shard(path) as shard:
@@ -112,7 +116,7 @@ class Answers:
 
     @contextmanager
     def _shard(self, path: Path) -> Iterator[Shard]:
-        """Raises OSError where the shard is not what was written."""
+        """Open a shard, or take an open one. Raises OSError where it is damaged."""
         try:
             if path in self._open:
                 yield self._open[path]
@@ -126,15 +130,12 @@ class Answers:
             raise OSError(f"{path} was damaged after it was written ({error}): {_AGAIN}") from error
 
 
-_AGAIN = "run the same command again: what is lost is solved again"
-
-
 @dataclass(frozen=True)
 class Status:
-    """Runs in all, and on disk; of these, how many lack a response that is asked for.
+    """The progress of a study: all runs, those on disk, and those that lack a requested response.
 
-    age: of the latest shard in s, None without one; size: of all shards in bytes, those of other
-    solvers and forms included; holder: who works on it now, or "".
+    age: of the latest shard in s, None without one; size: of all shards in bytes, also of other
+    solvers and outputs; holder: who works on it now, or "".
     """
 
     runs: int
@@ -146,19 +147,19 @@ class Status:
 
 
 def status(design: xr.Dataset, shards_folder: Path) -> Status:
-    """The status of a design; shards are only read, also while another process writes them."""
+    """Return the status of a design; shards are only read, also while another process writes."""
     work = Work.of(design)
     solver = solver_named(work.solver)
-    shards = Shards(shards_folder, work.form, solver.VERSION)
-    ledger, bits = Ledger(work.keys), np.zeros(work.size, dtype=np.int32)
+    shards = Shards(shards_folder, work.output, solver.version)
+    index, bits = RunIndex(work.keys), np.zeros(work.size, dtype=np.int32)
     for keys, columns in shards.read("status"):
-        asked, runs = ledger.find(keys)
-        ledger.mark(runs)
-        bits[runs] = columns["status"][asked]
+        requested, runs = index.find(keys)
+        index.mark(runs)
+        bits[runs] = columns["status"][requested]
     return Status(
         runs=work.size,
-        done=work.size - ledger.left(),
-        failed=int(np.count_nonzero(ledger.spread(bits) & solver.failures(design))),
+        done=work.size - index.left(),
+        failed=int(np.count_nonzero(index.spread(bits) & solver.failures(design))),
         age=_age(shards.files()),
         size=disk_size(shards_folder.rglob("*")),
         holder=holder(shards_folder),
@@ -166,7 +167,7 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
 
 
 def disk_size(paths: Iterable[Path]) -> int:
-    """Bytes of these files; one that has gone in between counts nothing."""
+    """Return the bytes of these files; one that disappeared counts nothing."""
     return sum(each.st_size for each in _seen(paths) if S_ISREG(each.st_mode))
 
 
@@ -182,24 +183,24 @@ def _seen(paths: Iterable[Path]) -> Iterator[os.stat_result]:
 
 
 _STUDY = "study"
-"""Beside the folders of shards: where the file lies that asks for them."""
-NO_STUDY = "its study is gone"
+"""File beside the folders of shards that names the study file."""
+NO_STUDY = "its study does not exist any more"
 SET_ASIDE = "was damaged and set aside"
-UNFINISHED = "was not written to its end"
-OTHER_RUNS = "no run in it is asked for"
-OTHER_SOLVER = "of another version of the solver, or in another form"
+UNFINISHED = "is unfinished"
+OTHER_RUNS = "holds no run of the study"
+OTHER_SOLVER = "belongs to another version of the solver, or another output"
 
 
 def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, str]:
-    """What can go in a study's folder of shards, and why; nothing is removed.
+    """Return the files of a study's folder of shards that may be removed, and the reasons.
 
-    designs: all that the study may ask for; none where it is gone. A shard stays as long as one of
-    its runs is asked for, or it cannot be read.
+    designs: all that the study may need; none where it does not exist any more. A shard stays as
+    long as one of its runs is needed, or it cannot be read.
     """
     wanted: dict[Path, list[Array]] = {}
     for design in designs:
         work = Work.of(design)
-        folder = Shards(shards_folder, work.form, solver_named(work.solver).VERSION).folder
+        folder = Shards(shards_folder, work.output, solver_named(work.solver).version).folder
         wanted.setdefault(folder, []).append(work.keys)
     found = {}
     for path in _beside(shards_folder):
@@ -209,14 +210,14 @@ def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, st
 
 
 def note_study(shards_folder: Path, file: Path) -> None:
-    """Leave word of where the study lies that asks for what is in a folder."""
+    """Note beside the shards which study file they belong to."""
     shards_folder.mkdir(parents=True, exist_ok=True)
-    with suppress(OSError):  # a full disk is told by what needs more of it
+    with suppress(OSError):  # a full disk is reported where more of it is needed
         (shards_folder / _STUDY).write_text(f"{file.resolve()}\n")
 
 
 def noted_study(shards_folder: Path) -> Path | None:
-    """The file that note_study told of, where there is one still."""
+    """Return the study file that note_study noted, if it still exists."""
     note = shards_folder / _STUDY
     with suppress(OSError, ValueError):
         file = Path(note.read_text().strip())
@@ -225,13 +226,13 @@ def noted_study(shards_folder: Path) -> Path | None:
 
 
 def outdated(folder: Path) -> dict[Path, str]:
-    """As stale, of runs beside a study's own, all responses kept: those of another solver.
+    """Return removable files and reasons as `stale` does, of pilot runs and refinements.
 
-    Which of the others would be asked for again, only a search tells.
+    All are kept but those of another solver: only a search tells which would be needed again.
     """
-    versions = [solver_named(name).VERSION for name in SOLVERS]
-    current = {Shards(folder, Form(0, False), version).folder for version in versions}
-    reasons = {path: _beyond_asking(path, current) for path in _beside(folder)}
+    versions = [solver_named(name).version for name in SOLVERS]
+    current = {Shards(folder, OutputSpec(0, False), version).folder for version in versions}
+    reasons = {path: _unusable(path, current) for path in _beside(folder)}
     return {path: reason for path, reason in reasons.items() if reason}
 
 
@@ -240,16 +241,16 @@ def _beside(shards_folder: Path) -> Iterable[Path]:
 
 
 def _reason(path: Path, wanted: Mapping[Path, list[Array]]) -> str:
-    """Why a file can go; "" where it has to stay."""
-    if reason := _beyond_asking(path, wanted):
+    """Return why a file may be removed; "" where it has to stay."""
+    if reason := _unusable(path, wanted):
         return reason
     keys = Shards.keys(path)
-    asked = any(np.isin(keys, each).any() for each in wanted[path.parent])
-    return OTHER_RUNS if keys.size and not asked else ""
+    needed = any(np.isin(keys, each).any() for each in wanted[path.parent])
+    return OTHER_RUNS if keys.size and not needed else ""
 
 
-def _beyond_asking(path: Path, current: Collection[Path]) -> str:
-    """Why no study can ask for what is in a file; current: folders of the solvers of today."""
+def _unusable(path: Path, current: Collection[Path]) -> str:
+    """Return why no study can use a file, or ""; current: folders of the present solvers."""
     if path.name.startswith("."):
         return UNFINISHED
     if path.name.endswith(DAMAGED):

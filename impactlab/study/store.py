@@ -29,33 +29,35 @@ log = logging.getLogger(__name__)
 Array = np.ndarray[Any, Any]
 
 _MANY = 64
-"""Small shards at most: then they are merged."""
+"""Small shards before they are merged."""
 _SMALL = 8e6
-"""Bytes from which a shard stays as it is; the small ones together are not more for long."""
+"""Bytes of a shard that is no longer small; small ones of this size together are merged."""
 DAMAGED = ".damaged"
-"""Ends the name of a shard that was set aside."""
+"""Suffix of a shard that was set aside."""
+_PATIENCE = 1.0
+"""Seconds to wait for a lock, which `holder` takes for a moment."""
 
 
 @dataclass(frozen=True)
-class Form:
-    """What is kept of each run: samples a history (0: none), and whether profiles."""
+class OutputSpec:
+    """The output kept of each run: samples per history (0: none), and profiles or not."""
 
     samples: int
     profiles: bool
 
     @staticmethod
-    def of(design: xr.Dataset) -> Form:
-        """What a design asks for."""
+    def of(design: xr.Dataset) -> OutputSpec:
+        """Return the output that a design asks for."""
         samples = int(design.attrs["history_samples"]) if design.attrs["histories"] else 0
-        return Form(samples, bool(design.attrs["profiles"]))
+        return OutputSpec(samples, bool(design.attrs["profiles"]))
 
 
-def run_keys(cases: Array, form: Form, version: str) -> Array:
-    """One key a case, shape (cases,), 16 bytes: equal keys, equal answers. version: of the solver.
+def run_keys(cases: Array, output: OutputSpec, version: str) -> Array:
+    """Return one key per case, shape (cases,), 16 bytes: equal keys mean equal answers.
 
-    In memory, bytes that follow each other are one case: two equal cases have equal bytes.
+    version: of the solver. Cases are compared by their bytes.
     """
-    given = hashlib.sha256(f"{version} {form} {cases.dtype.descr}".encode()).digest()
+    given = hashlib.sha256(f"{version} {output} {cases.dtype.descr}".encode()).digest()
     rows, size = memoryview(cases.tobytes()), cases.dtype.itemsize
     digests = [
         blake2b(rows[start : start + size], digest_size=KEY.itemsize, key=given).digest()
@@ -65,22 +67,22 @@ def run_keys(cases: Array, form: Form, version: str) -> Array:
 
 
 class Shards:
-    """The shards of one study in one form, by one solver, in one folder."""
+    """The shards of one study with one output, by one solver, in one folder."""
 
-    def __init__(self, folder: Path, form: Form, version: str) -> None:
-        """Look in `folder`/<hash of solver, form and layout>, made when first written to.
+    def __init__(self, folder: Path, output: OutputSpec, version: str) -> None:
+        """Look in `folder`/<hash of solver, output and layout>, made when first written to.
 
         version: of the solver.
         """
-        given = f"{version} {form} {LAYOUT}"
+        given = f"{version} {output} {LAYOUT}"
         self.folder = folder / hashlib.sha256(given.encode()).hexdigest()[:16]
-        self._small: dict[Path, tuple[Array, Columns]] = {}  # to be merged, without reading them
+        self._small: dict[Path, tuple[Array, Columns]] = {}  # kept in memory until merged
 
     def read(self, *names: str) -> Iterator[tuple[Array, Columns]]:
-        """Keys and answers of every sound shard; a damaged one is named in the log.
+        """Yield keys and answers of every sound shard; the log names damaged ones.
 
-        names: of the columns to read and check; all without any. Where another process merges
-        shards meanwhile, runs may come twice, and none is left out.
+        names: of the columns to read and check; all by default. While another process merges
+        shards, runs may come twice, but none is left out.
         """
         seen: set[Path] = set()
         while fresh := [path for path in self.files() if path not in seen]:
@@ -91,19 +93,19 @@ class Shards:
 
     @staticmethod
     def keys(path: Path) -> Array:
-        """Of the runs in one shard; none where it is damaged."""
+        """Return the keys of the runs in one shard; none where it is damaged."""
         found = _sound(path)
         return found[0] if found else np.zeros(0, dtype=KEY)
 
     def files(self) -> list[Path]:
-        """All shards, sound or not."""
+        """Return the paths of all shards, sound or not."""
         return sorted(self.folder.glob("*.nc"))
 
     def recover(self) -> Iterator[Array]:
-        """Keys of every sound shard, for the one process that writes here, which tidies up.
+        """Yield the keys of every sound shard, and tidy up; only for the process that writes here.
 
-        All of a shard is checked. A damaged one is renamed, for a person to look at; what was not
-        written to its end goes.
+        Every shard is checked whole. A damaged one is renamed, for a person to look at; unfinished
+        files are removed.
         """
         for unfinished in self.folder.glob(".*"):
             unfinished.unlink()
@@ -115,9 +117,9 @@ class Shards:
                 path.replace(path.with_name(path.name + DAMAGED))
 
     def write(self, keys: Array, columns: Columns) -> Path:
-        """Keep runs; returns their file, named for their keys. Raises OSError (a full disk, say).
+        """Write runs and return their file, named for their keys.
 
-        columns: of each name, a row a key.
+        columns: by name, one row per key. Raises OSError, for example when the disk is full.
         """
         path = self.folder / f"{hashlib.sha256(keys.tobytes()).hexdigest()[:32]}.nc"
         write_shard(path, keys, columns)
@@ -127,7 +129,7 @@ class Shards:
         return path
 
     def merge(self) -> None:
-        """Put one shard in the place of all small ones, which go when it is on disk."""
+        """Replace all small shards by one; they are removed when it is on disk."""
         merged, self._small = dict(sorted(self._small.items())), {}
         if len(merged) < 2:
             return
@@ -143,13 +145,13 @@ class Shards:
 
 
 def _size(part: tuple[Array, Columns]) -> int:
-    """Bytes of a shard, about."""
+    """Return the bytes of a shard, roughly."""
     keys, columns = part
     return int(keys.nbytes + sum(values.nbytes for values in columns.values()))
 
 
 def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
-    """Keys and columns of several batches or shards as those of one."""
+    """Return keys and columns of several batches or shards as those of one."""
     keys, columns = zip(*parts, strict=True)
     names = columns[0]
     return (
@@ -163,18 +165,18 @@ def _sound(path: Path, names: Collection[str] = ()) -> tuple[Array, Columns] | N
         with Shard(path) as shard:
             columns = shard.columns((KEYS, *names) if names else ())
         return columns.pop(KEYS), columns
-    except FileNotFoundError:  # merged into another by now
+    except FileNotFoundError:  # merged into another meanwhile
         return None
     except DAMAGE as error:
         log.warning("%s is damaged, and its runs will be solved again (%s)", path, error)
         return None
 
 
-class Ledger:
-    """A place for each run of a design; runs come by key, in whatever order."""
+class RunIndex:
+    """The runs of a design by key: which are answered, and which are equal to another."""
 
     def __init__(self, keys: Array) -> None:
-        """keys: of the design's runs, shape (runs,)."""
+        """Take the keys of the design's runs, shape (runs,)."""
         self._keys = keys
         self._order = np.argsort(keys, kind="stable")
         ascending = keys[self._order]
@@ -184,35 +186,35 @@ class Ledger:
 
     @property
     def size(self) -> int:
-        """The number of runs."""
+        """Return the number of runs."""
         return int(self._keys.size)
 
     @property
     def distinct(self) -> int:
-        """The number of runs that are equal to none before them."""
+        """Return the number of runs that are equal to none before them."""
         return self.size - int(self._repeats.size)
 
     def find(self, keys: Array) -> tuple[Array, Array]:
-        """Which of the keys are the design's, shape (keys,), and the first run of each of those."""
+        """Return a mask of the keys that are in the design, shape (keys,), and their first runs."""
         places = np.searchsorted(self._keys, keys, sorter=self._order)
         runs = self._order[np.minimum(places, self._keys.size - 1)]
-        asked: Array = self._keys[runs] == keys
-        return asked, runs[asked]
+        requested: Array = self._keys[runs] == keys
+        return requested, runs[requested]
 
     def mark(self, runs: Array) -> None:
-        """These runs, by number, are answered."""
+        """Note that these runs, by number, are answered."""
         self._done[runs] = True
 
     def missing(self) -> Array:
-        """The runs without an answer, ascending; of equal runs the first stands for all."""
+        """Return the runs without an answer, ascending; the first of equal runs stands for all."""
         return np.flatnonzero(~self._done)
 
     def left(self) -> int:
-        """How many runs of the design lack an answer, equal ones counted each."""
+        """Count the runs of the design without an answer, equal ones each."""
         return int(np.count_nonzero(~self._done) + np.count_nonzero(~self._done[self._firsts()]))
 
     def spread(self, values: Array) -> Array:
-        """The same array, shape (runs, ...): equal runs get the row of the first of them."""
+        """Copy the row of the first of equal runs to the others, in place; shape (runs, ...)."""
         values[self._repeats] = values[self._firsts()]
         return values
 
@@ -220,13 +222,13 @@ class Ledger:
         return self.find(self._keys[self._repeats])[1]
 
 
-_PATIENCE = 1.0
-"""Seconds to wait: `holder` takes the lock for a moment."""
-
-
 @contextmanager
-def held(folder: Path) -> Iterator[None]:
-    """Work in `folder` alone, in steps that may hold it again. Raises BlockingIOError: who does."""
+def locked(folder: Path) -> Iterator[None]:
+    """Work in `folder` alone, in steps that may lock it again.
+
+    The operating system's lock ends with its process, however that ends, so none is ever stale.
+    Raises BlockingIOError naming the process that works there.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     lock, owner = FileLock(folder / "lock", is_singleton=True), folder / "owner"
     try:
@@ -234,7 +236,7 @@ def held(folder: Path) -> Iterator[None]:
     except Timeout:
         raise BlockingIOError(
             f"{folder}: {_read(owner)} is at work here: wait until it ends, or end it; "
-            "the same command then goes on from there"
+            "the same command then resumes where it stopped"
         ) from None
     try:
         if lock.lock_counter == 1:
@@ -248,14 +250,14 @@ def held(folder: Path) -> Iterator[None]:
 
 def _sign(owner: Path) -> None:
     if owner.exists():
-        log.info("%s did not finish: going on from what it kept", _read(owner))
+        log.info("%s did not finish: resuming where it stopped", _read(owner))
     now = datetime.now().astimezone().isoformat(" ", "seconds")
     with suppress(OSError):  # a note for people, which a full disk may not take
         owner.write_text(f"process {os.getpid()} on {socket.gethostname()}, since {now}")
 
 
 def holder(folder: Path) -> str:
-    """Who works in the folder: process, host and since when; "" when nobody does."""
+    """Return who works in the folder: process, host and since when; "" when nobody does."""
     if not (folder / "lock").exists():
         return ""
     lock = FileLock(folder / "lock")

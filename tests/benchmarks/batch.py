@@ -26,14 +26,14 @@ from impactlab.solver.leapfrog import run_all
 from impactlab.solver.responses import RESPONSE
 from impactlab.study.execute import solve_batch
 from impactlab.study.solvers import impact
-from impactlab.study.store import Form, run_keys
+from impactlab.study.store import OutputSpec, run_keys
 
 RUNS = 1000
 TASKS = 20
 DURATIONS = (1e-3, 25e-3)
 IMPACT = il.paper_impact()
 GRID = il.Discretisation(nodes=101)
-FORM = Form(samples=0, profiles=False)
+OUTPUT = OutputSpec(samples=0, profiles=False)
 RANDOM = np.random.default_rng(1)
 VARIED = {
     "velocity": RANDOM.uniform(0.5, 1.5, RUNS),
@@ -71,10 +71,10 @@ def study(duration: float, threads: int) -> Callable[[], object]:
 
     def solved() -> object:
         cases = case_table(IMPACT, GRID, duration=duration, varied=VARIED)
-        run_keys(cases, FORM, impact.VERSION)
+        run_keys(cases, OUTPUT, impact.SOLVER.version)
         with ThreadPoolExecutor(threads) as pool:
             under_way = [
-                pool.submit(solve_batch, "impact", part, FORM, impact.VERSION)
+                pool.submit(solve_batch, "impact", part, OUTPUT, impact.SOLVER.version)
                 for part in np.array_split(cases, TASKS)
             ]
             return [task.result() for task in under_way]

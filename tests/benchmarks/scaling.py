@@ -19,6 +19,7 @@ import tempfile
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.execute import executed
 from impactlab.study.netcdf import Columns, write_netcdf
 from impactlab.study.solvers import impact
-from impactlab.study.store import Form
+from impactlab.study.store import OutputSpec
 
 KINDS = {"memory": (11, 1e-3), "short": (101, 1e-3), "long": (101, 8e-3)}
 """Nodes and duration, in s."""
@@ -63,24 +64,24 @@ def kernels() -> Iterator[list[float]]:
     """Within, the processor time of each batch in the kernels, in s, by the thread that took it."""
     spent: list[float] = []
 
-    def timed(cases: np.ndarray[Any, Any], form: Form) -> Columns:
+    def timed(cases: np.ndarray[Any, Any], output: OutputSpec) -> Columns:
         start = time.thread_time()
-        columns = solve(cases, form)
+        columns = whole.solve(cases, output)
         spent.append(time.thread_time() - start)
         return columns
 
-    solve, impact.solve = impact.solve, timed
+    whole, impact.SOLVER = impact.SOLVER, replace(impact.SOLVER, solve=timed)
     try:
         yield spent
     finally:
-        impact.solve = solve
+        impact.SOLVER = whole
 
 
 def measured(what: str, runs: int, threads: int) -> dict[str, object]:
     """One line of the table, in this process."""
     asked = design(runs, *KINDS[what])
     line = {"what": what, "runs": runs, "threads": threads}
-    impact.solve(impact.cases(asked, np.arange(1)), Form.of(asked))  # compiled, or loaded
+    impact.solve(impact.cases(asked, np.arange(1)), OutputSpec.of(asked))  # compiled, or loaded
     with tempfile.TemporaryDirectory() as folder, kernels() as spent:
         wall, processor = time.perf_counter(), time.process_time()
         with executed(asked, Path(folder), Engine(workers=threads)) as solved:

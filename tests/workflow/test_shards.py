@@ -66,8 +66,8 @@ def test_clean_does_not_take_a_wrong_folder_for_studies_that_are_gone(folder):
 HOLD = """
 import sys
 from pathlib import Path
-from impactlab.study.store import held
-with held(Path("results/small/shards")):
+from impactlab.study.store import locked
+with locked(Path("results/small/shards")):
     print("held", flush=True)
     sys.stdin.read()
 """

@@ -17,8 +17,8 @@ from impactlab.simulate import solve as solve_cases
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.design import flattened, run_shape, varied_names
 from impactlab.study.netcdf import Columns
-from impactlab.study.solvers import impact
-from impactlab.study.store import Form
+from impactlab.study.solvers import Solver, impact
+from impactlab.study.store import OutputSpec
 from impactlab.variables import WITNESS, described
 
 Array = np.ndarray[Any, Any]
@@ -52,12 +52,12 @@ def cost(cases: Array) -> Array:
     return costs.work(cases)
 
 
-def values(cases: Array, form: Form) -> int:
+def values(cases: Array, form: OutputSpec) -> int:
     """As of the models of the beam."""
     return impact.values(cases, form)
 
 
-def solve(cases: Array, form: Form) -> Columns:
+def solve(cases: Array, form: OutputSpec) -> Columns:
     """The kernels' answers and those of the 3-D model, in the order of the cases."""
     solid = is_solid(cases)
     found = solve_cases(kernel_cases(cases), samples=form.samples).columns()
@@ -82,3 +82,6 @@ def _spread(values: Array, where: Array) -> Array:
     rows = np.full((where.size, *values.shape[1:]), missing, dtype=values.dtype)
     rows[where] = values
     return rows
+
+
+SOLVER = Solver(VERSION, columns, failures, cases, cost, values, solve, labelled)

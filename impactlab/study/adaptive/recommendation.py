@@ -31,7 +31,7 @@ from impactlab.study.adaptive.pilot_runs import Trials, corner_cases
 from impactlab.study.declaration import Auto, Study
 from impactlab.study.engine import Engine
 from impactlab.study.errors import Problem, StudyError
-from impactlab.study.store import held
+from impactlab.study.store import locked
 from impactlab.variables import provenance
 
 
@@ -58,7 +58,7 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
     cases = corner_cases(study)
     trials = Trials(study, cases, folder, engine)
     asked = wishes.responses or study.responses
-    with held(folder):  # over all trials
+    with locked(folder):  # over all trials
         found = _tried(study, trials, ladders(study.discretisation), wishes.tolerance, asked)
     labels = {name: ("case", np.array(values)) for name, values in cases.items()}
     attrs: dict[str, Any] = {

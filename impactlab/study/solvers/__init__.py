@@ -1,66 +1,57 @@
-"""Solvers of a study's runs: one file each, and a line in SOLVERS or in wings.SOLVERS."""
+"""Solvers of a study's runs: one file each, and one line in SOLVERS or in wings.SOLVERS."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Protocol
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from impactlab import wings
 from impactlab.study.netcdf import Columns
-from impactlab.study.store import Form
+from impactlab.study.store import OutputSpec
 
 Array = np.ndarray[Any, Any]
 
 
-class Solver(Protocol):
-    """What the file of a solver offers. Cases: a structured array, a record a run."""
+@dataclass(frozen=True)
+class Solver:
+    """A solver of runs. Its cases are structured arrays, one record per run."""
 
-    VERSION: str
+    version: str
     """A hash that changes with the answers: answers of another version are not reused."""
+    columns: Callable[[xr.Dataset], tuple[str, ...]]
+    """Return the names of the answers to a design that `labelled` takes."""
+    failures: Callable[[xr.Dataset], int]
+    """Return the bits of the answer `status` with which a run lacks a requested response."""
+    cases: Callable[[xr.Dataset, Array], Array]
+    """Return all that the runs of a design depend on, by number, dimensions flattened.
 
-    def columns(self, design: xr.Dataset) -> tuple[str, ...]:
-        """Names of the answers that `labelled` takes."""
-        ...
+    Raises ValueError naming a wrong run; the runs then follow each other.
+    """
+    cost: Callable[[Array], Array]
+    """Return the estimated cost of each case; about 3e8 make one second."""
+    values: Callable[[Array, OutputSpec], int]
+    """Return how many numbers are kept of each case."""
+    solve: Callable[[Array, OutputSpec], Columns]
+    """Return the answers by name, one row per case, `status` among them.
 
-    def failures(self, design: xr.Dataset) -> int:
-        """The bits of the answer `status` with which a run lacks something asked for."""
-        ...
+    They are the same bits in any batch.
+    """
+    labelled: Callable[[xr.Dataset, Mapping[str, Any]], xr.Dataset]
+    """Return the answers in the design's order, under its labels and with provenance.
 
-    def cases(self, design: xr.Dataset, runs: Array) -> Array:
-        """All that these runs depend on, by number, dimensions flattened.
-
-        Raises ValueError naming a wrong run; the runs then follow each other.
-        """
-        ...
-
-    def cost(self, cases: Array) -> Array:
-        """Estimated cost of each run; about 3e8 make a second."""
-        ...
-
-    def values(self, cases: Array, form: Form) -> int:
-        """How many numbers are kept of a run."""
-        ...
-
-    def solve(self, cases: Array, form: Form) -> Columns:
-        """The answers by name, a row a run, `status` among them; the same bits in any batch."""
-        ...
-
-    def labelled(self, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
-        """The answers in the design's order, under its labels and with provenance.
-
-        answers: as solve gives them, arrays of numpy or, not read yet, of dask.
-        """
-        ...
+    Answers are those of `solve`, as arrays of NumPy or, not read yet, of dask.
+    """
 
 
 SOLVERS = {
-    "impact": "impactlab.study.solvers.impact",
-    "function": "impactlab.study.solvers.function",
+    "impact": "impactlab.study.solvers.impact:SOLVER",
+    "function": "impactlab.study.solvers.function:SOLVER",
 } | wings.SOLVERS
-"""Modules, by the name that designs hold in their attribute `solver`."""
+"""References to solvers, by the name that designs hold in their attribute `solver`."""
 
 
 def solver_named(name: str) -> Solver:
@@ -70,5 +61,5 @@ def solver_named(name: str) -> Solver:
 
 
 def solver_of(design: xr.Dataset) -> str:
-    """The name of a design's solver: without the attribute, that of impacts."""
+    """Return the name of a design's solver: without the attribute, that of impacts."""
     return str(design.attrs.get("solver", "impact"))

@@ -23,29 +23,29 @@ from impactlab.simulate import solve as solve_cases
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.design import flattened, run_shape, varied_names
 from impactlab.study.netcdf import Columns
-from impactlab.study.store import Form
+from impactlab.study.solvers import Solver
+from impactlab.study.store import OutputSpec
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 
-VERSION = SOURCES_HASH
 _OF_ANY_RUN = 6000.0
-"""Cost of a run beside its node-steps: some 20 microseconds."""
+"""Cost of a run beside its node-steps: about 20 µs."""
 
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:
-    """The asked responses, what is to be known of them, and the histories and profiles kept."""
-    form = Form.of(design)
-    histories = HISTORIES if form.samples else ()
-    profiles = PROFILES if form.profiles else ()
+    """Return the names of the requested responses, their flags, and histories and profiles kept."""
+    output = OutputSpec.of(design)
+    histories = HISTORIES if output.samples else ()
+    profiles = PROFILES if output.profiles else ()
     return (*_responses(design), "status", "remarks", *histories, *profiles)
 
 
 def failures(design: xr.Dataset) -> int:
-    """Those that take an asked response away."""
+    """Return the bits that take a requested response away."""
     return status_bits(_responses(design))
 
 
 def cases(design: xr.Dataset, runs: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """The kernels' case table of these runs.
+    """Return the kernels' case table of these runs.
 
     Raises ValueError naming the run when the model refuses a value.
     """
@@ -55,31 +55,32 @@ def cases(design: xr.Dataset, runs: np.ndarray[Any, Any]) -> np.ndarray[Any, Any
 
 
 def cost(cases: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Node-steps of the paper's beam, and what comes with any run."""
+    """Return the cost in node-steps of the paper's beam, with a constant part per run."""
     found: np.ndarray[Any, Any] = work(cases) + _OF_ANY_RUN
     return found
 
 
-def values(cases: np.ndarray[Any, Any], form: Form) -> int:
-    """Responses, histories and profiles of a run; all have the first one's mesh."""
-    profile = int(cases[0].nodes) * int(cases[0].points) if form.profiles else 0
-    return len(RESPONSES) + len(HISTORIES) * form.samples + len(PROFILES) * profile
+def values(cases: np.ndarray[Any, Any], output: OutputSpec) -> int:
+    """Count the responses, histories and profiles of a run; all have the first one's mesh."""
+    profile = int(cases[0].nodes) * int(cases[0].points) if output.profiles else 0
+    return len(RESPONSES) + len(HISTORIES) * output.samples + len(PROFILES) * profile
 
 
-def solve(cases: np.ndarray[Any, Any], form: Form) -> Columns:
-    """The kernels' answers."""
-    return solve_cases(cases, samples=form.samples, profiles=form.profiles).columns()
+def solve(cases: np.ndarray[Any, Any], output: OutputSpec) -> Columns:
+    """Return the kernels' answers."""
+    return solve_cases(cases, samples=output.samples, profiles=output.profiles).columns()
 
 
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
-    """The answers of a design's runs, in its order, under its labels and with provenance."""
+    """Return the answers of a design's runs, in its order, under its labels and with provenance."""
     dims, shape = run_shape(design)
     flat = answer_variables(answers, _responses(design), ("run",))
     variables = {
         name: ((*dims, *others[1:]), values.reshape(*shape, *values.shape[1:]))
         for name, (others, values) in flat.items()
     }
-    dataset = design.assign(variables).assign_coords(_answer_coordinates(design, Form.of(design)))
+    coordinates = _answer_coordinates(design, OutputSpec.of(design))
+    dataset = design.assign(variables).assign_coords(coordinates)
     return described(dataset.assign_attrs(provenance()))
 
 
@@ -88,18 +89,21 @@ def _responses(design: xr.Dataset) -> tuple[str, ...]:
 
 
 def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
-    """The impact and the discretisation of what is not varied."""
+    """Return the impact and the discretisation without what is varied."""
     varied = varied_names(design)
-    held = design.variables  # which are quicker to get than arrays with labels
-    stated = [name for name in PARAMETERS if name in held and name not in varied]
-    fixed = {name: held[name].values.item() for name in stated}
+    variables = design.variables  # quicker to get than arrays with labels
+    stated = [name for name in PARAMETERS if name in variables and name not in varied]
+    fixed = {name: variables[name].values.item() for name in stated}
     return with_values(paper_impact(), Discretisation(), fixed)
 
 
-def _answer_coordinates(design: xr.Dataset, form: Form) -> dict[str, Any]:
+def _answer_coordinates(design: xr.Dataset, output: OutputSpec) -> dict[str, Any]:
     coordinates: dict[str, Any] = {}
-    if form.samples:
-        coordinates |= sample_coordinates(design["duration"].item(), form.samples)
-    if form.profiles:
+    if output.samples:
+        coordinates |= sample_coordinates(design["duration"].item(), output.samples)
+    if output.profiles:
         coordinates |= profile_coordinates(*base(design))
     return coordinates
+
+
+SOLVER = Solver(SOURCES_HASH, columns, failures, cases, cost, values, solve, labelled)

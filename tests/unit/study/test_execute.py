@@ -1,5 +1,6 @@
 """Fan-out: the same bits however the runs are spread, and none solved twice."""
 
+from dataclasses import replace
 from threading import Barrier
 
 import numpy as np
@@ -20,7 +21,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.execute import Batches, execute, solve_batch
 from impactlab.study.runs import Work
 from impactlab.study.solvers import impact
-from impactlab.study.store import Form
+from impactlab.study.store import OutputSpec
 from impactlab.variables import RESPONSES
 
 RESPONSES_ASKED = ["peak_force", "contact_duration", "restitution"]
@@ -76,13 +77,13 @@ def test_workers_that_come_later_need_not_wait_for_a_task_to_end(tmp_path, monke
     monkeypatch.setattr(executing, "_LOOK_AGAIN", 0.05)
     solve, all_at_once = impact.solve, Barrier(6)
 
-    def together(cases, form):
+    def together(cases, output):
         if cases.size:
             cluster.scale(6)
             all_at_once.wait(timeout=60)  # or BrokenBarrierError
-        return solve(cases, form)
+        return solve(cases, output)
 
-    monkeypatch.setattr(impact, "solve", together)
+    monkeypatch.setattr(impact, "SOLVER", replace(impact.SOLVER, solve=together))
     one = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
     with LocalCluster(**one) as cluster:
         runs = execute(design(), tmp_path, Engine(address=cluster.scheduler_address))
@@ -168,7 +169,7 @@ def test_the_estimated_cost_is_that_of_the_kernels_steps(scheme, nodes):
 
 def test_workers_with_other_kernels_are_refused():
     with pytest.raises(RuntimeError, match="another version"):
-        solve_batch("impact", Work.of(design()).cases(np.arange(2)), Form(0, False), "other")
+        solve_batch("impact", Work.of(design()).cases(np.arange(2)), OutputSpec(0, False), "other")
 
 
 def simulated(cost, speed, workers, values=20):

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from impactlab.study.netcdf import read_netcdf, write_netcdf
-from impactlab.study.store import Form, Shards
+from impactlab.study.store import OutputSpec, Shards
 
 
 def noise(size):
@@ -50,10 +50,10 @@ def test_a_full_disk_is_told_and_the_older_file_stays(tiny_disk):
 
 
 def test_a_shard_on_a_full_disk_is_told_and_the_others_stay(tiny_disk):
-    shards = Shards(tiny_disk, Form(0, False), "version")
+    shards = Shards(tiny_disk, OutputSpec(0, False), "version")
     keys = np.array([bytes([at]) * 16 for at in range(200)], dtype="S16")
     shards.write(keys[:2], {"status": np.zeros(2)})
     with pytest.raises(OSError, match=r"\.nc: could not be written .* are free .* needed"):
         shards.write(keys, {"contact_force": np.zeros((200, 1000))})
-    (kept,) = Shards(tiny_disk, Form(0, False), "version").recover()
+    (kept,) = Shards(tiny_disk, OutputSpec(0, False), "version").recover()
     assert kept.tobytes() == keys[:2].tobytes()

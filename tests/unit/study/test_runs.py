@@ -18,14 +18,14 @@ from impactlab.study.runs import (
     stale,
     status,
 )
-from impactlab.study.store import Form, Ledger, Shards, held
+from impactlab.study.store import OutputSpec, RunIndex, Shards, locked
 
 KEYS = np.array([b"a" * 16, b"b" * 16, b"c" * 16, b"b" * 16])
 
 
 @pytest.fixture
 def shards(tmp_path):
-    kept = Shards(tmp_path, Form(0, False), "version")
+    kept = Shards(tmp_path, OutputSpec(0, False), "version")
     kept.write(KEYS[[2]], {"force": np.array([3.0]), "status": np.array([1], np.int32)})
     kept.write(KEYS[[1, 0]], {"force": np.array([2.0, 1.0]), "status": np.zeros(2, np.int32)})
     return kept
@@ -35,7 +35,7 @@ def shards(tmp_path):
 def test_columns_are_in_the_order_of_the_runs(shards, monkeypatch, opened):
     """opened: shards that may stay so, of two."""
     monkeypatch.setattr("impactlab.study.runs._OPEN", opened)
-    with Answers(shards, Ledger(KEYS)) as answers:
+    with Answers(shards, RunIndex(KEYS)) as answers:
         columns = answers.columns(["status", "force"])
         assert [*columns] == ["status", "force"]
         assert columns["force"].compute().tolist() == [1.0, 2.0, 3.0, 2.0]
@@ -45,12 +45,12 @@ def test_columns_are_in_the_order_of_the_runs(shards, monkeypatch, opened):
 
 def test_a_run_without_answers_is_an_error(shards):
     with pytest.raises(OSError, match="run the same command again"):
-        Answers(shards, Ledger(np.append(KEYS, [b"d" * 16])))
+        Answers(shards, RunIndex(np.append(KEYS, [b"d" * 16])))
 
 
 def test_a_shard_that_is_damaged_meanwhile_is_an_error(shards):
     first, second = shards.files()
-    with Answers(shards, Ledger(KEYS)) as answers:
+    with Answers(shards, RunIndex(KEYS)) as answers:
         columns = answers.columns(["force"])
         first.write_bytes(second.read_bytes())
         with pytest.raises(OSError, match=f"{first.name} was damaged"):
@@ -81,7 +81,7 @@ def test_runs_without_an_asked_response_failed(small_design, tmp_path):
 
 
 def test_it_names_who_is_at_work(small_design, tmp_path):
-    with held(tmp_path):
+    with locked(tmp_path):
         assert "process" in status(small_design(1.0), tmp_path).holder
 
 

@@ -14,9 +14,10 @@ from impactlab.simulate import case_table
 from impactlab.study import store
 from impactlab.study.netcdf import KEY, Shard
 from impactlab.study.solvers import impact
-from impactlab.study.store import Form, Ledger, Shards, held, holder, run_keys
+from impactlab.study.store import OutputSpec, RunIndex, Shards, holder, locked, run_keys
 
-FORM = Form(samples=11, profiles=True)
+OUTPUT = OutputSpec(samples=11, profiles=True)
+VERSION = impact.SOLVER.version
 
 
 def cases(*velocities, nodes=11):
@@ -26,12 +27,12 @@ def cases(*velocities, nodes=11):
 
 @pytest.fixture
 def shards(tmp_path):
-    return Shards(tmp_path, FORM, impact.VERSION)
+    return Shards(tmp_path, OUTPUT, VERSION)
 
 
 def written(shards, table):
-    columns = impact.solve(table, FORM)
-    keys = run_keys(table, FORM, impact.VERSION)
+    columns = impact.solve(table, OUTPUT)
+    keys = run_keys(table, OUTPUT, VERSION)
     return keys, columns, shards.write(keys, columns)
 
 
@@ -49,15 +50,15 @@ def test_what_was_written_is_read_to_the_bit(shards):
 
 def test_keys_tell_apart_every_field_and_form():
     table = cases(0.5, 1.0)
-    keys = set(run_keys(table, FORM, impact.VERSION))
+    keys = set(run_keys(table, OUTPUT, VERSION))
     assert len(keys) == 2
     for name in table.dtype.names:
         other = table.copy()
         other[name] += 1
-        assert keys.isdisjoint(run_keys(other, FORM, impact.VERSION)), name
-    assert keys.isdisjoint(run_keys(table, FORM, "other"))
-    assert keys.isdisjoint(run_keys(table, Form(samples=12, profiles=True), impact.VERSION))
-    assert keys.isdisjoint(run_keys(table, Form(samples=11, profiles=False), impact.VERSION))
+        assert keys.isdisjoint(run_keys(other, OUTPUT, VERSION)), name
+    assert keys.isdisjoint(run_keys(table, OUTPUT, "other"))
+    assert keys.isdisjoint(run_keys(table, OutputSpec(samples=12, profiles=True), VERSION))
+    assert keys.isdisjoint(run_keys(table, OutputSpec(samples=11, profiles=False), VERSION))
 
 
 def truncated(path, other):
@@ -101,7 +102,7 @@ def test_damaged_shards_are_named_and_set_aside(shards, damage, caplog):
 
 def test_a_shard_of_another_folder_is_found_out(shards, tmp_path, caplog):
     *_, path = written(shards, cases(0.5))
-    other = Shards(tmp_path, FORM, "another version")
+    other = Shards(tmp_path, OUTPUT, "another version")
     other.folder.mkdir()
     shutil.copy(path, other.folder)
     assert list(other.read()) == []
@@ -110,7 +111,7 @@ def test_a_shard_of_another_folder_is_found_out(shards, tmp_path, caplog):
 
 def test_other_forms_are_not_seen(shards, tmp_path):
     written(shards, cases(0.5))
-    other = Shards(tmp_path, Form(samples=0, profiles=False), impact.VERSION)
+    other = Shards(tmp_path, OutputSpec(samples=0, profiles=False), VERSION)
     assert list(other.read()) == []
 
 
@@ -118,12 +119,16 @@ def test_one_shard_takes_the_place_of_all_small_ones(shards, monkeypatch, tmp_pa
     first, columns, _ = written(shards, cases(0.5, 1.0))
     with monkeypatch.context() as any_is_large:
         any_is_large.setattr(store, "_SMALL", 0)
-        *_, large = written(Shards(tmp_path, FORM, impact.VERSION), cases(2.0))
+        *_, large = written(Shards(tmp_path, OUTPUT, VERSION), cases(2.0))
     second, *_ = written(shards, cases(1.0, 3.0))
     shards.merge()
     assert large in shards.files()
     assert len(shards.files()) == 2
-    assert found_keys(shards) == {*first, *second, *run_keys(cases(2.0), FORM, impact.VERSION)}
+    assert found_keys(shards) == {
+        *first,
+        *second,
+        *run_keys(cases(2.0), OUTPUT, VERSION),
+    }
     (merged,) = [part for part in shards.read() if part[0].size == 3]
     at = merged[0].tolist().index(first[0])
     assert merged[1]["peak_force"][at] == columns["peak_force"][0]
@@ -135,7 +140,7 @@ def test_small_shards_are_merged_while_they_come(shards, monkeypatch):
     for velocity in velocities:
         written(shards, cases(velocity))
         assert len(shards.files()) <= 4
-    assert found_keys(shards) == set(run_keys(cases(*velocities), FORM, impact.VERSION))
+    assert found_keys(shards) == set(run_keys(cases(*velocities), OUTPUT, VERSION))
 
 
 def test_what_is_merged_while_it_is_read_is_neither_lost_nor_called_damaged(shards, caplog):
@@ -145,7 +150,7 @@ def test_what_is_merged_while_it_is_read_is_neither_lost_nor_called_damaged(shar
     found = {bytes(key) for key in next(reading)[0]}
     shards.merge()
     found |= {bytes(key) for keys, _ in reading for key in keys}
-    assert found == set(run_keys(cases(1.0, 2.0, 3.0), FORM, impact.VERSION))
+    assert found == set(run_keys(cases(1.0, 2.0, 3.0), OUTPUT, VERSION))
     assert not caplog.text
 
 
@@ -156,7 +161,7 @@ def test_a_crash_between_merging_and_clearing_loses_nothing(shards, monkeypatch,
         with pytest.raises(KeyboardInterrupt):
             shards.merge()
     assert len(shards.files()) == 3
-    again = Shards(tmp_path, FORM, impact.VERSION)
+    again = Shards(tmp_path, OUTPUT, VERSION)
     list(again.recover())
     again.merge()
     assert len(again.files()) == 1
@@ -183,38 +188,38 @@ def keys(*numbers):
 
 
 def test_answers_find_the_runs_of_their_keys():
-    ledger = Ledger(keys(256, 1, 512, 2))
-    assert ledger.missing().tolist() == [0, 1, 2, 3]
-    asked, runs = ledger.find(keys(2, 999, 256))
-    assert asked.tolist() == [True, False, True]
+    index = RunIndex(keys(256, 1, 512, 2))
+    assert index.missing().tolist() == [0, 1, 2, 3]
+    requested, runs = index.find(keys(2, 999, 256))
+    assert requested.tolist() == [True, False, True]
     assert runs.tolist() == [3, 0]
-    ledger.mark(runs)
-    assert ledger.missing().tolist() == [1, 2]
-    assert ledger.left() == 2
+    index.mark(runs)
+    assert index.missing().tolist() == [1, 2]
+    assert index.left() == 2
 
 
 def test_the_first_of_equal_runs_stands_for_all():
-    ledger = Ledger(keys(7, 3, 7, 3, 7))
-    assert ledger.missing().tolist() == [0, 1]
-    assert ledger.left() == 5
-    assert ledger.distinct == 2
-    ledger.mark(ledger.find(keys(3))[1])
-    assert ledger.left() == 3
+    index = RunIndex(keys(7, 3, 7, 3, 7))
+    assert index.missing().tolist() == [0, 1]
+    assert index.left() == 5
+    assert index.distinct == 2
+    index.mark(index.find(keys(3))[1])
+    assert index.left() == 3
     values = np.array([[7.0, 70.0], [3.0, 30.0], [0, 0], [0, 0], [0, 0]])
-    assert ledger.spread(values)[:, 1].tolist() == [70.0, 30.0, 70.0, 30.0, 70.0]
+    assert index.spread(values)[:, 1].tolist() == [70.0, 30.0, 70.0, 30.0, 70.0]
 
 
 def test_keys_beyond_the_last_are_not_taken_for_it():
-    asked, runs = Ledger(keys(1, 2)).find(keys(3))
-    assert not asked.any()
+    requested, runs = RunIndex(keys(1, 2)).find(keys(3))
+    assert not requested.any()
     assert runs.size == 0
 
 
 HOLD = """
 import sys
 from pathlib import Path
-from impactlab.study.store import held
-with held(Path(sys.argv[1])):
+from impactlab.study.store import locked
+with locked(Path(sys.argv[1])):
     print("held", flush=True)
     sys.stdin.read()
 """
@@ -233,7 +238,7 @@ def other(tmp_path):
 
 def test_a_second_process_is_told_who_works(tmp_path, other):
     assert f"process {other.pid} on " in holder(tmp_path)
-    with pytest.raises(BlockingIOError, match=rf"process {other.pid} on .*wait"), held(tmp_path):
+    with pytest.raises(BlockingIOError, match=rf"process {other.pid} on .*wait"), locked(tmp_path):
         pass
 
 
@@ -242,18 +247,18 @@ def test_a_killed_process_leaves_the_folder_free(tmp_path, other, caplog):
     other.kill()
     other.wait()
     assert holder(tmp_path) == ""
-    with held(tmp_path):
+    with locked(tmp_path):
         assert f"process {other.pid}" in caplog.text
     caplog.clear()
-    with held(tmp_path):
+    with locked(tmp_path):
         assert not caplog.text
 
 
 def test_steps_within_a_longer_work_leave_the_folder_held(tmp_path, caplog):
     caplog.set_level("INFO")
-    with held(tmp_path):
+    with locked(tmp_path):
         for _ in range(2):
-            with held(tmp_path):
+            with locked(tmp_path):
                 pass
             assert f"process {os.getpid()} on " in holder(tmp_path)
     assert holder(tmp_path) == ""
@@ -265,7 +270,7 @@ def test_a_disk_too_full_for_a_note_is_left_to_what_is_more_than_one(tmp_path, m
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(type(tmp_path), "write_text", full)
-    with held(tmp_path):
+    with locked(tmp_path):
         assert holder(tmp_path) == "another process"
 
 

@@ -19,7 +19,7 @@ from impactlab.study.estimate import estimate
 from impactlab.study.execute import execute
 from impactlab.study.runs import Work
 from impactlab.study.sampling import design
-from impactlab.study.store import Form
+from impactlab.study.store import OutputSpec
 from impactlab.variables import STATUS_FLAGS
 
 TEXT = """
@@ -36,7 +36,7 @@ responses: [peak_force, number_of_contacts, energy_error]
 store: {histories: true, samples: 5}
 """
 ALL = np.arange(8)
-HERE = Form(5, profiles=False)
+HERE = OutputSpec(5, profiles=False)
 
 
 @pytest.fixture(scope="module")
