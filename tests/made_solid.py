@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.comparison.beams import beams
+from impactlab.fem3d.comparison.comparison import simulate_beams
 from impactlab.fem3d.solver import quarter_mesh
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
@@ -74,4 +74,4 @@ _GIVEN = ("velocity", "beam_depth", "beam_span", "sphere_radius")
 @cache
 def beam_models():
     """The beam models' own answers to the paper's case."""
-    return beams(paper_impact(), Discretisation(nodes=21, points=3), 0.45e-3)
+    return simulate_beams(paper_impact(), Discretisation(nodes=21, points=3), 0.45e-3)

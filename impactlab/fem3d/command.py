@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 import os
 import re
-import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,8 +18,8 @@ from impactlab.cli.options import WITNESS, given, results_file
 if TYPE_CHECKING:
     import xarray as xr
 
-    from impactlab.fem3d.comparison.case import Case
-    from impactlab.fem3d.comparison.plan import Plan
+    from impactlab.fem3d.comparison.plan import Case, Plan
+    from impactlab.fem3d.comparison.run import Progress
 
 
 def witness(
@@ -79,7 +79,7 @@ def witness(
     What they answer is compared in a table; fields, histories and figures are kept. Ctrl-C keeps
     what was computed until then.
     """
-    from impactlab.fem3d.report.run import print_plan
+    from impactlab.fem3d.comparison.terminal import print_comparison, print_plan, print_yielding
 
     _check_deck(deck, elastic=elastic)
     case = _case(study, velocity, contact)
@@ -101,8 +101,13 @@ def witness(
         raise ValueError("\n".join(problems))
     if deck:
         _write_deck(plan, deck, folder, plastic=not elastic)
-    else:
-        _solve(plan, workers, folder)
+        return
+    from impactlab.fem3d.comparison.run import compare
+
+    found = compare(plan, folder, workers=workers, watched=_watched())
+    print_comparison(found.responses)
+    print_yielding(found.solid)
+    _end(found.solid, found.folder)
 
 
 def _folder_name(asked: Mapping[str, str]) -> str:
@@ -113,7 +118,7 @@ def _folder_name(asked: Mapping[str, str]) -> str:
 
 def _case(study: Path | None, velocity: str, contact: str) -> Case:
     """What is solved; of a study that varies what this takes one value of, that is said."""
-    from impactlab.fem3d.comparison.case import case_of, paper_case
+    from impactlab.fem3d.comparison.plan import case_of, paper_case
     from impactlab.study.declaration import read_impacts
 
     case = case_of(read_impacts(study)) if study else paper_case()
@@ -148,9 +153,10 @@ def _check_deck(deck: str, *, elastic: bool) -> None:
 
 
 def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
+    from impactlab.fem3d.comparison.run import check_writable
     from impactlab.fem3d.deck import FLAVOURS, write_deck
 
-    _writable(folder)
+    check_writable(folder)
     path = folder / f"{flavour}{'' if plastic else '_elastic'}.inp"
     write_deck(
         path,
@@ -165,57 +171,9 @@ def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> Non
     print(path)
 
 
-def _solve(plan: Plan, workers: int, folder: Path) -> None:
-    """Answers are on disk before anything is made of them."""
-    from impactlab.fem3d.comparison.beams import beams
-    from impactlab.fem3d.comparison.comparison import compared, write_csv
-    from impactlab.fem3d.figures.drawings import draw_witness
-    from impactlab.fem3d.report.run import print_comparison, print_yielding
-    from impactlab.fem3d.vtu import write_vtu
-    from impactlab.study.netcdf import write_netcdf
-
-    _writable(folder)
-    spare = folder.parent / f"{folder.resolve().name}_stopped"
-    guarded = _is_whole(folder / "witness.nc")
-    solid = _marched(plan, workers)
-    if "stopped" in solid.attrs and guarded:
-        folder = spare
-    write_netcdf(solid, folder / "witness.nc")
-    write_vtu(solid, folder / "witness.vtu")
-    others = beams(plan.case.impact, plan.case.discretisation, float(solid["duration"]))
-    write_netcdf(others, folder / "beams.nc")
-    found = compared(solid, others)
-    write_csv(found, folder / "comparison.csv")
-    print_comparison(found)
-    print_yielding(solid)
-    draw_witness(solid, others, folder / "figures", plan.case.name)
-    _end(solid, folder)
-
-
-def _writable(folder: Path) -> None:
-    """Made where need be. Raises OSError where answers could not be kept, before there are any."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError as error:
-        raise OSError(
-            f"--output {folder}: {error.strerror}: nothing was solved; name a folder to write to"
-        ) from None
-
-
-def _is_whole(file: Path) -> bool:
-    """Whether it holds a run that went on to its end; what cannot be read does not."""
-    from impactlab.study.netcdf import read_netcdf
-
-    try:
-        return "stopped" not in read_netcdf(file).attrs
-    except OSError:
-        return False
-
-
-def _marched(plan: Plan, workers: int) -> xr.Dataset:
-    """The 3-D run; Ctrl-C breaks it off at a checkpoint, to keep it whole."""
-    from impactlab.fem3d.solver import solve_on
+@contextmanager
+def _watched() -> Iterator[Progress]:
+    """Show the share done; on Ctrl-C, break the 3-D run off at a checkpoint, to keep it whole."""
     from impactlab.study.progress import share_done
 
     with stop_kept() as asked_to_stop, share_done("3-D model") as show:
@@ -225,13 +183,7 @@ def _marched(plan: Plan, workers: int) -> xr.Dataset:
             if asked_to_stop() and share < 1.0:
                 raise KeyboardInterrupt
 
-        return solve_on(
-            plan.solved_mesh(),
-            plan.case.impact,
-            duration=plan.duration,
-            threads=workers,
-            progress=progress,
-        )
+        yield progress
 
 
 def _end(solid: xr.Dataset, folder: Path) -> None:

@@ -18,8 +18,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import impactlab as il
-from impactlab import fem3d as solid
-from impactlab.fem3d.solver import kratos
+from impactlab.fem3d import kratos
+from impactlab.fem3d import solver as solid
 from impactlab.fem3d.solver.stepping.system import System
 from impactlab.figures import style
 

@@ -1,21 +1,60 @@
-"""Each response of the 3-D model beside those of the beam models."""
+"""The beam models' answers to the same impact, and each response beside the 3-D FE model's."""
 
 from __future__ import annotations
 
-import csv
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
-from impactlab.study.netcdf import whole
-from impactlab.variables import RESPONSES, UNLIKE, attributes, reasons, status_bits
+from impactlab.model import cost
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.simulate import case_table, simulate, solve
+from impactlab.variables import RESPONSES, UNLIKE, attributes, status_bits
+
+MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")
+"""In the order of tables and figures."""
+_COARSE = 101
+"""Nodes that tell the duration of a contact within some percent."""
+
+
+def simulate_beams(impact: Impact, discretisation: Discretisation, duration: float) -> xr.Dataset:
+    """What `simulate` gives for each of MODELS, on the dimension `beam_model`.
+
+    All take the leapfrog scheme, the only one that they share. duration: in s.
+    """
+    grid = replace(discretisation, scheme="leapfrog")
+    runs = [
+        simulate(replace(impact, beam_model=model), grid, duration=duration) for model in MODELS
+    ]
+    return xr.concat(runs, "beam_model", combine_attrs="override")
+
+
+def beam_seconds(impact: Impact, discretisation: Discretisation, duration: float) -> float:
+    """Return about how long `simulate_beams` takes, in s."""
+    grid = replace(discretisation, scheme="leapfrog")
+    tables = [
+        case_table(replace(impact, beam_model=model), grid, duration=duration) for model in MODELS
+    ]
+    return float(sum(cost.work(table).sum() for table in tables) / cost.A_SECOND)
+
+
+def first_contact(impact: Impact, discretisation: Discretisation, longest: float) -> float:
+    """Duration of the Euler-Bernoulli beam's first contact in s; NaN if it outlasts `longest`.
+
+    Roughly: on a coarse grid, which is quick for any duration.
+    """
+    plain = replace(impact, beam_model=MODELS[0])
+    nodes = min(discretisation.nodes, _COARSE)
+    grid = replace(discretisation, nodes=nodes, scheme="leapfrog")
+    answers = solve(case_table(plain, grid, duration=longest))
+    return float(answers.responses[0]["contact_duration"])
+
 
 SOLID = "solid"
 """The 3-D model's name among the beam models."""
 COUNTS = ("number_of_contacts",)
-_NUMBER = 8
-_HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")
 
 
 def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
@@ -53,23 +92,3 @@ def _held(runs: xr.Dataset, name: str) -> list[float]:
     sound = (runs["status"] & status_bits([name])) == 0
     values: list[float] = np.atleast_1d(runs[name].where(sound).values).astype(float).tolist()
     return values
-
-
-def write_csv(found: xr.Dataset, path: Path) -> None:
-    """A row a response and model, in SI units; whole or not at all. Raises OSError, see whole."""
-    with (
-        whole(path, found["value"].size * len(_HEAD) * _NUMBER) as unfinished,
-        unfinished.open("w", encoding="utf-8", newline="") as file,
-    ):
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(_HEAD)
-        for at in np.ndindex(found["value"].shape):
-            writer.writerow(_row(found.isel(response=at[0], model=at[1])))
-
-
-def _row(one: xr.Dataset) -> list[str]:
-    value, difference = one["value"].item(), one["difference"].item()
-    why = "; ".join(reasons(one["status"].item())) if np.isnan(value) else ""
-    name, units, model = (str(one[key].item()) for key in ("response", "units", "model"))
-    share = "" if np.isnan(difference) else f"{100.0 * difference:.6g}"
-    return [name, units, model, "" if np.isnan(value) else f"{value:.9g}", share, why]

@@ -1,22 +1,71 @@
-"""Element size, duration and cost of a 3-D run, before anything is solved."""
+"""The plan of a 3-D run: its case, element size, duration and cost, before anything is solved."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import takewhile
 
 from dask.system import CPU_COUNT
 from distributed.system import MEMORY_LIMIT
 
-from impactlab.fem3d.comparison.beams import beam_seconds, first_contact
-from impactlab.fem3d.comparison.case import Case
+from impactlab.fem3d.comparison.comparison import beam_seconds, first_contact
 from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, least_cost, quarter_mesh
-from impactlab.fem3d.solver.mesh.extent import checked_patch, contact_radius
+from impactlab.fem3d.solver.mesh.estimates import checked_patch, contact_radius
 from impactlab.model.checks import positive
+from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
+from impactlab.model.paper import paper_impact
+from impactlab.model.parameters import Value, flatten, with_values
+from impactlab.study.declaration import Study
 from impactlab.study.quantities import amount, time
+
+_LONGEST = 5e-3
+"""Simulated time of the paper's case in s, within which its first contact ends at any velocity."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """name: of the study. file: where it stands. discretisation: of the beam models.
+
+    longest: simulated time of the study in s. held: what the study varies, which one value stands
+    for here, by name.
+    """
+
+    name: str
+    file: str
+    impact: Impact
+    discretisation: Discretisation
+    longest: float
+    held: dict[str, Value] = field(default_factory=dict)
+
+    def with_impact(self, velocity: float | None, contact: str | None) -> Case:
+        """The case with another velocity (m/s) or contact law. Raises ValueError as Impact does."""
+        changed = {"velocity": velocity, "contact": contact}
+        given = {name: value for name, value in changed.items() if value is not None}
+        held = {name: value for name, value in self.held.items() if name not in given}
+        return replace(self, impact=_replaced(self.impact, given), held=held)
+
+
+def paper_case() -> Case:
+    """The paper's own case, for the beam models with the nodes that it takes."""
+    grid = Discretisation(nodes=601)
+    return Case("paper", "the paper's case", paper_impact(), grid, _LONGEST)
+
+
+def case_of(study: Study) -> Case:
+    """A study's base with its fixed values; of what it varies, the base has one value each."""
+    base = with_values(study.impact, study.discretisation, study.sampling.fixed)
+    values = flatten(*base) | {"sphere_mass": base[0].sphere.total_mass}
+    held = {name: values[name] for name in study.sampling.varied if name in values}
+    return Case(study.name, str(study.path), *base, study.duration, held)
+
+
+def _replaced(impact: Impact, values: dict[str, float | str]) -> Impact:
+    changed: Impact = replace(impact, **values)  # type: ignore[arg-type]
+    return changed
+
 
 USUAL_TIME = 120.0
 """Seconds of one core that a run may take where no element size is asked for."""

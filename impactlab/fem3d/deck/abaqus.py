@@ -7,12 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from impactlab.fem3d.deck import conditions, sets
-from impactlab.fem3d.deck.case import Case
-from impactlab.fem3d.deck.flavour import Flavour
-from impactlab.fem3d.deck.lines import values
-from impactlab.fem3d.deck.materials import curve
-from impactlab.fem3d.deck.units import STRESS
+from impactlab.fem3d.deck.cards import curve, gravity
+from impactlab.fem3d.deck.case import STRESS, Case, Flavour, values
+from impactlab.fem3d.deck.mesh import BEAM_SURFACE, SPHERE_SURFACE, TRACKED, element_groups
 from impactlab.model.material import Material
 
 _FRAMES = 50
@@ -37,7 +34,7 @@ def _hardening(material: Material) -> Iterator[str]:
 
 def _sections(case: Case) -> Iterator[str]:
     yield "*SECTION CONTROLS, NAME=HOURGLASS, HOURGLASS=ENHANCED"
-    for name, (full, _) in sets.element_groups(case.mesh).items():
+    for name, (full, _) in element_groups(case.mesh).items():
         body = name.split("_")[0]
         controls = "" if full else ", CONTROLS=HOURGLASS"
         yield f"*SOLID SECTION, ELSET={name}, MATERIAL={body}_STEEL{controls}"
@@ -54,11 +51,11 @@ def _step(case: Case) -> Iterator[str]:
     yield "*STEP, NAME=IMPACT, NLGEOM=YES"
     yield "*DYNAMIC, EXPLICIT"
     yield f", {values(case.duration)}"
-    yield from conditions.gravity(case)
+    yield from gravity(case)
     yield "*CONTACT PAIR, INTERACTION=FRICTIONLESS, MECHANICAL CONSTRAINT=KINEMATIC, CPSET=IMPACT"
-    yield f"{sets.SPHERE_SURFACE}, {sets.BEAM_SURFACE}"
+    yield f"{SPHERE_SURFACE}, {BEAM_SURFACE}"
     yield f"*OUTPUT, HISTORY, TIME INTERVAL={values(case.time_between)}"
-    yield f"*NODE OUTPUT, NSET={sets.TRACKED}"
+    yield f"*NODE OUTPUT, NSET={TRACKED}"
     yield "U3, V3, A3"
     yield "*CONTACT OUTPUT, CPSET=IMPACT"
     yield "CFN"

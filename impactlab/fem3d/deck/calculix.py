@@ -8,13 +8,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from impactlab.fem3d.deck import conditions, sets
-from impactlab.fem3d.deck.case import Case
-from impactlab.fem3d.deck.flavour import Flavour
-from impactlab.fem3d.deck.lines import values
-from impactlab.fem3d.deck.materials import curve
-from impactlab.fem3d.deck.units import LENGTH, STRESS
-from impactlab.fem3d.solver.mesh.extent import contact_radius
+from impactlab.fem3d.deck.cards import curve, gravity
+from impactlab.fem3d.deck.case import LENGTH, STRESS, Case, Flavour, values
+from impactlab.fem3d.deck.mesh import BEAM_SURFACE, BODIES, SPHERE_SURFACE, TRACKED
+from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.model.material import Material
 from impactlab.verification.solutions import hertz
 
@@ -36,7 +33,7 @@ def _hardening(material: Material) -> Iterator[str]:
 
 
 def _sections(_: Case) -> Iterator[str]:
-    for body in sets.BODIES:
+    for body in BODIES:
         yield f"*SOLID SECTION, ELSET={body}, MATERIAL={body}_STEEL"
 
 
@@ -45,7 +42,7 @@ def _contact(case: Case) -> Iterator[str]:
     yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
     yield values(_slope(case) * STRESS / LENGTH)
     yield "*CONTACT PAIR, INTERACTION=FRICTIONLESS, TYPE=SURFACE TO SURFACE"
-    yield f"{sets.SPHERE_SURFACE}, {sets.BEAM_SURFACE}"
+    yield f"{SPHERE_SURFACE}, {BEAM_SURFACE}"
 
 
 def _slope(case: Case) -> float:
@@ -61,10 +58,10 @@ def _step(case: Case) -> Iterator[str]:
     yield f"*STEP, INC={_INCREMENTS}"
     yield "*DYNAMIC, DIRECT"
     yield values(case.time_between, case.duration)
-    yield from conditions.gravity(case)
-    yield f"*NODE PRINT, NSET={sets.TRACKED}"
+    yield from gravity(case)
+    yield f"*NODE PRINT, NSET={TRACKED}"
     yield "U, V"
-    yield f"*CONTACT PRINT, SLAVE={sets.SPHERE_SURFACE}, MASTER={sets.BEAM_SURFACE}"
+    yield f"*CONTACT PRINT, SLAVE={SPHERE_SURFACE}, MASTER={BEAM_SURFACE}"
     yield "CF"
     yield "*NODE FILE"
     yield "U"

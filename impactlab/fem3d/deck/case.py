@@ -1,14 +1,53 @@
-"""What a deck is written for."""
+"""A deck's case and flavour, its units, and the format of its numbers."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from impactlab.fem3d.solver.mesh import Mesh
 from impactlab.model.checks import instance, positive
 from impactlab.model.impact import Impact
+from impactlab.model.material import Material
 from impactlab.verification.solutions import hertz
+
+NAMES = "N, mm, t, s (hence MPa, mJ, t/mm3, mm/s)"
+LENGTH = 1e3
+"""mm in a m."""
+VELOCITY = 1e3
+"""mm/s in a m/s."""
+ACCELERATION = 1e3
+"""mm/s2 in a m/s2."""
+STRESS = 1e-6
+"""MPa in a Pa."""
+DENSITY = 1e-12
+"""t/mm3 in a kg/m3."""
+
+
+PER_LINE = 16
+"""Entries that a data line may hold in both programs."""
+
+
+def number(value: float) -> str:
+    """At most 19 characters, of the 20 that CalculiX reads; 13 digits."""
+    return f"{value:.12e}"
+
+
+def values(*entries: float) -> str:
+    """One data line."""
+    return ", ".join(f"{entry:.9g}" for entry in entries)
+
+
+def listed(numbers: Iterable[int] | NDArray[np.integer]) -> Iterator[str]:
+    """Data lines of whole numbers, as many on each as it may hold."""
+    words = [str(entry) for entry in np.asarray(numbers).tolist()]
+    for start in range(0, len(words), PER_LINE):
+        yield ", ".join(words[start : start + PER_LINE])
+
 
 _SAME = 1e-9
 """Relative difference of lengths that are the same."""
@@ -76,3 +115,25 @@ class Case:
                     f"deck.mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in "
                     "the impact: make the mesh from this impact (quarter_mesh)"
                 )
+
+
+Hardening = Callable[[Material], Iterable[str]]
+"""The cards that follow *ELASTIC where a material yields."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Flavour:
+    """One program's part of a deck.
+
+    elements: its types, fully integrated (True) and not. hardening, sections, contact and step
+    give lines: plasticity of a material, section assignments, what the model says of contact, and
+    the step from *STEP to *END STEP. limits: what a user has to know, a sentence each.
+    """
+
+    program: str
+    elements: Mapping[bool, str]
+    hardening: Hardening
+    sections: Callable[[Case], Iterable[str]]
+    contact: Callable[[Case], Iterable[str]]
+    step: Callable[[Case], Iterable[str]]
+    limits: tuple[str, ...]

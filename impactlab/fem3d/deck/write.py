@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from impactlab.fem3d.deck import conditions
 from impactlab.fem3d.deck.abaqus import ABAQUS
 from impactlab.fem3d.deck.calculix import CALCULIX
-from impactlab.fem3d.deck.case import Case
-from impactlab.fem3d.deck.flavour import Flavour
-from impactlab.fem3d.deck.geometry import geometry
-from impactlab.fem3d.deck.header import header
-from impactlab.fem3d.deck.materials import materials
+from impactlab.fem3d.deck.cards import header, materials, start, supports
+from impactlab.fem3d.deck.case import Case, Flavour
+from impactlab.fem3d.deck.mesh import geometry
 from impactlab.fem3d.solver.mesh import Mesh
 from impactlab.model.checks import one_of
 from impactlab.model.impact import Impact
@@ -59,7 +56,7 @@ def _lines(case: Case, flavour: Flavour) -> Iterator[str]:
     yield from geometry(case, flavour.elements)
     yield from materials(case, flavour.hardening)
     yield from flavour.sections(case)
-    yield from conditions.supports()
-    yield from conditions.start(case)
+    yield from supports()
+    yield from start(case)
     yield from flavour.contact(case)
     yield from flavour.step(case)

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.fem3d.figures import differences as witness
+from impactlab.fem3d.figures import differences
 from impactlab.figures import access, labels, scales, style
 from impactlab.figures.access import usable
 from impactlab.figures.labels import display
@@ -27,7 +27,7 @@ _LEAST, _ROOM = 2.0, 2.0
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Whether a grid has the 3-D model beside others, and a response to draw."""
-    return witness.applies(runs) and bool(_drawn(runs))
+    return differences.differ(runs) and bool(_drawn(runs))
 
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
@@ -56,13 +56,15 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         below.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
     axes[len(names)].set_ylabel(labels.wrapped_axis("difference from the 3-D model", "%", 24))
     style.legend(
-        figure, "Model of the beam", [witness.label(model) for model in witness.models(runs)]
+        figure,
+        "Model of the beam",
+        [differences.label(model) for model in differences.models(runs)],
     )
     return figure
 
 
 def _drawn(runs: xr.Dataset) -> list[str]:
-    return [name for name in _NAMES if name in witness.asked(runs)][:_MOST]
+    return [name for name in _NAMES if name in differences.asked(runs)][:_MOST]
 
 
 def _look(at: int) -> dict[str, Any]:
@@ -73,10 +75,10 @@ def _look(at: int) -> dict[str, Any]:
 
 def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
     unit = display(usable(runs, name).rename(name).assign_attrs(runs[name].attrs))
-    for at, model in enumerate(witness.models(runs)):
-        values = unit(witness.side(runs, analysis, name, model).value)
+    for at, model in enumerate(differences.models(runs)):
+        values = unit(differences.side(runs, analysis, name, model).value)
         if np.isfinite(values).any():
-            ax.plot(runs["velocity"].values, values, label=witness.label(model), **_look(at))
+            ax.plot(runs["velocity"].values, values, label=differences.label(model), **_look(at))
     ax.set_title(labels.sentence(labels.response(name)), loc="left")
     ax.set_ylabel(labels.axis(labels.response(name), unit.symbol))
     if not ax.lines:
@@ -88,15 +90,17 @@ def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
 
 
 def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
-    first, *others = witness.models(runs)
-    against = witness.side(runs, analysis, name, first)
+    first, *others = differences.models(runs)
+    against = differences.side(runs, analysis, name, first)
     for at, model in enumerate(others, 1):
-        gap = witness.difference(witness.side(runs, analysis, name, model), against)
+        gap = differences.difference(differences.side(runs, analysis, name, model), against)
         bars = np.where(np.isfinite(gap.uncertainty), 100.0 * gap.uncertainty, np.nan)
         shift = 1.0 + 0.04 * (at - 0.5 * (len(others) + 1))
         if np.isfinite(gap.value).any():
             speed = shift * runs["velocity"].values
-            look: dict[str, Any] = {"elinewidth": 0.8, "label": witness.label(model)} | _look(at)
+            look: dict[str, Any] = {"elinewidth": 0.8, "label": differences.label(model)} | _look(
+                at
+            )
             ax.errorbar(speed, 100.0 * gap.value, yerr=bars, **look)
     if not ax.containers:
         style.remark(ax, "no finite values")

@@ -7,8 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.fem3d.figures import effects as parts
-from impactlab.fem3d.figures.differences import finest
+from impactlab.fem3d.figures import differences
 from impactlab.figures import access, labels, scales, style
 from impactlab.figures.access import usable
 from impactlab.figures.labels import display
@@ -16,12 +15,12 @@ from impactlab.model.impact import SOLID
 
 TITLE = "Where the 3-D witness differs from the paper's beam"
 _HISTORIES = ("contact_force", "indentation")
-_LABELS = {parts.TIMOSHENKO: "contact law (Timoshenko beam)", SOLID: "3-D solid"}
+_LABELS = {differences.TIMOSHENKO: "contact law (Timoshenko beam)", SOLID: "3-D solid"}
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Whether the runs are those that take the effects apart, with histories."""
-    return parts.applies(runs) and all(name in runs for name in _HISTORIES)
+    return differences.separable(runs) and all(name in runs for name in _HISTORIES)
 
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
@@ -35,7 +34,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         "Timoshenko beam under Hertz's law; what the local compliance through the depth and the "
         "waves in the sphere do. Contact law in yielding: what yielding does to the solid over "
         f"what it does under the contact law. {_finding(runs, analysis)} "
-        f"{access.missing_note(runs, parts.NAMES)}".strip()
+        f"{access.missing_note(runs, differences.NAMES)}".strip()
     )
 
 
@@ -50,7 +49,9 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def _curves(ax: Axes, runs: xr.Dataset) -> None:
-    chosen = xr.Dataset({name: usable(runs, name) for name in _HISTORIES}).isel(finest(runs))
+    chosen = xr.Dataset({name: usable(runs, name) for name in _HISTORIES}).isel(
+        differences.finest(runs)
+    )
     force, depth = (display(runs[name]) for name in _HISTORIES)
     softest = float(runs["beam_yield_stress"].min())
     for at, (model, label) in enumerate(_LABELS.items()):
@@ -77,8 +78,8 @@ def _curves(ax: Axes, runs: xr.Dataset) -> None:
 
 
 def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
-    for at, name in enumerate(parts.NAMES):
-        found = parts.effects(runs, analysis, name).values()
+    for at, name in enumerate(differences.NAMES):
+        found = differences.effects(runs, analysis, name).values()
         shares = np.array([float(each.value) for each in found])
         widths = np.array([float(each.uncertainty) for each in found])
         there = np.flatnonzero(np.isfinite(shares))
@@ -93,7 +94,7 @@ def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
         )
         marks.set_label(labels.response(name))
     ax.axvline(0.0, label="_guide", **style.GUIDE)
-    ax.set_yticks(range(len(parts.EFFECTS)), list(parts.EFFECTS.values()))
+    ax.set_yticks(range(len(differences.EFFECTS)), list(differences.EFFECTS.values()))
     ax.invert_yaxis()
     ax.set_xlabel(labels.axis("change of the beam's answer", "%"))
     scales.linear(ax, "x")
@@ -102,14 +103,15 @@ def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
 def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """The shares in words."""
     sentences = []
-    for name in parts.NAMES:
-        found = parts.effects(runs, analysis, name)
+    for name in differences.NAMES:
+        found = differences.effects(runs, analysis, name)
         if not np.isfinite([float(each.value) for each in found.values()]).all():
             continue
         listed = labels.listing(
             [
-                f"{labels.number(100.0 * float(found[key].value), 2)} % by the {parts.EFFECTS[key]}"
-                for key in ("shear", "flexibility", "law")
+                f"{labels.number(100.0 * float(found[key].value), 2)} % by the {effect}"
+                for key, effect in differences.EFFECTS.items()
+                if key != "all"
             ]
         )
         total = labels.number(100.0 * float(found["all"].value), 2)

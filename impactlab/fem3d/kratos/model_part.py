@@ -1,4 +1,4 @@
-"""The mesh as Kratos' model: nodes, elements with their material, and the surfaces that may touch.
+"""The mesh as Kratos' model part, filled before a run and read after each step.
 
 Kratos counts from 1: its node i + 1 is the mesh's node i.
 """
@@ -9,13 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.fem3d.kratos.engine import Engine
-from impactlab.fem3d.kratos.settings import BEAM_TOP, SPHERE_BOTTOM
-from impactlab.fem3d.kratos.units import MM, MPA, TONNES_PER_MM3
+from impactlab.fem3d.kratos.engine import BEAM_TOP, MM, MPA, SPHERE_BOTTOM, TONNES_PER_MM3, Engine
 from impactlab.fem3d.solver import Mesh
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
-from impactlab.fem3d.solver.mesh.mesh import Integers
-from impactlab.fem3d.solver.stepping.masses import element_volumes
+from impactlab.fem3d.solver.mesh.mesh import Floats, Integers, element_volumes
 from impactlab.model.impact import Impact
 from impactlab.model.material import Material
 
@@ -106,3 +103,36 @@ def _surface(part: Any, quads: Integers, first: int, steel: Any) -> None:
     part.AddNodes(np.unique(quads).tolist())
     for number, nodes in enumerate(quads.tolist(), first):
         part.CreateNewCondition(f"SurfaceCondition3D{FACE}N", number, nodes, steel)
+
+
+_TOUCHING = "ComputingContact"
+"""Kratos' part for the pairs of faces that it made out."""
+
+
+def vectors(engine: Engine, part: Any, name: str) -> Floats:
+    """A vector at every node, (n, 3), from mm to m."""
+    values = engine.core.VariableUtils().GetSolutionStepValuesVector(
+        part.Nodes, engine.variable(name), 0, 3
+    )
+    return np.array(values).reshape(-1, 3) / MM
+
+
+def contact_force(engine: Engine, part: Any) -> float:
+    """Force of the whole beam on the whole sphere in N, upwards: four quarters.
+
+    Of each pair of faces in contact, what its condition puts on the beam's four nodes, which come
+    first in it, the other way round.
+    """
+    core, total, residual = engine.core, 0.0, engine.core.Vector()
+    for pair in part.GetSubModelPart(_TOUCHING).Conditions:
+        if pair.Is(core.ACTIVE):
+            pair.CalculateRightHandSide(residual, part.ProcessInfo)
+            total -= sum(list(residual)[2:12:3])
+    return 4.0 * total
+
+
+def plastic_strains(engine: Engine, part: Any) -> Floats:
+    """PEEQ at each element's integration points, (e, 8)."""
+    name = engine.variable("ACCUMULATED_PLASTIC_STRAIN")
+    info = part.ProcessInfo
+    return np.array([each.CalculateOnIntegrationPoints(name, info) for each in part.Elements])

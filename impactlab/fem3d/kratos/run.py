@@ -1,22 +1,52 @@
-"""Kratos' steps, one after the other."""
+"""Kratos' steps, one after the other, and the history they leave."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.fem3d.kratos import readings
-from impactlab.fem3d.kratos.engine import Engine
-from impactlab.fem3d.kratos.history import History, Moment
-from impactlab.fem3d.kratos.model_part import fill, hold, launch
-from impactlab.fem3d.kratos.settings import PART, RESIDUAL_RATIO, settings
+from impactlab.fem3d.kratos.engine import PART, RESIDUAL_RATIO, Engine, settings
+from impactlab.fem3d.kratos.model_part import contact_force, fill, hold, launch, vectors
 from impactlab.fem3d.solver import Mesh, PatchTooSmallError
 from impactlab.fem3d.solver.mesh import SPHERE
-from impactlab.fem3d.solver.mesh.mesh import Floats
-from impactlab.fem3d.solver.stepping.masses import nodal_masses
+from impactlab.fem3d.solver.mesh.mesh import Floats, nodal_masses
 from impactlab.model.impact import Impact
+
+
+class Moment(NamedTuple):
+    """At the end of a step: time in s, contact force of all four quarters in N.
+
+    Displacements in m, positive downwards: of the sphere's centre of mass and of its pole, of the
+    beam's axis and of its top below the impact. velocity: of the sphere's centre of mass in m/s,
+    downwards. iterations: Newton's, in this step.
+    """
+
+    time: float
+    force: float
+    sphere: float
+    pole: float
+    axis: float
+    top: float
+    velocity: float
+    iterations: float
+
+
+@dataclass
+class History:
+    """moments: one a step and one before. stopped: why before its time, else ""."""
+
+    moments: list[Moment] = field(default_factory=list)
+    stopped: str = ""
+    cpu_seconds: float = 0.0
+
+    def table(self) -> Floats:
+        """The moments, (8, steps + 1)."""
+        return np.array(self.moments).T
+
 
 Progress = Callable[[float, float], None]
 
@@ -99,14 +129,14 @@ class Run:
         return bool(ratio <= RESIDUAL_RATIO)
 
     def _moment(self, now: float) -> Moment:
-        down = -readings.vectors(self.engine, self.part, "DISPLACEMENT")[:, 2]
-        speed = -readings.vectors(self.engine, self.part, "VELOCITY")[:, 2]
+        down = -vectors(self.engine, self.part, "DISPLACEMENT")[:, 2]
+        speed = -vectors(self.engine, self.part, "VELOCITY")[:, 2]
         iterations = self.engine.variable("NL_ITERATION_NUMBER")
         mesh = self.mesh
         self._check_patch(down)
         return Moment(
             time=now,
-            force=readings.contact_force(self.engine, self.part),
+            force=contact_force(self.engine, self.part),
             sphere=float(self._sphere @ down),
             pole=float(down[mesh.pole]),
             axis=float(down[mesh.axis_node]),

@@ -14,5 +14,5 @@ from impactlab.fem3d.solver.mesh import least_cost as least_cost
 from impactlab.fem3d.solver.mesh import quarter_mesh as quarter_mesh
 from impactlab.fem3d.solver.solve import solve as solve
 from impactlab.fem3d.solver.solve import solve_on as solve_on
+from impactlab.fem3d.solver.stepping.assembly import MOST_THREADS as MOST_THREADS
 from impactlab.fem3d.solver.stepping.march import PatchTooSmallError as PatchTooSmallError
-from impactlab.fem3d.solver.stepping.rows import MOST_THREADS as MOST_THREADS

@@ -6,8 +6,14 @@ Products may be fused with sums, but no sum is reordered: the same bits for any 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
 
 from impactlab.jit.compiler import Compiler
+
+Array: TypeAlias = np.ndarray[Any, Any]
+"""An array as an argument of compiled functions."""
 
 _COMPILER = Compiler(Path(__file__).parent)
 SOURCES_HASH = _COMPILER.sources_hash

@@ -1,17 +1,22 @@
-"""The door to the 3-D model: one impact on one mesh, and everything that it answers."""
+"""One impact on one mesh, solved and returned as a dataset."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
 
 from impactlab.fem3d.solver.mesh import Mesh, quarter_mesh
-from impactlab.fem3d.solver.result.dataset import to_dataset
-from impactlab.fem3d.solver.stepping.march import March
-from impactlab.fem3d.solver.stepping.parts import Parts
-from impactlab.fem3d.solver.stepping.system import System
+from impactlab.fem3d.solver.responses import fields, plastic_responses, responses
+from impactlab.fem3d.solver.stepping.march import Energies, History, March
+from impactlab.fem3d.solver.stepping.system import System, ThreadPool
 from impactlab.model.checks import integer, positive
+from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
+from impactlab.model.parameters import PARAMETERS, flatten
+from impactlab.variables import described, provenance
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,7 +68,138 @@ def solve_on(
     """
     positive("solve", "duration", duration)
     samples = integer("solve", "samples", samples, 2)
-    with Parts(integer("solve", "threads", threads, 1)) as parts:
-        system = System(mesh, impact, parts)
+    with ThreadPool(integer("solve", "threads", threads, 1)) as pool:
+        system = System(mesh, impact, pool)
         history = March(system, impact).run(duration, progress)
     return to_dataset(system, impact, history, samples)
+
+
+_OWN = {
+    "node_position": ("m", "position of the mesh's nodes at first touch (z upwards)"),
+    "element_nodes": ("1", "numbers of a hexahedron's nodes, in VTK's order"),
+    "body": ("1", "0: of the beam, 1: of the sphere"),
+    "fully_integrated": ("1", "whether an element has eight integration points"),
+    "checkpoint_time": ("s", "time since first touch"),
+    "displacement": ("m", "displacement of the nodes at the end (z upwards)"),
+    "von_mises_stress": ("Pa", "von Mises stress at the end, mean of the element"),
+    "largest_equivalent_plastic_strain": ("1", "largest PEEQ of an element's integration points"),
+    "sphere_plastic_strain": ("1", "largest PEEQ in the sphere"),
+    "one_point_plastic_strain": ("1", "largest PEEQ in elements with one integration point"),
+    "node_offset": ("1", "largest slide of matched nodes in touch, over the element size"),
+    "kinetic_energy": ("J", "kinetic energy of beam and sphere"),
+    "strain_work": ("J", "work of the stresses, kept and dissipated"),
+    "plastic_work": ("J", "work dissipated by plastic flow"),
+    "hourglass_work": ("J", "work against hourglassing"),
+    "contact_loss": ("J", "energy lost in closing gaps between nodes"),
+    "gravity_work": ("J", "work of gravity on the sphere"),
+    "element_size": ("m", "size of the elements about the contact"),
+    "patch": ("m", "half the side of the square in which nodes are matched"),
+    "number_of_elements": ("1", "elements of the quarter model"),
+    "time_step": ("s", "time step at the beginning"),
+    "number_of_steps": ("1", "time steps taken"),
+}
+"""Units and long_name of what impactlab.variables does not know."""
+_COMMENTS = {
+    "peak_plastic_strain": "of the beam, the contact included, where it grows with finer meshes",
+    "plastic_dissipation": "in all of beam and sphere, the contact included",
+    "permanent_indentation": "mean of what the surfaces keep of the indentation from the last "
+    "contact to the end: vibrations that go on until then leave a part of themselves",
+    "number_of_contacts": "without pauses in which a wave does not cross the patch twice there and "
+    "back",
+    "sphere_displacement": "of the sphere's centre of mass",
+    "midspan_deflection": "of the axis, at mid-depth and mid-width",
+}
+_BEAM_MODELS_ONLY = ("contact", "beam_model", "shear_coefficient")
+_ENERGIES = (
+    *("kinetic_energy", "strain_work", "plastic_work"),
+    *("hourglass_work", "contact_loss", "gravity_work"),
+)
+"""In the order of stepping.history.Energies."""
+
+
+def to_dataset(system: System, impact: Impact, history: History, samples: int) -> xr.Dataset:
+    """All that a run answers, as described in solve."""
+    mesh = system.mesh
+    own = fields(system.groups, len(mesh.elements))
+    answers, status = responses(history, impact, _pause(mesh, impact))
+    answers |= plastic_responses(mesh, impact, own["largest_equivalent_plastic_strain"])
+    answers["plastic_dissipation"] = history.energies[-1].plastic if history.energies else np.nan
+    variables = {
+        **{name: ((), value) for name, value in answers.items()},
+        "status": ((), np.int32(status)),
+        "node_offset": ((), history.offset),
+        **_histories(history, samples),
+        **_energies(history.energies),
+        **{name: (("element",), values) for name, values in own.items()},
+        "displacement": (("node", "axis"), system.x - mesh.nodes),
+    }
+    dataset = xr.Dataset(variables, coords=_coordinates(mesh, impact, history, samples))
+    dataset.attrs = provenance() | {"model": "3-D finite elements"}
+    if history.stopped:
+        dataset.attrs["stopped"] = history.stopped
+    if history.patch_needed:
+        dataset = dataset.assign_attrs(patch_needed=history.patch_needed)
+    return _named(dataset)
+
+
+def _pause(mesh: Mesh, impact: Impact) -> float:
+    """Seconds in which a wave crosses the patch twice there and back."""
+    steel = impact.beam.material
+    return 4.0 * mesh.patch / float(np.sqrt(steel.youngs_modulus / steel.density))
+
+
+def _histories(history: History, samples: int) -> dict[str, Any]:
+    time, force, sphere, _, axis, _, _ = history.table()
+    given = {
+        "contact_force": force,
+        "midspan_deflection": axis,
+        "sphere_displacement": sphere,
+        "indentation": sphere - axis,
+    }
+    even = np.linspace(0.0, time[-1], samples)
+    return {name: (("time",), np.interp(even, time, values)) for name, values in given.items()}
+
+
+def _energies(energies: list[Energies]) -> dict[str, Any]:
+    columns = np.array(energies).reshape(-1, 7).T[1:]
+    return {
+        name: (("checkpoint",), values) for name, values in zip(_ENERGIES, columns, strict=True)
+    }
+
+
+def _coordinates(mesh: Mesh, impact: Impact, history: History, samples: int) -> dict[str, Any]:
+    """What was solved, the times, and the mesh."""
+    last = history.moments[-1].time
+    return _given(impact) | {
+        "time": np.linspace(0.0, last, samples),
+        "checkpoint_time": ("checkpoint", [entry.time for entry in history.energies]),
+        "node_position": (("node", "axis"), mesh.nodes),
+        "axis": ["x", "y", "z"],
+        "element_nodes": (("element", "corner"), mesh.elements),
+        "body": ("element", mesh.body),
+        "fully_integrated": ("element", mesh.full),
+        "element_size": mesh.element_size,
+        "patch": mesh.patch,
+        "number_of_elements": len(mesh.elements),
+        "number_of_steps": len(history.moments),
+        "time_step": history.moments[1].time - history.moments[0].time,
+        "duration": last,
+    }
+
+
+def _given(impact: Impact) -> dict[str, Any]:
+    """The impact's parameters but for those of the beam models alone."""
+    values = flatten(impact, Discretisation()) | {"sphere_mass": impact.sphere.total_mass}
+    mine = [name for name in values if PARAMETERS[name].path[0] == "impact"]
+    return {name: values[name] for name in mine if name not in _BEAM_MODELS_ONLY}
+
+
+def _named(dataset: xr.Dataset) -> xr.Dataset:
+    """With attributes on everything."""
+    dataset = described(dataset)
+    for name, (units, long_name) in _OWN.items():
+        if name in dataset.variables:
+            dataset[name].attrs |= {"units": units, "long_name": long_name}
+    for name, comment in _COMMENTS.items():
+        dataset[name].attrs["comment"] = comment
+    return dataset

@@ -1,25 +1,86 @@
-"""Impacts some of which are solved by the 3-D model, beside the kernels' models of the beam."""
+"""The solver of studies in which some runs are of the 3-D FE model, beside the beam models."""
 
 from __future__ import annotations
 
 import hashlib
+import logging
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from impactlab.fem3d.solver import quarter_mesh
+from impactlab.fem3d.solver import solve as solve_alone
 from impactlab.fem3d.solver.jit import SOURCES_HASH as SOLID_HASH
-from impactlab.fem3d.study import cost as costs
-from impactlab.fem3d.study.cases import is_solid, kernel_cases, table
-from impactlab.fem3d.study.running import answers
+from impactlab.fem3d.solver.responses import surface_reach
+from impactlab.fem3d.study.cases import impact_of, is_solid, kernel_cases, table, work
+from impactlab.model.impact import Impact
 from impactlab.simulate import solve as solve_cases
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.design import flattened, run_shape, varied_names
 from impactlab.study.netcdf import Columns
 from impactlab.study.solvers import Solver, impact
 from impactlab.study.store import OutputSpec
-from impactlab.variables import WITNESS, described
+from impactlab.variables import FAILURES, HISTORIES, RESPONSES, WITNESS, described
+
+log = logging.getLogger(__name__)
+
+STOPPED = FAILURES["stopped"][0]
+_LARGER = 1.5
+"""A patch of matched nodes over one that the contact has outgrown."""
+_STEPS = 10_001
+"""Samples of a history before it is brought to the study's times: closer than the time steps."""
+
+
+def solve_one(case: Any, samples: int) -> dict[str, Any]:
+    """Responses, `status`, `remarks` and histories (samples,) of a record of SOLID_CASE by name.
+
+    A patch that the contact outgrows is enlarged until there is no room for more. What the 3-D
+    model does not know is NaN; so is all of a run that stopped before its time, and `status` says
+    so. Raises KeyboardInterrupt where the run was interrupted: it is no answer.
+    """
+    given = {"status": STOPPED, "remarks": 0}
+    try:
+        run = _solved(impact_of(case), case["element_size"].item(), case["duration"].item())
+    except ValueError as error:  # no mesh of this size, or no larger patch
+        log.warning("a 3-D run was not possible: %s", error)
+        return given
+    stopped = str(run.attrs.get("stopped", ""))
+    if stopped.startswith("interrupted"):
+        raise KeyboardInterrupt
+    if stopped:
+        log.warning("a 3-D run stopped: %s", stopped)
+        return given | {"status": int(run["status"]) | STOPPED}
+    found = {name: float(run[name]) for name in RESPONSES if name in run}
+    histories = _histories(run, case["duration"].item(), samples)
+    own = {"plastic_zone_radius": surface_reach(run)}
+    return given | found | own | histories | {"status": int(run["status"])}
+
+
+def _solved(impact: Impact, size: float, duration: float) -> xr.Dataset:
+    patch = quarter_mesh(impact, element_size=size).patch
+    while True:
+        run = solve_alone(impact, element_size=size, duration=duration, patch=patch, samples=_STEPS)
+        if "patch_needed" not in run.attrs:
+            return run
+        patch = _LARGER * patch
+        log.info(
+            "a 3-D run begins again with a patch of %.3g mm: %s", 1e3 * patch, run.attrs["stopped"]
+        )
+
+
+def _histories(run: xr.Dataset, duration: float, samples: int) -> dict[str, Any]:
+    """On the times of the study, of which the last may lie within a step of the run's end."""
+    if not samples:
+        return {}
+    times = np.linspace(0.0, duration, samples)
+    return {
+        name: np.interp(times, run["time"].values, run[name].values)
+        for name in HISTORIES
+        if name in run
+    }
+
 
 Array = np.ndarray[Any, Any]
 
@@ -49,7 +110,7 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
 
 def cost(cases: Array) -> Array:
     """Node-steps of the paper's beam, to which seconds of the 3-D model are made equal."""
-    return costs.work(cases)
+    return work(cases)
 
 
 def values(cases: Array, form: OutputSpec) -> int:
@@ -64,7 +125,7 @@ def solve(cases: Array, form: OutputSpec) -> Columns:
     columns = {name: _spread(values, ~solid) for name, values in found.items()}
     columns |= {name: np.full(cases.size, np.nan) for name in WITNESS}
     for at in np.flatnonzero(solid):
-        for name, value in answers(cases[at], form.samples).items():
+        for name, value in solve_one(cases[at], form.samples).items():
             columns[name][at] = value
     return columns
 

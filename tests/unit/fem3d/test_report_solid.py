@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.fem3d.report.run import print_comparison
+from impactlab.fem3d.comparison.terminal import print_comparison
 
 MODELS = ["solid", "euler_bernoulli", "timoshenko", "spring_mass"]
 

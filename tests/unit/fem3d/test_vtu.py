@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from made_solid import solid
 
-from impactlab.fem3d.solver import vtu
-from impactlab.fem3d.vtu import write_vtu
+from impactlab.fem3d.comparison import run
+from impactlab.fem3d.comparison.run import write_vtu
 
 
 def test_another_program_reads_mesh_and_fields(tmp_path):
@@ -36,7 +36,7 @@ def test_a_failed_write_is_told_and_leaves_the_old_file_and_no_rubbish(tmp_path,
         Path(f"{file}.vtu").write_text("half of i")
         raise OSError("No space left on device")
 
-    monkeypatch.setattr(vtu, "unstructuredGridToVTK", full)
+    monkeypatch.setattr(run, "unstructuredGridToVTK", full)
     with pytest.raises(OSError, match=r"witness\.vtu: could not be written .* are free"):
         write_vtu(solid(), path)
     assert path.read_bytes() == before

@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from impactlab.fem3d.figures.catalogue import FIGURES
+from impactlab.fem3d.figures import FIGURES
 from impactlab.figures import style
 from impactlab.figures.catalogue import CATALOGUE, applicable
 from impactlab.figures.scatter import scatters

@@ -10,32 +10,38 @@ from __future__ import annotations
 
 import math
 
-from impactlab.fem3d.solver.elements import point
-from impactlab.fem3d.solver.elements.geometry import gradient, mean_gradient, midway, volume
-from impactlab.fem3d.solver.elements.lanes import F, V, W, X, gather, scatter
-from impactlab.fem3d.solver.elements.modes import Shape, shape
-from impactlab.fem3d.solver.elements.nodal import nodal
-from impactlab.fem3d.solver.elements.point import advance
-from impactlab.fem3d.solver.elements.vectors import (
+from impactlab.fem3d.solver.elements.hexahedron import (
+    F,
+    Shape,
     Tensor,
+    V,
     Vector,
+    W,
+    X,
     add,
     apply,
     combine,
     cross,
     dot,
+    gather,
+    gradient,
+    mean_gradient,
+    midway,
+    nodal,
     plus,
+    scatter,
+    shape,
     times,
+    volume,
 )
-from impactlab.fem3d.solver.jit import compiled, inlined
-from impactlab.fem3d.solver.material.plasticity import Metal
-from impactlab.fem3d.solver.types import Array
+from impactlab.fem3d.solver.jit import Array, compiled, inlined
+from impactlab.fem3d.solver.material import POINT_ROWS, Metal, advance
 
 POINTS = 8
 """Integration points, whose rows come first in `state`."""
-MEAN, WORK, DISSIPATED, HOURGLASS_WORK = (8 * point.ROWS + n for n in range(4))
+MEAN, WORK, DISSIPATED, HOURGLASS_WORK = (8 * POINT_ROWS + n for n in range(4))
 """Rows of the mean stress (Pa) and of energies (J); the last stays 0."""
-ROWS = 8 * point.ROWS + 4
+ROWS = 8 * POINT_ROWS + 4
 """Rows of `state`."""
 
 _C, _W, _T = F + 24, F + 45, F + 66
@@ -67,7 +73,7 @@ def full_forces(
             eta = _ROOT * ((corner & 2) - 1)
             zeta = _ROOT * ((corner >> 1 & 2) - 1)
             for lane in range(W):
-                _point(s, held, corner * point.ROWS, lane, (xi, eta, zeta), dt, metal)
+                _point(s, held, corner * POINT_ROWS, lane, (xi, eta, zeta), dt, metal)
         for lane in range(W):
             nodal(s, lane, _load(s, _T, lane))
         scatter(s, rows[block], forces)

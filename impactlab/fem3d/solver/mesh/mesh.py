@@ -1,11 +1,18 @@
-"""What the quarter model's mesh is: nodes, hexahedra, and who touches and holds whom."""
+"""The mesh of the quarter model: nodes, hexahedra, and the sets that are paired and held.
+
+The mesh is cut along graded lines: fine at their beginning and coarser with the distance.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from impactlab.model.impact import Impact
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -83,3 +90,86 @@ def corner_volumes(nodes: Floats, elements: Integers) -> Floats:
             edges.append(0.5 * (points[:, other] - points[:, corner]) * -place[axis])
         result[:, corner] = np.linalg.det(np.stack(edges, axis=1))
     return result
+
+
+def nodal_masses(mesh: Mesh, impact: Impact) -> Floats:
+    """Mass of each node in kg, (n,).
+
+    The sphere's density is scaled so that all four quarters weigh what the impact says.
+    """
+    volumes = element_volumes(mesh)
+    ball = volumes[mesh.body == SPHERE].sum()
+    density = np.where(
+        mesh.body == BEAM,
+        impact.beam.material.density,
+        impact.sphere.total_mass / 4.0 / ball if ball > 0.0 else 0.0,
+    )
+    each = np.repeat(density * volumes / 8.0, 8)
+    return np.asarray(
+        np.bincount(mesh.elements.ravel(), weights=each, minlength=len(mesh.nodes)), dtype=float
+    )
+
+
+def element_volumes(mesh: Mesh) -> Floats:
+    """Volume of each element in m3, (e,): Gauss's rule of two points a side is exact."""
+    points, total = mesh.nodes[mesh.elements], np.zeros(len(mesh.elements))
+    for place in CORNERS / np.sqrt(3.0):
+        one = 1.0 + CORNERS * place
+        slopes = [CORNERS[:, a] * np.prod(np.delete(one, a, axis=1), axis=1) for a in range(3)]
+        total += np.linalg.det(0.125 * np.stack(slopes) @ points)
+    return total
+
+
+def uniform(size: float, length: float) -> int:
+    """Number of intervals of at most `size` in `length` (both in m), at least 1."""
+    return max(math.ceil(length / size * (1.0 - 1e-9)), 1)
+
+
+def graded(size: float, fine: float, length: float, ratio: float, largest: float) -> Floats:
+    """Coordinates in m, from 0 to `length`: intervals of `size` up to `fine`, then growing.
+
+    ratio: at most, of neighbouring intervals beyond `fine`, until they reach `largest`; it is
+    lowered so that the last point falls on `length`. `fine` must be a multiple of `size`, or reach
+    `length`, which is then cut into equal intervals.
+    """
+    if fine >= length * (1.0 - 1e-9):
+        return np.linspace(0.0, length, uniform(size, length) + 1)
+    start = size * np.arange(round(fine / size) + 1)
+    points = np.concatenate([start, start[-1] + _grown(size, length - start[-1], ratio, largest)])
+    points[-1] = length
+    return points
+
+
+def _grown(size: float, rest: float, ratio: float, largest: float) -> Floats:
+    """Ends of intervals that fill `rest` (m), none much smaller than `size`."""
+    count = 1
+    while _intervals(size, count, ratio, largest).sum() < rest:
+        count += 1
+    if count * size >= rest:
+        return np.linspace(0.0, rest, max(count - 1, 1) + 1)[1:]
+    fits = brentq(
+        lambda r: _intervals(size, count, r, largest).sum() - rest, 1.0, ratio, xtol=1e-14
+    )
+    return np.cumsum(_intervals(size, count, fits, largest))
+
+
+def _intervals(size: float, count: int, ratio: float, largest: float) -> Floats:
+    return np.asarray(np.minimum(size * ratio ** np.arange(1.0, count + 1), max(largest, size)))
+
+
+def brick(x: Floats, y: Floats, z: Floats) -> tuple[Floats, Integers]:
+    """Nodes (n, 3) in m and elements (e, 8) of a brick cut at ascending x, y and z.
+
+    Nodes are numbered with z fastest, x slowest: (i ny + j) nz + k.
+    """
+    nodes = np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3)
+    number = np.arange(nodes.shape[0], dtype=np.int32).reshape(x.size, y.size, z.size)
+    return nodes, cells(number)
+
+
+def cells(number: Integers) -> Integers:
+    """The hexahedra, (e, 8) in VTK's order, of a lattice of node numbers (i, j, k)."""
+    low, high = slice(None, -1), slice(1, None)
+    ring = ((low, low), (high, low), (high, high), (low, high))
+    corners = [number[(*place, level)] for level in (low, high) for place in ring]
+    return np.stack(corners, axis=-1).reshape(-1, 8)

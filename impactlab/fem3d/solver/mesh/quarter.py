@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.fem3d.solver.mesh.beam import brick
-from impactlab.fem3d.solver.mesh.extent import bending_yields, checked_patch, checked_size
-from impactlab.fem3d.solver.mesh.grading import graded
-from impactlab.fem3d.solver.mesh.mesh import BEAM, SPHERE, Mesh
+from impactlab.fem3d.solver.mesh.estimates import bending_yields, checked_patch, checked_size
+from impactlab.fem3d.solver.mesh.mesh import BEAM, SPHERE, Mesh, brick, graded
 from impactlab.fem3d.solver.mesh.sphere import Sphere, quarter_sphere
 from impactlab.model.beam import Beam
 from impactlab.model.checks import positive

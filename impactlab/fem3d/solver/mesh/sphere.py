@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.fem3d.solver.mesh.beam import cells
-from impactlab.fem3d.solver.mesh.grading import graded, uniform
+from impactlab.fem3d.solver.mesh.mesh import cells, graded, uniform
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]

@@ -1,19 +1,77 @@
-"""The march through time: steps, checkpoints, and reasons to stop."""
+"""The march through time: steps, checkpoints, reasons to stop, and the history it leaves."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.fem3d.solver.mesh.extent import largest_patch
+from impactlab.fem3d.solver.mesh.estimates import largest_patch
 from impactlab.fem3d.solver.mesh.mesh import Floats
-from impactlab.fem3d.solver.stepping.critical import critical_step
-from impactlab.fem3d.solver.stepping.history import Energies, History, Moment
-from impactlab.fem3d.solver.stepping.shapes import corner_volumes
+from impactlab.fem3d.solver.stepping.stability import corner_volumes, critical_step
 from impactlab.fem3d.solver.stepping.system import System
 from impactlab.model.impact import Impact
+
+
+class Moment(NamedTuple):
+    """At the beginning of a step: time in s, contact force of all four quarters in N.
+
+    Displacements in m, positive downwards: of the sphere's centre of mass and of its pole, of the
+    beam's axis and of its top below the impact. velocity: of the sphere's centre of mass in m/s,
+    downwards, at the middle of the step that begins.
+    """
+
+    time: float
+    force: float
+    sphere: float
+    pole: float
+    axis: float
+    top: float
+    velocity: float
+
+
+class Energies(NamedTuple):
+    """At a checkpoint, of all four quarters, in J (time in s).
+
+    work: of the stresses in the elements, kept and dissipated. plastic: dissipated of it.
+    hourglass: work against hourglassing. contact: lost in closing gaps. gravity: work done by it.
+    """
+
+    time: float
+    kinetic: float
+    work: float
+    plastic: float
+    hourglass: float
+    contact: float
+    gravity: float
+
+    @property
+    def balance(self) -> float:
+        """What stays the same."""
+        return self.kinetic + self.work + self.hourglass + self.contact - self.gravity
+
+
+@dataclass
+class History:
+    """moments: one a step. energies: one a checkpoint. stopped: why before its time, else "".
+
+    offset: largest distance by which matched nodes that touched had slid, over the element size.
+    patch_needed: of matched nodes in m, where the contact outgrew its own; else 0.
+    """
+
+    moments: list[Moment] = field(default_factory=list)
+    energies: list[Energies] = field(default_factory=list)
+    stopped: str = ""
+    offset: float = 0.0
+    patch_needed: float = 0.0
+
+    def table(self) -> Floats:
+        """The moments, (7, steps)."""
+        return np.array(self.moments).T
+
 
 Progress = Callable[[float, float], None]
 """Called at checkpoints with the simulated time in s and the share done."""
@@ -47,7 +105,7 @@ class March:
         self._volumes = np.empty(system.mesh.elements.shape)
         self._shortest = corner_volumes(system.mesh.elements, system.x, self._volumes)
         self._dt = self._step
-        self._kick = 0.5 * self._step  # from rest at time 0 to the middle of the first step
+        self._velocity_dt = 0.5 * self._step  # from rest at time 0 to the middle of the first step
         self._time, self._lost = 0.0, 0.0
         self._sphere, self._velocity = 0.0, impact.velocity
 
@@ -97,19 +155,19 @@ class March:
         system, mesh = self.system, self.system.mesh
         at = (mesh.pole, mesh.axis_node, mesh.top_node)
         pole, axis, top = mesh.nodes[at, 2] - system.x[at, 2]
-        system.move(self._kick, self._dt)
+        system.move(self._velocity_dt, self._dt)
         if system.beyond:
             raise self._outgrown()
-        force = 4.0 * system.impulse / self._kick
+        force = 4.0 * system.impulse / self._velocity_dt
         mass = self.impact.sphere.total_mass
-        self._velocity += self._kick * (self.impact.gravity - force / mass)
+        self._velocity += self._velocity_dt * (self.impact.gravity - force / mass)
         moment = Moment(self._time, force, self._sphere, pole, axis, top, self._velocity)
         self.history.moments.append(moment)
         self._lost += system.lost
         self._sphere += self._dt * self._velocity
         self._time += self._dt
         system.strain(self._dt)
-        self._kick = self._dt
+        self._velocity_dt = self._dt
 
     def _works(self) -> Floats:
         """Sums over the elements: work, dissipated, against hourglassing (J)."""
@@ -161,7 +219,7 @@ class March:
                 "elements or a lower velocity"
             )
         shorter = self._step * min(1.0, shortest / self._shortest)
-        self._kick, self._dt = 0.5 * (self._dt + shorter), shorter
+        self._velocity_dt, self._dt = 0.5 * (self._dt + shorter), shorter
         return ""
 
     def _outgrown(self) -> PatchTooSmallError:

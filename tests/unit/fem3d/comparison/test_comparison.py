@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from made_solid import RESPONSES, beam_models, solid
 
-from impactlab.fem3d.comparison.comparison import compared, write_csv
+from impactlab.fem3d.comparison.comparison import compared
+from impactlab.fem3d.comparison.run import write_csv
 from impactlab.variables import STATUS_FLAGS
 
 MODELS = ["solid", "euler_bernoulli", "timoshenko", "spring_mass"]

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.comparison import plan as plans
-from impactlab.fem3d.comparison.case import case_of, paper_case
-from impactlab.fem3d.comparison.plan import USUAL_TIME, planned
+from impactlab.fem3d.comparison.plan import USUAL_TIME, case_of, paper_case, planned
 from impactlab.fem3d.solver import estimate, least_cost, quarter_mesh
 from impactlab.study.declaration import read_impacts
 from impactlab.study.errors import StudyError

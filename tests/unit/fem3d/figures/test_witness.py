@@ -7,10 +7,8 @@ import pytest
 import witnesses
 import xarray as xr
 
-from impactlab.fem3d.figures import differences as witness
-from impactlab.fem3d.figures import effects as parts
-from impactlab.fem3d.figures.catalogue import FIGURES
-from impactlab.fem3d.report.study import _cell, sections
+from impactlab.fem3d.figures import FIGURES, differences
+from impactlab.fem3d.study.report import _cell, sections
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.labels import display
 
@@ -23,12 +21,12 @@ def study():
 
 
 def test_each_side_is_the_finest_with_its_own_uncertainty(study):
-    beam = witness.side(*study, "peak_force", "euler_bernoulli")
-    solid = witness.side(*study, "peak_force", "solid")
+    beam = differences.side(*study, "peak_force", "euler_bernoulli")
+    solid = differences.side(*study, "peak_force", "solid")
     assert beam.value == pytest.approx(1.05e4 * 1.01 * SPEEDS)
     assert solid.value == pytest.approx(1e4 * 1.01 * SPEEDS)
     assert solid.uncertainty == pytest.approx(1.25 * 0.01e4 * SPEEDS, rel=1e-3)
-    gap = witness.difference(beam, solid)
+    gap = differences.difference(beam, solid)
     assert gap.value == pytest.approx(0.05)
     assert gap.uncertainty == pytest.approx(1.05 * 2 * 1.25 * 0.01 / 1.01, rel=1e-3)
 
@@ -50,7 +48,7 @@ def test_elements_may_be_counted_over_the_radius(study):
     counted = witnesses.counted(study[0])
     for model in witnesses.MODELS:
         for name in ("peak_force", "contact_duration"):
-            one, other = (witness.side(*each, name, model) for each in (study, counted))
+            one, other = (differences.side(*each, name, model) for each in (study, counted))
             assert one.value == pytest.approx(other.value)
             assert one.uncertainty == pytest.approx(other.uncertainty, rel=1e-6)
     assert CATALOGUE["element_size_convergence"].applies(*counted)
@@ -64,7 +62,7 @@ def test_a_missing_run_leaves_a_gap_and_is_counted(study):
     runs = study[0].copy(deep=True)
     runs["status"].loc[{"velocity": 5.0, "beam_model": "solid", "element_size": 2.5e-4}] = 256
     analysis = witnesses.analysed(runs)
-    assert np.isnan(witness.side(runs, analysis, "peak_force", "solid").value[-1])
+    assert np.isnan(differences.side(runs, analysis, "peak_force", "solid").value[-1])
     assert "3-D model stopped" in FIGURES["witness"].caption(runs, analysis)
     FIGURES["witness"].plot(runs, analysis)
     (section,) = sections(runs, analysis)
@@ -73,10 +71,10 @@ def test_a_missing_run_leaves_a_gap_and_is_counted(study):
 
 def test_it_needs_the_solid_beside_others_at_three_velocities(study):
     runs, analysis = study
-    assert witness.applies(runs)
-    assert not witness.applies(runs.isel(velocity=slice(2)))
-    assert not witness.applies(runs.sel(beam_model=["solid"]))
-    assert not witness.applies(runs.sel(beam_model=witnesses.MODELS[:2]))
+    assert differences.differ(runs)
+    assert not differences.differ(runs.isel(velocity=slice(2)))
+    assert not differences.differ(runs.sel(beam_model=["solid"]))
+    assert not differences.differ(runs.sel(beam_model=witnesses.MODELS[:2]))
     assert not FIGURES["witness"].applies(runs.sel(beam_model=witnesses.MODELS[:2]), analysis)
 
 
@@ -104,7 +102,7 @@ def test_a_width_is_told_unless_it_is_that_of_round_off():
         np.array([1e-9, 0.02, np.inf]),
         display(xr.DataArray(2.0, name="number", attrs={"units": "1"})),
     )
-    side = witness.Side(np.full(3, 2.0), widths)
+    side = differences.Side(np.full(3, 2.0), widths)
     assert [_cell(unit, side, side, at, True).text for at in range(3)] == ["2", "2 ± 1 %", "2 ± ?"]
 
 
@@ -114,7 +112,7 @@ def taken_apart():
 
 
 def test_the_effects_multiply_to_the_whole(taken_apart):
-    found = parts.effects(*taken_apart, "peak_force")
+    found = differences.effects(*taken_apart, "peak_force")
     shares = {key: float(each.value) for key, each in found.items()}
     assert shares["shear"] == pytest.approx(0.98 / 1.05 - 1.0)
     assert shares["flexibility"] == pytest.approx(1.0 / 0.98 - 1.0)

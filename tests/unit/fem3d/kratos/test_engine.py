@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from impactlab.fem3d.solver import kratos
+from impactlab.fem3d import kratos
 from impactlab.model.paper import paper_impact
 
 

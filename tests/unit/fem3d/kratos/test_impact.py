@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 import xarray as xr
 
-from impactlab import fem3d as solid
-from impactlab.fem3d.solver import Mesh, kratos
+from impactlab.fem3d import kratos
+from impactlab.fem3d import solver as solid
+from impactlab.fem3d.solver import Mesh
 from impactlab.model.impact import Impact
 
 pytestmark = pytest.mark.kratos

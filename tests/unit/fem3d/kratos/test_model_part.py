@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from impactlab.fem3d import kratos
 from impactlab.fem3d.kratos.engine import Engine, engine
 from impactlab.fem3d.kratos.run import Run
-from impactlab.fem3d.solver import Mesh, kratos
+from impactlab.fem3d.solver import Mesh
 from impactlab.model.impact import Impact
 
 pytestmark = pytest.mark.kratos

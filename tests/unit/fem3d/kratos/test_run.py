@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 
 from impactlab.fem3d.kratos.engine import Engine, engine
-from impactlab.fem3d.kratos.history import History
-from impactlab.fem3d.kratos.run import Run
+from impactlab.fem3d.kratos.run import History, Run
 from impactlab.fem3d.solver import quarter_mesh
 from impactlab.model.impact import Impact
 

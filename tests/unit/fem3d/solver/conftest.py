@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.elements import full, one_point, point
-from impactlab.fem3d.solver.elements.lanes import SCRATCH, W
-from impactlab.fem3d.solver.mesh.beam import brick
-from impactlab.fem3d.solver.stepping.groups import _group, metal
-from impactlab.fem3d.solver.stepping.rows import force_rows
+from impactlab.fem3d.solver.elements import full, one_point
+from impactlab.fem3d.solver.elements.hexahedron import SCRATCH, W
+from impactlab.fem3d.solver.material import STRESS
+from impactlab.fem3d.solver.mesh.mesh import brick
+from impactlab.fem3d.solver.stepping.assembly import _group, force_assembly, metal
 from impactlab.model.material import Material
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
@@ -24,7 +24,7 @@ class Body:
         self.kind = KINDS[kind]
         whole = kind == "full"
         self.group = _group(elements, np.arange(len(elements)), whole, metal(steel))
-        self._rows = force_rows([self.group], len(nodes))
+        self._rows = force_assembly([self.group], len(nodes))
         self._forces = np.zeros((self._rows.count, 3))
         self._scratch = np.zeros(SCRATCH * W)
 
@@ -52,7 +52,7 @@ class Body:
 
     def deviators(self):
         """(6, points, elements)"""
-        return np.stack([self.group.points(point.STRESS + row) for row in range(6)])
+        return np.stack([self.group.points(STRESS + row) for row in range(6)])
 
     def stress(self):
         """(6, points, elements): xx, yy, zz, yz, zx, xy."""

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab import fem3d as solid
-from impactlab.fem3d.solver.mesh.extent import contact_radius
-from impactlab.fem3d.study import cost, running
+from impactlab.fem3d import solver as solid
+from impactlab.fem3d.solver.mesh.estimates import contact_radius
+from impactlab.fem3d.study import cases as case_tables
 from impactlab.fem3d.study import solver as witness
 from impactlab.model.cost import A_SECOND
 from impactlab.study.declaration import study_of_text
@@ -119,7 +119,7 @@ def test_a_run_that_stops_is_an_answer_without_numbers(study, monkeypatch, caplo
     def stopped(*args, **kwargs):
         return solid.solve(*args, **kwargs).assign_attrs(stopped=words)
 
-    monkeypatch.setattr(running, "solve", stopped)
+    monkeypatch.setattr(witness, "solve_alone", stopped)
     found = witness.solve(only_solid(study), HERE)
     assert found["status"][0] & STATUS_FLAGS["stopped"][0]
     assert np.isnan(found["peak_force"]).all()
@@ -131,7 +131,7 @@ def test_a_run_that_was_interrupted_is_no_answer(study, monkeypatch):
     def interrupted(*args, **kwargs):
         return solid.solve(*args, **kwargs).assign_attrs(stopped="interrupted at 1e-05 s")
 
-    monkeypatch.setattr(running, "solve", interrupted)
+    monkeypatch.setattr(witness, "solve_alone", interrupted)
     with pytest.raises(KeyboardInterrupt):
         witness.solve(only_solid(study), HERE)
 
@@ -145,7 +145,7 @@ def test_a_patch_that_is_outgrown_is_enlarged_while_there_is_room(study, monkeyp
         outgrown = {"stopped": "the contact has grown", "patch_needed": least}
         return run.assign_attrs(outgrown) if patch < least else run
 
-    monkeypatch.setattr(running, "solve", small)
+    monkeypatch.setattr(witness, "solve_alone", small)
     usual, least = 0.009, 0.013
     found = witness.solve(only_solid(study), HERE)
     assert patches == pytest.approx([usual, 1.5 * usual])
@@ -167,7 +167,7 @@ def test_what_does_not_fit_memory_is_priced_without_a_mesh(monkeypatch):
         assert element_size > 1e-4
         return solid.quarter_mesh(impact, element_size=element_size)
 
-    monkeypatch.setattr(cost, "quarter_mesh", watched)
+    monkeypatch.setattr(case_tables, "quarter_mesh", watched)
     fine = TEXT.replace("[4 mm, 3 mm]", "[0.01 mm]")
     found = estimate(study_of_text("fine", fine), workers=1)
     assert found.memory > 1e10

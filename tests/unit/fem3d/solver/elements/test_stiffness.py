@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.mesh.beam import brick
+from impactlab.fem3d.solver.mesh.mesh import brick
 from impactlab.model.material import Material
 
 E, NU = 200e9, 0.3

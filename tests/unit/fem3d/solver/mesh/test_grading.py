@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.mesh.grading import graded
+from impactlab.fem3d.solver.mesh.mesh import graded
 
 
 @pytest.mark.parametrize("length", [4.2, 5.0, 11.7, 390.0])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, estimate, quarter_mesh
-from impactlab.fem3d.solver.mesh.extent import contact_radius
+from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.fem3d.solver.mesh.mesh import CORNERS
 from impactlab.model.paper import paper_impact
 

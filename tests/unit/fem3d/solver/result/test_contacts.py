@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.result.contacts import contacts, peak
+from impactlab.fem3d.solver.responses import contacts, peak
 
 
 def test_start_and_end_between_steps_and_short_pauses_do_not_count():

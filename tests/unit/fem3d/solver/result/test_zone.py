@@ -6,7 +6,7 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.fem3d.solver import quarter_mesh
-from impactlab.fem3d.solver.result.zone import surface_reach
+from impactlab.fem3d.solver.responses import surface_reach
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
-from impactlab.fem3d.solver.mesh.beam import brick
+from impactlab.fem3d.solver.mesh.mesh import brick
 from impactlab.fem3d.solver.stepping.march import March
-from impactlab.fem3d.solver.stepping.parts import Parts
-from impactlab.fem3d.solver.stepping.system import System
+from impactlab.fem3d.solver.stepping.system import System, ThreadPool
 from impactlab.model.beam import Beam
 from impactlab.model.impact import Impact
 from impactlab.model.material import Material
@@ -58,8 +57,8 @@ def test_bars_push_with_the_force_of_their_waves_and_part_when_these_return(full
         velocity=VELOCITY,
         gravity=0.0,
     )
-    with Parts(1) as parts:
-        system = System(bars(full), impact, parts)
+    with ThreadPool(1) as pool:
+        system = System(bars(full), impact, pool)
         history = March(system, impact).run(1.5 * DURATION)
     time, force, *_ = history.table()
     assert force[(time > 0.2 * DURATION) & (time < 0.8 * DURATION)].mean() == pytest.approx(

@@ -11,8 +11,7 @@ import pytest
 from impactlab.fem3d.solver import quarter_mesh, solve_on
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
 from impactlab.fem3d.solver.stepping.march import March
-from impactlab.fem3d.solver.stepping.parts import Parts
-from impactlab.fem3d.solver.stepping.system import System
+from impactlab.fem3d.solver.stepping.system import System, ThreadPool
 from impactlab.model.paper import paper_impact
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
@@ -28,8 +27,8 @@ def mesh():
 def marched(mesh):
     """30 us at 5 m/s, in which no wave reaches the supports: system and history."""
     impact = replace(paper_impact(5.0), gravity=0.0)
-    with Parts(1) as parts:
-        system = System(mesh, impact, parts)
+    with ThreadPool(1) as pool:
+        system = System(mesh, impact, pool)
         return system, March(system, impact).run(30e-6)
 
 
@@ -104,8 +103,8 @@ def test_less_than_a_step_is_refused(mesh):
 
 
 def test_a_run_that_diverges_says_so_and_answers_nothing(mesh):
-    with Parts(1) as parts:
-        system = System(mesh, IMPACT, parts)
+    with ThreadPool(1) as pool:
+        system = System(mesh, IMPACT, pool)
         march = March(system, IMPACT)
         system.v[mesh.axis_node, 0] = np.inf
         history = march.run(5e-6)
@@ -116,16 +115,16 @@ def test_a_run_that_diverges_says_so_and_answers_nothing(mesh):
 def test_nodes_that_slide_from_each_other_stop_the_run(mesh, monkeypatch):
     monkeypatch.setattr("impactlab.fem3d.solver.stepping.march._SLID", 1e-4)
     fast = paper_impact(5.0)
-    with Parts(1) as parts:
-        history = March(System(mesh, fast, parts), fast).run(50e-6)
+    with ThreadPool(1) as pool:
+        history = March(System(mesh, fast, pool), fast).run(50e-6)
     assert "had slid by an element" in history.stopped
     assert history.offset > 1e-4
     assert history.moments[-1].time < 49e-6
 
 
 def test_a_squeezed_element_stops_the_run(mesh):
-    with Parts(1) as parts:
-        system = System(mesh, IMPACT, parts)
+    with ThreadPool(1) as pool:
+        system = System(mesh, IMPACT, pool)
         march = March(system, IMPACT)
         system.x[mesh.axis_node, 2] += 3e-3
         history = march.run(5e-6)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from impactlab.fem3d.solver.elements.lanes import W
-from impactlab.fem3d.solver.mesh.beam import brick
-from impactlab.fem3d.solver.stepping.groups import _group
-from impactlab.fem3d.solver.stepping.rows import MOST_THREADS, blocks_of, force_rows
+from impactlab.fem3d.solver.elements.hexahedron import W
+from impactlab.fem3d.solver.mesh.mesh import brick
+from impactlab.fem3d.solver.stepping.assembly import MOST_THREADS, _group, blocks_of, force_assembly
 
 STEEL = (210e9, 0.3, 80e9, 175e9, 345e6, 0.0, 0.0)
 
@@ -25,7 +24,7 @@ def two_groups():
 
 def test_every_corner_adds_to_a_row_of_its_node():
     nodes, groups = two_groups()
-    rows = force_rows(groups, nodes)
+    rows = force_assembly(groups, nodes)
     owner = np.full(rows.count, -1)
     owner[rows.slots] = np.repeat(np.arange(nodes), np.diff(rows.starts))
     for group, own in zip(groups, rows.of_groups, strict=True):
@@ -40,7 +39,7 @@ def test_every_corner_adds_to_a_row_of_its_node():
 
 def test_pieces_share_no_row():
     nodes, groups = two_groups()
-    rows = force_rows(groups, nodes)
+    rows = force_assembly(groups, nodes)
     pieces = [
         set(own[slice(*blocks_of(group, piece, piece + 1))].ravel().tolist())
         for group, own in zip(groups, rows.of_groups, strict=True)

@@ -11,11 +11,10 @@ import xarray as xr
 
 from impactlab.fem3d.solver import estimate, quarter_mesh, solve_on
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
-from impactlab.fem3d.solver.stepping.critical import critical_step
+from impactlab.fem3d.solver.mesh.mesh import nodal_masses
 from impactlab.fem3d.solver.stepping.march import SAFETY
-from impactlab.fem3d.solver.stepping.masses import nodal_masses
-from impactlab.fem3d.solver.stepping.parts import Parts
-from impactlab.fem3d.solver.stepping.system import System
+from impactlab.fem3d.solver.stepping.stability import critical_step
+from impactlab.fem3d.solver.stepping.system import System, ThreadPool
 from impactlab.model.paper import paper_impact
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
@@ -37,12 +36,12 @@ def test_a_quarter_weighs_a_quarter_and_the_sphere_what_it_is_said_to(mesh):
 
 
 def test_nodes_go_on_below_the_critical_step_and_run_away_above_it(mesh):
-    with Parts(1) as parts:
-        system = System(mesh, IMPACT, parts)
+    with ThreadPool(1) as pool:
+        system = System(mesh, IMPACT, pool)
         limit = critical_step(system)
         largest = {}
         for share in (0.97, 1.04):
-            system = System(mesh, IMPACT, parts)
+            system = System(mesh, IMPACT, pool)
             system.v[:] = 1e-6 * np.random.default_rng(0).standard_normal(system.v.shape)
             system.v[system.inverse_mass == 0.0] = 0.0
             system.pull[:] = 0.0
@@ -56,8 +55,8 @@ def test_nodes_go_on_below_the_critical_step_and_run_away_above_it(mesh):
 
 
 def test_the_critical_step_leaves_the_system_as_it_was(mesh):
-    with Parts(1) as parts:
-        one, other = System(mesh, IMPACT, parts), System(mesh, IMPACT, parts)
+    with ThreadPool(1) as pool:
+        one, other = System(mesh, IMPACT, pool), System(mesh, IMPACT, pool)
         critical_step(one)
     for name in ("x", "v", "forces"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
@@ -68,12 +67,12 @@ def test_the_critical_step_leaves_the_system_as_it_was(mesh):
 def test_the_estimate_of_memory_and_steps_holds(mesh, mass):
     impact = replace(IMPACT, sphere=replace(IMPACT.sphere, mass=mass))
     cost = estimate(mesh, impact, duration=1e-3)
-    with Parts(1) as parts:
-        system = System(mesh, impact, parts)
+    with ThreadPool(1) as pool:
+        system = System(mesh, impact, pool)
         steps = 1e-3 / (SAFETY * critical_step(system))
     arrays = [value for value in vars(system).values() if isinstance(value, np.ndarray)]
     arrays += [part for group in system.groups for part in (group.nodes, group.state)]
-    arrays += [*system.rows.of_groups, system.rows.starts, system.rows.slots]
+    arrays += [*system.assembly.of_groups, system.assembly.starts, system.assembly.slots]
     held = sum(array.nbytes for array in arrays)
     assert held < cost.memory_bytes < 2.5 * held
     assert cost.steps == pytest.approx(steps, rel=0.15)

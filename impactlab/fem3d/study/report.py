@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.figures import differences as witness
-from impactlab.fem3d.figures import effects as parts
+from impactlab.fem3d.figures import differences
 from impactlab.figures import labels
 from impactlab.figures.access import usable
 from impactlab.figures.labels import Display, display
@@ -29,11 +28,11 @@ _PARTS = (
 def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """What a study with 3-D runs shows; none where there are none beside others."""
     found = []
-    if witness.applies(runs):
-        tables = [_table(runs, analysis, name) for name in witness.asked(runs)]
+    if differences.differ(runs):
+        tables = [_table(runs, analysis, name) for name in differences.asked(runs)]
         title = "Model by model"
         found.append(Section("witness", title, _LEAD, tables=tables, figures=["witness"]))
-    if parts.applies(runs):
+    if differences.separable(runs):
         title = "Where the difference comes from"
         tables = [_effects(runs, analysis)]
         found.append(Section("parts", title, _PARTS, tables=tables, figures=["witness_parts"]))
@@ -42,10 +41,10 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
 
 def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     """A row a velocity, a column a model, the witness first."""
-    models = witness.models(runs)
+    models = differences.models(runs)
     values = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
     unit = display(values)
-    sides = [witness.side(runs, analysis, name, model) for model in models]
+    sides = [differences.side(runs, analysis, name, model) for model in models]
     rows = []
     for at, speed in enumerate(runs["velocity"].values):
         cells = [_cell(unit, side, sides[0], at, name not in UNLIKE) for side in sides]
@@ -53,10 +52,12 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     caption = labels.axis(labels.response(name), unit.symbol)
     if name in UNLIKE:
         caption = f"{caption}: not compared, {UNLIKE[name]}"
-    return Table(caption, ["Impact velocity", *map(witness.label, models)], rows)
+    return Table(caption, ["Impact velocity", *map(differences.label, models)], rows)
 
 
-def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, alike: bool) -> Cell:
+def _cell(
+    unit: Display, side: differences.Side, against: differences.Side, at: int, alike: bool
+) -> Cell:
     value = float(side.value[at])
     if not np.isfinite(value):
         return Cell("missing", "warning")
@@ -65,7 +66,7 @@ def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, ali
     if value and not width <= _NOTHING * abs(value):
         bound = f"{labels.number(100.0 * width / abs(value), 2)} %" if np.isfinite(width) else "?"
         text = f"{text} ± {bound}"
-    gap = float(witness.difference(side, against).value[at])
+    gap = float(differences.difference(side, against).value[at])
     shown = alike and side is not against and np.isfinite(gap)
     detail = f"{_signed(gap)} against the solid" if shown else ""
     return Cell(text, "number", detail)
@@ -73,16 +74,16 @@ def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, ali
 
 def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """A row an effect, a column a response."""
-    found = {name: parts.effects(runs, analysis, name) for name in parts.NAMES}
+    found = {name: differences.effects(runs, analysis, name) for name in differences.NAMES}
     rows = [
-        [Cell(labels.sentence(text)), *(_share(found[name][key]) for name in parts.NAMES)]
-        for key, text in parts.EFFECTS.items()
+        [Cell(labels.sentence(text)), *(_share(found[name][key]) for name in differences.NAMES)]
+        for key, text in differences.EFFECTS.items()
     ]
-    head = ["Effect", *(labels.sentence(labels.response(name)) for name in parts.NAMES)]
+    head = ["Effect", *(labels.sentence(labels.response(name)) for name in differences.NAMES)]
     return Table("Change of the answer of the paper's beam by each effect", head, rows)
 
 
-def _share(side: witness.Side) -> Cell:
+def _share(side: differences.Side) -> Cell:
     value, width = float(side.value), float(side.uncertainty)
     if not np.isfinite(value):
         return Cell("missing", "warning")

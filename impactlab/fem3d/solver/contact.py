@@ -9,8 +9,7 @@ of two nodes, which vanishes with the nodes' mass.
 
 from __future__ import annotations
 
-from impactlab.fem3d.solver.jit import compiled
-from impactlab.fem3d.solver.types import Array
+from impactlab.fem3d.solver.jit import Array, compiled
 
 
 @compiled

@@ -1,7 +1,11 @@
-"""Contact force and mid-span deflection of the 3-D model beside those of the beam models."""
+"""Figures of a 3-D run: its histories beside those of the beam models, and all figures in files."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,10 +13,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from impactlab.fem3d.figures import fields
 from impactlab.figures import labels, scales, style
+from impactlab.figures.draw import Drawing, draw
 from impactlab.figures.labels import display
 
-TITLE = "The 3-D model beside the beam models"
+_TITLE = "The 3-D model beside the beam models"
 _PANELS = {
     "contact_force": "contact force",
     "midspan_deflection": "deflection at mid-span",
@@ -21,7 +27,7 @@ _PANELS = {
 _SOLID = "3-D"
 
 
-def caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
+def _caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
     """What is shown, and what the quantities are in each model."""
     velocity = labels.number(float(solid["velocity"]))
     size = labels.number(1e3 * float(solid["element_size"]))
@@ -35,7 +41,7 @@ def caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
 
 
 @style.paper
-def plot(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
+def _plot(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     """A panel a quantity, a curve a model; the 3-D model's is black and below the others."""
     figure, axes = style.panels(len(_PANELS), columns=len(_PANELS), height=55)
     for ax, (name, label) in zip(axes, _PANELS.items(), strict=True):
@@ -63,3 +69,34 @@ def _draw(ax: Axes, solid: xr.Dataset, beams: xr.Dataset, name: str) -> None:
     scales.linear(ax, "x", ticks=4)
     scales.linear(ax, "y")
     ax.set_xlim(0.0, float(time(solid["time"])[-1]))
+
+
+@dataclass(frozen=True)
+class RunFigure:
+    """A figure of one 3-D run; `plot` and `caption` take the datasets of `draw_witness`."""
+
+    title: str
+    plot: Callable[[xr.Dataset, xr.Dataset], Figure]
+    caption: Callable[[xr.Dataset, xr.Dataset], str]
+
+
+FIGURES = {
+    "mesh": RunFigure(fields.MESH_TITLE, fields.plot_mesh, fields.mesh_caption),
+    "plastic_strain": RunFigure(fields.STRAIN_TITLE, fields.plot_strain, fields.strain_caption),
+    "histories": RunFigure(_TITLE, _plot, _caption),
+}
+"""By name, which is that of the file."""
+
+
+def draw_witness(solid: xr.Dataset, beams: xr.Dataset, folder: Path, study: str) -> list[Path]:
+    """Draw each figure of a 3-D run into `folder`, see figures.draw.draw.
+
+    solid: a dataset of fem3d.solver. beams: the answers of the beam models to the same impact, on
+    `beam_model`.
+    """
+    pair = solid, beams
+    drawings = [
+        Drawing(name, figure.title, partial(figure.plot, *pair), partial(figure.caption, *pair))
+        for name, figure in FIGURES.items()
+    ]
+    return draw(drawings, folder, study)

@@ -1,1 +1,0 @@
-"""Contact of matched surface nodes without friction, by impulses: no penalty stiffness."""

@@ -1,0 +1,222 @@
+"""The hexahedron: SIMD blocks, modes of nodal values, volume and mean gradient.
+
+Elements pass through the arithmetic in blocks of W, one per SIMD lane. The numbers of a block lie
+in rows of W in one flat array: `s`, the scratch of a thread, or `state`, the memory of the
+elements. One array each, so that the compiler sees that rows do not overlap.
+
+Nodal values (8,) of an element are decomposed into modes: with xi, eta, zeta in -1 to 1,
+
+    u = u_0 + c_1 xi + c_2 eta + c_3 zeta
+        + g_1 eta zeta + g_2 zeta xi + g_3 xi eta + g_4 xi eta zeta,
+
+where c_k and g_k are an eighth of the sums of nodal values times the signs of xi ... xi eta zeta at
+the nodes. In this package, c_k and g_k are those of the position x (m), w_k and h_k those of the
+velocity (m/s).
+
+With b_a the integral of grad N_a over the element, 8 b_a is the sum of B_k times the signs of
+xi, eta, zeta, eta zeta, zeta xi, xi eta at node a (xi eta zeta has no part in it). The B_k are
+integrals of the cofactors of dx/dxi.
+Source of the mean gradient: D. P. Flanagan and T. Belytschko, Int. J. Numer. Meth. Engng. 17 (1981)
+679; written here in modes.
+"""
+
+from __future__ import annotations
+
+from impactlab.fem3d.solver.jit import Array, inlined
+
+W = 16
+"""Lanes of a block."""
+X, V = 0, 24
+"""First rows of the nodes' positions and velocities in `s`: node 0's x, y, z, node 1's ..."""
+F = 48
+"""First row of the nodes' forces in `s`."""
+SCRATCH = 48 + 24 + 63
+"""Rows of `s`."""
+
+
+@inlined
+def gather(s: Array, nodes: Array, x: Array, v: Array) -> None:
+    """Positions and velocities of a block's nodes (nodes: (8 W,)) into its lanes."""
+    for corner in range(8):
+        for lane in range(W):
+            node = nodes[corner * W + lane]
+            for axis in range(3):
+                s[(X + 3 * corner + axis) * W + lane] = x[node, axis]
+                s[(V + 3 * corner + axis) * W + lane] = v[node, axis]
+
+
+@inlined
+def scatter(s: Array, rows: Array, forces: Array) -> None:
+    """A block's nodal forces, added to its rows (8 W,) of forces (., 3)."""
+    for corner in range(8):
+        for lane in range(W):
+            row = rows[corner * W + lane]
+            for axis in range(3):
+                forces[row, axis] += s[(F + 3 * corner + axis) * W + lane]
+
+
+Vector = tuple[float, float, float]
+Tensor = tuple[Vector, Vector, Vector]
+
+
+@inlined
+def cross(a: Vector, b: Vector) -> Vector:
+    """Vector product."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+@inlined
+def dot(a: Vector, b: Vector) -> float:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined
+def add(a: Vector, b: Vector) -> Vector:
+    """Sum."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+@inlined
+def times(factor: float, a: Vector) -> Vector:
+    """Product with a number."""
+    return (factor * a[0], factor * a[1], factor * a[2])
+
+
+@inlined
+def plus(a: Vector, factor: float, b: Vector) -> Vector:
+    """a + factor b."""
+    return (a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2])
+
+
+@inlined
+def apply(S: Tensor, a: Vector) -> Vector:
+    """S a, S by rows."""
+    return (dot(S[0], a), dot(S[1], a), dot(S[2], a))
+
+
+@inlined
+def combine(e: Tensor, q: Vector) -> Vector:
+    """q_1 e_1 + q_2 e_2 + q_3 e_3."""
+    return plus(plus(times(q[0], e[0]), q[1], e[1]), q[2], e[2])
+
+
+Modes = tuple[float, float, float, float, float, float, float]
+Shape = tuple[Vector, Vector, Vector, Vector, Vector, Vector, Vector]
+
+
+@inlined
+def modes(s: Array, row: int, lane: int) -> Modes:
+    """c_1, c_2, c_3, g_1, g_2, g_3, g_4 of the values in rows row, row + 3, ... row + 21."""
+    at = row * W + lane
+    a0, a1, a2, a3 = s[at], s[at + 3 * W], s[at + 6 * W], s[at + 9 * W]
+    a4, a5, a6, a7 = s[at + 12 * W], s[at + 15 * W], s[at + 18 * W], s[at + 21 * W]
+    s01, s23, s45, s67 = a1 + a0, a2 + a3, a5 + a4, a6 + a7
+    d01, d23, d45, d67 = a1 - a0, a2 - a3, a5 - a4, a6 - a7
+    return (
+        0.125 * ((d01 + d23) + (d45 + d67)),
+        0.125 * ((s23 - s01) + (s67 - s45)),
+        0.125 * ((s45 + s67) - (s01 + s23)),
+        0.125 * ((s67 - s45) - (s23 - s01)),
+        0.125 * ((d45 + d67) - (d01 + d23)),
+        0.125 * ((d23 - d01) + (d67 - d45)),
+        0.125 * ((d67 - d45) - (d23 - d01)),
+    )
+
+
+@inlined
+def shape(s: Array, row: int, lane: int) -> Shape:
+    """The modes of a vector's three components, whose rows alternate from `row` on."""
+    x, y, z = modes(s, row, lane), modes(s, row + 1, lane), modes(s, row + 2, lane)
+    return (
+        (x[0], y[0], z[0]),
+        (x[1], y[1], z[1]),
+        (x[2], y[2], z[2]),
+        (x[3], y[3], z[3]),
+        (x[4], y[4], z[4]),
+        (x[5], y[5], z[5]),
+        (x[6], y[6], z[6]),
+    )
+
+
+@inlined
+def put(s: Array, row: int, lane: int, F: Modes) -> None:
+    """Nodal values from factors of the modes (an eighth included), into rows row, row + 3, ..."""
+    at = row * W + lane
+    low, high = F[1] - F[3], F[1] + F[3]  # of eta, where zeta is -1 and 1
+    one, two = -low - F[2], low - F[2]
+    three, four = F[2] - high, F[2] + high
+    d_low, d_high = F[0] - F[4], F[0] + F[4]
+    e_low, e_high = F[5] - F[6], F[5] + F[6]
+    s[at], s[at + 3 * W] = one - (d_low - e_low), one + (d_low - e_low)
+    s[at + 6 * W], s[at + 9 * W] = two + (d_low + e_low), two - (d_low + e_low)
+    s[at + 12 * W], s[at + 15 * W] = three - (d_high - e_high), three + (d_high - e_high)
+    s[at + 18 * W], s[at + 21 * W] = four + (d_high + e_high), four - (d_high + e_high)
+
+
+NONE: Vector = (0.0, 0.0, 0.0)
+
+
+@inlined
+def nodal(s: Array, lane: int, f: Shape) -> None:
+    """Nodal forces (N) of the modes' forces f, an eighth included, into the rows F of `s`."""
+    f1, f2, f3, f4, f5, f6, f7 = f
+    put(s, F, lane, (f1[0], f2[0], f3[0], f4[0], f5[0], f6[0], f7[0]))
+    put(s, F + 1, lane, (f1[1], f2[1], f3[1], f4[1], f5[1], f6[1], f7[1]))
+    put(s, F + 2, lane, (f1[2], f2[2], f3[2], f4[2], f5[2], f6[2], f7[2]))
+
+
+Gradient = tuple[Vector, Vector, Vector, Vector, Vector, Vector]
+
+
+@inlined
+def gradient(c: Shape) -> Gradient:
+    """B_1 to B_6 in m2."""
+    third = 1.0 / 3.0
+    return (
+        times(8.0, plus(cross(c[1], c[2]), third, cross(c[5], c[4]))),
+        times(8.0, plus(cross(c[2], c[0]), third, cross(c[3], c[5]))),
+        times(8.0, plus(cross(c[0], c[1]), third, cross(c[4], c[3]))),
+        times(8.0 * third, add(cross(c[2], c[4]), cross(c[5], c[1]))),
+        times(8.0 * third, add(cross(c[0], c[5]), cross(c[3], c[2]))),
+        times(8.0 * third, add(cross(c[1], c[3]), cross(c[4], c[0]))),
+    )
+
+
+@inlined
+def volume(c: Shape, B: Gradient) -> float:
+    """Of the element, in m3."""
+    low = c[0][0] * B[0][0] + c[1][0] * B[1][0] + c[2][0] * B[2][0]
+    return low + c[3][0] * B[3][0] + c[4][0] * B[4][0] + c[5][0] * B[5][0]
+
+
+@inlined
+def mean_gradient(w: Shape, B: Gradient, V: float) -> Tensor:
+    """The mean of dv_i/dx_j over the element in 1/s, by rows."""
+    share = 1.0 / V
+    w1, w2, w3, h1, h2, h3, _ = w
+    return (
+        times(share, _row((w1[0], w2[0], w3[0]), (h1[0], h2[0], h3[0]), B)),
+        times(share, _row((w1[1], w2[1], w3[1]), (h1[1], h2[1], h3[1]), B)),
+        times(share, _row((w1[2], w2[2], w3[2]), (h1[2], h2[2], h3[2]), B)),
+    )
+
+
+@inlined
+def _row(w: Vector, h: Vector, B: Gradient) -> Vector:
+    low = combine((B[0], B[1], B[2]), w)
+    return add(low, combine((B[3], B[4], B[5]), h))
+
+
+@inlined
+def midway(L: Tensor, dt: float) -> Tensor:
+    """dv/dx at the middle of a step, from that at its end: L (I - dt L/2)^-1, to second order.
+
+    With it, a rigid rotation strains nothing (T. J. R. Hughes and J. Winget, 1980).
+    """
+    half = 0.5 * dt
+    return (
+        plus(L[0], half, combine(L, L[0])),
+        plus(L[1], half, combine(L, L[1])),
+        plus(L[2], half, combine(L, L[2])),
+    )

@@ -1,0 +1,148 @@
+"""The metal at an integration point: J2 plasticity, and stresses that turn with the material.
+
+Symmetric tensors are six numbers: xx, yy, zz, yz, zx, xy.
+
+Radial return onto von Mises's yield surface with isotropic and kinematic hardening: yield where
+sqrt(3/2) |s - a| = sigma_y + H_i p, with s the deviatoric stress, a the back stress and p the
+equivalent plastic strain; da = 2/3 H_k d(plastic strain), so that both moduli are uniaxial slopes.
+With linear hardening the backward Euler step has this closed form.
+Source: M. L. Wilkins (1964); J. C. Simo and T. J. R. Hughes, Computational Inelasticity (1998),
+box 3.1.
+"""
+
+from __future__ import annotations
+
+import math
+
+from impactlab.fem3d.solver.elements.hexahedron import Tensor, Vector, W
+from impactlab.fem3d.solver.jit import Array, inlined
+
+Six = tuple[float, float, float, float, float, float]
+Metal = tuple[float, float, float, float, float, float, float]
+"""E, nu, G, K, sigma_y, H_i, H_k: all but nu in Pa."""
+
+
+@inlined
+def mises(s: Six) -> float:
+    """sqrt(3/2 s:s) of a deviator."""
+    shear = s[3] * s[3] + s[4] * s[4] + s[5] * s[5]
+    return math.sqrt(1.5 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * shear))
+
+
+@inlined
+def radial_return(trial: Six, a: Six, p: float, metal: Metal) -> tuple[Six, Six, float, float]:
+    """s, a, dp and the xx component of the plastic strain's increment, from an elastic trial s."""
+    _, _, G, _, sigma_y, H_i, H_k = metal
+    xi = less(trial, 1.0, a)
+    q = mises(xi)
+    dp = max(q - (sigma_y + H_i * p), 0.0) / (3.0 * G + H_i + H_k)
+    flow = 1.5 * dp / max(q, 1e-300)  # plastic strain over xi
+    return less(trial, 2.0 * G * flow, xi), less(a, -2.0 / 3.0 * H_k * flow, xi), dp, flow * xi[0]
+
+
+@inlined
+def less(a: Six, factor: float, b: Six) -> Six:
+    """a - factor b."""
+    return (
+        a[0] - factor * b[0],
+        a[1] - factor * b[1],
+        a[2] - factor * b[2],
+        a[3] - factor * b[3],
+        a[4] - factor * b[4],
+        a[5] - factor * b[5],
+    )
+
+
+@inlined
+def deviatoric_rate(L: Tensor) -> Six:
+    """Deviator of the strain rate, in 1/s."""
+    third = (L[0][0] + L[1][1] + L[2][2]) / 3.0
+    return (
+        L[0][0] - third,
+        L[1][1] - third,
+        L[2][2] - third,
+        0.5 * (L[1][2] + L[2][1]),
+        0.5 * (L[2][0] + L[0][2]),
+        0.5 * (L[0][1] + L[1][0]),
+    )
+
+
+@inlined
+def spin(L: Tensor, dt: float) -> Vector:
+    """Angles in rad by which the material turns about x, y and z in a step."""
+    half = 0.5 * dt
+    return (half * (L[2][1] - L[1][2]), half * (L[0][2] - L[2][0]), half * (L[1][0] - L[0][1]))
+
+
+@inlined
+def turned(s: Six, r: Vector) -> Six:
+    """The tensor turned by small angles, to second order (Jaumann's rate)."""
+    first = _rate(s, r)
+    return less(less(s, -1.0, first), -0.5, _rate(first, r))
+
+
+@inlined
+def _rate(s: Six, r: Vector) -> Six:
+    """W s - s W, W a = r x a."""
+    return (
+        2.0 * (r[1] * s[4] - r[2] * s[5]),
+        2.0 * (r[2] * s[5] - r[0] * s[3]),
+        2.0 * (r[0] * s[3] - r[1] * s[4]),
+        r[0] * (s[1] - s[2]) - r[1] * s[5] + r[2] * s[4],
+        r[1] * (s[2] - s[0]) - r[2] * s[3] + r[0] * s[5],
+        r[2] * (s[0] - s[1]) - r[0] * s[4] + r[1] * s[3],
+    )
+
+
+STRESS, BACK, PEEQ, ALONG = 0, 6, 12, 13
+"""Rows from a point's first: deviator, back stress, PEEQ, plastic strain along the beam."""
+POINT_ROWS = 14
+"""Rows of a point."""
+
+
+@inlined
+def advance(
+    state: Array, row: int, lane: int, L: Tensor, dt: float, metal: Metal
+) -> tuple[Six, float, float]:
+    """The deviator (Pa) at the step's end; the work on it and what of it is dissipated, in J/m3.
+
+    L: dv/dx at the middle of the step, in 1/s. row: the point's first in `state`, which is updated.
+    """
+    rate, turn = deviatoric_rate(L), spin(L, dt)
+    before = turned(_load(state, row + STRESS, lane), turn)
+    back = turned(_load(state, row + BACK, lane), turn)
+    p = state[(row + PEEQ) * W + lane]
+    trial = less(before, -2.0 * metal[2] * dt, rate)
+    S, back, dp, along = radial_return(trial, back, p, metal)
+    _store(state, row + STRESS, lane, S)
+    _store(state, row + BACK, lane, back)
+    state[(row + PEEQ) * W + lane] = p + dp
+    state[(row + ALONG) * W + lane] += along
+    work = 0.5 * dt * _double_dot(less(before, -1.0, S), rate)
+    return S, work, dp * (metal[4] + metal[5] * (p + 0.5 * dp))
+
+
+@inlined
+def _load(state: Array, row: int, lane: int) -> Six:
+    at = row * W + lane
+    return (
+        state[at],
+        state[at + W],
+        state[at + 2 * W],
+        state[at + 3 * W],
+        state[at + 4 * W],
+        state[at + 5 * W],
+    )
+
+
+@inlined
+def _store(state: Array, row: int, lane: int, s: Six) -> None:
+    at = row * W + lane
+    state[at], state[at + W], state[at + 2 * W] = s[0], s[1], s[2]
+    state[at + 3 * W], state[at + 4 * W], state[at + 5 * W] = s[3], s[4], s[5]
+
+
+@inlined
+def _double_dot(a: Six, b: Six) -> float:
+    shear = a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * shear

@@ -1,0 +1,168 @@
+"""Estimates made before a run: how far contact and plastic flow reach, and what the run costs.
+
+The mesh is laid out by the reach. A run checks both: a contact at the rim of the patch stops it,
+and elements that are not fully integrated yield by the same law.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from impactlab.fem3d.solver.mesh.mesh import BEAM, SPHERE, Mesh, uniform
+from impactlab.model.checks import positive
+from impactlab.model.impact import Impact
+from impactlab.model.material import Material
+from impactlab.verification.solutions import hertz
+
+_HARDNESS = 2.8
+"""Mean pressure of a fully plastic contact over the yield stress (Tabor)."""
+_FINEST = 1e-5
+"""Of an element, over the sphere's radius."""
+_MARGIN = 1.25
+"""Patch over the estimated contact radius."""
+
+
+def checked_size(impact: Impact, element_size: float) -> float:
+    """An element size in m. Raises ValueError where no mesh could ever have it."""
+    size = positive("mesh", "element_size", element_size)
+    if size < (finest := _FINEST * impact.sphere.radius):
+        raise ValueError(
+            f"mesh.element_size = {size!r} m: must be at least {finest:.2g} m, "
+            "a hundred-thousandth of the sphere's radius"
+        )
+    return size
+
+
+def contact_radius(impact: Impact) -> float:
+    """Largest contact radius in m to expect: of an elastic and of a plastic half-space.
+
+    Hertz: a = sqrt(R delta_m). Plastic: F = pi a^2 p with a^2 = 2 R delta takes up m v^2/2 at
+    a^4 = 2 R m v^2/(pi p), p = 2.8 of the softer body's yield stress. A beam gives way and stays
+    below the larger one.
+    """
+    radius, mass = hertz.effective_radius(impact), impact.sphere.total_mass
+    modulus = hertz.effective_modulus(impact)
+    depth = hertz.maximum_indentation(mass, impact.velocity, modulus, radius)
+    softer = min(impact.sphere.material.yield_stress, impact.beam.material.yield_stress)
+    pressure = _HARDNESS * softer
+    plastic = math.pow(2.0 * radius * mass * impact.velocity**2 / (math.pi * pressure), 0.25)
+    return max(math.sqrt(radius * depth), plastic)
+
+
+def patch_size(impact: Impact, element_size: float) -> float:
+    """Half the side of the square of matched nodes in m: a whole number of elements, at least 3.
+
+    Its margin is cut where the bodies end, down to the contact radius to expect.
+    """
+    radius = contact_radius(impact)
+    half = element_size * max(math.ceil(_MARGIN * radius / element_size), 3)
+    least = max(radius, 3.0 * element_size)
+    fits = element_size * math.floor(largest_patch(impact) / element_size)
+    return min(half, fits) if fits >= least else half
+
+
+def largest_patch(impact: Impact) -> float:
+    """What beam and sphere have room for, in m."""
+    beam = impact.beam
+    return min(0.9 * beam.width / 2.0, 0.45 * impact.sphere.radius, beam.span / 4.0)
+
+
+def checked_patch(impact: Impact, element_size: float, patch: float | None) -> float:
+    """The patch in m, rounded up to whole elements (None: estimated).
+
+    Raises ValueError where it is not positive, or does not fit on beam and sphere.
+    """
+    if patch is None:
+        half = patch_size(impact, element_size)
+    else:
+        half = element_size * uniform(element_size, positive("mesh", "patch", patch))
+    if half > (room := largest_patch(impact)):
+        raise ValueError(
+            f"mesh.patch = {half:.4g} m, of whole elements: must be at most {room:.4g} m to fit on "
+            "beam and sphere; a smaller patch, element_size or velocity may"
+        )
+    return half
+
+
+def bending_yields(impact: Impact) -> bool:
+    """Whether the beam may yield in bending: an infinite beam whose middle moves at `velocity`.
+
+    M = v sqrt(rho A EI) there, the yield moment at v = sigma_y/sqrt(3 rho E).
+    """
+    steel = impact.beam.material
+    limit = steel.yield_stress / math.sqrt(3.0 * steel.density * steel.youngs_modulus)
+    return impact.velocity > limit
+
+
+ONE_POINT_SECONDS, FULL_SECONDS = 200e-9, 500e-9
+"""Of one core for an element's step, its nodes' included: the slower of two machines, on meshes
+that its caches do not hold; a small mesh on the faster one takes half."""
+_BYTES = 1000
+"""Of an element and its share of the nodes, about."""
+_ONE_POINT_BYTES, _FULL_BYTES, _NODE_BYTES = 700, 1600, 250
+
+
+@dataclass(frozen=True)
+class Cost:
+    """elements, steps: counts. cpu_seconds: on one core. memory_bytes: at the most."""
+
+    elements: int
+    steps: int
+    cpu_seconds: float
+    memory_bytes: int
+
+
+def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
+    """The cost of `duration` (s) on `mesh`, from its smallest elements and measured times."""
+    steps = int(np.ceil(duration / time_step(mesh, impact)))
+    full = int(mesh.full.sum())
+    one_point = len(mesh.elements) - full
+    seconds = steps * (one_point * ONE_POINT_SECONDS + full * FULL_SECONDS)
+    memory = one_point * _ONE_POINT_BYTES + full * _FULL_BYTES + len(mesh.nodes) * _NODE_BYTES
+    return Cost(len(mesh.elements), steps, seconds, memory)
+
+
+def least_cost(
+    impact: Impact, *, element_size: float, duration: float, patch: float | None = None
+) -> Cost:
+    """What a mesh costs at the least, known without making it; arguments as those of quarter_mesh.
+
+    A cube of elements on either side of the contact, and the beam in the largest that there are:
+    its transitions, which are left out, may be more. Raises ValueError as quarter_mesh.
+    """
+    size = checked_size(impact, element_size)
+    beam = impact.beam
+    half = checked_patch(impact, size, patch)
+    far = beam.span / 2.0 * beam.width / 2.0 * beam.depth / max(beam.depth / 6.0, size) ** 3
+    near = 2.0 * (half / size) ** 3
+    fastest = max(
+        math.sqrt(steel.youngs_modulus / density) for _, steel, density in _metals(impact)
+    )
+    steps = int(duration * fastest / size) + 1
+    seconds = steps * (near * FULL_SECONDS + far * ONE_POINT_SECONDS)
+    return Cost(int(near + far), steps, seconds, int(near + far) * _BYTES)
+
+
+def time_step(mesh: Mesh, impact: Impact) -> float:
+    """About the largest stable step in s: the time a pressure wave takes over the shortest edge."""
+    points = mesh.nodes[mesh.elements]
+    shortest = np.full(len(points), np.inf)
+    for one, other in ((0, 1), (0, 3), (0, 4), (6, 2), (6, 5), (6, 7)):
+        edge = np.linalg.norm(points[:, one] - points[:, other], axis=1)
+        shortest = np.minimum(shortest, edge)
+    steps = []
+    for body, steel, density in _metals(impact):
+        nu = steel.poissons_ratio
+        modulus = steel.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+        steps.append(float(shortest[mesh.body == body].min()) / np.sqrt(modulus / density))
+    return float(0.9 * min(steps))
+
+
+def _metals(impact: Impact) -> tuple[tuple[int, Material, float], tuple[int, Material, float]]:
+    """Each body's material and density in kg/m3: the sphere's is that of the mass it is given."""
+    beam, sphere = impact.beam.material, impact.sphere
+    density = sphere.total_mass / (4.0 / 3.0 * math.pi * sphere.radius**3)
+    return (BEAM, beam, beam.density), (SPHERE, sphere.material, density)

@@ -1,0 +1,228 @@
+"""Responses of a run: of its histories and of its fields, and `status`, the reason for each NaN."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from impactlab.fem3d.solver.material import ALONG, PEEQ, STRESS
+from impactlab.fem3d.solver.mesh.mesh import BEAM, Floats, Mesh
+from impactlab.fem3d.solver.stepping.assembly import Group
+from impactlab.fem3d.solver.stepping.march import Energies, History
+from impactlab.model.impact import Impact
+from impactlab.variables import STATUS_FLAGS
+
+_IMBALANCE = 0.05
+"""Largest imbalance of energy, over the initial kinetic energy, at which answers are given."""
+
+
+def responses(history: History, impact: Impact, pause: float) -> tuple[dict[str, float], int]:
+    """Answers by the names of dataset.RESPONSES, NaN where there is none, and their status.
+
+    pause: see contacts.contacts. Those of the fields are in fields.py.
+    """
+    time, force, sphere, pole, axis, top, velocity = history.table()
+    touches = contacts(time, force, pause)
+    error = energy_error(history.energies, impact)
+    answers = _of_contact(time, force, touches)
+    answers |= _of_indentation(time, sphere - axis)
+    answers |= _of_deflection(time, axis)
+    answers |= _of_rebound(touches, time, velocity, axis, impact)
+    answers["permanent_indentation"] = _left(touches, time, (top - axis) + (sphere - pole))
+    if np.isnan(answers["maximum_indentation"]):  # the force may go on rising with it
+        answers["peak_force"] = answers["time_of_peak_force"] = np.nan
+    reasons = [name for name, value in _CAUSES.items() if np.isnan(answers[value])]
+    if not error <= _IMBALANCE:
+        reasons = ["diverged" if np.isnan(error) else "energy_out_of_balance"]
+        answers = dict.fromkeys(answers, np.nan)
+    bits = sum(STATUS_FLAGS[name][0] for name in reasons)
+    return answers | {"energy_error": error}, bits
+
+
+_CAUSES = {
+    "first_contact_unfinished": "contact_duration",
+    "in_contact_at_end": "total_contact_time",
+    "sphere_not_leaving": "rebound_velocity",
+    "deflection_still_growing": "maximum_deflection",
+    "indentation_still_growing": "maximum_indentation",
+}
+"""Flags of status, and an answer that is missing because of each."""
+
+
+def energy_error(energies: list[Energies], impact: Impact) -> float:
+    """Largest imbalance of energy over the initial kinetic energy; NaN where it is not finite."""
+    first = 0.5 * impact.sphere.total_mass * impact.velocity**2
+    balances = np.array([entry.balance for entry in energies] or [np.nan])
+    error = float(np.max(np.abs(balances - first)) / first)
+    return error if np.isfinite(error) else np.nan
+
+
+def _of_contact(time: Floats, force: Floats, touches: Floats) -> dict[str, float]:
+    at, largest = peak(time, force)
+    first = float(touches[0, 1] - touches[0, 0]) if len(touches) else np.nan
+    total = float(np.sum(touches[:, 1] - touches[:, 0])) if len(touches) else np.nan
+    return {
+        "peak_force": largest,
+        "time_of_peak_force": at,
+        "contact_duration": first,
+        "number_of_contacts": float(len(touches)),
+        "total_contact_time": total,
+        "impulse": np.nan if np.isnan(total) else float(_impulse(time, force)),
+    }
+
+
+def _impulse(time: Floats, force: Floats) -> float:
+    """N s: each force acts from the middle of the step before to that of the step after."""
+    middles = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])
+    return float(np.sum(force * np.diff(middles)))
+
+
+def _of_indentation(time: Floats, indentation: Floats) -> dict[str, float]:
+    at, largest = peak(time, indentation)
+    return {"maximum_indentation": np.nan if at >= time[-1] else largest}
+
+
+def _of_deflection(time: Floats, axis: Floats) -> dict[str, float]:
+    at, largest = peak(time, axis)
+    return {"maximum_deflection": np.nan if at >= time[-1] else largest}
+
+
+def _of_rebound(
+    touches: Floats, time: Floats, velocity: Floats, axis: Floats, impact: Impact
+) -> dict[str, float]:
+    """Once the sphere moves upwards and away from the beam."""
+    missing = {"rebound_velocity": np.nan, "restitution": np.nan}
+    if len(touches) == 0 or np.isnan(touches[-1, 1]) or velocity[-1] >= 0.0:
+        return missing
+    if velocity[-1] >= (axis[-1] - axis[-2]) / (time[-1] - time[-2]):
+        return missing
+    rebound = -float(np.interp(touches[-1, 1], time, velocity))
+    return {"rebound_velocity": rebound, "restitution": rebound / impact.velocity}
+
+
+def _left(touches: Floats, time: Floats, dent: Floats) -> float:
+    """Mean of the surfaces' dents in m since the last contact: vibrations cancel."""
+    if len(touches) == 0 or np.isnan(touches[-1, 1]):
+        return float(np.nan)
+    return float(np.mean(dent[time > touches[-1, 1]]))
+
+
+def contacts(time: Floats, force: Floats, pause: float) -> Floats:
+    """Start and end of each contact in s, (contacts, 2); the end is NaN where the run ends first.
+
+    time, force: (steps,) in s and N. pause: a force that returns within it (s) is of the same
+    contact: surface waves part single nodes for a moment. Between steps the force falls on along
+    the line through its last two values.
+    """
+    on = np.flatnonzero(force > 0.0)
+    if on.size == 0:
+        return np.empty((0, 2))
+    breaks = np.flatnonzero(np.diff(time[on]) > pause)
+    first, last = on[np.append(0, breaks + 1)], on[np.append(breaks, on.size - 1)]
+    ends = [_end(time, force, int(step)) for step in last]
+    if time[-1] - time[on[-1]] <= pause:
+        ends[-1] = np.nan
+    starts = np.where(first == 0, 0.0, time[first])
+    return np.stack([starts, ends], axis=1)
+
+
+def _end(time: Floats, force: Floats, last: int) -> float:
+    """Where the force after step `last` reaches zero, within the step."""
+    step = float(time[last] - time[last - 1]) if last else 0.0
+    fall = float(force[last - 1] - force[last]) if last else 0.0
+    share = float(force[last]) / fall if fall > 0.0 else 1.0
+    return float(time[last]) + step * min(share, 1.0)
+
+
+def peak(time: Floats, values: Floats) -> tuple[float, float]:
+    """Time and size of the largest value, on the parabola through it and its neighbours."""
+    at = int(np.argmax(values))
+    if at in (0, values.size - 1):
+        return float(time[at]), float(values[at])
+    t, y = time[at - 1 : at + 2] - time[at], values[at - 1 : at + 2]
+    curve, slope, top = np.polyfit(t, y, 2)
+    if curve >= 0.0:
+        return float(time[at]), float(values[at])
+    shift = float(np.clip(-0.5 * slope / curve, t[0], t[2]))
+    return float(time[at]) + shift, float(top + 0.5 * slope * shift)
+
+
+PLASTIC_ZONE_STRAIN = 1e-5
+"""PEEQ from which on a section counts as plastic, as in the beam models."""
+
+
+def fields(groups: list[Group], count: int) -> dict[str, Floats]:
+    """Of each element, (count,): means over its integration points, and the largest PEEQ.
+
+    equivalent_plastic_strain, largest_equivalent_plastic_strain, plastic_strain (along the beam):
+    1. von_mises_stress: Pa.
+    """
+    names = ("equivalent_plastic_strain", "largest_equivalent_plastic_strain", "plastic_strain")
+    result = {name: np.full(count, np.nan) for name in (*names, "von_mises_stress")}
+    for group in groups:
+        strain = group.points(PEEQ)
+        result[names[0]][group.elements] = strain.mean(axis=0)
+        result[names[1]][group.elements] = strain.max(axis=0)
+        result[names[2]][group.elements] = group.points(ALONG).mean(axis=0)
+        result["von_mises_stress"][group.elements] = _mises(group)
+    return result
+
+
+def _mises(group: Group) -> Floats:
+    """Von Mises stress in Pa, mean over the integration points."""
+    s = np.stack([group.points(STRESS + row) for row in range(6)])
+    squares = np.sum(s[:3] ** 2, axis=0) + 2.0 * np.sum(s[3:] ** 2, axis=0)
+    return np.asarray(np.sqrt(1.5 * squares).mean(axis=0))
+
+
+def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, float]:
+    """Answers about the beam's PEEQ, by the names of dataset.RESPONSES.
+
+    strain: each element's largest. And sphere_plastic_strain, and one_point_plastic_strain: where
+    bending is not integrated over an element.
+    """
+    points = mesh.nodes[mesh.elements, 0]
+    beam = mesh.body == BEAM
+    coarse = strain[~mesh.full]
+    remote = beam & (points.mean(axis=1) > impact.beam.depth)
+    return {
+        "peak_plastic_strain": float(strain[beam].max()),
+        "remote_plastic_strain": float(strain[remote].max(initial=0.0)),
+        "sphere_plastic_strain": float(strain[~beam].max(initial=0.0)),
+        "one_point_plastic_strain": float(coarse.max(initial=0.0)),
+        "plastic_zone_length": _length(points[beam & (strain > PLASTIC_ZONE_STRAIN)]),
+    }
+
+
+def _length(along: Floats) -> float:
+    """Length in m of whole beam that elements with these x of their nodes (e, 8) take up."""
+    cuts = np.unique(np.round(np.stack([along.min(axis=1), along.max(axis=1)], axis=1), 12), axis=0)
+    return float(2.0 * np.sum(cuts[:, 1] - cuts[:, 0]))
+
+
+LIMIT = 0.002
+"""PEEQ at the border of the zone: the strain of the usual proof stress."""
+
+
+def surface_reach(run: xr.Dataset, limit: float = LIMIT) -> float:
+    """Distance in m from the centre of the impact, along the beam, to where PEEQ falls to `limit`.
+
+    run: as solve gives it. On the struck surface at mid-width, in the shape before the impact: the
+    outermost place where the line through the means of the top elements comes down to the limit; 0
+    where none is above it.
+    """
+    points = run["node_position"].values[run["element_nodes"].values]
+    edge = 1e-6 * float(run["element_size"])
+    top = (run["body"].values == BEAM) & (points[:, :, 2].max(axis=1) > -edge)
+    row = top & (points[:, :, 1].min(axis=1) < edge)
+    x = points[row, :, 0].mean(axis=1)
+    order = np.argsort(x)
+    x, strain = x[order], run["equivalent_plastic_strain"].values[row][order]
+    above = np.flatnonzero(strain > limit)
+    if not above.size:
+        return 0.0
+    last = int(above[-1])
+    if last + 1 == x.size:
+        return float(x[last])
+    share = (strain[last] - limit) / (strain[last] - strain[last + 1])
+    return float(x[last] + share * (x[last + 1] - x[last]))
