@@ -17,7 +17,7 @@ def figures(
     ] = None,
 ) -> None:
     """Draw every figure that a study's answers, or findings, allow."""
-    from impactlab.report.kinds import read_stored
+    from impactlab.report.results import read_stored
 
     kind, datasets = read_stored(stored)
-    kind.draw(datasets, output or stored[0].with_name("figures"))
+    kind.draw(*datasets, output or stored[0].with_name("figures"))

@@ -15,6 +15,6 @@ def index(
     output: Annotated[Path | None, typer.Option(help="Default: index.html in it.")] = None,
 ) -> None:
     """Write the index over all reports."""
-    from impactlab.report.index import write_index
+    from impactlab.report.results import write_index
 
     write_index(results, output or results / "index.html")

@@ -37,7 +37,7 @@ def recommend(
     The study's corner cases are solved with finer and finer discretisations; the file keeps the
     evidence.
     """
-    from impactlab.report.recommendation import print_recommendation
+    from impactlab.report.console import print_recommendation
     from impactlab.study.adaptive.recommendation import recommend as recommended
     from impactlab.study.declaration import Auto, read_impacts
     from impactlab.study.engine import Engine

@@ -20,11 +20,11 @@ def report(
     ] = None,
 ) -> None:
     """Write a study's report."""
-    from impactlab.report.kinds import read_stored
+    from impactlab.report.results import read_stored
 
     kind, datasets = read_stored(stored)
     kind.write(
-        datasets,
+        *datasets,
         figures or stored[0].with_name("figures"),
         output or stored[0].with_name("report.html"),
     )

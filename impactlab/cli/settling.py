@@ -24,7 +24,7 @@ def settled(study: Study | FunctionStudy, evidence: Path, engine: Engine) -> Stu
 
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
-    from impactlab.report.recommendation import print_recommendation
+    from impactlab.report.console import print_recommendation
     from impactlab.study.adaptive.recommendation import recommend, resolved
     from impactlab.study.netcdf import write_netcdf
 

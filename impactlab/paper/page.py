@@ -26,10 +26,8 @@ from impactlab.paper.statements.statement import (
     Statement,
     Verdict,
 )
-from impactlab.report import provenance
-from impactlab.report.page import write_page
+from impactlab.report.page import Cell, Table, provenance, write_page
 from impactlab.report.pictures import pictures
-from impactlab.report.table import Cell, Table
 from impactlab.study.netcdf import read_netcdf
 from impactlab.variables import provenance as made_now
 
@@ -67,7 +65,7 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
         pictures=pictures(output / "figures"),
         tally=_tally(statements),
         solved=_solved(runs),
-        provenance=provenance.provenance(xr.Dataset(attrs=made_now()), "page"),
+        provenance=provenance(xr.Dataset(attrs=made_now()), "page"),
     )
 
 

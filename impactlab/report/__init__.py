@@ -1,4 +1,5 @@
-"""HTML reports from stored datasets and figures: `report` writes one a study, `index` lists them.
+"""HTML reports from stored datasets and figures, and the tables that the command line prints.
 
-One section of the report a file; the pages themselves are in templates/.
+A report (`study`, `verification`) consists of sections, one concept per file; `results` knows the
+kinds of stored results and writes the index of all reports. The pages are in templates/.
 """

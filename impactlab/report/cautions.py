@@ -1,16 +1,19 @@
-"""What to know before using the numbers: failures, unsound verdicts, suspicious values."""
+"""Cautions about the numbers of a study, and notes on its physics."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
-from impactlab.report import numerical
+from impactlab.report.indices import numerical_warnings
+from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.about import ABOUT
 from impactlab.variables import MARKS, REMARKS
 
@@ -21,12 +24,12 @@ _JUDGED = {
     "points_summary": "Not converged in integration points somewhere in the grid",
     "sensitivity_verdict": "Sensitivity indices not usable as they stand",
 }
-ENERGY_LIMIT = 1e-3
-"""Energy imbalance, relative to the initial kinetic energy, from which on a run is suspicious."""
+_ENERGY_LIMIT = 1e-3
+"""Largest energy imbalance, relative to the initial kinetic energy, of a run without suspicion."""
 
 
 def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    """Sentences, the gravest first; none when there is nothing to warn of."""
+    """Return sentences, the gravest first; none when there is nothing to warn of."""
     found = (
         _stale(runs, analysis),
         _failures(runs),
@@ -42,7 +45,7 @@ def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 
 
 def _stale(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """An analysis carries the attributes of its runs, the time of solving among them."""
+    """Compare the times of solving: an analysis carries the attributes of its runs."""
     if analysis.attrs.get("created", runs.attrs.get("created")) != runs.attrs.get("created"):
         yield (
             "The analysis is not of these runs: it was made from runs solved at another time. "
@@ -59,7 +62,7 @@ def _failures(runs: xr.Dataset) -> Iterator[str]:
 
 
 def _outside(runs: xr.Dataset) -> Iterator[str]:
-    """One sentence for each contact law that was taken beyond its range."""
+    """Yield one sentence per contact law that was used beyond its range."""
     if "status" not in runs or "contact" not in runs.coords:
         return
     beyond = (runs["status"] & MARKS["outside_contact_law"][0]) != 0
@@ -72,7 +75,7 @@ def _outside(runs: xr.Dataset) -> Iterator[str]:
 
 
 def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """One sentence for each kind of verdict and flag, with the responses that it is about."""
+    """Yield one sentence per kind of verdict and flag, with the responses that it is about."""
     for variable, text in _JUDGED.items():
         flags: dict[str, list[str]] = defaultdict(list)
         for name in responses(runs):
@@ -85,7 +88,6 @@ def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
 
 
 def _imputed(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """A surrogate in the place of failed runs."""
     if "imputed_share" in analysis and bool((analysis["imputed_share"] > 0).any()):
         worst = labels.number(100 * float(analysis["imputed_share"].max()), 2)
         yield (
@@ -95,8 +97,7 @@ def _imputed(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
 
 
 def _numerical(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """Indices that the discretisation could have made."""
-    if number := len(numerical.warnings(runs, analysis)):
+    if number := len(numerical_warnings(runs, analysis)):
         yield (
             "Some indices are below what the numerical error could change, see “Numerical "
             f"uncertainty” ({labels.counted(number, 'warning')} there)."
@@ -104,7 +105,7 @@ def _numerical(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
 
 
 def _strain(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """PEEQ without a verdict of its own, which it needs with hardening, too."""
+    """Warn of PEEQ without a verdict of its own, which it needs with hardening, too."""
     name = "peak_plastic_strain"
     if name not in runs or access.verdict(analysis, "nodes_summary", name):
         return
@@ -116,13 +117,13 @@ def _strain(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
 
 
 def _values(runs: xr.Dataset) -> Iterator[str]:
-    """Numbers that physics or numerics should not give."""
+    """Warn of numbers that physics or numerics should not give."""
     if "energy_error" in runs:
         error = usable(runs, "energy_error")
-        if number := int((error > ENERGY_LIMIT).sum()):
+        if number := int((error > _ENERGY_LIMIT).sum()):
             worst = labels.number(float(np.nanmax(error.values)), digits=2)
             yield (
-                f"The energy balance is off by more than {labels.number(ENERGY_LIMIT)} of the "
+                f"The energy balance is off by more than {labels.number(_ENERGY_LIMIT)} of the "
                 f"initial kinetic energy in {number} of {count(runs)} runs (largest: {worst})."
             )
     if "restitution" in runs and (number := int((usable(runs, "restitution") > 1).sum())):
@@ -130,9 +131,82 @@ def _values(runs: xr.Dataset) -> Iterator[str]:
 
 
 def _remarks(runs: xr.Dataset) -> Iterator[str]:
-    """What the runs say of themselves."""
     if "remarks" not in runs:
         return
     for bit, text in REMARKS.values():
         if number := int(((runs["remarks"] & bit) != 0).sum()):
             yield f"In {number} of {count(runs)} runs {text}."
+
+
+@dataclass(frozen=True)
+class Note:
+    """A text, and a test whether it matters for given runs."""
+
+    applies: Callable[[xr.Dataset], bool]
+    text: str
+
+
+def notes(runs: xr.Dataset) -> list[str]:
+    """Return the texts that matter for these runs, in the order of NOTES."""
+    return [note.text for note in NOTES if note.applies(runs)]
+
+
+def _holds(runs: xr.Dataset, name: str, value: Any) -> bool:
+    """Return whether a parameter has this value in some run."""
+    return name in runs.coords and value in np.ravel(runs[name].values).tolist()
+
+
+def _few_lobatto_points(runs: xr.Dataset) -> bool:
+    few = _holds(runs, "points", 2) or _holds(runs, "points", 3)
+    return few and _holds(runs, "rule", "lobatto")
+
+
+def _about(law: str) -> str:
+    """Return the flaws of a contact law and what about it is unconfirmed."""
+    about = ABOUT[law]
+    parts = [f"Contact law “{law}” ({about.title}).", about.flaws]
+    if "energy" in about.flaws:
+        parts.append("This is the law, not the solver; the energy balance accounts for it.")
+    if about.unconfirmed:
+        parts.append(f"Not confirmed: {about.unconfirmed}.")
+    return " ".join(filter(None, parts))
+
+
+_AT_THE_END = ("rebound_velocity", "restitution", "impulse", "permanent_indentation")
+NOTES = (
+    Note(
+        lambda runs: "contact_duration" in runs,
+        "One impact holds several sub-impacts: contact ends and begins again. The contact duration "
+        "is that of the first contact; the total contact time adds up all contacts within the "
+        "simulated time.",
+    ),
+    Note(
+        lambda runs: any(name in runs for name in _AT_THE_END),
+        "Rebound velocity, restitution, impulse and permanent indentation hold for the last "
+        "contact within the simulated time: a contact after its end is not in them.",
+    ),
+    *(
+        Note(lambda runs, law=law: _holds(runs, "contact", law), _about(law))  # type: ignore[misc]
+        for law in LAWS
+        if ABOUT[law].flaws or ABOUT[law].unconfirmed
+    ),
+    Note(
+        lambda runs: "peak_plastic_strain" in runs,
+        "In a perfectly plastic section the peak plastic strain (PEEQ) at mid-span does not "
+        "converge as the nodes get closer: with 3 Lobatto points it doubles with each halving of "
+        "the spacing, with 5 it still grows, and from 9 on it grows slowly.",
+    ),
+    Note(
+        lambda runs: _holds(runs, "scheme", "semi_implicit"),
+        "The semi-implicit scheme takes time steps of half a bar wave's time over a spacing: with "
+        "many nodes longer than leapfrog's, with few shorter. It tends to the same answers, with "
+        "errors about as large at the same nodes. What does not converge, the peak plastic "
+        "strain of a perfectly plastic beam, is not to be compared between the two schemes.",
+    ),
+    Note(
+        _few_lobatto_points,
+        "Few Lobatto points change the beam itself: 2 make it 3 times too stiff, and 3 put its "
+        "full plastic moment at the yield moment.",
+    ),
+)
+"""Every note there is; a new note is one more entry."""

@@ -1,7 +1,8 @@
-"""What the command line prints: tables for a terminal."""
+"""Tables that the command line prints."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,13 +17,17 @@ from impactlab.variables import RESPONSES, marks, reasons, remarked
 from impactlab.verification.finding import Outcome, gravest_first
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from impactlab.study.errors import Problem
     from impactlab.study.estimate import Estimate
     from impactlab.study.runs import Status
 
+_AXES = ("nodes", "points", "courant")
+
 
 def print_responses(run: Any) -> None:
-    """The scalar responses of one run, each with its unit; a missing one as such, and why.
+    """Print the scalar responses of one run with their units, and why responses are missing.
 
     run: a dataset of simulate, or one record of solver.responses.RESPONSE.
     """
@@ -41,7 +46,7 @@ def print_responses(run: Any) -> None:
 
 
 def print_predictions(predicted: Any) -> None:
-    """One line a response: its prediction, and what the surrogate is worth on runs held out.
+    """Print one line per response: its prediction, and the surrogate's error on held-out runs.
 
     predicted: a dataset of Surrogate.predict at one point.
     """
@@ -61,7 +66,7 @@ def print_predictions(predicted: Any) -> None:
 
 
 def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
-    """One line a study: name, number of runs or checks, title."""
+    """Print one line per study: name, number of runs or checks, title."""
     table = Table("study", "size", "title")
     for row in rows:
         table.add_row(*map(escape, row))
@@ -69,7 +74,7 @@ def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
 
 
 def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable[Problem]) -> None:
-    """What a study costs, a line each; and why it is not solved unless it is forced.
+    """Print what a study costs, and the limits that it exceeds.
 
     room: bytes of disk that it may take.
     """
@@ -91,12 +96,8 @@ def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable
         console.print(f"beyond bearing: {problem}", markup=False, highlight=False)
 
 
-def _short(value: Any) -> str:
-    return value if isinstance(value, str) else f"{value:.4g}"
-
-
 def print_outcomes(outcomes: Iterable[Outcome]) -> None:
-    """One line a check: verdict, how many comparisons passed, the worst error over tolerance."""
+    """Print one line per check: verdict, comparisons passed, largest error over tolerance."""
     table = Table("check", "verdict", "passed", "worst error / tolerance", "seconds")
     for outcome in gravest_first(outcomes):
         total, worst = len(outcome.finding.comparisons), outcome.worst
@@ -111,18 +112,18 @@ def print_outcomes(outcomes: Iterable[Outcome]) -> None:
 
 
 def print_status(name: str, found: Status) -> None:
-    """How far a study is: a line each for its runs, what lies on disk, and who is at work."""
+    """Print the progress of a study: its runs, its files, and the process at work."""
     left = found.runs - found.done
     print(f"{name}: {found.done:,} of {found.runs:,} runs solved, {left:,} left")
     if found.failed:
         print(f"failed: {found.failed:,} lack a response that is asked for")
     if found.age is not None:
-        print(f"on disk: {decimal(found.size)}, the latest {age_text(found.age)} ago")
+        print(f"on disk: {decimal(found.size)}, the latest {_age(found.age)} ago")
     print(f"at work: {found.holder or 'nobody'}")
 
 
 def print_files(reasons_of: Mapping[Path, str]) -> None:
-    """One line a file that can go: its size and why; then their size in all."""
+    """Print one line per file that can be removed, with size and reason; then the total size."""
     table = Table(Column("file", overflow="fold"), "size", "why")
     for path, reason in reasons_of.items():
         table.add_row(escape(str(path)), decimal(path.stat().st_size), reason)
@@ -132,10 +133,80 @@ def print_files(reasons_of: Mapping[Path, str]) -> None:
     print(f"{files}, {decimal(total)}")
 
 
-def age_text(seconds: float) -> str:
-    """A time span in its largest unit: 3 minutes."""
+def print_recommendation(found: xr.Dataset) -> None:
+    """Print the recommended discretisation and the evidence for it, one row per response.
+
+    found: the dataset of study.adaptive.recommendation.
+    """
+    console = Console()
+    best = int(found["recommended"])
+    console.print(_headline(found, best), markup=False)
+    table = Table(Column("response", no_wrap=True), "in all", *_AXES, "checked", "")
+    evidence = _evidence(found, best)
+    for name in found["response"].values:
+        shares = [_percent(column.sel(response=name)) for column in evidence.values()]
+        remark = _remark(found.sel(response=name))
+        table.add_row(str(name), *shares, *[""] * (len(table.columns) - 2 - len(shares)), remark)
+    console.print(table)
+    console.print(
+        f"Relative uncertainty, the worst of {found.sizes['case']} corner cases: in all, and of "
+        "each axis. Checked: the difference to the last rungs of all axes at once.",
+        markup=False,
+    )
+
+
+def _age(seconds: float) -> str:
+    """Return a time span in its largest unit: 3 minutes."""
     for unit, length in (("day", 86_400), ("hour", 3600), ("minute", 60)):
         if seconds >= length:
             count = int(seconds // length)
             return f"{count} {unit}{'s' if count > 1 else ''}"
     return f"{int(seconds)} s"
+
+
+def _short(value: Any) -> str:
+    return value if isinstance(value, str) else f"{value:.4g}"
+
+
+def _headline(found: xr.Dataset, best: int) -> str:
+    tolerance = f"{100 * found.attrs['tolerance']:g} %"
+    if best < 0:
+        most = int(found["nodes"].max())
+        return f"No discretisation up to {most} nodes meets {tolerance} for any asked response."
+    chosen = found.isel(candidate=best)
+    grid = ", ".join(f"{axis} = {chosen[f'candidate_{axis}'].item():g}" for axis in _AXES)
+    cost = chosen["candidate_cost"].item()
+    return f"Cheapest for {tolerance}: {grid}; {cost:.2g} times the cost of the study's own."
+
+
+def _evidence(found: xr.Dataset, best: int) -> dict[str, xr.DataArray]:
+    """Return columns on (response): the uncertainty, its parts per axis, and the check.
+
+    best: the recommended candidate; without one (-1), the least uncertainty of all candidates.
+    """
+    if best < 0:
+        return {"all": found["candidate_uncertainty"].min("candidate")}
+    from impactlab.study.adaptive.levels import relative  # late: it loads the solver
+
+    chosen = found.isel(candidate=best)
+    last = found["nodes_value"].isel(nodes=-1, drop=True)
+    parts = {
+        axis: found[f"{axis}_uncertainty"].sel(
+            {axis: chosen[f"candidate_{axis}"].item()}, drop=True
+        )
+        for axis in _AXES
+    }
+    parts["checked"] = found["check_difference"]
+    shares = {name: relative(amount, last).max("case") for name, amount in parts.items()}
+    return {"all": chosen["candidate_uncertainty"]} | shares
+
+
+def _remark(found: xr.Dataset) -> str:
+    if not found["asked"]:
+        return "not asked"
+    return "" if found["reached"] else "none reaches it"
+
+
+def _percent(share: xr.DataArray) -> str:
+    value = float(share)
+    return f"{float(f'{100 * value:.2g}'):g} %" if math.isfinite(value) else "no bound"

@@ -1,4 +1,4 @@
-"""The verdicts of the convergence studies, a row a response."""
+"""Tables of the convergence studies, with one row per response."""
 
 from __future__ import annotations
 
@@ -10,33 +10,37 @@ import xarray as xr
 
 from impactlab.figures import access, labels
 from impactlab.figures.access import known, responses
-from impactlab.report.table import Cell, Table
+from impactlab.report.page import Cell, Table
 
 
 @dataclass(frozen=True)
-class Judged:
-    """One axis: its table, what to know of it, verdicts and behaviours with their meanings."""
+class Refinement:
+    """One refined axis.
+
+    table: one row per response. remarks: how to read it. meanings: verdicts and behaviours that
+    occur, each with its meaning.
+    """
 
     table: Table
     remarks: list[str]
     meanings: list[tuple[str, str]]
 
 
-def judged(runs: xr.Dataset, analysis: xr.Dataset) -> list[Judged]:
-    """The axes that the analysis has, in the order space, time, depth."""
+def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Refinement]:
+    """Return the axes that the analysis has, in the order space, time, depth."""
     return [
-        Judged(
+        Refinement(
             table(runs, analysis, axis, caption),
-            [reading, *remarks(analysis, axis)],
-            meanings(analysis, axis),
+            [reading, *_remarks(analysis, axis)],
+            _meanings(analysis, axis),
         )
         for axis, (caption, table, reading) in _AXES.items()
         if f"{axis}_summary" in analysis
     ]
 
 
-def meanings(analysis: xr.Dataset, axis: str) -> list[tuple[str, str]]:
-    """Each behaviour and verdict that occurs, in words, with what it means."""
+def _meanings(analysis: xr.Dataset, axis: str) -> list[tuple[str, str]]:
+    """Return each behaviour and verdict that occurs, in words, with its meaning."""
     found: dict[str, str] = {}
     for kind in ("behaviour", "summary", "verdict"):
         if f"{axis}_{kind}" in analysis:
@@ -45,8 +49,8 @@ def meanings(analysis: xr.Dataset, axis: str) -> list[tuple[str, str]]:
     return sorted(found.items())
 
 
-def remarks(analysis: xr.Dataset, axis: str) -> list[str]:
-    """What is refined along with the axis, and what has no limit by design."""
+def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:
+    """Return what is refined along with the axis, and which responses have no limit by design."""
     summary = analysis[f"{axis}_summary"]
     without = [line.partition(": ") for line in summary.attrs.get("without_limit", "").splitlines()]
     reasons = [
@@ -58,7 +62,7 @@ def remarks(analysis: xr.Dataset, axis: str) -> list[str]:
 
 
 def _refined(runs: xr.Dataset, analysis: xr.Dataset, axis: str, caption: str) -> Table:
-    """An axis that has an order: nodes, time step."""
+    """Return the table of an axis with an order of convergence: nodes, time step."""
     head = [
         "Response",
         "Worst verdict",
@@ -85,7 +89,7 @@ def _refined(runs: xr.Dataset, analysis: xr.Dataset, axis: str, caption: str) ->
 
 
 def _points(runs: xr.Dataset, analysis: xr.Dataset, axis: str, caption: str) -> Table:
-    """Integration points: how many are needed, by each rule."""
+    """Return the table of integration points: how many each rule needs."""
     rules = _rules(analysis)
     head = ["Response", "Worst verdict", "Verdicts over the grid"]
     head += [f"Points needed for 1 %{f', {rule}' if rule else ''}" for rule in rules]
@@ -102,14 +106,13 @@ def _points(runs: xr.Dataset, analysis: xr.Dataset, axis: str, caption: str) -> 
 
 
 def _rules(analysis: xr.Dataset) -> dict[str, dict[str, int]]:
-    """Each integration rule in words, with where it is; all at once where none is varied."""
+    """Return the index of each integration rule; {"": {}} where the rule is not varied."""
     if "points_needed" not in analysis or "rule" not in analysis["points_needed"].dims:
         return {"": {}}
     names = labels.values(analysis["rule"], range(analysis.sizes["rule"]))
     return {name: {"rule": at} for at, name in enumerate(names)}
 
 
-_Table = Callable[[xr.Dataset, xr.Dataset, str, str], Table]
 _ORDERS = (
     "Observed order, grid convergence index (GCI) and asymptotic ratio are those of the three "
     "finest grids, with the factor 1.25, or 3 where not every three successive grids show a "
@@ -121,13 +124,13 @@ _RULES = (
     "Each rule is judged by its own most points. The numerical uncertainty is three times the "
     "difference to the next fewer points, since the error need not follow a power of the points."
 )
-_AXES: dict[str, tuple[str, _Table, str]] = {
+_AXES: dict[str, tuple[str, Callable[[xr.Dataset, xr.Dataset, str, str], Table], str]] = {
     "nodes": ("Convergence in nodes along the span", _refined, _ORDERS),
     "time_step": ("Convergence in the time step at fixed nodes", _refined, _ORDERS),
     "element_size": ("Convergence in the size of the solid elements", _refined, _ORDERS),
     "points": ("Convergence in integration points over the depth", _points, _RULES),
 }
-"""Caption and table of each axis, and how to read it."""
+"""Caption, table and explanation of each axis."""
 
 
 def _verdicts(analysis: xr.Dataset, axis: str, name: str) -> list[Cell]:
@@ -142,7 +145,7 @@ def _verdicts(analysis: xr.Dataset, axis: str, name: str) -> list[Cell]:
 
 
 def _tally(analysis: xr.Dataset, axis: str, name: str) -> str:
-    """How often each verdict occurs over the rest of the grid: "converged 22, divergent 2"."""
+    """Count each verdict over the rest of the grid: "converged 22, divergent 2"."""
     if f"{axis}_tally" not in analysis:
         return "–"
     tally = analysis[f"{axis}_tally"].sel(response=name)
@@ -152,20 +155,20 @@ def _tally(analysis: xr.Dataset, axis: str, name: str) -> str:
 
 
 def _behaviours(analysis: xr.Dataset, axis: str, name: str) -> str:
-    """How the three finest grids behave, where an axis has an order; "" else."""
+    """Return how the three finest grids behave; "" for an axis without an order."""
     counts = _counts(analysis, f"{axis}_behaviour", name)
     return f"behaviour: {_listed(counts)}" if counts else ""
 
 
 def _gci(analysis: xr.Dataset, axis: str, name: str) -> Cell:
-    """The largest index, and the asymptotic ratio of all where there is one."""
+    """Return the largest index, with the range of asymptotic ratios where there is one."""
     ratio = _spread(analysis, f"{axis}_asymptotic_ratio", name)
     detail = "" if ratio == "–" else f"asymptotic ratio {ratio}"
     return Cell(_percent(_largest(analysis, f"{axis}_gci", name)), "number", detail)
 
 
 def _counts(analysis: xr.Dataset, variable: str, name: str) -> dict[str, int]:
-    """How often each flag occurs over the rest of the grid, in words."""
+    """Count each flag, in words, over the rest of the grid."""
     if variable not in analysis:
         return {}
     flags = analysis[variable].sel(response=name)
@@ -178,7 +181,7 @@ def _listed(counts: dict[str, int]) -> str:
 
 
 def _needed(analysis: xr.Dataset, name: str, where: dict[str, int]) -> Cell:
-    """The range over the grid; says where not even the second most points stay within 1 %."""
+    """Return the range over the grid; say where not even the second most points stay within 1 %."""
     if "points_needed" not in analysis:
         return Cell("–", "number")
     needed = analysis["points_needed"].sel(response=name).isel(where).values
@@ -209,7 +212,7 @@ def _spread(analysis: xr.Dataset, variable: str, name: str) -> str:
 
 
 def _largest(analysis: xr.Dataset, variable: str, name: str) -> float:
-    """The largest value; infinite where one is, NaN where none is."""
+    """Return the largest value; infinite where one is, NaN where there is none."""
     if variable not in analysis:
         return float("nan")
     values = np.ravel(analysis[variable].sel(response=name).values)

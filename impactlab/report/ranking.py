@@ -1,8 +1,8 @@
-"""Which parameters matter most: ranks and plain sentences that claim no more than is known.
+"""Ranks of the parameters, and sentences that claim no more than is known.
 
-A parameter is named where its whole interval lies above zero and above the dummy parameter's, and
-its index above what the numerical error could make of it; where only the latter fails, it is said.
-One comes before another only where their intervals, with the numerical error, do not overlap.
+A sentence names a parameter where its whole interval lies above zero and above the dummy
+parameter's, and its index exceeds the numerical error; it says where only the latter fails. One
+parameter ranks before another only where their intervals, with the numerical error, do not overlap.
 """
 
 from __future__ import annotations
@@ -24,25 +24,23 @@ from impactlab.figures.measures import (
     Index,
     asked,
 )
-from impactlab.report.indices import in_units, named, told
-from impactlab.report.table import Cell, Table
+from impactlab.report.indices import in_units, named, with_margin
+from impactlab.report.page import Cell, Table
 
 _COARSE = 0.02
-"""Half-width from which on shares are told in whole per cent."""
+"""Smallest half-width of shares given in whole per cent."""
 _SMALL = 0.1
-"""Share below which they never are."""
+"""Smallest share given in whole per cent."""
 _WORTH = 0.02
-"""Share of the variance from which on interactions are worth a sentence."""
+"""Smallest share of the variance of interactions that are worth a sentence."""
 _NAMED = 3
-"""At most so many parameters are named in a sentence."""
-POOR_FIT = 0.7
+"""Largest number of parameters in a sentence."""
+_POOR_FIT = 0.7
 """Share of the variance below which a linear fit says little (Saltelli et al. 2008, chapter 1)."""
-Named = list[tuple[str, float, float]]
-"""(parameter in words, index, half-width), the largest magnitude first."""
 
 
 def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
-    """A row a response: the rank of each parameter, a range where intervals overlap."""
+    """Return one row per response: the rank of each parameter, a range where intervals overlap."""
     measure = measures.ranking(family)
     names = measures.parameters(analysis)
     head = ["Response", *(labels.sentence(labels.parameter(name)) for name in names)]
@@ -58,7 +56,7 @@ def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
 
 
 def sentences(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[str]:
-    """A sentence or two a response, on significant indices alone."""
+    """Return one or two sentences per response, on significant indices alone."""
     return [_sentence(runs, analysis, family, name) for name in asked(runs, analysis)]
 
 
@@ -82,14 +80,14 @@ def _sentence(runs: xr.Dataset, analysis: xr.Dataset, family: Family, name: str)
     if not np.isfinite(values).any():
         why = f": {verdict.meaning or verdict.words}" if verdict else ""
         return f"The indices of the {response} are undefined{why}."
-    text = " ".join(_TELLERS[family.title](runs, analysis, name))
+    text = " ".join(_WRITERS[family.title](runs, analysis, name))
     if verdict and not verdict.sound:
         text += f" To be taken with care: {verdict.meaning or verdict.words}."
     return text
 
 
 def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
-    """What comes from single parameters, the largest share first; then interactions."""
+    """Yield the shares of single parameters, the largest first; then interactions."""
     response, index = labels.response(name), measures.index(analysis, "first_order", name)
     found = _shares(analysis, index, index.significant)
     lost = _shares(analysis, index, index.numerically_lost)
@@ -109,7 +107,7 @@ def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
 
 
 def _interactions(analysis: xr.Dataset, name: str) -> Iterator[str]:
-    """The parameter whose total index lies above its first order, beyond all that is in doubt."""
+    """Yield a sentence where a total index exceeds its first order by more than their errors."""
     first = measures.index(analysis, "first_order", name)
     total = measures.index(analysis, "total_order", name)
     surplus = total.values - first.values
@@ -122,7 +120,7 @@ def _interactions(analysis: xr.Dataset, name: str) -> Iterator[str]:
 
 
 def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
-    """How far the response moves, and whose effects are uneven."""
+    """Yield how far the response moves, and whose effects are uneven."""
     response, found = labels.response(name), _significant(analysis, "morris_mu_star", name)
     if not found:
         yield f"No parameter moves the {response} significantly."
@@ -142,38 +140,38 @@ def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
 
 
 def _dependence(measure: str, label: str) -> Callable[..., Iterator[str]]:
-    """A teller of indices that say how much a response depends on a parameter, and no more."""
+    """Return a writer of sentences on indices that only measure dependence."""
 
-    def tell(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
+    def write(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
         found = _significant(analysis, measure, name)
         if not found:
             yield f"No dependence of the {labels.response(name)} stands out of the noise."
             return
-        most = " most" * _leads(measures.index(analysis, measure, name))
-        listed = [f"the {key} ({label} {told(v, m)})" for key, v, m in found[:_NAMED]]
-        yield f"The {labels.response(name)} depends{most} on {_then(listed, bool(most))}."
+        leads = (1, 1) in measures.index(analysis, measure, name).ranks
+        listed = [f"the {key} ({label} {with_margin(v, m)})" for key, v, m in found[:_NAMED]]
+        yield f"The {labels.response(name)} depends{' most' * leads} on {_then(listed, leads)}."
 
-    return tell
+    return write
 
 
 def _regression(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
-    """With which parameters the response rises or falls, and whether a line tells it at all."""
+    """Yield the parameters that the response rises or falls with, and how well a line fits."""
     found = _significant(analysis, "regression", name)
-    told_ = [
-        f"{'rises' if value > 0 else 'falls'} with the {key} ({told(value, margin)})"
+    listed = [
+        f"{'rises' if value > 0 else 'falls'} with the {key} ({with_margin(value, margin)})"
         for key, value, margin in found[:_NAMED]
     ]
-    if told_:
-        yield f"The {labels.response(name)} {labels.listing(told_)}."
+    if listed:
+        yield f"The {labels.response(name)} {labels.listing(listed)}."
     else:
         yield f"The {labels.response(name)} rises or falls with no parameter significantly."
     if "regression_r_squared" in analysis:
         share = float(analysis["regression_r_squared"].sel(response=name))
-        little = ": the coefficients do not tell what it depends on" * (share < POOR_FIT)
+        little = ": the coefficients do not tell what it depends on" * (share < _POOR_FIT)
         yield f"The linear fit explains {100 * share:.0f} % of its variance{little}."
 
 
-_TELLERS: dict[str, Callable[[xr.Dataset, xr.Dataset, str], Iterator[str]]] = {
+_WRITERS: dict[str, Callable[[xr.Dataset, xr.Dataset, str], Iterator[str]]] = {
     SOBOL.title: _sobol,
     MORRIS.title: _morris,
     DELTA.title: _dependence("delta", "delta"),
@@ -183,19 +181,15 @@ _TELLERS: dict[str, Callable[[xr.Dataset, xr.Dataset, str], Iterator[str]]] = {
 
 
 def _then(listed: list[str], ordered: bool) -> str:
-    """The first before the others where it leads."""
+    """Join the list; the first comes before the others where it leads."""
     first, *rest = listed
     return (
         f"{first}, then on {labels.listing(rest)}" if ordered and rest else labels.listing(listed)
     )
 
 
-def _leads(index: Index) -> bool:
-    """Whether one parameter comes first beyond doubt."""
-    return (1, 1) in index.ranks
-
-
-def _significant(analysis: xr.Dataset, measure: str, name: str) -> Named:
+def _significant(analysis: xr.Dataset, measure: str, name: str) -> list[tuple[str, float, float]]:
+    """Return tuples (parameter in words, index, half-width), the largest magnitude first."""
     index = measures.index(analysis, measure, name)
     keys = [labels.parameter(key) for key in measures.parameters(analysis)]
     rows = zip(keys, index.values, index.margins, index.significant, strict=True)
@@ -203,15 +197,15 @@ def _significant(analysis: xr.Dataset, measure: str, name: str) -> Named:
     return sorted(found, key=lambda entry: -abs(entry[1]))
 
 
-def _shares(analysis: xr.Dataset, index: Index, asked: NDArray[np.bool_]) -> list[tuple[str, str]]:
-    """(parameter, share) in words, the largest of those asked for first."""
+def _shares(analysis: xr.Dataset, index: Index, where: NDArray[np.bool_]) -> list[tuple[str, str]]:
+    """Return pairs (parameter, share) in words where a mask holds, the largest share first."""
     keys = [labels.parameter(key) for key in measures.parameters(analysis)]
-    order = [at for at in np.argsort(-np.abs(index.values)) if asked[at]]
+    order = [at for at in np.argsort(-np.abs(index.values)) if where[at]]
     return [(keys[at], _share(index, at)) for at in order[:_NAMED]]
 
 
 def _share(index: Index, at: int) -> str:
-    """With the half-width of its interval and, where that is known, the numerical error."""
+    """Return a share with the half-width of its interval and the numerical error, if known."""
     value, margin, error = (
         float(each[at]) for each in (index.values, index.margins, index.numerical)
     )

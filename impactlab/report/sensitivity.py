@@ -1,10 +1,11 @@
-"""The sections on sensitivity, in the order of sensobol (Puy et al. 2022, J. Stat. Softw. 102)."""
+"""Sections on sensitivity, in the order of sensobol (Puy et al. 2022, J. Stat. Softw. 102)."""
 
 from __future__ import annotations
 
+import numpy as np
 import xarray as xr
 
-from impactlab.figures import access
+from impactlab.figures import access, labels, measures
 from impactlab.figures.measures import (
     DELTA,
     MORRIS,
@@ -12,43 +13,56 @@ from impactlab.figures.measures import (
     RANKED,
     REGRESSION,
     SOBOL,
+    SURROGATE,
     Family,
     asked,
 )
-from impactlab.report import indices, numerical, ranking, surrogate
-from impactlab.report.section import Section
+from impactlab.report import indices, ranking
+from impactlab.report.page import Cell, Section, Table
 
+_GOOD = 0.9
+"""Smallest predictivity of a surrogate that may replace the runs."""
+_PAIRS = (("first_order", "first-order"), ("total_order", "total-order"))
 _FIGURES = {
     MORRIS.title: ("morris", "morris_plane"),
     DELTA.title: ("delta", "delta_indices"),
     PAWN.title: ("pawn", "pawn_indices"),
     REGRESSION.title: ("regression", "regression_indices"),
 }
-"""Anchor and figure of the families beside Sobol's."""
+"""Anchor and figure of the families other than Sobol's."""
 
 
 def sections(runs: xr.Dataset, analysis: xr.Dataset, file: str = "") -> list[Section]:
-    """Indices, second order, convergence, ranking, other methods, surrogate; what there is.
+    """Return the sections that the analysis has data for.
 
-    file: name of the file of all indices beside the page, "" for none.
+    They are: indices, second order, convergence, ranking, other methods, surrogate. file: name of
+    the file of all indices beside the page, "" for none.
     """
     if not asked(runs, analysis):
         return []
     found = [family for family in RANKED if family.given(analysis)]
-    others = [family for family in found if family is not SOBOL]
     return [
         *([_sobol(runs, analysis)] if SOBOL in found else []),
         *([_second(runs, analysis)] if "second_order" in analysis else []),
         *([_convergence()] if "total_order_by_samples" in analysis else []),
         *([_ranking(runs, analysis, found[0], file)] if found else []),
-        *(_other(runs, analysis, family) for family in others),
-        *([surrogate.section(runs, analysis)] if surrogate.given(analysis) else []),
+        *(_other(runs, analysis, one, one is found[0]) for one in found if one is not SOBOL),
+        *([surrogate(runs, analysis)] if "surrogate_q2" in analysis else []),
     ]
 
 
-def last(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
-    """What follows the failures: the numerical uncertainty, where it is known."""
-    return [numerical.section(runs, analysis)] if numerical.given(analysis) else []
+def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
+    """Return the section on the surrogate: its error on held-out runs, and its indices."""
+    fitted = SURROGATE.given(analysis)
+    return Section(
+        "surrogate",
+        "Surrogate",
+        "A surrogate was fitted to the runs and tried on runs that it had not seen.",
+        _differences(runs, analysis) if fitted and "first_order" in analysis else [],
+        [_quality(runs, analysis)],
+        ["surrogate_validation", "surrogate_indices"],
+        indices.tables(runs, analysis, SURROGATE) if fitted else [],
+    )
 
 
 def _sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
@@ -87,7 +101,7 @@ def _convergence() -> Section:
     )
 
 
-def _ranking(runs: xr.Dataset, analysis: xr.Dataset, first: Family, file: str) -> Section:
+def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family, file: str) -> Section:
     lead = (
         "Sentences name significant parameters only, with the half-width of the "
         f"{access.confidence(analysis)} interval. Ranks are a range where intervals, widened by "
@@ -97,25 +111,58 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, first: Family, file: str) -
         "ranking",
         "Ranking",
         lead,
-        ranking.sentences(runs, analysis, first),
-        [ranking.table(runs, analysis, first)],
+        ranking.sentences(runs, analysis, family),
+        [ranking.table(runs, analysis, family)],
         files=[file] if file else [],
     )
 
 
-def _other(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Section:
+def _other(runs: xr.Dataset, analysis: xr.Dataset, family: Family, ranked: bool) -> Section:
+    """Return the section of one method; its sentences, unless the ranking has them already."""
     name, figure = _FIGURES[family.title]
     return Section(
         name,
         family.title,
         family.says,
-        _told(runs, analysis, family),
+        [] if ranked else ranking.sentences(runs, analysis, family),
         figures=[figure],
         folded=indices.tables(runs, analysis, family),
     )
 
 
-def _told(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[str]:
-    """Its sentences, unless the ranking has told them."""
-    main = next(one for one in RANKED if one.given(analysis))
-    return [] if family is main else ranking.sentences(runs, analysis, family)
+def _quality(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
+    head = ["Response", "Predictivity Q² on held-out runs", "Root mean square error"]
+    rows = []
+    for name in asked(runs, analysis):
+        q2 = float(analysis["surrogate_q2"].sel(response=name))
+        cell = Cell("undefined", "muted")
+        if np.isfinite(q2):
+            poor = q2 < _GOOD
+            kind, detail = ("warning", "poor") if poor else ("number", "")
+            cell = Cell(labels.number(q2, 3), kind, detail)
+        error = "–"
+        if "surrogate_rmse" in analysis:
+            rmse = float(analysis["surrogate_rmse"].sel(response=name))
+            error = indices.in_units(runs[name], rmse, np.inf)
+        rows.append([indices.named(analysis, name), cell, Cell(error, "number")])
+    return Table(
+        "The surrogate on held-out runs (1: perfect, 0: no better than the mean)", head, rows
+    )
+
+
+def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    """Return one sentence per response and order whose two estimates do not overlap."""
+    found = []
+    keys = np.array([labels.parameter(key) for key in measures.parameters(analysis)])
+    for name in asked(runs, analysis):
+        for order, label in _PAIRS:
+            sampled = measures.index(analysis, order, name)
+            fitted = measures.index(analysis, f"surrogate_{order}", name)
+            apart = np.abs(sampled.values - fitted.values) > sampled.margins + fitted.margins
+            if apart.any():
+                where = labels.listing(keys[apart].tolist())
+                found.append(
+                    f"{labels.sentence(labels.response(name))}: the {label} indices of the runs "
+                    f"and of the surrogate differ beyond their intervals for {where}."
+                )
+    return found

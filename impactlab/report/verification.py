@@ -1,30 +1,35 @@
-"""The report of a verification: the verdict first, what failed before what passed."""
+"""The report of a verification: the verdict first, failed checks before passed ones."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from impactlab.figures import labels
 from impactlab.figures.draw import OVERVIEW
-from impactlab.report import comparisons, provenance
-from impactlab.report.page import write_page
+from impactlab.figures.labels import Display, display
+from impactlab.report.page import Cell, Table, commands, provenance, write_page
 from impactlab.report.pictures import Picture, pictures
-from impactlab.report.table import Cell, Table
-from impactlab.verification.finding import Outcome, gravest_first
+from impactlab.verification.finding import Comparison, Outcome, gravest_first
 from impactlab.verification.stored import unpacked
 
 _SHORT = 12
-"""Tables of up to so many passed comparisons stand open."""
+"""Longest table of passed comparisons that is not folded."""
+_HEAD = ["Quantity", "Case", "Ours", "Independent value", "Difference", "Tolerance", "Verdict"]
+_DIGITS = 6
+_PLAIN = ("absolute", "relative")
+"""Measures that need no name beside the number: its unit, or none, shows them."""
+_PERCENT = 1e-4
+"""Smallest relative tolerance that is given in per cent."""
 
 
 @dataclass(frozen=True)
-class Section:
-    """A check on the page: tables of what failed and passed, and its curves."""
+class CheckResult:
+    """A check on the page: tables of failed and passed comparisons, and its curves."""
 
     outcome: Outcome
     failed: Table
@@ -39,7 +44,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Tally:
-    """How many checks and comparisons there are, and how many of them did not pass."""
+    """Numbers of checks and comparisons, and of those that did not pass."""
 
     checks: int
     bad_checks: int
@@ -66,33 +71,29 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
     """
     outcomes = gravest_first(unpacked(findings))
     drawn = {picture.name: picture for picture in pictures(figures_folder)}
-    context = _about(findings) | {
-        "tally": tally(outcomes),
-        "bad": [outcome for outcome in outcomes if outcome.verdict != "passed"],
-        "summary": _summary(outcomes),
-        "overview": drawn.get(OVERVIEW),
-        "sections": [_section(outcome, drawn.get(outcome.name)) for outcome in outcomes],
-    }
-    write_page("verification.html.j2", path, **context)
-
-
-def _about(findings: xr.Dataset) -> dict[str, Any]:
     name = str(findings.attrs.get("study", "verification"))
-    return {
-        "title": str(findings.attrs.get("title") or name),
-        "description": str(findings.attrs.get("description", "")),
-        "provenance": provenance.provenance(findings, "findings"),
-        "commands": provenance.commands(findings, "verify", "makes these checks again"),
-        "study_text": str(findings.attrs.get("study_text", "")),
-    }
+    write_page(
+        "verification.html.j2",
+        path,
+        title=str(findings.attrs.get("title") or name),
+        description=str(findings.attrs.get("description", "")),
+        tally=tally(outcomes),
+        bad=[outcome for outcome in outcomes if outcome.verdict != "passed"],
+        summary=_summary(outcomes),
+        overview=drawn.get(OVERVIEW),
+        checks=[_check(outcome, drawn.get(outcome.name)) for outcome in outcomes],
+        provenance=provenance(findings, "findings"),
+        commands=commands(findings, "verify", "makes these checks again"),
+        study_text=str(findings.attrs.get("study_text", "")),
+    )
 
 
-def _section(outcome: Outcome, picture: Picture | None) -> Section:
+def _check(outcome: Outcome, picture: Picture | None) -> CheckResult:
     passed = [entry for entry in outcome.finding.comparisons if entry.passed]
-    return Section(
+    return CheckResult(
         outcome,
-        comparisons.table(f"Failed: {outcome.title}", outcome.failures),
-        comparisons.table(f"Passed: {outcome.title}", passed),
+        Table(f"Failed: {outcome.title}", _HEAD, [_comparison(one) for one in outcome.failures]),
+        Table(f"Passed: {outcome.title}", _HEAD, [_comparison(one) for one in passed]),
         picture,
     )
 
@@ -113,3 +114,36 @@ def _row(outcome: Outcome) -> list[Cell]:
         Cell(f"{worst.quantity}, {worst.where}" if worst else outcome.reason),
         Cell(f"{outcome.seconds:.1f} s", "number"),
     ]
+
+
+def _comparison(entry: Comparison) -> list[Cell]:
+    unit = _display(entry, max(abs(entry.ours), abs(entry.independent)))
+    error, tolerance = _gap(entry)
+    return [
+        Cell(labels.sentence(entry.quantity)),
+        Cell(entry.where),
+        Cell(_value(entry.ours, unit, _DIGITS), "number"),
+        Cell(_value(entry.independent, unit, _DIGITS), "number"),
+        Cell(error, "number", "" if entry.measure in _PLAIN else entry.measure),
+        Cell(tolerance, "number"),
+        Cell("passed") if entry.passed else Cell("FAILED", "warning"),
+    ]
+
+
+def _gap(entry: Comparison) -> tuple[str, str]:
+    """Return error and tolerance as text, in the same unit."""
+    if entry.measure == "absolute":
+        unit = _display(entry, entry.tolerance)
+    else:
+        unit = Display(100.0, "%") if entry.tolerance >= _PERCENT else Display(1.0, "")
+    return _value(entry.error, unit, 2), _value(entry.tolerance, unit, 2)
+
+
+def _value(value: float, unit: Display, digits: int) -> str:
+    text = labels.number(float(unit(value)), digits)
+    return f"{text} {unit.symbol}".strip() if np.isfinite(value) else text
+
+
+def _display(entry: Comparison, magnitude: float) -> Display:
+    name = entry.quantity.replace(" ", "_")
+    return display(xr.DataArray([magnitude], attrs={"units": entry.units}, name=name))

@@ -9,7 +9,7 @@ from scipy.stats import norm
 
 from impactlab.analysis.analyse import analyse
 from impactlab.figures.draw import draw_all
-from impactlab.report.report import write_report
+from impactlab.report.study import write_report
 from impactlab.study.declaration import read_study
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute

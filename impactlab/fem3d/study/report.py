@@ -9,8 +9,7 @@ from impactlab.fem3d.figures import differences
 from impactlab.figures import labels
 from impactlab.figures.access import usable
 from impactlab.figures.labels import Display, display
-from impactlab.report.section import Section
-from impactlab.report.table import Cell, Table
+from impactlab.report.page import Cell, Section, Table
 from impactlab.variables import UNLIKE
 
 _LEAD = (

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 from impactlab.figures.draw import draw_all
-from impactlab.report.report import write_report
+from impactlab.report.study import write_report
 
 VOID = {"meta", "img", "br", "link", "input", "hr"}
 

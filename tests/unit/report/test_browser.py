@@ -11,7 +11,7 @@ import pytest
 import samples
 
 from impactlab.figures.draw import draw_all
-from impactlab.report.report import write_report
+from impactlab.report.study import write_report
 
 pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 CHROMIUM = shutil.which("chromium")

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.report.indices import told
+from impactlab.report.indices import with_margin
 
 
 @pytest.mark.parametrize(
@@ -20,4 +20,4 @@ from impactlab.report.indices import told
     ],
 )
 def test_digits_follow_the_interval(value: float, margin: float, text: str) -> None:
-    assert told(value, margin) == text
+    assert with_margin(value, margin) == text

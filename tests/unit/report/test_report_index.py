@@ -6,7 +6,7 @@ from urllib.parse import unquote
 
 import xarray as xr
 
-from impactlab.report.index import write_index
+from impactlab.report.results import write_index
 
 
 def _index(results: Path, page: Any, path: Path | None = None) -> Any:

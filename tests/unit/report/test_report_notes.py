@@ -6,8 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from impactlab.report.cautions import cautions
-from impactlab.report.notes import NOTES, notes
+from impactlab.report.cautions import NOTES, cautions, notes
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.about import ABOUT
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from impactlab.report.report import write_report
+from impactlab.report.study import write_report
 
 Study = Any
 STUDIES = ("velocity_study", "material_study", "discretisation_study", "sobol_study")

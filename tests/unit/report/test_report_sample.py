@@ -14,9 +14,11 @@ import xarray as xr
 from impactlab.analysis.numerical import NumericalFrom
 from impactlab.analysis.verdicts import flagged
 from impactlab.figures.draw import draw_all
-from impactlab.report import numerical, ranking, surrogate
-from impactlab.report.drawn_data import drawn_data
-from impactlab.report.report import write_report
+from impactlab.report import ranking
+from impactlab.report.indices import numerical_warnings
+from impactlab.report.pictures import drawn_data
+from impactlab.report.sensitivity import surrogate
+from impactlab.report.study import write_report
 
 Study = tuple[xr.Dataset, xr.Dataset]
 PEAK = {"response": "peak_force"}
@@ -91,7 +93,7 @@ def test_an_index_within_the_dummys_interval_is_not_named(study: Study) -> None:
 
 def test_an_index_below_the_numerical_error_is_not_named_but_warned_of(study: Study) -> None:
     runs, analysis = study
-    assert numerical.warnings(runs, analysis) == []
+    assert numerical_warnings(runs, analysis) == []
     analysis["first_order_numerical"].loc[PEAK] = [0.0, 0.2, 0.0, 0.0]
     told, left = ranking.sentences(runs, analysis, ranking.SOBOL)[0].split(" The numerical error ")
     assert "yield stress" not in told
@@ -100,7 +102,7 @@ def test_an_index_below_the_numerical_error_is_not_named_but_warned_of(study: St
         "leaves open what share of the variance of the peak force comes from these alone: yield "
         "stress of the beam, 12 % (± 3, numerically ± 20). With all its interactions"
     )
-    (warning,) = numerical.warnings(runs, analysis)
+    (warning,) = numerical_warnings(runs, analysis)
     value = float(analysis["first_order"].sel(PEAK)[1])
     assert warning == (
         "Peak force, first order: not resolved at this discretisation, for the numerical error "
@@ -210,7 +212,7 @@ def test_a_surrogate_that_disagrees_or_is_poor_is_named(study: Study) -> None:
     runs, analysis = study
     analysis["surrogate_total_order"].loc[PEAK] = [0.5, 0.13, 0.0, 0.0]
     analysis["surrogate_q2"].loc[PEAK] = 0.6
-    found = surrogate.section(runs, analysis)
+    found = surrogate(runs, analysis)
     assert found.sentences == [
         "Peak force: the total-order indices of the runs and of the surrogate differ beyond their "
         "intervals for impact velocity."

@@ -10,8 +10,7 @@ import pytest
 import xarray as xr
 
 from impactlab.figures.draw import draw_findings
-from impactlab.report.index import write_index
-from impactlab.report.kinds import FINDINGS, RUNS, read_stored
+from impactlab.report.results import FINDINGS, RUNS, read_stored, write_index
 from impactlab.report.verification import write_verification
 from impactlab.verification.stored import packed
 

@@ -1,0 +1,134 @@
+"""Stored results of a study: their kinds, how each is drawn and reported, and an index of all."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import quote
+
+import xarray as xr
+
+from impactlab.figures import access, labels
+from impactlab.figures.access import count
+from impactlab.figures.draw import CAPTIONS, draw_all, draw_findings
+from impactlab.report.page import write_page
+from impactlab.report.study import write_report
+from impactlab.report.verification import tally, write_verification
+from impactlab.study.netcdf import read_netcdf
+from impactlab.verification.stored import unpacked
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of results.
+
+    files: stored beside the report; the first holds the study's title. draw(*datasets, folder):
+    write the figures. write(*datasets, figures_folder, path): write the report.
+    counts(dataset of the first file): return how much there is and what failed ("" for nothing).
+    """
+
+    files: tuple[str, ...]
+    draw: Callable[..., object]
+    write: Callable[..., object]
+    counts: Callable[[xr.Dataset], tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A study in the index.
+
+    size: how much there is; failed: what failed ("" for nothing). report, thumbnail: addresses
+    relative to the index ("" for none).
+    """
+
+    study: str
+    title: str
+    description: str
+    size: str
+    failed: str
+    report: str
+    thumbnail: str
+    alt: str
+
+
+def _runs(runs: xr.Dataset) -> tuple[str, str]:
+    method = labels.method(str(runs.attrs.get("method", "grid")))
+    failed = int(access.failed(runs).sum())
+    return f"{count(runs)} runs ({method})", f"{failed} failed" if failed else ""
+
+
+def _findings(findings: xr.Dataset) -> tuple[str, str]:
+    found = tally(unpacked(findings))
+    pairs = (found.checks, found.comparisons), (found.bad_checks, found.failed)
+    size, failed = (
+        [labels.counted(checks, "check"), labels.counted(comparisons, "comparison")]
+        for checks, comparisons in pairs
+    )
+    return ", ".join(size), "" if found.passed else f"{labels.listing(failed)} failed"
+
+
+RUNS = Kind(("runs.nc", "analysis.nc"), draw_all, write_report, _runs)
+FINDINGS = Kind(("findings.nc",), draw_findings, write_verification, _findings)
+
+
+def read_stored(paths: Sequence[Path]) -> tuple[Kind, list[xr.Dataset]]:
+    """Return the kind of a study's results, and their datasets.
+
+    Raises OSError naming a file that cannot be read, ValueError where files are missing or too
+    many.
+    """
+    datasets = [read_netcdf(path) for path in paths]
+    kind = FINDINGS if "tolerance" in datasets[0] else RUNS
+    if len(paths) != len(kind.files):
+        expected = " and ".join(kind.files)
+        raise ValueError(f"{paths[0]}: expected {expected}, but got {len(paths)} files")
+    return kind, datasets
+
+
+def write_index(results: Path, path: Path) -> None:
+    """Write a page with a link to each report under `results` (results/NAME/report.html).
+
+    The page on the paper (results/paper) is linked where it exists. A report without the stored
+    results that it was made from is left out. Raises OSError when `path` cannot be written.
+    """
+    entries = []
+    for report in sorted(results.glob("*/report.html")):
+        stored = [kind for kind in (RUNS, FINDINGS) if report.with_name(kind.files[0]).exists()]
+        if stored:
+            entries.append(_entry(report.parent, stored[0], path.parent))
+    claims = results / "paper" / "claims.html"
+    address = _address(claims, path.parent) if claims.exists() else ""
+    write_page("index.html.j2", path, entries=entries, paper=address)
+
+
+def _entry(folder: Path, kind: Kind, home: Path) -> Entry:
+    thumbnail, alt = _thumbnail(folder)
+    with xr.open_dataset(folder / kind.files[0]) as stored:
+        size, failed = kind.counts(stored)
+        return Entry(
+            study=folder.name,
+            title=str(stored.attrs.get("title") or folder.name),
+            description=str(stored.attrs.get("description", "")),
+            size=size,
+            failed=failed,
+            report=_address(folder / "report.html", home),
+            thumbnail=_address(thumbnail, home) if thumbnail else "",
+            alt=alt,
+        )
+
+
+def _thumbnail(folder: Path) -> tuple[Path | None, str]:
+    """Return the study's first figure, and its title."""
+    captions = folder / "figures" / CAPTIONS
+    if captions.exists():
+        for name, entry in json.loads(captions.read_bytes()).items():
+            if (path := captions.with_name(f"{name}.svg")).exists():
+                return path, str(entry["title"])
+    return None, ""
+
+
+def _address(path: Path, home: Path) -> str:
+    return quote(Path(os.path.relpath(path, home)).as_posix())
