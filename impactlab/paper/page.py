@@ -54,8 +54,8 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
     statements = [entry for entry in judged if not entry.statement.holds]
     misprints = [entry for entry in judged if entry.statement.holds]
     draw_paper(stored, output / "figures")
-    write_csv(judged, output / "claims.csv")
-    write_numbers(judged, output / "numbers.csv")
+    _write_claims(judged, output / "claims.csv")
+    _write_numbers(judged, output / "numbers.csv")
     write_page(
         "claims.html.j2",
         output / "claims.html",
@@ -146,7 +146,7 @@ def _solved(data: Data) -> Table:
     return Table("Studies that the verdicts are computed from", head, rows)
 
 
-def write_csv(judged: Iterable[JudgedStatement], path: Path) -> None:
+def _write_claims(judged: Iterable[JudgedStatement], path: Path) -> None:
     """Write one row per judgement, with its numbers as text."""
     head = ["claim", "statement", "case", "test", "numbers", "verdict", "why"]
     rows = (
@@ -165,7 +165,7 @@ def write_csv(judged: Iterable[JudgedStatement], path: Path) -> None:
     _write(path, head, rows)
 
 
-def write_numbers(judged: Iterable[JudgedStatement], path: Path) -> None:
+def _write_numbers(judged: Iterable[JudgedStatement], path: Path) -> None:
     """Write one row per number, in SI units; an unknown uncertainty is "nan"."""
     head = ["claim", "case", "number", "value", "uncertainty", "units"]
     rows = (

@@ -5,7 +5,14 @@ A new statement is a `Statement` in the module of its subject and a line in STAT
 
 from __future__ import annotations
 
-from impactlab.paper.statements import contact, convergence, misprints, plasticity, three_d
+from impactlab.paper.statements import (
+    contact,
+    contact_law,
+    convergence,
+    misprints,
+    plasticity,
+    three_d,
+)
 from impactlab.paper.statements.statement import Data, JudgedStatement, Statement
 
 STATEMENTS: tuple[Statement, ...] = (
@@ -23,12 +30,12 @@ STATEMENTS: tuple[Statement, ...] = (
     three_d.DURATION_OF_WITNESS,
     three_d.PLASTIC_ZONE_OF_WITNESS,
     misprints.TIME_STEP,
-    misprints.UNLOADING_RADIUS,
-    misprints.ELASTIC_PHASE,
-    misprints.FULLY_PLASTIC,
+    contact_law.UNLOADING_RADIUS,
+    contact_law.ELASTIC_PHASE,
+    contact_law.FULLY_PLASTIC,
     misprints.BEAM_MASS,
     misprints.FEW_POINTS,
-    misprints.RESTITUTION,
+    contact_law.RESTITUTION,
     misprints.SUB_IMPACTS,
 )
 

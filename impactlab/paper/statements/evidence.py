@@ -1,4 +1,4 @@
-"""Numbers from solved studies, each with its uncertainty from the convergence in nodes."""
+"""Numbers from solved studies, each with its uncertainty from the convergence in the mesh."""
 
 from __future__ import annotations
 
@@ -10,14 +10,22 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from impactlab.analysis.convergence.axis import judge
+from impactlab.analysis.convergence.element_size import SPACINGS
 from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL
+from impactlab.analysis.convergence.uncertainty import numerical_uncertainty
 from impactlab.analysis.responses import relevant_bits
+from impactlab.model.impact import SOLID
+from impactlab.model.parameters import ELEMENTS
 from impactlab.paper.statements.statement import Data, Number, UnknownError
-from impactlab.variables import RESPONSES, reasons
+from impactlab.variables import RESPONSES, WITNESS, reasons
 
 Floats = NDArray[np.float64]
 BEAM = "euler_bernoulli"
 """The paper's beam, among `beam_model`."""
+VELOCITY = 0.99
+"""The paper's impact velocity, m/s."""
+FIRST_CONTACT, MESHES = "witness", "witness_mesh"
+"""Studies: beam and 3-D models over the velocities; the 3-D model at VELOCITY on finer meshes."""
 
 
 @dataclass(frozen=True)
@@ -129,3 +137,61 @@ def _at_velocity(
     if np.isnan(number.uncertainty):
         raise UnknownError(f"at {velocity:g} m/s there are fewer than three grids")
     return number.value, number.uncertainty
+
+
+def beam_response(data: Data, response: str, velocity: float, model: str) -> Number:
+    """Return a beam model's response; raises UnknownError where its uncertainty is unknown."""
+    runs = refined_runs(data)
+    runs = runs.isel({refined_elements(runs): 0})
+    return _bounded(finest_grid(runs, response, velocity=velocity, beam_model=model))
+
+
+def solid_response(data: Data, response: str, velocity: float, least: float = 0.0) -> Number:
+    """Return the 3-D model's response, its uncertainty from the element sizes, at least `least`.
+
+    At the paper's velocity it comes from the study MESHES, where that is solved. Raises
+    UnknownError where a run is missing or nothing bounds the error.
+    """
+    runs = solid_runs(data, velocity)
+    if response not in runs:
+        study = runs.attrs.get("study", FIRST_CONTACT)
+        raise UnknownError(f"the runs of the study {study} do not hold the {response}")
+    values = select_response(runs, response, velocity=velocity, beam_model=SOLID)
+    elements = refined_elements(runs)
+    spacings = SPACINGS[elements](runs[elements].values.astype(float))
+    finest_first = np.argsort(spacings)
+    found = values.values.astype(float)[finest_first]
+    width = max(float(numerical_uncertainty(found, spacings[finest_first]).amounts[0]), least)
+    entry = (RESPONSES | WITNESS)[response]
+    return _bounded(Number(f"{entry.long_name} (3-D)", found[0], entry.units, width))
+
+
+def refined_runs(data: Data) -> xr.Dataset:
+    """Return the runs of FIRST_CONTACT; raises UnknownError unless nodes and elements vary."""
+    runs = runs_of(data, FIRST_CONTACT)
+    if "nodes" not in runs.dims:
+        raise UnknownError(f"the study {FIRST_CONTACT} does not vary nodes: its error is unknown")
+    refined_elements(runs)
+    return runs
+
+
+def refined_elements(runs: xr.Dataset) -> str:
+    """Return the dimension on which the 3-D elements are refined; raises UnknownError without."""
+    for name in ELEMENTS:
+        if name in runs.dims:
+            return name
+    study = runs.attrs.get("study", "?")
+    raise UnknownError(f"the study {study} does not vary {ELEMENTS[0]}: its error is unknown")
+
+
+def solid_runs(data: Data, velocity: float) -> xr.Dataset:
+    """Return runs that vary the element size, among them those of the 3-D model."""
+    if velocity == VELOCITY and MESHES in data:
+        return data[MESHES].expand_dims("velocity")
+    return refined_runs(data).isel(nodes=0)
+
+
+def _bounded(number: Number) -> Number:
+    if not np.isfinite(number.uncertainty):
+        raise UnknownError(f"nothing bounds the numerical error of the {number.name}")
+    return number

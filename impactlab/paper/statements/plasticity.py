@@ -23,8 +23,8 @@ from impactlab.paper.statements.statement import (
 
 LIMIT = 0.002
 """The plastic strain that the paper compares with."""
-STUDIES = LATE, EARLY = "fig10_nodes", "fig10_first"
-"""After all contacts, and after the first."""
+LATE, EARLY = "fig10_nodes", "fig10_first"
+"""Studies: after all contacts, and after the first."""
 ELASTIC_UP_TO = 5.0
 BELOW_LIMIT_AT = 10.0
 ABOVE_LIMIT_AT = (15.0, 20.0)
@@ -48,7 +48,10 @@ class Reading:
 
 AWAY = (
     Reading(
-        "away from the impact, after all contacts (25 ms)", LATE, "remote_plastic_strain", True
+        "away from the impact, after all contacts (25 ms)",
+        LATE,
+        "remote_plastic_strain",
+        literal=True,
     ),
     Reading("away from the impact, after 1 ms", EARLY, "remote_plastic_strain"),
 )
@@ -86,7 +89,7 @@ ELASTIC_TO_5 = Statement(
     text="Up to 5 m/s there is no plastic strain away from the impact.",
     test="PEEQ + U = 0 farther than one beam depth from mid-span, at every velocity up to 5 m/s.",
     judge=_judge_elastic,
-    studies=STUDIES,
+    studies=(LATE, EARLY),
 )
 
 
@@ -118,7 +121,7 @@ BELOW_LIMIT_AT_10 = Statement(
     text="At 10 m/s the plastic strain along the beam stays below 0.2 %.",
     test="PEEQ + U < 0.2 %; it does not hold where PEEQ − U > 0.2 %, and is open in between.",
     judge=_judge_below_limit,
-    studies=STUDIES,
+    studies=(LATE, EARLY),
 )
 
 
@@ -137,7 +140,7 @@ ABOVE_LIMIT_AT_15 = Statement(
         "PEEQ + U < 0.2 %, and is open in between."
     ),
     judge=_judge_above_limit,
-    studies=STUDIES,
+    studies=(LATE, EARLY),
 )
 
 
@@ -176,5 +179,5 @@ PLASTICITY_BEGINS = Statement(
         "m/s. The uncertainty is half of the gap between the two, on the finest grid."
     ),
     judge=_judge_first_yield,
-    studies=STUDIES,
+    studies=(LATE, EARLY),
 )

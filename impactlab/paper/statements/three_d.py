@@ -6,18 +6,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 
-from impactlab.analysis.convergence.element_size import SPACINGS
-from impactlab.analysis.convergence.uncertainty import numerical_uncertainty
 from impactlab.model.impact import SOLID
-from impactlab.model.parameters import ELEMENTS
 from impactlab.paper.statements.evidence import (
     BEAM,
+    FIRST_CONTACT,
+    MESHES,
+    VELOCITY,
     Floats,
-    finest_grid,
-    runs_of,
-    select_response,
+    beam_response,
+    refined_elements,
+    refined_runs,
+    solid_response,
+    solid_runs,
 )
 from impactlab.paper.statements.statement import (
     Data,
@@ -29,80 +30,18 @@ from impactlab.paper.statements.statement import (
     attempt,
     verdict,
 )
-from impactlab.variables import RESPONSES, WITNESS
 
-STUDIES = STUDY, MESHES = "witness", "witness_mesh"
-"""The first contact by beam and 3-D models; the 3-D model at VELOCITY on finer meshes."""
-VELOCITY = 0.99
-"""The paper's, in m/s."""
 BEAMS = {BEAM: "Euler-Bernoulli beam", "timoshenko": "Timoshenko beam"}
 """The beam models that are compared, the paper's first."""
 DISPLACEMENT_LIMIT = 0.10
 DISPLACEMENTS = {"midspan_deflection": "deflection at mid-span", "sphere_displacement": "sphere"}
 PRINTED_EXTENT = 1.52e-3
-"""Of the plastic zone from the centre of the impact, m."""
+"""Extent of the plastic zone from the centre of the impact, m."""
 ZONE_READINGS = {
     "on the surface, PEEQ above 0.2 %": ("plastic_zone_radius", 1.0),
     "at any depth, PEEQ above 1e-5": ("plastic_zone_length", 0.5),
 }
 """A variable of the runs, and the factor to the extent from the centre."""
-
-
-def _beam_response(data: Data, response: str, velocity: float, model: str) -> Number:
-    """Return a beam model's response; raises UnknownError where its uncertainty is unknown."""
-    runs = _refined_runs(data)
-    runs = runs.isel({_refined_elements(runs): 0})
-    return _bounded(finest_grid(runs, response, velocity=velocity, beam_model=model))
-
-
-def _solid_response(data: Data, response: str, velocity: float, least: float = 0.0) -> Number:
-    """Return the 3-D model's response, its uncertainty from the element sizes, at least `least`.
-
-    At the paper's velocity it comes from the study MESHES, where that is solved. Raises
-    UnknownError where a run is missing or nothing bounds the error.
-    """
-    runs = _solid_runs(data, velocity)
-    if response not in runs:
-        study = runs.attrs.get("study", STUDY)
-        raise UnknownError(f"the runs of the study {study} do not hold the {response}")
-    values = select_response(runs, response, velocity=velocity, beam_model=SOLID)
-    spacings = SPACINGS[dim := _refined_elements(runs)](runs[dim].values.astype(float))
-    finest_first = np.argsort(spacings)
-    found = values.values.astype(float)[finest_first]
-    width = max(float(numerical_uncertainty(found, spacings[finest_first]).amounts[0]), least)
-    entry = (RESPONSES | WITNESS)[response]
-    return _bounded(Number(f"{entry.long_name} (3-D)", found[0], entry.units, width))
-
-
-def _refined_runs(data: Data) -> xr.Dataset:
-    """Return the runs of STUDY; raises UnknownError unless both kinds of model are refined."""
-    runs = runs_of(data, STUDY)
-    if "nodes" not in runs.dims:
-        raise UnknownError(f"the study {STUDY} does not vary nodes: the error is unknown")
-    _refined_elements(runs)
-    return runs
-
-
-def _refined_elements(runs: xr.Dataset) -> str:
-    """Return the dimension on which the 3-D elements are refined; raises UnknownError without."""
-    for name in ELEMENTS:
-        if name in runs.dims:
-            return name
-    study = runs.attrs.get("study", "?")
-    raise UnknownError(f"the study {study} does not vary {ELEMENTS[0]}: the error is unknown")
-
-
-def _solid_runs(data: Data, velocity: float) -> xr.Dataset:
-    """Return runs, among them those of the 3-D model, that vary the element size."""
-    if velocity == VELOCITY and MESHES in data:
-        return data[MESHES].expand_dims("velocity")
-    return _refined_runs(data).isel(nodes=0)
-
-
-def _bounded(number: Number) -> Number:
-    if not np.isfinite(number.uncertainty):
-        raise UnknownError(f"nothing bounds the numerical error of the {number.name}")
-    return number
 
 
 @dataclass(frozen=True)
@@ -122,26 +61,32 @@ class Agreement:
     def __call__(self, data: Data) -> Iterator[Judgement]:
         """Yield one judgement per velocity and beam model."""
         velocities = [VELOCITY]
-        if STUDY in data and "velocity" in data[STUDY].dims:
-            velocities = sorted(float(velocity) for velocity in data[STUDY]["velocity"].values)
+        if FIRST_CONTACT in data and "velocity" in data[FIRST_CONTACT].dims:
+            velocities = sorted(
+                float(velocity) for velocity in data[FIRST_CONTACT]["velocity"].values
+            )
         for velocity in velocities:
             for model, words in BEAMS.items():
                 yield attempt(f"{velocity:g} m/s, {words}", self._judge, data, velocity, model)
 
     def _judge(self, case: str, data: Data, velocity: float, model: str) -> Judgement:
-        ours = _beam_response(data, self.response, velocity, model)
-        theirs = _solid_response(data, self.response, velocity)
+        ours = beam_response(data, self.response, velocity, model)
+        theirs = solid_response(data, self.response, velocity)
         ratio = ours.value / theirs.value
         share = ours.uncertainty / abs(ours.value) + theirs.uncertainty / abs(theirs.value)
         gap = Number("difference, relative to the 3-D model", ratio - 1.0, "1", ratio * share)
         numbers = (ours, theirs, gap)
         least, most = abs(gap.value) - gap.uncertainty, abs(gap.value) + gap.uncertainty
         if least <= self.limit < most:
-            why = f"{self.limit:.1%} lies within the uncertainty of the two models together."
-            return Judgement(case, numbers, Verdict.UNKNOWN, why)
-        why = f"The beam's is {abs(gap.value):.1%} {self.below if gap.value < 0 else self.above}."
+            return Judgement(case, numbers, Verdict.UNKNOWN, _undecided(self.limit))
+        comparative = self.below if gap.value < 0 else self.above
+        why = f"The beam's is {100 * abs(gap.value):.1f} % {comparative}."
         reading = (velocity, model) != self.stated
         return Judgement(case, numbers, verdict(most <= self.limit, reading=reading), why)
+
+
+def _undecided(limit: float) -> str:
+    return f"{100 * limit:g} % lies within the uncertainty of the two models together."
 
 
 FORCE_OF_WITNESS = Statement(
@@ -153,7 +98,7 @@ FORCE_OF_WITNESS = Statement(
         "m/s of its own beam; other velocities, and the Timoshenko beam, are readings."
     ),
     judge=Agreement("peak_force", 0.024, "smaller", "larger", stated=(VELOCITY, BEAM)),
-    studies=STUDIES,
+    studies=(FIRST_CONTACT, MESHES),
 )
 DURATION_OF_WITNESS = Statement(
     "duration_of_witness",
@@ -164,7 +109,7 @@ DURATION_OF_WITNESS = Statement(
         "shows, so a case that holds does so under a reading."
     ),
     judge=Agreement("contact_duration", 0.05, "shorter", "longer"),
-    studies=STUDIES,
+    studies=(FIRST_CONTACT, MESHES),
 )
 
 
@@ -183,24 +128,21 @@ def _judge_displacement(case: str, data: Data, variable: str, model: str) -> Jud
     name = "largest difference over the largest displacement"
     numbers = (Number(name, gap, "1", width, percent=True),)
     if gap - width <= DISPLACEMENT_LIMIT < gap + width:
-        limit = f"{DISPLACEMENT_LIMIT:.0%}"
-        why = f"{limit} lies within the uncertainty of the two models together."
-        return Judgement(case, numbers, Verdict.UNKNOWN, why)
+        return Judgement(case, numbers, Verdict.UNKNOWN, _undecided(DISPLACEMENT_LIMIT))
     than = "more" if gap > width else "no more"
-    why = (
-        f"They differ by up to {gap:.1%} of the largest displacement, {than} than the uncertainty."
-    )
+    why = f"They differ by up to {100 * gap:.1f} % of the largest displacement, "
+    why += f"{than} than the uncertainty."
     return Judgement(case, numbers, verdict(gap + width <= DISPLACEMENT_LIMIT, reading=True), why)
 
 
 def _histories(data: Data, variable: str, model: str) -> list[Floats]:
     """Return a history at the paper's velocity per grid of the model, finest first, (time,)."""
-    runs = _refined_runs(data)
-    elements = _refined_elements(runs)
+    runs = refined_runs(data)
+    elements = refined_elements(runs)
     refined, other = (elements, "nodes") if model == SOLID else ("nodes", elements)
     runs = runs.isel({other: 0})
     if variable not in runs:
-        raise UnknownError(f"the study {STUDY} keeps no histories")
+        raise UnknownError(f"the study {FIRST_CONTACT} keeps no histories")
     chosen = runs[variable].sel(velocity=VELOCITY, beam_model=model).compute()
     order = np.sort(chosen[refined].values)[:: 1 if refined == "element_size" else -1]
     curves = [chosen.sel({refined: value}).values for value in order]
@@ -227,7 +169,7 @@ DISPLACEMENT_OF_WITNESS = Statement(
         "number: 10 % is ours."
     ),
     judge=_judge_displacements,
-    studies=STUDIES,
+    studies=(FIRST_CONTACT, MESHES),
 )
 
 
@@ -237,11 +179,11 @@ def _judge_zone(data: Data) -> Iterator[Judgement]:
 
 
 def _judge_zone_case(case: str, data: Data, variable: str, factor: float) -> Judgement:
-    runs = _solid_runs(data, VELOCITY)
+    runs = solid_runs(data, VELOCITY)
     if "element_size" not in runs.dims:
         raise UnknownError(f"the study {MESHES} has not been solved")
     least = float(runs["element_size"].min()) / factor
-    found = _solid_response(data, variable, VELOCITY, least)
+    found = solid_response(data, variable, VELOCITY, least)
     reach = Number("extent from the centre", factor * found.value, "m", factor * found.uncertainty)
     within = reach.low <= PRINTED_EXTENT <= reach.high
     if within and reach.uncertainty > 0.5 * PRINTED_EXTENT:
@@ -262,5 +204,5 @@ PLASTIC_ZONE_OF_WITNESS = Statement(
         "above 1e-5."
     ),
     judge=_judge_zone,
-    studies=STUDIES,
+    studies=(FIRST_CONTACT, MESHES),
 )

@@ -1,10 +1,10 @@
-"""The checks of misprints show what is wrong, and pass what is right."""
+"""Tests of misprints: the printed forms fail, the right ones pass."""
 
 from __future__ import annotations
 
 import pytest
 
-from impactlab.paper.statements import misprints
+from impactlab.paper.statements import contact_law, misprints
 from impactlab.paper.statements.statement import Statement, Verdict
 from impactlab.verification.solutions import explicit_beam
 
@@ -15,19 +15,19 @@ HOLDS, READING, FAILS, UNKNOWN = Verdict
     ("statement", "expected"),
     [
         (misprints.TIME_STEP, [FAILS, HOLDS]),
-        (misprints.UNLOADING_RADIUS, [UNKNOWN, HOLDS, FAILS]),
-        (misprints.ELASTIC_PHASE, [FAILS, HOLDS]),
-        (misprints.FULLY_PLASTIC, [FAILS, HOLDS]),
+        (contact_law.UNLOADING_RADIUS, [UNKNOWN, HOLDS, FAILS]),
+        (contact_law.ELASTIC_PHASE, [FAILS, HOLDS]),
+        (contact_law.FULLY_PLASTIC, [FAILS, HOLDS]),
         (misprints.BEAM_MASS, [FAILS]),
         (misprints.FEW_POINTS, [FAILS] * 4),
-        (misprints.RESTITUTION, [FAILS]),
+        (contact_law.RESTITUTION, [FAILS]),
     ],
 )
 def test_verdicts(statement: Statement, expected: list[Verdict]) -> None:
     assert [entry.verdict for entry in statement.judge({})] == expected
 
 
-def test_the_numbers_of_physics() -> None:
+def test_numbers() -> None:
     numbers = {
         (statement.name, n.name): n.value
         for statement in (misprints.FEW_POINTS, misprints.BEAM_MASS, misprints.TIME_STEP)

@@ -14,7 +14,7 @@ Study = Any
 
 @pytest.fixture
 def folder(velocity_study: Study, tmp_path: Path) -> Path:
-    """A page from one study, under the name of figure 8's."""
+    """A page from one study, stored under the name of the study for figure 8."""
     runs, analysis = velocity_study
     for name, dataset in (("runs", runs.drop_dims(["time", "x"])), ("analysis", analysis)):
         write_netcdf(dataset, tmp_path / "fig08" / f"{name}.nc")

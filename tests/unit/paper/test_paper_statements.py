@@ -1,4 +1,4 @@
-"""Planted runs: each statement holds on data that make it hold, and not on others."""
+"""Statements, judged on synthetic runs that confirm or refute them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def verdicts(judgements: Any) -> list[Verdict]:
 
 
 def second_order(nodes: Any, share: float) -> Any:
-    """An error of `share` at 601 nodes."""
+    """Return values with a relative error of `share` at 601 nodes."""
     return 1.0 + share * (600.0 / (nodes - 1.0)) ** 2
 
 
@@ -54,7 +54,7 @@ def test_duration_falls(fig08: Any) -> None:
     assert "up to 10 m/s and rises" in partly.why
 
 
-def test_a_fall_within_the_uncertainty_is_none(fig08: Any) -> None:
+def test_a_fall_within_the_uncertainty_does_not_count(fig08: Any) -> None:
     (flat,) = contact.DURATION_FALLS.judge(fig08(power=-1e-7))
     assert flat.verdict == FAILS
     assert "does not fall by more than its uncertainty" in flat.why
@@ -73,7 +73,7 @@ def test_above_spring_mass(fig08: Any) -> None:
 
 @pytest.fixture
 def fig10(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
-    """Strains of 0 up to `begins`, of 2e-4 a m/s beyond, at both times."""
+    """Strains of 0 up to the velocity `begins`, then growing by `slope` per m/s, at both times."""
 
     def build(begins: float = 6.0, slope: float = 2e-4, error: float = 1e-3) -> Any:
         def strain(velocity: Any, nodes: Any) -> Any:
@@ -103,7 +103,7 @@ def test_dent_grows(fig10: Any) -> None:
     assert "6 to 7 m/s" in found.why
 
 
-def test_plastic_strain_where_the_paper_has_it(fig10: Any) -> None:
+def test_plastic_strain_as_in_the_paper(fig10: Any) -> None:
     data = fig10(begins=6.5, slope=4e-4)
     assert verdicts(plasticity.ELASTIC_TO_5.judge(data)) == [HOLDS, READING]
     assert verdicts(plasticity.BELOW_LIMIT_AT_10.judge(data)) == [HOLDS, READING, READING, READING]
@@ -111,7 +111,7 @@ def test_plastic_strain_where_the_paper_has_it(fig10: Any) -> None:
     assert verdicts(plasticity.PLASTICITY_BEGINS.judge(data)) == [HOLDS, READING, READING, READING]
 
 
-def test_plastic_strain_elsewhere_changes_the_verdicts(fig10: Any) -> None:
+def test_plastic_strain_other_than_in_the_paper(fig10: Any) -> None:
     assert verdicts(plasticity.ELASTIC_TO_5.judge(fig10(begins=3.0))) == [FAILS, FAILS]
     assert verdicts(plasticity.BELOW_LIMIT_AT_10.judge(fig10(slope=1e-3))) == [FAILS] * 4
     assert verdicts(plasticity.ABOVE_LIMIT_AT_15.judge(fig10(begins=12.0))) == [FAILS] * 4
@@ -119,8 +119,8 @@ def test_plastic_strain_elsewhere_changes_the_verdicts(fig10: Any) -> None:
     assert verdicts(plasticity.PLASTICITY_BEGINS.judge(fig10(begins=30.0))) == [UNKNOWN] * 4
 
 
-def test_a_limit_within_the_uncertainty_is_open(fig10: Any) -> None:
-    """0.2 % at 10 m/s on the finest grid, give or take."""
+def test_a_strain_limit_within_the_uncertainty_cannot_be_judged(fig10: Any) -> None:
+    """The strain at 10 m/s on the finest grid is about 0.2 %."""
     data = fig10(begins=6.0, slope=5e-4, error=0.01)
     assert verdicts(plasticity.BELOW_LIMIT_AT_10.judge(data)) == [UNKNOWN] * 4
 
@@ -170,7 +170,7 @@ def test_points(fig06: Any) -> None:
     )
 
 
-def test_one_response_that_is_off_is_enough(fig06: Any) -> None:
+def test_one_inaccurate_response_is_enough_to_fail(fig06: Any) -> None:
     data = fig06(0.0005)
     where = {"velocity": 15.0, "points": 21, "nodes": 601}
     data["fig06_nodes"]["contact_duration"].loc[where] *= 1.05
@@ -180,7 +180,7 @@ def test_one_response_that_is_off_is_enough(fig06: Any) -> None:
     assert found["15 m/s, plastic strain (PEEQ)"].verdict == READING
 
 
-def test_a_failed_run_is_told_and_not_judged(fig08: Any) -> None:
+def test_a_failed_run_is_reported_and_not_judged(fig08: Any) -> None:
     data = fig08()
     where = {"velocity": 5.0, "beam_model": "euler_bernoulli", "nodes": 601}
     data["fig08"]["status"].loc[where] = status.DIVERGED
@@ -189,7 +189,7 @@ def test_a_failed_run_is_told_and_not_judged(fig08: Any) -> None:
     assert "at 5 m/s 1 of 3 runs lack it: the run diverged" in found.why
 
 
-def test_without_studies_nothing_is_judged_but_closed_forms() -> None:
+def test_without_studies_only_closed_forms_are_judged() -> None:
     for entry in judge_all({}):
         found = list(entry.judgements)
         if entry.statement.studies:

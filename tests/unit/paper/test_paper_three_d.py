@@ -1,4 +1,4 @@
-"""Planted runs of beams and witness: each statement holds where it should, and not elsewhere."""
+"""Statements on the 3-D model, judged on synthetic runs that confirm or refute them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ AXES = {
 
 @pytest.fixture
 def witness(grid_runs: Callable[..., xr.Dataset]) -> Callable[..., dict[str, xr.Dataset]]:
-    """Beams `gap` above a solid whose finest value is off by `error`; errors of second order."""
+    """Beams with values `gap` above those of a 3-D model with a second-order error `error`."""
 
     def build(gap: float = 0.01, error: float = 1e-4, reach: float = 1.5e-3) -> Any:
         def value(velocity: Any, beam_model: Any, nodes: Any, element_size: Any) -> Any:
@@ -59,14 +59,14 @@ def test_the_peak_force_within_the_limit(witness: Any) -> None:
     assert verdicts(three_d.FORCE_OF_WITNESS.judge(witness(gap=-0.03))) == [FAILS] * 4
 
 
-def test_a_limit_within_the_uncertainty_is_open(witness: Any) -> None:
+def test_a_limit_within_the_uncertainty_cannot_be_judged(witness: Any) -> None:
     assert verdicts(three_d.FORCE_OF_WITNESS.judge(witness(gap=0.01, error=0.02))) == [UNKNOWN] * 4
     assert (
         verdicts(three_d.DURATION_OF_WITNESS.judge(witness(gap=0.05, error=0.01))) == [UNKNOWN] * 4
     )
 
 
-def test_finer_meshes_take_over_at_the_papers_velocity(witness: Any) -> None:
+def test_finer_meshes_are_used_at_the_papers_velocity(witness: Any) -> None:
     data = witness(gap=0.01, error=0.02)
     finer = witness(gap=0.01, error=1e-4)["witness"].isel(nodes=0).sel(velocity=0.99)
     data["witness_mesh"] = finer.sel(beam_model=["solid"])
@@ -74,8 +74,8 @@ def test_finer_meshes_take_over_at_the_papers_velocity(witness: Any) -> None:
     assert verdicts(three_d.FORCE_OF_WITNESS.judge(data)) == [HOLDS, READING, *coarse]
 
 
-def test_elements_may_be_counted_over_the_radius(witness: Any) -> None:
-    """Told by a number that grows as the elements shrink, the answers stay what they are."""
+def test_element_counts_per_radius_replace_element_sizes(witness: Any) -> None:
+    """The judgements do not depend on whether element sizes or counts are varied."""
     data = witness(gap=0.01, error=1e-3)
     runs = data["witness"].rename(element_size="elements_per_radius")
     sizes = runs["elements_per_radius"].values
@@ -118,7 +118,7 @@ def test_the_plastic_zone(witness: Any) -> None:
     assert verdicts(three_d.PLASTIC_ZONE_OF_WITNESS.judge(witness(reach=2.5e-3))) == [FAILS] * 2
 
 
-def test_a_missing_study_or_run_is_told(witness: Any) -> None:
+def test_a_missing_study_or_run_is_reported(witness: Any) -> None:
     for statement in (
         three_d.FORCE_OF_WITNESS,
         three_d.DURATION_OF_WITNESS,
