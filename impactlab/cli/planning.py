@@ -20,15 +20,15 @@ def allowed(
     """
     from impactlab.report.console import print_estimate
     from impactlab.study.errors import StudyError
-    from impactlab.study.estimate import estimate, remarks, room, unbearable
+    from impactlab.study.estimate import estimate, exceeded_limits, free_disk, implausible
 
     study = _found(study, output.with_name("resolution.nc"))
     cost = estimate(study, workers)
-    for remark in remarks(study):
+    for remark in implausible(study):
         logging.getLogger("impactlab").warning("%s", remark)
-    problems = unbearable(cost, output.parent)
+    problems = exceeded_limits(cost, output.parent)
     if dry_run:
-        print_estimate(cost, workers, room(output.parent), problems)
+        print_estimate(cost, workers, free_disk(output.parent), problems)
     elif problems and not force:
         raise StudyError(*problems)
     return not dry_run

@@ -1,4 +1,4 @@
-"""Make the checks of a verification and keep all that they found."""
+"""Checks of a verification, made one after the other, and all their findings."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ log = logging.getLogger(__name__)
 def check(verification: Verification) -> xr.Dataset:
     """Make every check, one after the other, and return findings.nc (verification.stored).
 
-    A check that ends in an error is kept as such, and the others go on.
+    A check that ends in an error is kept as such, and the others are still made.
     """
     outcomes: list[Outcome] = []
     with Progress(total=len(verification.checks), done=0, what="checks") as progress:
@@ -33,15 +33,15 @@ def check(verification: Verification) -> xr.Dataset:
 
 
 def failure(outcomes: Sequence[Outcome]) -> str:
-    """What failed, in a sentence; "" where nothing did."""
+    """Return a sentence about the checks that failed; "" where none did."""
     bad = [outcome for outcome in outcomes if outcome.verdict != "passed"]
     if not bad:
         return ""
-    told = "; ".join(f"{outcome.name}: {_told(outcome)}" for outcome in bad)
-    return f"verification failed in {len(bad)} of {len(outcomes)} checks ({told})"
+    reasons = "; ".join(f"{outcome.name}: {_reason(outcome)}" for outcome in bad)
+    return f"verification failed in {len(bad)} of {len(outcomes)} checks ({reasons})"
 
 
-def _told(outcome: Outcome) -> str:
+def _reason(outcome: Outcome) -> str:
     if outcome.reason:
         return outcome.reason
     total = len(outcome.finding.comparisons)

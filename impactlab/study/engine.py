@@ -27,26 +27,27 @@ if TYPE_CHECKING:
     from dask_jobqueue.slurm import SLURMCluster
 
 _LOOPBACK = "127.0.0.1:0"
-_ASK_AGAIN = 60.0
-"""Seconds between looks at whether Slurm jobs have to be submitted anew."""
-_TALKERS = ("distributed", "distributed.client", "tornado.application")
+_SUBMIT_AGAIN = 60.0
+"""Seconds between checks whether Slurm jobs have to be submitted again."""
+_LOGGERS = ("distributed", "distributed.client", "tornado.application")
 _SETTINGS = {
-    "distributed.admin.low-level-log-length": 10,  # of 1000 messages kept, cases and all
-    # what looks after itself many times a second, and takes some percent of the time
+    "distributed.admin.low-level-log-length": 10,  # of 1000 messages, which hold cases
+    # monitors that run many times per second and take some percent of the time
     "distributed.worker.profile.enabled": False,
     "distributed.admin.system-monitor.interval": "10s",
     "distributed.admin.tick.interval": "1s",
 }
-"""Of the dask that is started here."""
+"""Settings of the dask that is started here."""
 
 
 @dataclass(frozen=True)
 class Engine:
-    """On a running dask scheduler where an address is given, as Slurm jobs where a profile is.
+    """The place where batches are solved.
 
-    Else in threads or processes here. Schedulers and dashboards that are started here listen on
-    the loopback alone, but for the scheduler of Slurm jobs, which listens on the profile's
-    interface. dask's own configuration holds, TLS included.
+    That is a running dask scheduler where an address is given, Slurm jobs where a profile is, else
+    threads or processes of this machine. Schedulers and dashboards that are started here listen on
+    the loopback alone, except the scheduler of Slurm jobs, which listens on the profile's
+    interface. dask's own configuration applies, TLS included.
     """
 
     kind: Literal["threads", "processes"] = "threads"
@@ -54,12 +55,12 @@ class Engine:
     address: str = ""
     profile: Profile | None = None
     batch_seconds: float = 1.0
-    """Of a task, about."""
+    """Duration of a task, roughly."""
 
     @contextmanager
     def client(self) -> Iterator[Client]:
-        """A dask client for the time of a study. Raises OSError when no scheduler answers."""
-        for name in _TALKERS:  # what goes wrong is raised, and told
+        """Give a dask client as a context. Raises OSError when no scheduler answers."""
+        for name in _LOGGERS:  # errors are raised and reported by the command
             logging.getLogger(name).setLevel(logging.CRITICAL)
         logging.getLogger("asyncio").addFilter(_no_late_timeout)
         with dask.config.set(_SETTINGS), self._clients() as client:
@@ -74,12 +75,12 @@ class Engine:
 
 
 def _no_late_timeout(record: logging.LogRecord) -> bool:
-    """False for what dask leaves behind where its loop ends while a sender waits: no error."""
+    """Return False for a timeout that dask leaves when its loop ends while a sender waits."""
     return not isinstance(record.exc_info and record.exc_info[1], TornadoTimeoutError)
 
 
-# No client is the default one: xarray would lock its files through the scheduler, slowly, and for
-# ever where Ctrl-C comes in between.
+# No client is dask's default: xarray would lock its files through the scheduler, which is slow and
+# never ends after Ctrl-C.
 
 
 @contextmanager
@@ -93,9 +94,9 @@ def _running(address: str) -> Iterator[Client]:
 @contextmanager
 def _slurm(profile: Profile) -> Iterator[Client]:
     with slurm_cluster(profile) as cluster:
-        ask = partial(cluster.scale, jobs=profile.jobs)
-        again = PeriodicCallback(ask, 1e3 * _ASK_AGAIN)  # jobs end, at their walltime at the latest
-        ask()
+        submit = partial(cluster.scale, jobs=profile.jobs)
+        again = PeriodicCallback(submit, 1e3 * _SUBMIT_AGAIN)  # jobs end, at last by walltime
+        submit()
         cluster.loop.add_callback(again.start)
         try:
             with Client(cluster, set_as_default=False) as client:
@@ -107,7 +108,7 @@ def _slurm(profile: Profile) -> Iterator[Client]:
 @contextmanager
 def _here(workers: int, *, processes: bool) -> Iterator[Client]:
     try:
-        with _deaf_to_ctrl_c():
+        with _without_interrupts():
             cluster = LocalCluster(
                 processes=processes,
                 n_workers=workers if processes else 1,
@@ -125,9 +126,9 @@ def _here(workers: int, *, processes: bool) -> Iterator[Client]:
 
 
 @contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
-    """Worker processes started within never hear Ctrl-C: it is for the one that started them."""
-    resource_tracker.ensure_running()  # else started within, where it would unblock the signal
+def _without_interrupts() -> Iterator[None]:
+    """Block Ctrl-C in the worker processes started within: only the main process handles it."""
+    resource_tracker.ensure_running()  # started within, it would unblock the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -136,17 +137,17 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
 
 
 class Profile(BaseModel):
-    """What a job asks of Slurm: the keys of dask_jobqueue.SLURMCluster, and the number of jobs."""
+    """A Slurm job: keys of dask_jobqueue.SLURMCluster, and the number of jobs."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     jobs: Annotated[int, Field(ge=1)]
-    """How many are submitted; the study is solved by those that have started."""
+    """Jobs to submit; those that have started solve the study."""
     interface: str
-    """The network on which this machine and the jobs see each other, such as ib0."""
+    """Network by which this machine and the jobs reach each other, such as ib0."""
     cores: Annotated[int, Field(ge=1)]
     processes: Annotated[int, Field(ge=1)] = 1
-    """A job's cores are shared out among so many."""
+    """Processes that share the cores of a job."""
     memory: str
     walltime: str
     queue: str | None = None
@@ -155,11 +156,11 @@ class Profile(BaseModel):
     job_script_prologue: list[str] = []
     log_directory: str | None = None
     python: str | None = None
-    """The interpreter on the nodes; that of this process where it is left out."""
+    """Interpreter on the nodes; by default that of this process."""
 
 
 def read_profile(path: Path) -> Profile:
-    """The profile in a YAML file. Raises StudyError, naming file and key."""
+    """Return the profile in a YAML file. Raises StudyError naming file and key."""
     data = read_mapping(read_text(path), str(path))
     try:
         return Profile.model_validate(data)
@@ -169,16 +170,16 @@ def read_profile(path: Path) -> Profile:
 
 
 def slurm_cluster(profile: Profile) -> SLURMCluster:
-    """The cluster, its scheduler in this process, no job submitted yet.
+    """Return the cluster, its scheduler in this process, no job submitted yet.
 
-    Raises OSError where dask-jobqueue or Slurm is not there.
+    Raises OSError where dask-jobqueue or Slurm is missing.
     """
     try:
         from dask_jobqueue.slurm import SLURMCluster
     except ImportError:
         raise OSError("dask-jobqueue is not installed: pip install 'impactlab[slurm]'") from None
     if not shutil.which("sbatch"):
-        raise OSError("there is no command sbatch here: start this where Slurm jobs are submitted")
+        raise OSError("there is no command sbatch here: run this where Slurm jobs are submitted")
     return SLURMCluster(
         n_workers=0,
         scheduler_options={"dashboard_address": "127.0.0.1:0"},

@@ -1,4 +1,4 @@
-"""What is wrong with a study, in words for the person who wrote it."""
+"""Mistakes in a study, in words for the person who wrote it."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
 
 class StudyError(ValueError):
-    """Everything that is wrong with a study, one argument a problem, one line a problem."""
+    """Everything that is wrong with a study, one argument per problem."""
 
     def __str__(self) -> str:
-        """One line a problem: file, key, value, what is wrong and what to do."""
+        """Return one line per problem: file, key, value, what is wrong and what to do."""
         return "\n".join(str(problem) for problem in self.args)
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing wrong: in which file, at which dotted key, with which value, and why."""
+    """One mistake: file, dotted key, reason and value."""
 
     file: str
     key: str
@@ -32,19 +32,19 @@ class Problem:
     value: Any = _NOTHING
 
     def __str__(self) -> str:
-        """`file: key = value: reason` on one line, without the parts that do not apply."""
+        """Return `file: key = value: reason` on one line, without the parts that do not apply."""
         shown = "" if self.value is _NOTHING else f" = {_shown(self.value)}"
         key = f"{self.key}{shown}: " if self.key else ""
         return printable(f"{self.file}: {key}{_cut(self.reason)}")
 
 
 def _cut(reason: str) -> str:
-    """A parser may quote as much as the file holds."""
+    """Shorten a reason: a parser may quote as much as the file holds."""
     return reason if len(reason) <= _LONGEST else f"{reason[:_LONGEST]} ..."
 
 
 def printable(text: str) -> str:
-    """The text with escapes in the place of what steers a terminal, or breaks the line."""
+    """Return the text with control characters and line breaks escaped."""
     if text.isprintable():
         return text
     return "".join(
@@ -54,14 +54,14 @@ def printable(text: str) -> str:
 
 
 def _shown(value: object) -> str:
-    """A value as it stands in YAML, cut short."""
+    """Return a value as it stands in YAML, shortened."""
     if value is None or isinstance(value, bool):
         return "null" if value is None else str(value).lower()
     return _SHORT.repr(value)
 
 
 def dotted(path: Iterable[object]) -> str:
-    """Keys and positions as one path; what does not print as it is comes as its repr."""
+    """Return keys and positions as one path; unprintable and long ones as their repr."""
     return ".".join(str(step) if _plain(str(step)) else _SHORT.repr(step) for step in path)
 
 
@@ -70,7 +70,7 @@ def _plain(step: str) -> bool:
 
 
 def unknown(kind: str, word: object, choices: Iterable[str]) -> str:
-    """That `word` is no such kind of thing, the nearest that is, and all that are."""
+    """Return a message about an unknown word, with the nearest choice and all of them."""
     names = list(choices)
     near = get_close_matches(word[:60], names, n=1) if isinstance(word, str) else []
     hint = f"did you mean {near[0]!r}? " if near else ""

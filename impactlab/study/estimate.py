@@ -28,28 +28,35 @@ from impactlab.study.runs import disk_size
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
 Array = np.ndarray[Any, Any]
+MOST_TIME = 30 * 86400.0
+"""Limit of the time on one core, in s: a month."""
 _NUMBER = 8
-_HELD = 2
-"""Times that answers are in memory: read, and in order. One column, or all of a growing sample."""
-_A_RUN = 60.0
-"""Bytes of a run in memory beside: its key, place and cost."""
-_KEPT = 2
-"""Times that they are on disk: in shards, and in runs.nc."""
-_ITSELF = 4e8
+"""Bytes of a number."""
+_IN_MEMORY = 2
+"""Copies of answers in memory, read and in order: of one column, or all of a growing sample."""
+_PER_RUN = 60.0
+"""Bytes of a run in memory beside them: its key, place and cost."""
+_ON_DISK = 2
+"""Copies of answers on disk: in shards and in runs.nc."""
+_PROGRAM = 4e8
 """Bytes of the program and its compiler."""
 _FUNCTION = 1e-6
-"""Seconds of a test function."""
+"""Seconds per value of a test function."""
 _USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES = 10_000, 0.012, 1000
 _USUAL_SIZE = 1e-3
+_MOST = 4096
+"""Runs of a cost sample."""
+_TAIL = 1e-3
+"""Probability of either tail of a distribution that a cost sample leaves out."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a study costs: core-seconds, bytes of memory and of disk.
+    """The cost of a study: core-seconds, bytes of memory and of disk.
 
-    runs: all, or the most that a growing sample may come to. largest: seconds of the largest run;
-    largest_run: what is varied, there. slow and large: the keys that drive time and room. auto:
-    whether the discretisation is still to be found, and the default stands in its place.
+    runs: all, or the most that a growing sample may reach. largest: seconds of the largest run;
+    largest_run: its varied parameters. slow and large: the keys that drive time and space. auto:
+    True while the discretisation is still to be found, and the default is used instead.
     """
 
     file: str
@@ -64,35 +71,35 @@ class Estimate:
     auto: bool = False
 
     def wall(self, workers: int) -> float:
-        """Seconds on so many cores: at least those of the largest run."""
+        """Return the seconds on so many cores: at least those of the largest run."""
         return max(self.seconds / workers, self.largest)
 
 
 def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
-    """The cost of a study on so many workers of this machine, within a factor of about three.
+    """Return the cost of a study on so many workers of this machine, within a factor of about 3.
 
-    Where there are many runs, some are drawn (always the same ones) and looked at; the largest is
-    sought among the ends. What trials of `auto` and the analysis take is not in it. Raises
-    StudyError where a drawn run is impossible.
+    Of many runs a sample is taken, always the same one; the largest run is sought at the extremes
+    of parameters. Pilot runs of `auto` and the analysis are not included. Raises StudyError where
+    a sampled run is impossible.
     """
     until = study.sampling.until if isinstance(study.sampling, Sobol) else None
     runs = max(study.runs, until.runs if until else 0)
     if isinstance(study, FunctionStudy):
-        room = runs * float(_NUMBER * (len(study.sampling.varied) + 2))
-        return _estimate(study, runs, np.full(1, _FUNCTION), room, room, 0.0, {})
-    looked, priced = looked_at(study), costs(study)
-    cases = tabled(study, looked)
-    work = priced.work(cases)
-    largest = costliest(study, looked, work)
-    end = tabled(study, {name: [value] for name, value in largest.items()})[:1]
+        space = runs * float(_NUMBER * (len(study.sampling.varied) + 2))
+        return _estimate(study, runs, np.full(1, _FUNCTION), space, space, 0.0, {})
+    sample, costs = _cost_sample(study), _costs(study)
+    cases = _cases(study, sample)
+    work = costs.work(cases)
+    largest = _largest_run(study, sample, work)
+    end = _cases(study, {name: [value] for name, value in largest.items()})[:1]
     answers = runs * float(_NUMBER * _values(study, end))
     return _estimate(
         study,
         runs,
-        np.append(work, priced.work(end)) / A_SECOND,
+        np.append(work, costs.work(end)) / A_SECOND,
         answers,
-        answers if until else runs * float(_NUMBER * _widest(study, end)),
-        workers * float(priced.memory(np.append(cases, end)).max()),
+        answers if until else runs * float(_NUMBER * _largest_column(study, end)),
+        workers * float(costs.memory(np.append(cases, end)).max()),
         largest,
         slow=_key(study, _slow(study, end, runs)),
         large=_key(study, _large(study, end, runs)),
@@ -110,17 +117,21 @@ def _estimate(
     slow: str = "sampling",
     large: str = "sampling",
 ) -> Estimate:
-    """seconds: of runs looked at, the largest one last; answers, held, working: bytes.
+    """Return the estimate of a study from its parts.
 
-    held: of the answers that are in memory together.
+    seconds: of sampled runs, the largest one last; answers, held, working: bytes of all answers,
+    of those in memory together, and of the solver.
     """
     others = seconds[:-1] if seconds.size > 1 else seconds
     return Estimate(
         file=str(study.path),
         runs=runs,
         seconds=max(float(others.mean()) * runs, float(seconds[-1])),
-        memory=_ITSELF + _HELD * (held + _parameters(study, runs)) + runs * _A_RUN + working,
-        disk=_KEPT * answers,
+        memory=_PROGRAM
+        + _IN_MEMORY * (held + _parameters(study, runs))
+        + runs * _PER_RUN
+        + working,
+        disk=_ON_DISK * answers,
         largest=float(seconds[-1]),
         largest_run=largest_run,
         slow=slow,
@@ -130,32 +141,32 @@ def _estimate(
 
 
 def _values(study: Study, case: Array) -> int:
-    """Numbers kept of a run: its parameters, responses, histories and profiles."""
+    """Count the numbers kept of a run: its parameters, responses, histories and profiles."""
     store = study.store
     history = len(HISTORIES) * store.samples * store.histories
     profile = len(PROFILES) * int(case["nodes"][0] * case["points"][0]) * store.profiles
     return len(study.sampling.varied) + len(RESPONSES) + 2 + history + profile
 
 
-def _widest(study: Study, case: Array) -> int:
-    """Numbers of a run in its widest column."""
+def _largest_column(study: Study, case: Array) -> int:
+    """Count the numbers of a run in its largest column."""
     store = study.store
     profile = int(case["nodes"][0] * case["points"][0]) * store.profiles
     return max(1, store.samples * store.histories, profile)
 
 
 def _parameters(study: Study | FunctionStudy, runs: int) -> float:
-    """Bytes of what is varied."""
+    """Return the bytes of the varied parameters."""
     return runs * float(_NUMBER * len(study.sampling.varied))
 
 
 def _slow(study: Study, case: Array, runs: int) -> dict[str, float]:
-    """How much less time each would take at the paper's value, by parameter or key."""
-    work, impact = costs(study).work, paper_impact()
+    """Return the factor of time that each parameter or key would save at the paper's value."""
+    work, impact = _costs(study).work, paper_impact()
     if asks_for_solid(study) and wings.load(wings.SOLID["cases"]).is_solid(case).all():
         impact = replace(impact, beam_model=SOLID)
     grid = Discretisation(element_size=_USUAL_SIZE)
-    usual = table(study)(impact, grid, duration=_USUAL_DURATION, varied={})
+    usual = _case_table(study)(impact, grid, duration=_USUAL_DURATION, varied={})
     gains = {"sampling": runs / _USUAL_RUNS}
     for name in usual.dtype.names or ():
         changed = case.copy()
@@ -165,7 +176,7 @@ def _slow(study: Study, case: Array, runs: int) -> dict[str, float]:
 
 
 def _large(study: Study, case: Array, runs: int) -> dict[str, float]:
-    """How much less room each would take at its usual value, by parameter or key."""
+    """Return the factor of space that each parameter or key would save at its usual value."""
     gains = {"sampling": runs / _USUAL_RUNS}
     if study.store.histories:
         gains["store.samples"] = study.store.samples / _USUAL_SAMPLES
@@ -175,44 +186,41 @@ def _large(study: Study, case: Array, runs: int) -> dict[str, float]:
 
 
 def _key(study: Study, gains: Mapping[str, float]) -> str:
-    """Where in the file the largest of them stands."""
+    """Return the dotted key in the study file of the largest gain."""
     name = max(gains, key=gains.__getitem__)
     return stated_at(name, study.sampling) if name in PARAMETERS else name
 
 
-_MOST = 4096
-_TAIL = 1e-3
-"""Of a distribution, on either side: left out."""
-
-
-class Costs(Protocol):
-    """What tells the costs of a table of cases."""
+class _Costs(Protocol):
+    """The costs of a table of cases."""
 
     def work(self, cases: Array) -> Array:
-        """Time of each run, in node-steps of the paper's beam."""
+        """Return the time of each run, in node-steps of the paper's beam."""
         ...
 
     def memory(self, cases: Array) -> Array:
-        """Bytes that each run takes."""
+        """Return the bytes that each run takes."""
         ...
 
 
-def costs(study: Study) -> Costs:
-    """Of the runs of a study."""
-    found: Costs = wings.load(wings.SOLID["costs"]) if asks_for_solid(study) else beam_cost
+def _costs(study: Study) -> _Costs:
+    found: _Costs = wings.load(wings.SOLID["costs"]) if asks_for_solid(study) else beam_cost
     return found
 
 
-def table(study: Study) -> Callable[..., Array]:
-    """What makes the table of its cases: simulate.case_table, or as that."""
+def _case_table(study: Study) -> Callable[..., Array]:
+    """Return the function that makes the table of cases of a study."""
     if not asks_for_solid(study):
         return case_table
     found: Callable[..., Array] = wings.load(wings.SOLID["cases"]).table
     return found
 
 
-def looked_at(study: Study) -> dict[str, Array]:
-    """Values by varied parameter, one a run: all of a small grid, else some 4096 drawn ones."""
+def _cost_sample(study: Study) -> dict[str, Array]:
+    """Return varied parameters of some runs: all of a small grid, else _MOST drawn ones.
+
+    No sampler is called, and nothing large is made.
+    """
     sampling, random = study.sampling, np.random.default_rng(0)
     if isinstance(sampling, Sample):
         number = min(study.runs, _MOST)
@@ -222,33 +230,36 @@ def looked_at(study: Study) -> dict[str, Array]:
         }
     values = {name: np.array(listed) for name, listed in sampling.parameters.items()}
     if study.runs <= _MOST:
-        all_of_them = np.meshgrid(*values.values(), indexing="ij")
-        return {name: grid.ravel() for name, grid in zip(values, all_of_them, strict=True)}
+        grids = np.meshgrid(*values.values(), indexing="ij")
+        return {name: grid.ravel() for name, grid in zip(values, grids, strict=True)}
     return {name: random.choice(listed, _MOST) for name, listed in values.items()}
 
 
-def tabled(study: Study, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
-    """The table of cases of these runs. Raises StudyError where one of them is impossible."""
+def _cases(study: Study, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
+    """Return the table of cases of these runs. Raises StudyError where one is impossible."""
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
     try:
-        return table(study)(*base, duration=study.duration, varied=columns)
+        return _case_table(study)(*base, duration=study.duration, varied=columns)
     except ValueError as error:
         reason = f"gives runs that are impossible ({error}): take bounded distributions"
         raise StudyError(Problem(str(study.path), "sampling.parameters", reason)) from None
 
 
-def costliest(study: Study, looked: Mapping[str, Array], cost: Array) -> dict[str, Value]:
-    """The largest run, by parameter: from the largest one looked at, each to its costliest end."""
-    found = {name: column[int(np.argmax(cost))].item() for name, column in looked.items()}
+def _largest_run(study: Study, sample: Mapping[str, Array], cost: Array) -> dict[str, Value]:
+    """Return the parameters of the largest run.
+
+    The search starts at the largest run of a sample and takes each parameter to its costliest end.
+    """
+    found = {name: column[int(np.argmax(cost))].item() for name, column in sample.items()}
     for name in found:
         ends = _ends(study, name)
         columns = {key: [value] * len(ends) for key, value in found.items()} | {name: ends}
-        found[name] = ends[int(np.argmax(costs(study).work(tabled(study, columns))))]
+        found[name] = ends[int(np.argmax(_costs(study).work(_cases(study, columns))))]
     return found
 
 
 def _ends(study: Study, name: str) -> list[Value]:
-    """A parameter's least and greatest value, or all its words."""
+    """Return a parameter's least and greatest value, or all its words."""
     sampling = study.sampling
     if isinstance(sampling, Grid):
         values = sampling.parameters[name]
@@ -257,12 +268,8 @@ def _ends(study: Study, name: str) -> list[Value]:
     return ends
 
 
-MOST_TIME = 30 * 86400.0
-"""Of one core, in s: a month."""
-
-
-def remarks(study: Study | FunctionStudy) -> list[Problem]:
-    """What of a study's impacts is hardly meant, though it can be."""
+def implausible(study: Study | FunctionStudy) -> list[Problem]:
+    """Return the parameters of a study's impacts whose values are possible but implausible."""
     if isinstance(study, FunctionStudy):
         return []
     found = doubts(ends_of((study.impact, study.discretisation), study.sampling))
@@ -270,28 +277,30 @@ def remarks(study: Study | FunctionStudy) -> list[Problem]:
     return [Problem(file, stated_at(each.name, study.sampling), each.reason) for each in found]
 
 
-def unbearable(cost: Estimate, folder: Path) -> list[Problem]:
-    """What is beyond a month of one core, this machine's memory, or the free disk at `folder`.
+def exceeded_limits(cost: Estimate, folder: Path) -> list[Problem]:
+    """Return one problem per limit that a study exceeds, at the key that drives it.
 
-    One problem each, at the key that drives it.
+    The limits are a month of one core, this machine's memory, and the free disk at `folder`.
     """
     return [
-        Problem(cost.file, key, f"{reason}; see --dry-run, and --force runs it all the same")
-        for key, reason in _beyond(cost, room(folder))
+        Problem(cost.file, key, f"{reason}; see --dry-run, or run it anyway with --force")
+        for key, reason in _exceeded(cost, free_disk(folder))
     ]
 
 
-def _beyond(cost: Estimate, disk: float) -> Iterator[tuple[str, str]]:
+def _exceeded(cost: Estimate, disk: float) -> Iterator[tuple[str, str]]:
     if cost.seconds > MOST_TIME:
-        limit = f"above the {time(MOST_TIME)} that a study may take"
-        yield cost.slow, f"about {time(cost.seconds)} of one core for {cost.runs:,} runs, {limit}"
+        needed = f"needs about {time(cost.seconds)} of one core for {cost.runs:,} runs"
+        yield cost.slow, f"{needed}, which exceeds the limit of {time(MOST_TIME)}"
     if cost.memory > MEMORY_LIMIT:
-        yield cost.large, f"about {amount(cost.memory)} of memory, of {amount(MEMORY_LIMIT)}"
+        needed = f"needs about {amount(cost.memory)} of memory"
+        yield cost.large, f"{needed}, which exceeds the {amount(MEMORY_LIMIT)} of this machine"
     if cost.disk > disk:
-        yield cost.large, f"about {amount(cost.disk)} of disk, of {amount(disk)} that it may take"
+        needed = f"needs about {amount(cost.disk)} of disk"
+        yield cost.large, f"{needed}, which exceeds the {amount(disk)} available"
 
 
-def room(folder: Path) -> float:
-    """Bytes that a study may take: those free on the disk of its folder, and its own there."""
+def free_disk(folder: Path) -> float:
+    """Return the bytes that a study may take: those free on its disk, and its own there."""
     there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
     return float(disk_usage(there).free + disk_size(folder.rglob("*")))

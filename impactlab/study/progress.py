@@ -1,4 +1,4 @@
-"""The progress bar: what is done, how much a second, time left, failures."""
+"""Progress bars: runs done, speed, time left, failures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Progress:
     """A bar on the terminal's error stream, as a context; silent where there is no terminal."""
 
     def __init__(self, total: int, done: int, what: str = "runs") -> None:
-        """total: runs of the study, or what else is counted; done: those solved before."""
+        """Make a bar of `total` items, `done` of them before; what: the name of the items."""
         self._what = what
         self._failed = 0
         self._fresh = 0
@@ -56,7 +56,7 @@ class Progress:
         self._bar.stop()
 
     def advance(self, done: int, failed: int) -> None:
-        """Count this many more done, and how many of them failed."""
+        """Count this many more done, and those of them that failed."""
         self._failed += failed
         self._fresh += done
         elapsed = self._bar.tasks[self._task].elapsed or 0.0
@@ -67,9 +67,9 @@ class Progress:
 
 @contextmanager
 def share_done(what: str) -> Iterator[Callable[[float], None]]:
-    """A bar for one long run: the function that it gives takes the share done, 0 to 1.
+    """Show a bar for one long run; the function that it gives takes the share done, 0 to 1.
 
-    On the terminal's error stream; silent where there is no terminal.
+    The bar is on the terminal's error stream, and silent where there is no terminal.
     """
     console = Console(stderr=True)
     columns = (TextColumn(what), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())

@@ -22,7 +22,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "s": ("a time", "12 ms"),
     "1": ("a pure number", "0.3"),
 }
-"""SI units (UDUNITS spelling): what is measured in them, and how one may be written."""
+"""SI units (UDUNITS spelling), with the kind of quantity and an example."""
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 _FACTOR = r"([^\W\d]+|°C|°F)(?:\*\*|\^)?(-?[1-9])?"
@@ -34,12 +34,12 @@ _SUPERSCRIPTS = str.maketrans("⁻¹²³", "-123")
 
 
 def si(value: object, units: str) -> float:
-    """A number or a string such as "27.8 mm" as a finite float in `units`.
+    """Return a number or a string such as "27.8 mm" as a finite float in `units`.
 
     units: SI, in UDUNITS spelling ("kg m-3"), as in the tables of parameters and variables.
     Plain numbers are taken as SI. Strings are converted in decimal arithmetic, so that
     "27.8 mm" is 0.0278 to the last digit. One number and one unit are read, never an
-    expression; of the unit, each name alone is looked up, by pint where si_units has it not.
+    expression; each name in the unit is looked up by itself, in pint where UNITS lacks it.
 
     Raises ValueError when the value is no number, not finite, or of another dimension.
     """
@@ -55,7 +55,7 @@ def si(value: object, units: str) -> float:
 
 
 def whole(value: object) -> int:
-    """A whole number, written as such or as a string. Raises ValueError otherwise."""
+    """Return a whole number, given as such or as a string. Raises ValueError otherwise."""
     try:
         result = si(value, "1")
     except ValueError:
@@ -66,7 +66,7 @@ def whole(value: object) -> int:
 
 
 def expected(units: str) -> str:
-    """What may stand where a quantity in these units is asked for."""
+    """Return a sentence on the values that are valid for a quantity in these units."""
     kind, example = KINDS.get(units, (f"a quantity in {units}", f"1 {units}"))
     if units == "1":
         return f"expected {kind} such as {example}"
@@ -104,7 +104,7 @@ def _percentage(number: Decimal, written: str, units: str) -> float:
 
 
 def _factors(written: str) -> list[tuple[str, int]]:
-    """(name, power) of the factors before the first "/" and of those behind a "/"."""
+    """Return (name, power) of the factors before the first "/" and of those behind a "/"."""
     above, *below = written.split("/")
     return [
         (name, sign * int(power or 1))
@@ -130,13 +130,13 @@ def _unit(written: str, units: str) -> Unit:
 def _named(name: str, units: str) -> Unit:
     try:
         return _registry().parse_units(name)
-    except Exception:  # pint raises whatever its parser meets: all of it means one thing here
+    except Exception:  # pint's parser raises many kinds, which all mean the same here
         raise ValueError(f"unknown unit {name!r}; {expected(units)}") from None
 
 
 @cache
 def _registry() -> UnitRegistry[Decimal]:
-    """Pint's units, in decimal arithmetic; loaded late, because that takes a second."""
+    """Return pint's units, in decimal arithmetic; loaded late, because that takes a second."""
     from pint import UnitRegistry
 
     return UnitRegistry(non_int_type=Decimal)
@@ -152,7 +152,7 @@ class Scale(NamedTuple):
 
     @property
     def dimension(self) -> tuple[int, int, int]:
-        """The exponents of metre, kilogram and second."""
+        """Return the exponents of metre, kilogram and second."""
         return self[1:]
 
 
@@ -173,11 +173,11 @@ UNITS: dict[str, Scale] = {
     "MPa": Scale(6, metre=-1, kilogram=1, second=-2),
     "GPa": Scale(9, metre=-1, kilogram=1, second=-2),
 }
-"""By name, as pint would have them."""
+"""The units that studies mostly use, so that pint, slow to load, is rarely needed."""
 
 
 def scale(factors: Iterable[tuple[str, int]]) -> Scale | None:
-    """The product of units, each to a power; None where a name is not of this table."""
+    """Return the product of units, each to a power; None where UNITS lacks a name."""
     total = Scale()
     for name, power in factors:
         if name not in UNITS:
@@ -197,7 +197,7 @@ _BYTES = ((1e15, "PB"), (1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB"))
 
 
 def time(seconds: float) -> str:
-    """Two digits of the largest unit that fits: 90 s is "1.5 minutes"."""
+    """Return a time with two digits in the largest unit that fits: 90 s is "1.5 minutes"."""
     for size, unit in _PERIODS:
         if seconds >= size:
             return f"{_two_digits(seconds / size)} {unit}"
@@ -205,7 +205,7 @@ def time(seconds: float) -> str:
 
 
 def amount(size: float) -> str:
-    """Bytes, likewise, in decimal units."""
+    """Return an amount of bytes with two digits, in decimal units."""
     for unit, name in _BYTES:
         if size >= unit:
             return f"{_two_digits(size / unit)} {name}"

@@ -16,12 +16,12 @@ from impactlab.model.parameters import PARAMETERS, Value, with_values
 Base = tuple[Impact, Discretisation]
 
 _FIELD_REFUSED = re.compile(r"\w+\.(\w+) = .*?: (.*)", re.DOTALL)
-"""How the model's classes word it."""
+"""The wording of the model's classes."""
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """A parameter that the model refuses, the reason, and the values it was refused with."""
+    """A parameter that the model refuses, the reason, and the values that were tried."""
 
     name: str
     reason: str
@@ -29,22 +29,22 @@ class Refusal:
 
 
 def refusal(base: Base, values: Mapping[str, Value | None]) -> Refusal | None:
-    """The first parameter that the model refuses when `values` replace those of the base."""
+    """Return the first parameter that the model refuses when `values` replace the base's."""
     by_owner = sorted(values, key=lambda name: PARAMETERS[name].path[:-1])
     for owner, names in groupby(by_owner, key=lambda name: PARAMETERS[name].path[:-1]):
         group: dict[str, Any] = {name: values[name] for name in names}
         try:
             with_values(*base, group)
         except ValueError as error:
-            return _told(owner, group, str(error))
+            return _refusal(owner, group, str(error))
     return None
 
 
 def refused_corner(base: Base, extremes: Mapping[str, Iterable[Value]]) -> Refusal | None:
-    """The first combination of extreme values that the model refuses.
+    """Return the first combination of extreme values that the model refuses.
 
-    The model's limits on numbers are orderings (0 < E, yield stress < E, depth < span), so that
-    what holds at all corners of a box holds inside. Parameters of different bodies are not
+    The model's limits on numbers are orderings (0 < E, yield stress < E, depth < span), so values
+    inside a box are valid where all its corners are. Parameters of different bodies are not
     combined, because the model does not compare them.
     """
     by_owner = sorted(extremes, key=lambda name: PARAMETERS[name].path[:-1])
@@ -57,9 +57,9 @@ def refused_corner(base: Base, extremes: Mapping[str, Iterable[Value]]) -> Refus
 
 
 def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal | None:
-    """The first run that the model refuses, of columns that hold one value a run each.
+    """Return the first run that the model refuses; columns hold one value per run.
 
-    Looks at single runs only when a corner of the box around them is refused.
+    Single runs are tried only when a corner of the box around them is refused.
     """
     box = {name: sorted({min(values), max(values)}) for name, values in columns.items()}
     if refused_corner(base, box) is None:
@@ -70,7 +70,7 @@ def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal |
 
 
 def check_alone(name: str, value: Value) -> None:
-    """Raises ValueError with the model's reason when no impact at all can have this value."""
+    """Raise ValueError with the model's reason when no impact can have this value."""
     if found := refusal(_ROOMY, {name: value}):
         raise ValueError(found.reason)
 
@@ -87,10 +87,10 @@ _ROOMY: Base = with_values(
         "beam_depth": 1e-300,
     },
 )
-"""An impact beside which only the limits of a parameter itself count."""
+"""An impact with which only the limits of a parameter itself apply."""
 
 
-def _told(owner: tuple[str, ...], group: dict[str, Any], message: str) -> Refusal:
+def _refusal(owner: tuple[str, ...], group: dict[str, Any], message: str) -> Refusal:
     match = _FIELD_REFUSED.fullmatch(message)
     if match is None:
         return Refusal(next(iter(group)), message, group)
