@@ -29,7 +29,6 @@ _SEARCHED = np.linspace(-4.0, 8.0, 97)
 """Orders between which the free one is looked for: far beyond any that is kept."""
 
 
-
 class Expansion(Verdict):
     """The form of the error that describes the data best."""
 
