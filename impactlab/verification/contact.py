@@ -27,16 +27,16 @@ from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.contact_laws import LawOnHalfSpace, law_on_half_space
 from impactlab.verification.solutions.stronge import StrongeImpact, stronge_impact
 
+# With so small a Courant number the contact alone determines the time step.
+_GRID = Discretisation(nodes=11, points=3, courant=0.005)
+
 
 def check_half_space() -> Finding:
-    """Peak force, largest indentation, contact duration and restitution."""
+    """Compare peak force, largest indentation, contact duration and restitution."""
     velocity = 0.99
     impact = rigid_backed(velocity, "hertz")
-    modulus, radius = hertz.effective_modulus(impact), hertz.effective_radius(impact)
-    args = (impact.sphere.total_mass, velocity, modulus, radius)
-    # a small Courant number: here the contact alone sets the time step
-    grid = Discretisation(nodes=11, points=3, courant=0.005)
-    run = simulate(impact, grid, duration=0.4e-3)
+    args = hertz.arguments(impact)
+    run = simulate(impact, _GRID, duration=0.4e-3)
     where = f"the paper's sphere at {velocity} m/s"
     return Finding(
         [
@@ -58,27 +58,24 @@ HALF_SPACE = Check(
     check_half_space,
 )
 
-
 DEPTHS = (0.9, 1.2, 1.4, 2.0, 2.673)
-"""Deepest indentations over that at first yield: elastic, above 1, at most, above 1, 1 again."""
+"""Largest indentation over that at first yield. Restitution: 1, above 1, at most, above 1, 1."""
 STRONGE_VELOCITIES = (0.3, 0.99, 3.0, 10.0, 20.0)
 """In m/s; fully plastic from 3 m/s on."""
-# a small Courant number: here the contact alone sets the time step
-_GRID = Discretisation(nodes=11, points=3, courant=0.005)
 STRONGE_TOLERANCE = 2e-5
 
 
 def check_stronge_restitution() -> Finding:
-    """Peak force, deepest indentation, restitution, dent and dissipation at ten velocities.
+    """Compare peak force, indentation, restitution, dent and dissipation at ten velocities.
 
-    The law itself creates energy while the deepest indentation is 1 to 2.673 times that at first
-    yield: restitution above 1 is right there, and the solver has to show it.
+    The law itself creates energy while the largest indentation is 1 to 2.673 times that at first
+    yield. A restitution above 1 is correct there, and the solver has to show it.
     """
-    tried = _speeds()
-    runs = [_run_stronge(velocity) for velocity in tried]
-    table = [_compare_stronge(velocity, ours) for velocity, ours in zip(tried, runs, strict=True)]
+    velocities = _speeds()
+    runs = [_run_stronge(velocity) for velocity in velocities]
+    table = [_compare_stronge(velocity, ours) for velocity, ours in zip(velocities, runs, strict=True)]
     restitutions, *others = zip(*table, strict=True)
-    return Finding([*restitutions, *map(worst, others)], [_stronge_panel(tried, runs)])
+    return Finding([*restitutions, *map(worst, others)], [_stronge_panel(velocities, runs)])
 
 
 STRONGE_RESTITUTION = Check(
@@ -91,21 +88,21 @@ STRONGE_RESTITUTION = Check(
 
 
 def _speeds() -> list[float]:
-    """Those that reach DEPTHS, and VELOCITIES, in m/s."""
+    """Return the velocities in m/s that reach DEPTHS, and STRONGE_VELOCITIES."""
     law, mass = _law()
     works = [law.loading_work(depth * law.yield_indentation) for depth in DEPTHS]
     return [float(np.sqrt(2.0 * work / mass)) for work in works] + list(STRONGE_VELOCITIES)
 
 
 def _run_stronge(velocity: float) -> xr.Dataset:
-    """The solver at this velocity (m/s), until the sphere has left."""
+    """Solve the impact at `velocity` (m/s) until the sphere has left."""
     impact = rigid_backed(velocity, "stronge")
     duration = 0.3e-3 * (0.99 / velocity) ** 0.2 + 0.1e-3
     return simulate(impact, _GRID, duration=duration, samples=2)
 
 
 def _law() -> tuple[StrongeImpact, float]:
-    """The closed forms, and the sphere's mass (kg)."""
+    """Return the closed forms, and the mass of the sphere (kg)."""
     impact = rigid_backed(1.0, "stronge")
     return stronge_impact(impact), impact.sphere.total_mass
 
@@ -117,7 +114,7 @@ def _compare_stronge(velocity: float, ours: xr.Dataset) -> list[Comparison]:
     where = f"{velocity:.3g} m/s, indentation of {deepest / law.yield_indentation:.3g} delta_y"
     depth, left = ours.maximum_indentation.item(), ours.permanent_indentation.item()
     lost = ours.contact_dissipation.item() / (0.5 * mass * velocity**2)
-    # the dent in units of the deepest indentation, because it passes through zero
+    # The dent passes through zero, hence its error is relative to the largest indentation.
     return [
         absolute(
             "restitution", where, "1", ours.restitution.item(), restitution, STRONGE_TOLERANCE
@@ -154,19 +151,17 @@ def _stronge_panel(velocities: Sequence[float], runs: Sequence[xr.Dataset]) -> P
 
 
 VELOCITIES = (0.012, 0.03, 0.1, 0.3, 0.99, 3.0, 10.0)
-"""In m/s: from just beyond the first yield of all laws but Hertz's."""
+"""In m/s, from just above the first yield of all laws but Hertz's."""
 DRAWN = 0.99
-"""m/s; the curves of force against indentation are those of this velocity."""
-# a small Courant number: here the contact alone sets the time step
-_GRID = Discretisation(nodes=11, points=3, courant=0.005)
+"""Velocity in m/s of the curves of force against indentation."""
 TOLERANCE = 1e-4
-"""Larger than for smooth laws: a jump of the force falls within some step."""
+"""Larger than for smooth laws, because a jump of the force falls within a time step."""
 _QUADRATURE = "quadrature of the law"
 
 
 @dataclass(frozen=True)
-class Tried:
-    """A law's quadrature, and the solver's runs at VELOCITIES; mass: of the sphere, in kg."""
+class SolvedLaw:
+    """A law by quadrature, and the solver's runs at VELOCITIES; mass: of the sphere, in kg."""
 
     law: LawOnHalfSpace
     mass: float
@@ -174,11 +169,11 @@ class Tried:
 
 
 def check_contact_laws() -> Finding:
-    """Restitution, dent and dissipation: of each law, the velocity that comes out worst.
+    """Compare restitution, peak force, dent and dissipation of each law at its worst velocity.
 
-    Laws that create energy do so here, too: a restitution above 1 has to come out as it is.
+    Laws that create energy do so here, too: a restitution above 1 must appear in both solutions.
     """
-    tried = {name: _try(name) for name in LAWS}
+    laws = {name: _solve_law(name) for name in LAWS}
     found = [
         worst(
             [
@@ -186,10 +181,10 @@ def check_contact_laws() -> Finding:
                 for velocity, run in zip(VELOCITIES, entry.runs, strict=True)
             ]
         )
-        for entry in tried.values()
+        for entry in laws.values()
         for make in (_compare_restitution, _peak_force, _dent, _lost)
     ]
-    return Finding(found, [_forces(tried), _restitutions(tried), _dents(tried)])
+    return Finding(found, [_forces(laws), _restitutions(laws), _dents(laws)])
 
 
 CONTACT_LAWS = Check(
@@ -201,36 +196,36 @@ CONTACT_LAWS = Check(
 )
 
 
-def _try(name: str) -> Tried:
+def _solve_law(name: str) -> SolvedLaw:
     impact = rigid_backed(DRAWN, name)
     runs = [_run_law(name, velocity) for velocity in VELOCITIES]
-    return Tried(law_on_half_space(impact), impact.sphere.total_mass, runs)
+    return SolvedLaw(law_on_half_space(impact), impact.sphere.total_mass, runs)
 
 
 def _run_law(name: str, velocity: float) -> xr.Dataset:
-    """Until the sphere has left: at most Hertz's contact time and that of full plasticity."""
+    """Solve until the sphere has left: at most Hertz's contact time and that of full plasticity."""
     duration = 0.5e-3 * (DRAWN / velocity) ** 0.2 + 0.2e-3
     return simulate(rigid_backed(velocity, name), _GRID, duration=duration, samples=401)
 
 
-def _where(velocity: float, entry: Tried) -> str:
+def _where(velocity: float, entry: SolvedLaw) -> str:
     return f"{entry.law.law}, {velocity:.3g} m/s"
 
 
-def _compare_restitution(velocity: float, run: xr.Dataset, entry: Tried) -> Comparison:
+def _compare_restitution(velocity: float, run: xr.Dataset, entry: SolvedLaw) -> Comparison:
     expected = entry.law.restitution(velocity, entry.mass)
     ours = run.restitution.item()
     return absolute("restitution", _where(velocity, entry), "1", ours, expected, TOLERANCE)
 
 
-def _peak_force(velocity: float, run: xr.Dataset, entry: Tried) -> Comparison:
+def _peak_force(velocity: float, run: xr.Dataset, entry: SolvedLaw) -> Comparison:
     expected = entry.law.loading_force(entry.law.maximum_indentation(velocity, entry.mass))
     ours = run.peak_force.item()
     return relative("peak force", _where(velocity, entry), "N", ours, expected, TOLERANCE)
 
 
-def _dent(velocity: float, run: xr.Dataset, entry: Tried) -> Comparison:
-    """In units of the deepest indentation, because it passes through zero."""
+def _dent(velocity: float, run: xr.Dataset, entry: SolvedLaw) -> Comparison:
+    """Compare the dent over the largest indentation, because it passes through zero."""
     deepest = entry.law.maximum_indentation(velocity, entry.mass)
     expected = entry.law.residual_indentation(deepest) / deepest
     ours = run.permanent_indentation.item() / deepest
@@ -238,16 +233,16 @@ def _dent(velocity: float, run: xr.Dataset, entry: Tried) -> Comparison:
     return absolute("dent over indentation", where, "1", ours, expected, TOLERANCE)
 
 
-def _lost(velocity: float, run: xr.Dataset, entry: Tried) -> Comparison:
+def _lost(velocity: float, run: xr.Dataset, entry: SolvedLaw) -> Comparison:
     ours = run.contact_dissipation.item() / (0.5 * entry.mass * velocity**2)
     expected = 1.0 - entry.law.restitution(velocity, entry.mass) ** 2
     where = _where(velocity, entry)
     return absolute("share of energy lost", where, "1", ours, expected, TOLERANCE)
 
 
-def _forces(tried: dict[str, Tried]) -> Panel:
+def _forces(laws: dict[str, SolvedLaw]) -> Panel:
     curves = []
-    for name, entry in tried.items():
+    for name, entry in laws.items():
         run = entry.runs[VELOCITIES.index(DRAWN)]
         touching = run.contact_force.values > 0
         depth, force = run.indentation.values[touching], run.contact_force.values[touching]
@@ -256,17 +251,17 @@ def _forces(tried: dict[str, Tried]) -> Panel:
     return Panel(title, ("indentation", "m"), ("contact force", "N"), curves)
 
 
-def _loading(entry: Tried) -> Curve:
+def _loading(entry: SolvedLaw) -> Curve:
     deepest = entry.law.maximum_indentation(DRAWN, entry.mass)
     depth = np.linspace(1e-3, 1.0, 101) * deepest
     force = np.array([entry.law.loading_force(float(d)) for d in depth])
     return Curve(_QUADRATURE, depth, force, independent=True)
 
 
-def _restitutions(tried: dict[str, Tried]) -> Panel:
+def _restitutions(laws: dict[str, SolvedLaw]) -> Panel:
     y = ("coefficient of restitution", "1")
     curves = []
-    for name, entry in tried.items():
+    for name, entry in laws.items():
         fine = _fine()
         expected = np.array([entry.law.restitution(float(v), entry.mass) for v in fine])
         ours = np.array([run.restitution.item() for run in entry.runs])
@@ -274,10 +269,10 @@ def _restitutions(tried: dict[str, Tried]) -> Panel:
     return Panel("restitution against velocity", ("velocity", "m s-1"), y, curves, log=True)
 
 
-def _dents(tried: dict[str, Tried]) -> Panel:
+def _dents(laws: dict[str, SolvedLaw]) -> Panel:
     y = ("permanent indentation", "m")
     curves = []
-    for name, entry in tried.items():
+    for name, entry in laws.items():
         fine = _fine()
         expected = np.array([_dent_after(float(v), entry) for v in fine])
         ours = np.array([run.permanent_indentation.item() for run in entry.runs])
@@ -290,10 +285,10 @@ def _ours(name: str, values: Floats) -> Curve:
     return Curve(name, np.array(VELOCITIES), values)
 
 
-def _dent_after(velocity: float, entry: Tried) -> float:
+def _dent_after(velocity: float, entry: SolvedLaw) -> float:
     return entry.law.residual_indentation(entry.law.maximum_indentation(velocity, entry.mass))
 
 
 def _fine() -> Floats:
-    """Velocities of the independent curves, in m/s."""
+    """Return the velocities of the independent curves, in m/s."""
     return np.geomspace(VELOCITIES[0], VELOCITIES[-1], 61)

@@ -206,8 +206,7 @@ RIGID_BEAM = Check(
 
 def _run_rigid_beam(impact: Impact, samples: int = 2) -> tuple[xr.Dataset, float]:
     """The solver on a rigid beam, and the time (s) until the sphere has left."""
-    modulus, radius = hertz.effective_modulus(impact), hertz.effective_radius(impact)
-    args = (impact.sphere.total_mass, impact.velocity, modulus, radius)
+    args = hertz.arguments(impact)
     duration = 2.0 * hertz.contact_duration(*args)
     model = replace(impact, beam_model="rigid")
     return simulate(model, _RIGID_GRID, duration=duration, samples=samples), duration
@@ -215,8 +214,7 @@ def _run_rigid_beam(impact: Impact, samples: int = 2) -> tuple[xr.Dataset, float
 
 def _against_hertz(velocity: float) -> list[Comparison]:
     impact = replace(paper_impact(velocity, "hertz"), gravity=0.0)
-    modulus, radius = hertz.effective_modulus(impact), hertz.effective_radius(impact)
-    args = (impact.sphere.total_mass, velocity, modulus, radius)
+    args = hertz.arguments(impact)
     ours, _ = _run_rigid_beam(impact)
     where = f"Hertz contact, {velocity:g} m/s"
     return [

@@ -18,17 +18,17 @@ CONTACT_TIME_FACTOR = float(2.0 * math.sqrt(math.pi) * gamma(1.4) / gamma(0.9))
 
 
 def effective_modulus(impact: Impact) -> float:
-    """E* in Pa, from 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b."""
+    """Return E* in Pa, from 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b."""
     return 1.0 / (_compliance(impact.sphere.material) + _compliance(impact.beam.material))
 
 
 def effective_radius(impact: Impact) -> float:
-    """R* in m: the sphere's radius, since the beam is flat."""
+    """Return R* in m: the radius of the sphere, since the beam is flat."""
     return impact.sphere.radius
 
 
 def stiffness(modulus: float, radius: float) -> float:
-    """Stiffness k in N m^-1.5 of F = k delta^1.5, from E* (Pa) and R* (m).
+    """Return the stiffness k in N m^-1.5 of F = k delta^1.5, from E* (Pa) and R* (m).
 
     Raises ValueError when an argument is not finite and positive.
     """
@@ -37,12 +37,12 @@ def stiffness(modulus: float, radius: float) -> float:
 
 
 def contact_stiffness(impact: Impact) -> float:
-    """Hertz stiffness k in N m^-1.5 of the two bodies of `impact`."""
+    """Return the Hertz stiffness k in N m^-1.5 of the two bodies of `impact`."""
     return stiffness(effective_modulus(impact), effective_radius(impact))
 
 
 def maximum_indentation(mass: float, velocity: float, modulus: float, radius: float) -> float:
-    """delta_m = (15 m v^2/(16 E* sqrt(R*)))^(2/5) in m; kg, m/s, Pa, m.
+    """Return delta_m = (15 m v^2/(16 E* sqrt(R*)))^(2/5) in m; kg, m/s, Pa, m.
 
     Raises ValueError when an argument is not finite and positive.
     """
@@ -51,7 +51,7 @@ def maximum_indentation(mass: float, velocity: float, modulus: float, radius: fl
 
 
 def peak_force(mass: float, velocity: float, modulus: float, radius: float) -> float:
-    """Contact force in N at delta_m; kg, m/s, Pa, m.
+    """Return the contact force in N at delta_m; kg, m/s, Pa, m.
 
     Raises ValueError when an argument is not finite and positive.
     """
@@ -60,11 +60,21 @@ def peak_force(mass: float, velocity: float, modulus: float, radius: float) -> f
 
 
 def contact_duration(mass: float, velocity: float, modulus: float, radius: float) -> float:
-    """t_c = 2.9433 delta_m/v in s, the constant exact; kg, m/s, Pa, m.
+    """Return t_c = 2.9433 delta_m/v in s, with the exact constant; kg, m/s, Pa, m.
 
     Raises ValueError when an argument is not finite and positive.
     """
     return CONTACT_TIME_FACTOR * maximum_indentation(mass, velocity, modulus, radius) / velocity
+
+
+def arguments(impact: Impact) -> tuple[float, float, float, float]:
+    """Return (mass, velocity, modulus, radius) of `impact`, as the closed forms take them."""
+    return (
+        impact.sphere.total_mass,
+        impact.velocity,
+        effective_modulus(impact),
+        effective_radius(impact),
+    )
 
 
 def _compliance(material: Material) -> float:

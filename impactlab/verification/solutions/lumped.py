@@ -154,8 +154,7 @@ def _force(delta: Any, k: float) -> Any:
 
 def _scales(impact: Impact) -> tuple[float, float]:
     """Indentation (m) and contact time (s) on a half-space."""
-    modulus, radius = hertz.effective_modulus(impact), hertz.effective_radius(impact)
-    args = (impact.sphere.total_mass, impact.velocity, modulus, radius)
+    args = hertz.arguments(impact)
     return hertz.maximum_indentation(*args), hertz.contact_duration(*args)
 
 

@@ -149,9 +149,7 @@ def _peak_time(delta: CubicSpline) -> float:
 
 
 def _default_step(impact: Impact) -> float:
-    mass, radius = impact.sphere.total_mass, hertz.effective_radius(impact)
-    modulus = hertz.effective_modulus(impact)
-    return hertz.contact_duration(mass, impact.velocity, modulus, radius) / 1000.0
+    return hertz.contact_duration(*hertz.arguments(impact)) / 1000.0
 
 
 def solve_timoshenko(
