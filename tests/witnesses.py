@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.convergence import element_size, nodes
+from impactlab.analysis.convergence import axes
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import flatten
@@ -38,7 +38,7 @@ def _runs_of(first: xr.DataArray, name: str) -> xr.Dataset:
 def analysed(runs: xr.Dataset) -> xr.Dataset:
     """Both convergence studies of the runs."""
     return xr.merge(
-        [nodes.analysis(runs), element_size.analysis(runs)], join="exact", compat="equals"
+        [axes.NODES.analysis(runs), axes.ELEMENT_SIZE.analysis(runs)], join="exact", compat="equals"
     )
 
 

@@ -2,37 +2,43 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis import failures, sensitivity, surrogate
-from impactlab.analysis.convergence import element_size, nodes, points, time_step
+from impactlab.analysis import sensitivity, surrogate
+from impactlab.analysis.convergence import points
+from impactlab.analysis.convergence.axes import ELEMENT_SIZE, NODES, TIME_STEP
 from impactlab.analysis.numerical import numerical
+from impactlab.analysis.responses import failures
 from impactlab.variables import ANALYSES
 
 
-class Analysis(Protocol):
-    """What a module of this folder offers to be in the table."""
+@dataclass(frozen=True)
+class Analysis:
+    """An analysis of a study.
 
-    def applies(self, runs: xr.Dataset) -> bool:
-        """Whether the runs are of the kind that this analysis is about."""
+    applies: whether the runs are of the kind that it is about. analysis: its variables, with
+    `response` among their coordinates.
+    """
 
-    def analysis(self, runs: xr.Dataset) -> xr.Dataset:
-        """Its variables, with `response` among their coordinates."""
+    name: str
+    applies: Callable[[xr.Dataset], bool]
+    analysis: Callable[[xr.Dataset], xr.Dataset]
 
 
-_MODULES: dict[str, Analysis] = {
-    "failures": failures,
-    "convergence_in_nodes": nodes,
-    "convergence_in_time_step": time_step,
-    "convergence_in_element_size": element_size,
-    "convergence_in_points": points,
-    "sensitivity": sensitivity,
-    "surrogate": surrogate,
-}
-"""Every analysis there is; a new one is a module, a line here and a line in dataset.ANALYSES."""
+_TABLE = (
+    Analysis("failures", lambda runs: True, failures),
+    Analysis("convergence_in_nodes", NODES.applies, NODES.analysis),
+    Analysis("convergence_in_time_step", TIME_STEP.applies, TIME_STEP.analysis),
+    Analysis("convergence_in_element_size", ELEMENT_SIZE.applies, ELEMENT_SIZE.analysis),
+    Analysis("convergence_in_points", points.applies, points.analysis),
+    Analysis("sensitivity", sensitivity.applies, sensitivity.analysis),
+    Analysis("surrogate", surrogate.applies, surrogate.analysis),
+)
+"""Every analysis; a new one is one line here and one in variables.ANALYSES."""
 
 
 def analyse(
@@ -40,7 +46,7 @@ def analyse(
     resolution: xr.Dataset | None = None,
     refinement: xr.Dataset | None = None,
 ) -> xr.Dataset:
-    """Failures, convergence and sensitivity of a study, whichever apply, in one dataset.
+    """Return failures, convergence and sensitivity of a study, whichever apply, in one dataset.
 
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
     attribute `analyses` says which are wanted (without it: all). resolution, refinement: what
@@ -51,9 +57,9 @@ def analyse(
     """
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
     parts = [
-        module.analysis(runs)
-        for name, module in _MODULES.items()
-        if module.applies(runs) and name not in ANALYSES.keys() - wanted
+        entry.analysis(runs)
+        for entry in _TABLE
+        if entry.applies(runs) and entry.name not in ANALYSES.keys() - wanted
     ]
     merged = xr.merge(parts, join="exact", compat="equals", combine_attrs="override")
     if resolution is not None or refinement is not None:

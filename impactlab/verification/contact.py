@@ -59,7 +59,7 @@ HALF_SPACE = Check(
 )
 
 DEPTHS = (0.9, 1.2, 1.4, 2.0, 2.673)
-"""Largest indentation over that at first yield. Restitution: 1, above 1, at most, above 1, 1."""
+"""Largest indentation over that at first yield: elastic, restitution above 1 thrice, and 1."""
 STRONGE_VELOCITIES = (0.3, 0.99, 3.0, 10.0, 20.0)
 """In m/s; fully plastic from 3 m/s on."""
 STRONGE_TOLERANCE = 2e-5
@@ -73,7 +73,9 @@ def check_stronge_restitution() -> Finding:
     """
     velocities = _speeds()
     runs = [_run_stronge(velocity) for velocity in velocities]
-    table = [_compare_stronge(velocity, ours) for velocity, ours in zip(velocities, runs, strict=True)]
+    table = [
+        _compare_stronge(velocity, ours) for velocity, ours in zip(velocities, runs, strict=True)
+    ]
     restitutions, *others = zip(*table, strict=True)
     return Finding([*restitutions, *map(worst, others)], [_stronge_panel(velocities, runs)])
 

@@ -1,8 +1,13 @@
-"""Convergence along one axis that is refined: behaviour, order, limits, uncertainty, verdict."""
+"""Convergence of all responses along one axis of the discretisation, as labelled variables.
+
+Some responses have no limit in the model itself: no grid makes them converge, and no number is
+given. Source: Bazant and Planas (1998), Fracture and Size Effect, ch. 8 (localisation of strain in
+materials that do not harden).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -10,167 +15,63 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.convergence import by_design, least_squares
-from impactlab.analysis.convergence.least_squares import Expansion, Fit
-from impactlab.analysis.convergence.richardson import Behaviour, Estimate, estimate, safety
-from impactlab.analysis.convergence.uncertainty import How, numerical_uncertainty
+from impactlab.analysis.convergence.judgement import AxisVerdict, How, Judgement, judge
+from impactlab.analysis.convergence.least_squares import Expansion
+from impactlab.analysis.convergence.richardson import Behaviour
 from impactlab.analysis.responses import usable
-from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict, flagged, verdict_variables
+from impactlab.analysis.verdicts import TOLERANCE, Verdict, flagged, verdict_variables
+from impactlab.model.impact import SOLID
 from impactlab.types import Floats
-
-VANISHING = 0.1
-"""Richardson value over finest value up to which a shrinking response is on its way to zero."""
-
-
-class AxisVerdict(Verdict):
-    """What refinement shows for one response at one point of the rest of the grid."""
-
-    AT_ROUND_OFF = 0, True, "the three finest grids agree to 1e-9: nothing left to converge"
-    CONVERGED_SECOND_ORDER = (
-        1,
-        True,
-        "monotone, order 2 within 0.5, credible on every three successive grids, uncertainty "
-        "within 1 %",
-    )
-    CONVERGED = 2, True, "monotone, credible order (0.5 to 3), uncertainty within 1 %"
-    SETTLED = (
-        3,
-        True,
-        "no credible order, but no drift either: the least-squares fit over all grids (of three "
-        "grids, three times their range) bounds the error by 1 %",
-    )
-    TENDS_TO_ZERO = 4, False, "converges to zero: a relative error has no meaning"
-    NOT_YET_CONVERGED = 5, False, "convergence too slow or too far off to bound the error by 1 %"
-    OSCILLATORY = 6, False, "the differences shrink but change sign: no Richardson value"
-    UNDETERMINED = 7, False, "a run on the three finest grids is missing: no number is given"
-    DIVERGENT = 8, False, "the differences do not shrink as the grid is refined"
-    NOT_CONVERGENT_BY_DESIGN = 9, False, "the model has no limit here: no grid is fine enough"
 
 
 @dataclass(frozen=True)
 class Axis:
-    """What is refined. name: prefix of the variables; dim: of the runs; words: "the nodes".
+    """An axis of the discretisation that is refined.
 
-    spacing: from the values on dim to what tends to zero, in any unit.
+    name: prefix of the variables; words: the axis in titles, such as "the nodes". spacings: by
+    dimension of the runs, the function from its values to what tends to zero, in any unit. comment:
+    what to know about the order, from the runs.
     """
 
     name: str
-    dim: str
     words: str
-    spacing: Callable[[Floats], Floats]
+    spacings: Mapping[str, Callable[[Floats], Floats]]
+    comment: Callable[[xr.Dataset], str]
+
+    def applies(self, runs: xr.Dataset) -> bool:
+        """Return whether the runs are a grid with three or more values on the axis."""
+        return any(runs.sizes.get(dim, 0) >= 3 for dim in self.spacings)
+
+    def analysis(self, runs: xr.Dataset) -> xr.Dataset:
+        """Judge every response at every point of the rest of the grid.
+
+        Returns the fields of Judgement as <axis>_<field> on (response, *other grid dims), flags as
+        CF flags; beside them <axis>_summary (response) and <axis>_tally (response, <axis>_outcome).
+        What has no limit by design keeps its observed order alone. Raises ValueError for a repeated
+        value on the axis.
+        """
+        dim = next(name for name in self.spacings if name in runs.dims)
+        values = usable(runs)
+        spacings = self.spacings[dim](values[dim].values.astype(float))
+        finest_first = np.argsort(spacings)
+        values, spacings = values.isel({dim: finest_first}), spacings[finest_first]
+        fields = xr.apply_ufunc(
+            partial(judge, spacings=spacings),
+            values,
+            input_core_dims=[[dim]],
+            output_core_dims=[[]] * len(Judgement._fields),
+            output_dtypes=[np.int8 if name in _FLAGS else float for name in Judgement._fields],
+            vectorize=True,
+        )
+        found = _marked(
+            dict(zip(Judgement._fields, fields, strict=True)),
+            without_limit(runs, values, self.name, dim),
+        )
+        return _described(found, self, self.comment(runs), _reasons(values, self.name))
 
 
-class Judgement(NamedTuple):
-    """Numbers and flags on one response; NaN where undefined."""
-
-    observed_order: float
-    extrapolated: float
-    gci: float
-    safety_factor: float
-    asymptotic_ratio: float
-    fit_order: float
-    fit_extrapolated: float
-    fit_uncertainty: float
-    uncertainty: float
-    fit_expansion: int
-    uncertainty_from: How
-    behaviour: Behaviour
-    verdict: AxisVerdict
-
-
-def judge(values: Floats, spacings: Floats) -> Judgement:
-    """All that three or more grids show of one response.
-
-    values: in any unit, spacings: in any unit, both (grids,) and finest first. Order, Richardson
-    value, GCI and its asymptotic ratio are those of the three finest; the safety factor is 1.25
-    where every three successive grids show a credible order and 3 otherwise; the fit is over all
-    of four or more. The extrapolated values are in the unit of the values; gci, fit_uncertainty
-    and uncertainty (`numerical_uncertainty` of the finest) relative to the finest value. Raises
-    ValueError unless the spacings rise.
-    """
-    triples = [estimate(values[i : i + 3], spacings[i : i + 3]) for i in range(len(values) - 2)]
-    finest, factor = triples[0], safety(triples)
-    fitted = _fit(values, spacings)
-    bound = numerical_uncertainty(values, spacings)
-    gci = finest.gci(factor)
-    return Judgement(
-        finest.order,
-        finest.extrapolated if finest.credible else np.nan,
-        gci,
-        np.nan if np.isnan(gci) else factor,
-        finest.asymptotic_ratio,
-        fitted.order if fitted else np.nan,
-        fitted.extrapolated if fitted else np.nan,
-        relative(least_squares.uncertainty(fitted, values)[0], values[0]) if fitted else np.nan,
-        relative(bound.amounts[0], values[0]),
-        fitted.expansion if fitted else Expansion.NONE,
-        bound.how,
-        finest.behaviour,
-        _verdict(triples, bound.how, relative(bound.amounts[0], values[0])),
-    )
-
-
-def analysis(runs: xr.Dataset, axis: Axis, comment: str) -> xr.Dataset:
-    """Convergence along an axis of every response at every point of the rest of the grid.
-
-    Returns the fields of Judgement as <axis>_<field> on (response, *other grid dims), flags as CF
-    flags; beside them <axis>_summary (response) and <axis>_tally (response, <axis>_outcome). What
-    has no limit by design keeps its observed order alone. Raises ValueError for a repeated value
-    on the axis.
-    """
-    values = usable(runs)
-    spacings = axis.spacing(values[axis.dim].values.astype(float))
-    finest_first = np.argsort(spacings)
-    values, spacings = values.isel({axis.dim: finest_first}), spacings[finest_first]
-    fields = xr.apply_ufunc(
-        partial(judge, spacings=spacings),
-        values,
-        input_core_dims=[[axis.dim]],
-        output_core_dims=[[]] * len(Judgement._fields),
-        output_dtypes=[np.int8 if name in _FLAGS else float for name in Judgement._fields],
-        vectorize=True,
-    )
-    found = _without_limit(
-        dict(zip(Judgement._fields, fields, strict=True)),
-        by_design.mask(runs, values, axis.name, axis.dim),
-    )
-    return _described(found, axis, comment, by_design.reasons(values, axis.name))
-
-
-def relative(amount: float, value: float) -> float:
-    """amount/|value|, infinite where only the value is zero."""
-    return float(amount / abs(value)) if value else float(np.inf * amount if amount else 0.0)
-
-
-def _fit(values: Floats, spacings: Floats) -> Fit | None:
-    """The fit over all grids; None for fewer than four, a missing one, or equal values."""
-    if values.size < least_squares.FEWEST or not np.isfinite(values).all():
-        return None
-    if np.ptp(values) <= ROUND_OFF * np.max(abs(values)):
-        return None
-    return least_squares.fit(values, spacings)
-
-
-def _verdict(triples: list[Estimate], how: How, uncertainty: float) -> AxisVerdict:
-    finest, within = triples[0], how.sound and uncertainty <= TOLERANCE
-    if finest.behaviour in _DECIDED:
-        return _OTHERWISE[finest.behaviour]
-    if within and finest.credible:
-        second = finest.asymptotic and all(triple.credible for triple in triples)
-        return AxisVerdict.CONVERGED_SECOND_ORDER if second else AxisVerdict.CONVERGED
-    if within:
-        return AxisVerdict.SETTLED
-    return AxisVerdict.TENDS_TO_ZERO if _tends_to_zero(finest) else _OTHERWISE[finest.behaviour]
-
-
-def _tends_to_zero(finest: Estimate) -> bool:
-    fine, middle, coarse = (abs(value) for value in finest.values)
-    shrinking = finest.credible and fine < middle < coarse
-    return shrinking and abs(finest.extrapolated) <= VANISHING * fine
-
-
-def _without_limit(found: dict[str, xr.DataArray], mask: xr.DataArray) -> dict[str, xr.DataArray]:
-    """The fields, with what has no limit marked and its numbers taken away."""
+def _marked(found: dict[str, xr.DataArray], mask: xr.DataArray) -> dict[str, xr.DataArray]:
+    """Return the fields, marked and without numbers where there is no limit."""
     instead = {name: np.nan for name in Judgement._fields} | {
         "uncertainty": np.inf,
         "fit_expansion": Expansion.NONE,
@@ -211,18 +112,6 @@ def _attributes(key: str, axis: Axis, comment: str) -> dict[str, str]:
     attrs = {"long_name": long_name.format(axis.words), "comment": f"{said} {comment}".strip()}
     return attrs | ({"units": units} if units else {})
 
-
-_DECIDED = (Behaviour.AT_ROUND_OFF, Behaviour.UNDETERMINED)
-_OTHERWISE = {
-    Behaviour.AT_ROUND_OFF: AxisVerdict.AT_ROUND_OFF,
-    Behaviour.MONOTONE: AxisVerdict.NOT_YET_CONVERGED,
-    Behaviour.STALLED: AxisVerdict.NOT_YET_CONVERGED,
-    Behaviour.OSCILLATORY: AxisVerdict.OSCILLATORY,
-    Behaviour.MONOTONE_DIVERGENT: AxisVerdict.DIVERGENT,
-    Behaviour.OSCILLATORY_DIVERGENT: AxisVerdict.DIVERGENT,
-    Behaviour.UNDETERMINED: AxisVerdict.UNDETERMINED,
-}
-"""Verdicts where no number bounds the error."""
 
 _FLAGS: dict[str, tuple[type[Verdict], str]] = {
     "behaviour": (Behaviour, "behaviour of the three finest grids with"),
@@ -270,3 +159,78 @@ _NUMBERS = {
     ),
 }
 """Long name, unit and comment of each number."""
+
+
+_HARDENING = ("beam_isotropic_hardening_modulus", "beam_kinematic_hardening_modulus")
+
+
+class WithoutLimit(NamedTuple):
+    """A response that has no limit as the grid of an axis is refined.
+
+    condition: where, from the runs and the response's largest value over the grids, both on the
+    rest of the grid; reason: in words.
+    """
+
+    axis: str
+    response: str
+    condition: Callable[[xr.Dataset, xr.DataArray], xr.DataArray]
+    reason: str
+
+
+def _perfectly_plastic_and_yielding(runs: xr.Dataset, largest: xr.DataArray) -> xr.DataArray:
+    """Select runs of beams; those without a stated hardening modulus may harden."""
+    found = (largest > 0) & ~xr.DataArray(_is_solid(runs))
+    for name in _HARDENING:
+        found = found & (runs.coords[name] == 0 if name in runs.coords else False)
+    return found
+
+
+def _solid_and_yielding(runs: xr.Dataset, largest: xr.DataArray) -> xr.DataArray:
+    return (largest > 0) & _is_solid(runs)
+
+
+def _is_solid(runs: xr.Dataset) -> xr.DataArray | bool:
+    return runs.coords["beam_model"] == SOLID if "beam_model" in runs.coords else False
+
+
+WITHOUT_LIMIT = (
+    WithoutLimit(
+        "nodes",
+        "peak_plastic_strain",
+        _perfectly_plastic_and_yielding,
+        "in a beam that does not harden, plastic strain gathers at the node that is struck: its "
+        "peak grows with the nodes, up to twice as much with each halving of the spacing",
+    ),
+    WithoutLimit(
+        "element_size",
+        "peak_plastic_strain",
+        _solid_and_yielding,
+        "in the contact of a solid, plastic strain gathers at the edge of the dent: its peak grows "
+        "as the elements shrink",
+    ),
+)
+"""Every such response, one entry each."""
+
+
+def without_limit(runs: xr.Dataset, values: xr.DataArray, axis: str, dim: str) -> xr.DataArray:
+    """Return True on (response, *rest of the grid) where there is no limit along `dim`.
+
+    values: the usable responses of the runs on (response, *grid dims).
+    """
+    largest = values.max(dim)
+    found = xr.zeros_like(largest, dtype=bool)
+    for entry in _of(axis, values):
+        chosen = found["response"] == entry.response
+        condition = entry.condition(runs, largest.sel(response=entry.response, drop=True))
+        found = found | (chosen & condition)
+    return found.transpose(*largest.dims).reset_coords(drop=True)
+
+
+def _reasons(values: xr.DataArray, axis: str) -> str:
+    """Return one line per response of the table: "response: reason"."""
+    return "\n".join(f"{entry.response}: {entry.reason}" for entry in _of(axis, values))
+
+
+def _of(axis: str, values: xr.DataArray) -> list[WithoutLimit]:
+    there = np.unique(values["response"].values).tolist()
+    return [entry for entry in WITHOUT_LIMIT if entry.axis == axis and entry.response in there]

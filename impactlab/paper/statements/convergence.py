@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from impactlab.analysis.convergence.axis import judge as judge_convergence
+from impactlab.analysis.convergence.judgement import judge as judge_convergence
 from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.paper.statements.evidence import finest_grid, runs_of, select_response
 from impactlab.paper.statements.statement import (

@@ -9,10 +9,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.convergence.axis import judge
-from impactlab.analysis.convergence.element_size import SPACINGS
+from impactlab.analysis.convergence.axes import ELEMENT_SIZE
+from impactlab.analysis.convergence.judgement import judge, numerical_uncertainty
 from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL
-from impactlab.analysis.convergence.uncertainty import numerical_uncertainty
 from impactlab.analysis.responses import relevant_bits
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS

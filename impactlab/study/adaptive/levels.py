@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from impactlab.analysis.convergence import points
-from impactlab.analysis.convergence.uncertainty import numerical_uncertainty
+from impactlab.analysis.convergence.judgement import numerical_uncertainty
 from impactlab.model.cost import node_steps
 from impactlab.model.discretisation import Discretisation
 from impactlab.simulate import case_table

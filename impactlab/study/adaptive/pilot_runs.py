@@ -19,7 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.linalg import hadamard
 
-from impactlab.analysis.convergence import by_design
+from impactlab.analysis.convergence.axis import without_limit
 from impactlab.analysis.responses import usable
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten
@@ -57,7 +57,7 @@ class Trials:
         """
         runs = execute(self._design(axis, rungs, at), self._folder, self._engine)
         values = usable(runs).transpose("response", "case", axis)
-        without = by_design.mask(runs, values, axis, axis)
+        without = without_limit(runs, values, axis, axis)
         labels = [name for name in values.coords if name not in values.dims]
         others = [name for name in labels if values[name].dims != ("response",)]
         return Answered(values.drop_vars(others), without.drop_vars(others, errors="ignore"))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from impactlab.analysis.convergence.uncertainty import How, numerical_uncertainty
+from impactlab.analysis.convergence.judgement import How, numerical_uncertainty
 
 H = 2.0 ** np.arange(5)
 

@@ -1,0 +1,242 @@
+"""The numerical uncertainty of a value on each of two or more grids, and where it comes from.
+
+Sources: Celik et al. (2008), J. Fluids Eng. 130, 078001; Eca and Hoekstra (2014), J. Comput. Phys.
+262, 104; Roache (1998), Verification and Validation in Computational Science and Engineering,
+ch. 5 (factor 3 on two grids).
+
+On four or five grids of ratio 2, errors of second order under normal noise of 0 to 20 times the
+finest error, the interval of the finest value holds the limit in 87 to 100 % of draws; where the
+error is of first order and the noise of its own size, in 73 to 81 %.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from impactlab.analysis.convergence import least_squares
+from impactlab.analysis.convergence.least_squares import Expansion, Fit
+from impactlab.analysis.convergence.richardson import (
+    CREDIBLE_ORDERS,
+    SAFETY_DOUBTFUL,
+    Behaviour,
+    Estimate,
+    estimate,
+    safety,
+)
+from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict
+from impactlab.types import Floats
+
+
+class How(Verdict):
+    """What an uncertainty rests on, the best first; sound where it is more than a precaution."""
+
+    ROUND_OFF = 0, True, "all grids agree to 1e-9"
+    GCI = 1, True, "grid convergence index, three grids of credible order"
+    GCI_AND_FIT = (
+        2,
+        True,
+        "the larger of the grid convergence index and the least-squares fit over all grids",
+    )
+    FIT = 3, True, "least-squares fit over all grids: the three finest show no credible order"
+    RANGE = 4, True, "three times the range of three grids that show no order and no drift"
+    TWO_GRIDS = 5, False, "two grids: first order is assumed, factor 3"
+    SLOW_DRIFT = 6, False, "all values move one way, at an order below 0.5: factor 3 on that order"
+    NOTHING = 7, False, "one grid, or a drift that does not slow down: nothing bounds the error"
+
+
+class Uncertainty(NamedTuple):
+    """amounts: half-width about each value that holds the limit, in its unit, (grids,)."""
+
+    amounts: Floats
+    how: How
+
+
+def numerical_uncertainty(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Uncertainty:
+    """How far the value of each grid may lie from the limit at zero spacing.
+
+    values: in any unit, NaN where a run is missing; spacings: in any unit; both (grids,), finest
+    first. A missing grid is left out and is infinitely uncertain, as are all where nothing bounds
+    the error. Of the finest grid the amount is that of `How`; a coarser one adds its distance to
+    the finest, or has its own by the fit. Raises ValueError unless the spacings rise.
+    """
+    f, h = np.asarray(values, float), np.asarray(spacings, float)
+    if not h[0] > 0 or not (np.diff(h) > 0).all():
+        raise ValueError(f"grid spacings must rise from the finest on: {h.tolist()}")
+    there = np.isfinite(f)
+    amounts = np.full(f.shape, math.inf)
+    amounts[there], how = _of_present(f[there], h[there])
+    return Uncertainty(amounts, how)
+
+
+def _of_present(f: Floats, h: Floats) -> Uncertainty:
+    if f.size < 2:
+        return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
+    if np.ptp(f) <= ROUND_OFF * np.max(abs(f)):
+        return Uncertainty(np.full(f.shape, ROUND_OFF * float(np.max(abs(f)))), How.ROUND_OFF)
+    if f.size == 2:
+        first_order = abs(f[1] - f[0]) / (h[1] / h[0] - 1.0)
+        return _from_finest(f, SAFETY_DOUBTFUL * float(first_order), How.TWO_GRIDS)
+    return _of_three_or_more(f, h)
+
+
+def _of_three_or_more(f: Floats, h: Floats) -> Uncertainty:
+    triples = [estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
+    finest = triples[0]
+    fitted = least_squares.fit(f, h) if f.size >= least_squares.FEWEST else None
+    if _one_way(f) and not _slows_down(finest, fitted):
+        if finest.behaviour is not Behaviour.MONOTONE:
+            return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
+        return _from_finest(f, finest.uncertainty(SAFETY_DOUBTFUL), How.SLOW_DRIFT)
+    by_index = _from_finest(f, finest.uncertainty(safety(triples)), How.GCI)
+    if fitted is None:
+        by_range = _from_finest(f, SAFETY_DOUBTFUL * float(np.ptp(f)), How.RANGE)
+        return by_index if finest.credible else by_range
+    by_fit = least_squares.uncertainty(fitted, f)
+    if not finest.credible:
+        return Uncertainty(by_fit, How.FIT)
+    # Scatter passes for an order easily: the index alone would hold the limit in 6 of 10 cases.
+    return Uncertainty(np.maximum(by_index.amounts, by_fit), How.GCI_AND_FIT)
+
+
+def _slows_down(finest: Estimate, fitted: Fit | None) -> bool:
+    """Whether the three finest grids, or else all of four or more, show an order above 0.5."""
+    least = CREDIBLE_ORDERS[0]
+    seen = finest.behaviour is Behaviour.MONOTONE and finest.order >= least
+    return seen or (fitted is not None and fitted.free_order >= least)
+
+
+def _one_way(f: Floats) -> bool:
+    steps = np.diff(f)
+    return bool((steps > 0).all() or (steps < 0).all())
+
+
+def _from_finest(f: Floats, amount: float, how: How) -> Uncertainty:
+    return Uncertainty(abs(f - f[0]) + amount, how)
+
+
+VANISHING = 0.1
+"""Richardson value over finest value up to which a shrinking response is on its way to zero."""
+
+
+class AxisVerdict(Verdict):
+    """What refinement shows for one response at one point of the rest of the grid."""
+
+    AT_ROUND_OFF = 0, True, "the three finest grids agree to 1e-9: nothing left to converge"
+    CONVERGED_SECOND_ORDER = (
+        1,
+        True,
+        "monotone, order 2 within 0.5, credible on every three successive grids, uncertainty "
+        "within 1 %",
+    )
+    CONVERGED = 2, True, "monotone, credible order (0.5 to 3), uncertainty within 1 %"
+    SETTLED = (
+        3,
+        True,
+        "no credible order, but no drift either: the least-squares fit over all grids (of three "
+        "grids, three times their range) bounds the error by 1 %",
+    )
+    TENDS_TO_ZERO = 4, False, "converges to zero: a relative error has no meaning"
+    NOT_YET_CONVERGED = 5, False, "convergence too slow or too far off to bound the error by 1 %"
+    OSCILLATORY = 6, False, "the differences shrink but change sign: no Richardson value"
+    UNDETERMINED = 7, False, "a run on the three finest grids is missing: no number is given"
+    DIVERGENT = 8, False, "the differences do not shrink as the grid is refined"
+    NOT_CONVERGENT_BY_DESIGN = 9, False, "the model has no limit here: no grid is fine enough"
+
+
+class Judgement(NamedTuple):
+    """Numbers and flags on one response; NaN where undefined."""
+
+    observed_order: float
+    extrapolated: float
+    gci: float
+    safety_factor: float
+    asymptotic_ratio: float
+    fit_order: float
+    fit_extrapolated: float
+    fit_uncertainty: float
+    uncertainty: float
+    fit_expansion: int
+    uncertainty_from: How
+    behaviour: Behaviour
+    verdict: AxisVerdict
+
+
+def judge(values: Floats, spacings: Floats) -> Judgement:
+    """All that three or more grids show of one response.
+
+    values: in any unit, spacings: in any unit, both (grids,) and finest first. Order, Richardson
+    value, GCI and its asymptotic ratio are those of the three finest; the safety factor is 1.25
+    where every three successive grids show a credible order and 3 otherwise; the fit is over all
+    of four or more. The extrapolated values are in the unit of the values; gci, fit_uncertainty
+    and uncertainty (`numerical_uncertainty` of the finest) relative to the finest value. Raises
+    ValueError unless the spacings rise.
+    """
+    triples = [estimate(values[i : i + 3], spacings[i : i + 3]) for i in range(len(values) - 2)]
+    finest, factor = triples[0], safety(triples)
+    fitted = _fit(values, spacings)
+    bound = numerical_uncertainty(values, spacings)
+    gci = finest.gci(factor)
+    return Judgement(
+        finest.order,
+        finest.extrapolated if finest.credible else np.nan,
+        gci,
+        np.nan if np.isnan(gci) else factor,
+        finest.asymptotic_ratio,
+        fitted.order if fitted else np.nan,
+        fitted.extrapolated if fitted else np.nan,
+        relative(least_squares.uncertainty(fitted, values)[0], values[0]) if fitted else np.nan,
+        relative(bound.amounts[0], values[0]),
+        fitted.expansion if fitted else Expansion.NONE,
+        bound.how,
+        finest.behaviour,
+        _verdict(triples, bound.how, relative(bound.amounts[0], values[0])),
+    )
+
+
+def relative(amount: float, value: float) -> float:
+    """amount/|value|, infinite where only the value is zero."""
+    return float(amount / abs(value)) if value else float(np.inf * amount if amount else 0.0)
+
+
+def _fit(values: Floats, spacings: Floats) -> Fit | None:
+    """The fit over all grids; None for fewer than four, a missing one, or equal values."""
+    if values.size < least_squares.FEWEST or not np.isfinite(values).all():
+        return None
+    if np.ptp(values) <= ROUND_OFF * np.max(abs(values)):
+        return None
+    return least_squares.fit(values, spacings)
+
+
+def _verdict(triples: list[Estimate], how: How, uncertainty: float) -> AxisVerdict:
+    finest, within = triples[0], how.sound and uncertainty <= TOLERANCE
+    if finest.behaviour in _DECIDED:
+        return _OTHERWISE[finest.behaviour]
+    if within and finest.credible:
+        second = finest.asymptotic and all(triple.credible for triple in triples)
+        return AxisVerdict.CONVERGED_SECOND_ORDER if second else AxisVerdict.CONVERGED
+    if within:
+        return AxisVerdict.SETTLED
+    return AxisVerdict.TENDS_TO_ZERO if _tends_to_zero(finest) else _OTHERWISE[finest.behaviour]
+
+
+def _tends_to_zero(finest: Estimate) -> bool:
+    fine, middle, coarse = (abs(value) for value in finest.values)
+    shrinking = finest.credible and fine < middle < coarse
+    return shrinking and abs(finest.extrapolated) <= VANISHING * fine
+
+
+_DECIDED = (Behaviour.AT_ROUND_OFF, Behaviour.UNDETERMINED)
+_OTHERWISE = {
+    Behaviour.AT_ROUND_OFF: AxisVerdict.AT_ROUND_OFF,
+    Behaviour.MONOTONE: AxisVerdict.NOT_YET_CONVERGED,
+    Behaviour.STALLED: AxisVerdict.NOT_YET_CONVERGED,
+    Behaviour.OSCILLATORY: AxisVerdict.OSCILLATORY,
+    Behaviour.MONOTONE_DIVERGENT: AxisVerdict.DIVERGENT,
+    Behaviour.OSCILLATORY_DIVERGENT: AxisVerdict.DIVERGENT,
+    Behaviour.UNDETERMINED: AxisVerdict.UNDETERMINED,
+}
+"""Verdicts where no number bounds the error."""
