@@ -11,7 +11,7 @@ from typing import NamedTuple
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import data, findings_curves, findings_overview, style
+from impactlab.figures import data, findings, style
 from impactlab.figures.alt import alt
 from impactlab.figures.catalogue import applicable
 from impactlab.figures.files import replaced
@@ -37,34 +37,34 @@ def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]
     """Draw each figure of the catalogue that applies to a study of runs; see `draw`."""
     pair = runs, analysis
     drawings = [
-        Drawing(name, file.TITLE, partial(file.plot, *pair), partial(file.caption, *pair))
-        for name, file in applicable(*pair).items()
+        Drawing(name, figure.title, partial(figure.plot, *pair), partial(figure.caption, *pair))
+        for name, figure in applicable(*pair).items()
     ]
     return draw(drawings, folder, study=str(runs.attrs.get("study")))
 
 
-def draw_findings(findings: xr.Dataset, folder: Path) -> list[Path]:
+def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
     """Draw the overview of a verification, and the curves of each check; see `draw`."""
-    outcomes = gravest_first(unpacked(findings))
+    outcomes = gravest_first(unpacked(stored))
     drawings = [
         Drawing(
             OVERVIEW,
-            findings_overview.TITLE,
-            partial(findings_overview.plot, outcomes),
-            partial(findings_overview.caption, outcomes),
+            "All comparisons",
+            partial(findings.plot_overview, outcomes),
+            partial(findings.overview_caption, outcomes),
         )
     ]
     drawings += [
         Drawing(
             outcome.name,
             outcome.title,
-            partial(findings_curves.plot, outcome),
-            partial(findings_curves.caption, outcome),
+            partial(findings.plot_curves, outcome),
+            partial(findings.curves_caption, outcome),
         )
         for outcome in outcomes
-        if findings_curves.applies(outcome)
+        if findings.has_curves(outcome)
     ]
-    return draw(drawings, folder, study=str(findings.attrs.get("study")))
+    return draw(drawings, folder, study=str(stored.attrs.get("study")))
 
 
 def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:

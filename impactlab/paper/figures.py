@@ -10,8 +10,9 @@ from pathlib import Path
 import xarray as xr
 
 from impactlab.figures import labels
-from impactlab.figures.catalogue import FigureFile, applicable
+from impactlab.figures.catalogue import applicable
 from impactlab.figures.draw import Drawing, draw
+from impactlab.figures.record import Figure
 
 Stored = Mapping[str, tuple[xr.Dataset, xr.Dataset]]
 """Runs and analysis of each study by its name."""
@@ -50,18 +51,18 @@ def draw_paper(stored: Stored, folder: Path) -> list[Path]:
 
 
 def _drawing(entry: PaperFigure, runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
-    file = applicable(runs, analysis)[entry.figure]
+    figure = applicable(runs, analysis)[entry.figure]
     digits = entry.number.rstrip("abc")
     return Drawing(
         f"figure_{int(digits):02d}{entry.number.removeprefix(digits)}",
-        f"{entry.number}. {file.TITLE}",
-        partial(file.plot, runs, analysis),
-        partial(_caption, entry, file, runs, analysis),
+        f"{entry.number}. {figure.title}",
+        partial(figure.plot, runs, analysis),
+        partial(_caption, entry, figure, runs, analysis),
     )
 
 
-def _caption(entry: PaperFigure, file: FigureFile, runs: xr.Dataset, analysis: xr.Dataset) -> str:
+def _caption(entry: PaperFigure, figure: Figure, runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """Return what is plotted, what all runs share, and why these runs."""
-    shown = file.caption(runs, analysis)
+    shown = figure.caption(runs, analysis)
     why = str(runs.attrs.get("description", ""))
     return " ".join(filter(None, (shown, labels.fixed(runs), why, f"Study: {entry.study}.")))

@@ -13,7 +13,7 @@ from impactlab import wings
 from impactlab.analysis.sensitivity.table import indices
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, is_sample
-from impactlab.figures.scatter import scatters
+from impactlab.figures.samples import scatters
 from impactlab.report import runs as of_runs
 from impactlab.report import sensitivity
 from impactlab.report.cautions import cautions, notes
@@ -91,7 +91,7 @@ def _scatter(runs: xr.Dataset) -> Section:
         "A line that bends or tilts is a parameter that matters by itself; points that fan out "
         "around a flat line hint at one that matters together with others."
     )
-    names = list(scatters(runs))
+    names = [figure.name for figure in scatters(runs)]
     return Section("scatter", "Each response against each parameter", lead, figures=names)
 
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from impactlab.fem3d.figures import witness, witness_parts
-from impactlab.figures.catalogue import FigureFile
+from impactlab.figures.record import Figure
 
-FIGURES: dict[str, FigureFile] = {"witness": witness, "witness_parts": witness_parts}
+FIGURES = {
+    name: Figure(name, module.TITLE, module.applies, module.plot, module.caption)
+    for name, module in (("witness", witness), ("witness_parts", witness_parts))
+}
 """Figures of a study, by name, in the order of the report."""

@@ -1,16 +1,21 @@
+"""Figures as files: pictures, data, captions, style and scales."""
+
 from __future__ import annotations
 
+import csv
 import json
 import threading
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import contact_duration, style
+from impactlab.figures import catalogue, data, scales, style
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.draw import draw_all, save
 from impactlab.figures.files import replaced
@@ -35,7 +40,7 @@ def test_writes_what_applies_with_captions(study: Study, tmp_path: Path) -> None
     )
     captions = json.loads(written[-1].read_text("utf-8"))
     assert list(captions) == names
-    assert captions["force_history"]["title"] == CATALOGUE["force_history"].TITLE
+    assert captions["force_history"]["title"] == CATALOGUE["force_history"].title
     assert "0.25" in captions["force_history"]["caption"]
 
 
@@ -64,7 +69,8 @@ def test_a_figure_that_fails_is_named_and_leaves_the_old_files(
     def broken(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         raise RuntimeError("no ink")
 
-    monkeypatch.setattr(contact_duration, "plot", broken)
+    duration = replace(CATALOGUE["contact_duration"], plot=broken)
+    monkeypatch.setattr(catalogue, "ANSWERS", (duration,))
     with pytest.raises(RuntimeError, match="no ink") as caught:
         draw_all(*study, tmp_path)
     assert any("contact_duration of study velocity" in note for note in caught.value.__notes__)
@@ -119,3 +125,99 @@ def test_threads_draw_the_same_figures(study: Study, tmp_path: Path) -> None:
     one, two = (sorted(folder.iterdir()) for folder in folders)
     assert len(one) == 17
     assert [path.read_bytes() for path in one] == [path.read_bytes() for path in two]
+
+
+def made_figure() -> Figure:
+    fig, (left, right) = style.panels(2, columns=2, height=50)
+    left.set_title("Curves", loc="left")
+    left.set(xlabel="Time (ms)", ylabel="Force (kN)")
+    left.plot([0.0, 1.0, 2.0], [1.0, np.nan, 3.0], label="one")
+    left.plot([0.0, 1.0], [5.0, 6.0], label="_only")
+    left.axhline(0.2, label="_guide")
+    right.set_title("Bars", loc="left")
+    right.set_xlabel("Share (–)")
+    right.barh([0.0, 1.0], [0.5, -0.25], label="first")
+    return fig
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_every_point_that_is_drawn_and_no_guide(tmp_path: Path) -> None:
+    path, _ = data.save(made_figure(), tmp_path, "made_figure")
+    found = rows(path)
+    curve = [row for row in found if row["curve"] == "one"]
+    assert [(row["x"], row["y"]) for row in curve] == [("0", "1"), ("2", "3")]
+    assert {row["panel"] for row in curve} == {"Curves"}
+    assert curve[0]["x_label"] == "Time (ms)"
+    assert curve[0]["y_label"] == "Force (kN)"
+    assert [(r["x"], r["y"]) for r in found if r["curve"] == "" and r["panel"] == "Curves"] == [
+        ("0", "5"),
+        ("1", "6"),
+    ]
+    assert [(float(r["x"]), float(r["y"])) for r in found if r["panel"] == "Bars"] == [
+        (0.5, 0.0),
+        (-0.25, 1.0),
+    ]
+    assert len(found) == 6
+
+
+def test_netcdf_holds_the_same(tmp_path: Path) -> None:
+    paths = data.save(made_figure(), tmp_path, "made_figure")
+    stored = xr.load_dataset(paths[1])
+    assert stored["x"].values.tolist() == [float(row["x"]) for row in rows(paths[0])]
+    assert stored["points"].values.tolist() == [2, 2, 2]
+    assert stored["curve_label"].values.tolist() == ["one", "", "first"]
+
+
+def test_a_figure_without_curves_leaves_no_files(tmp_path: Path) -> None:
+    data.save(made_figure(), tmp_path, "made_figure")
+    assert data.save(Figure(), tmp_path, "made_figure") == []
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_bars_upwards(tmp_path: Path) -> None:
+    fig, (ax,) = style.panels(1, columns=1, height=50)
+    ax.hist([0.5, 1.5, 1.6], bins=[0.0, 1.0, 2.0])
+    (drawn,) = data.drawn(fig)
+    assert drawn.x.tolist() == [0.5, 1.5]
+    assert drawn.y.tolist() == pytest.approx([1.0, 2.0])
+
+
+@pytest.mark.parametrize(
+    ("values", "scale"),
+    [
+        ([1.0, 100.0], "log"),
+        ([1.0, 10.0], "linear"),
+        ([0.0, 100.0], "linear"),
+        ([-1.0, 100.0], "linear"),
+        ([np.nan, 1.0, 100.0], "log"),
+        ([], "linear"),
+    ],
+)
+def test_wide_positive_ranges_are_logarithmic(values: list[float], scale: str) -> None:
+    axes = Figure().subplots()
+    scales.fit(axes, "y", values)
+    assert axes.get_yscale() == scale
+    assert axes.get_xscale() == "linear"
+
+
+def test_short_logarithmic_axes_still_have_labels() -> None:
+    axes = Figure().subplots()
+    axes.plot([1, 2], [0.24, 0.55])
+    scales.logarithmic(axes, "y", [0.24, 0.55])
+    axes.figure.draw_without_rendering()  # type: ignore[union-attr]
+    low, high = axes.get_ylim()
+    shown = [
+        label.get_text()
+        for label, at in zip(axes.get_yticklabels(), axes.get_yticks(), strict=True)
+        if low <= at <= high
+    ]
+    assert shown == ["0.25", "0.3", "0.4", "0.5"]
+
+
+def test_positive_leaves_gaps() -> None:
+    found = scales.positive([1.0, 0.0, -1.0, np.inf, np.nan, 1e-12], above=1e-9)
+    np.testing.assert_array_equal(found, [1.0] + 5 * [np.nan])

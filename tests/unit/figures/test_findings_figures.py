@@ -14,7 +14,8 @@ import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from impactlab.figures import findings_curves, findings_overview, style
+from impactlab.figures import findings as drawn
+from impactlab.figures import style
 from impactlab.figures.draw import draw_findings
 from impactlab.verification.finding import Curve, Finding, Panel, gravest_first
 from impactlab.verification.stored import packed
@@ -48,7 +49,7 @@ def test_files_are_the_overview_and_each_check_with_curves(
 
 
 def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes: Outcomes) -> None:
-    (axes,) = findings_overview.plot(outcomes).axes
+    (axes,) = drawn.plot_overview(outcomes).axes
     found = [line for line in axes.lines if line.get_marker() not in ("None", "")]
     assert sum(len(line.get_xdata()) for line in found) == 21
     failed = [line for line in found if line.get_label() in ("failed", "_failed")]
@@ -64,10 +65,8 @@ def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes
 
 
 def test_the_caption_counts_what_lies_at_the_edges(outcomes: Outcomes) -> None:
-    assert "1 above 1000 or without a number at the right edge" in findings_overview.caption(
-        outcomes
-    )
-    assert "triangles" not in findings_overview.caption(outcomes[:1])
+    assert "1 above 1000 or without a number at the right edge" in drawn.overview_caption(outcomes)
+    assert "triangles" not in drawn.overview_caption(outcomes[:1])
 
 
 @pytest.mark.parametrize("kind", ["overview", "same legend", "other legends", "one", "many"])
@@ -77,11 +76,11 @@ def test_nothing_overlaps_at_paper_width(kind: str, outcomes: Outcomes) -> None:
     long = "a title that goes on and on, for it states every parameter of the case"
     figure = _laid_out(
         {
-            "overview": lambda: findings_overview.plot(gravest_first(outcomes * 4)),
-            "same legend": lambda: findings_curves.plot(_with_panels(outcomes, first, first)),
-            "other legends": lambda: findings_curves.plot(bad),
-            "one": lambda: findings_curves.plot(_with_panels(outcomes, second)),
-            "many": lambda: findings_curves.plot(
+            "overview": lambda: drawn.plot_overview(gravest_first(outcomes * 4)),
+            "same legend": lambda: drawn.plot_curves(_with_panels(outcomes, first, first)),
+            "other legends": lambda: drawn.plot_curves(bad),
+            "one": lambda: drawn.plot_curves(_with_panels(outcomes, second)),
+            "many": lambda: drawn.plot_curves(
                 _with_panels(outcomes, *[first, replace(first, title=long, curves=MANY)] * 3)
             ),
         }[kind]()
@@ -107,10 +106,10 @@ def test_nothing_overlaps_at_paper_width(kind: str, outcomes: Outcomes) -> None:
 
 
 def test_ours_and_independent_curves_differ_without_colour(outcomes: Outcomes) -> None:
-    ours, independent = findings_curves.plot(outcomes[1]).axes[0].lines
+    ours, independent = drawn.plot_curves(outcomes[1]).axes[0].lines
     assert (ours.get_linestyle(), independent.get_linestyle()) == ("-", "--")
     assert independent.get_color() == "black"
-    marked, open_ = findings_curves.plot(outcomes[1]).axes[1].lines
+    marked, open_ = drawn.plot_curves(outcomes[1]).axes[1].lines
     assert marked.get_marker() not in ("", "None")
     assert marked.get_markerfacecolor() != "none"
     assert open_.get_markerfacecolor() == "none"
@@ -120,13 +119,13 @@ def test_few_points_beside_a_dense_curve_are_not_joined(outcomes: Outcomes) -> N
     x, dense = np.arange(5.0), np.linspace(0.0, 4.0, 99)
     curves = [Curve("solver", x, x**2), Curve("closed form", dense, dense**2, True)]
     panel = Panel("t", ("x", "m"), ("y", "m"), curves)
-    (axes,) = findings_curves.plot(_with_panels(outcomes, panel)).axes
+    (axes,) = drawn.plot_curves(_with_panels(outcomes, panel)).axes
     assert [line.get_linestyle() for line in axes.lines] == ["None", "--"]
     assert [line.get_marker() for line in axes.lines] == ["o", ""]
 
 
 def test_axes_are_in_display_units_and_decades(outcomes: Outcomes) -> None:
-    force, error = findings_curves.plot(outcomes[1]).axes
+    force, error = drawn.plot_curves(outcomes[1]).axes
     assert (force.get_xlabel(), force.get_ylabel()) == ("Time (ms)", "Contact force (kN)")
     assert np.max(force.lines[0].get_xdata()) == pytest.approx(1.0)
     assert np.max(force.lines[0].get_ydata()) == pytest.approx(20.0, rel=1e-3)
@@ -138,7 +137,7 @@ def test_axes_are_in_display_units_and_decades(outcomes: Outcomes) -> None:
 def test_a_curve_named_as_the_solvers_is_told_apart(outcomes: Outcomes) -> None:
     x = np.arange(3.0)
     panel = Panel("t", ("x", "m"), ("y", "m"), [Curve("steel", x, x), Curve("steel", x, x, True)])
-    (axes,) = findings_curves.plot(_with_panels(outcomes, panel)).axes
+    (axes,) = drawn.plot_curves(_with_panels(outcomes, panel)).axes
     assert [line.get_label() for line in axes.lines] == ["steel", "steel, independent"]
 
 
@@ -146,10 +145,8 @@ def test_nothing_to_draw_is_said(outcomes: Outcomes) -> None:
     x = np.arange(3.0)
     below = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, -1.0 - x)], log=True)
     missing = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, x * np.nan)])
-    figure = _laid_out(findings_curves.plot(_with_panels(outcomes, below, missing)))
+    figure = _laid_out(drawn.plot_curves(_with_panels(outcomes, below, missing)))
     said = [axes.texts[0].get_text() for axes in figure.axes]
     assert said == ["no finite values above zero", "no finite values"]
-    assert not findings_curves.applies(outcomes[0])
-    assert not findings_curves.applies(
-        _with_panels(outcomes, Panel("t", ("x", "m"), ("y", "m"), []))
-    )
+    assert not drawn.has_curves(outcomes[0])
+    assert not drawn.has_curves(_with_panels(outcomes, Panel("t", ("x", "m"), ("y", "m"), [])))

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from impactlab.figures import data, draw
 from impactlab.figures.alt import alt
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.figures.failure_shares import wilson
-from impactlab.figures.scatter import Scatter, conditional_mean
+from impactlab.figures.failures import wilson
+from impactlab.figures.samples import conditional_mean, scatter
 
 Study = tuple[xr.Dataset, xr.Dataset]
 
@@ -52,14 +52,14 @@ def test_runs_of_one_value_share_a_bin() -> None:
 
 def test_points_are_a_picture_and_the_file_stays_small(tmp_path: Path) -> None:
     runs = samples.sample(20_000)[["peak_force", "status"]]
-    figure = Scatter("peak_force").plot(runs, xr.Dataset())
+    figure = scatter("peak_force").plot(runs, xr.Dataset())
     points = [line for ax in figure.axes for line in ax.lines if line.get_label() == "_runs"]
     assert len(points) == 9
     assert {len(np.asarray(line.get_xdata())) for line in points} == {2000}
     svg, _ = draw.save(figure, tmp_path, "scatter")
     assert svg.stat().st_size < 800_000
     assert {curve.curve for curve in data.drawn(figure)} == {"conditional mean"}
-    assert "2000 of the 20000 runs" in Scatter("peak_force").caption(runs, xr.Dataset())
+    assert "2000 of the 20000 runs" in scatter("peak_force").caption(runs, xr.Dataset())
 
 
 def test_noise_is_pale_and_the_dummy_a_line(study: Study) -> None:

@@ -1,4 +1,4 @@
-"""Contact laws side by side: force against indentation, restitution and dent against velocity."""
+"""Figures of grids against the impact velocity, with a curve per contact law."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure as MplFigure
 
 from impactlab.figures import access, curves, labels, responses_grid, scales, style
 from impactlab.figures.access import is_sample, usable
 from impactlab.figures.curves import Choice, Plan, plan
 from impactlab.figures.labels import display
+from impactlab.figures.record import Figure
 from impactlab.variables import MARKS
 
-TITLE = "Contact laws side by side"
+_DURATION = "contact_duration"
 _FEWEST = 3
 _FORCE, _INDENTATION = "contact_force", "indentation"
 _DENT = "permanent_indentation"
@@ -23,29 +24,85 @@ _AGAINST_VELOCITY = ("restitution", _DENT)
 _OUTSIDE = MARKS["outside_contact_law"][0]
 
 
-def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Whether a grid has at least three contact laws and three velocities."""
+def _duration_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether contact_duration is on a grid of at least three velocities."""
+    return _DURATION in runs and runs[_DURATION].sizes.get("velocity", 0) >= _FEWEST
+
+
+def _duration_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    return (
+        "Duration of the first contact (a later sub-impact does not count) against the impact "
+        "velocity. Grey: the slope −1/5 of Hertz's elastic impact on a half-space. "
+        f"{_plan_duration(runs).note(runs)} {access.missing_note(runs, [_DURATION])}".strip()
+    )
+
+
+@style.paper
+def _plot_duration(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
+    """Draw a curve per contact law, or per value of what else is varied."""
+    selected, valid = _plan_duration(runs), usable(runs, _DURATION)
+    unit, speed = display(valid.rename(_DURATION)), runs["velocity"].values
+    figure, (ax,) = style.panels(1, columns=1, height=62)
+    for curve in selected.curves:
+        values = unit(valid.isel(selected.held | curve.where))
+        if np.isfinite(values).any():
+            ax.plot(speed, values, label=curve.label or "_only", **curves.marked(curve))
+    ax.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
+    ax.set_ylabel(labels.axis("duration of the first contact", unit.symbol))
+    _scale(ax, speed)
+    style.legend(figure, selected.title(), selected.labels())
+    return figure
+
+
+def _plan_duration(runs: xr.Dataset) -> Plan:
+    return plan(runs, _DURATION, along=["velocity"], prefer=["contact"])
+
+
+def _scale(ax: Axes, speed: np.ndarray) -> None:
+    """Make both axes logarithmic, as durations follow powers of the velocity; add the guide."""
+    lines = list(ax.lines)
+    if not lines:
+        style.remark(ax, "no finite values")
+        return
+    values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in lines])
+    scales.logarithmic(ax, "x", speed)
+    scales.logarithmic(ax, "y", values)
+    highest, ends = np.nanmax(values), np.array([speed.min(), speed.max()])
+    guide = highest * (ends / ends[0]) ** -0.2 * 1.08
+    ax.plot(ends, guide, label="_guide", linestyle="-", **style.GUIDE)
+
+
+CONTACT_DURATION = Figure(
+    "contact_duration",
+    "Contact duration against velocity",
+    _duration_applies,
+    _plot_duration,
+    _duration_caption,
+)
+
+
+def _laws_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether a grid has at least three contact laws and three velocities."""
     few = [dim for dim in ("contact", "velocity") if runs.sizes.get(dim, 0) < _FEWEST]
     return not is_sample(runs) and not few and bool(_variables(runs))
 
 
-def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """What is shown, held and missing."""
+def _laws_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     at = labels.value(runs["velocity"], _middle(runs)) if _has_histories(runs) else ""
     force = f"Force against indentation at {at}, while in contact. " if at else ""
     logarithmic = "Permanent indentations of zero or below are not shown. " * (_DENT in runs)
     beyond = bool(((runs["status"] & _OUTSIDE) != 0).any())
     open_markers = "Open markers: beyond the range of the law. " if beyond else ""
     return (
-        f"{force}{logarithmic}{open_markers}{_plan(runs).note(runs)} "
+        f"{force}{logarithmic}{open_markers}{_plan_laws(runs).note(runs)} "
         f"{access.missing_note(runs, _variables(runs))}".strip()
     )
 
 
 @style.paper
-def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
-    """A panel for the histories and one for each response, a colour a law."""
-    selected = _plan(runs)
+def _plot_laws(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
+    """Draw a panel of histories and one per response, with a colour per law."""
+    selected = _plan_laws(runs)
     names = [name for name in _AGAINST_VELOCITY if name in runs]
     count = len(names) + _has_histories(runs)
     figure, axes = style.panels(count, columns=max(count, 2), height=62)
@@ -69,8 +126,8 @@ def _middle(runs: xr.Dataset) -> int:
     return runs.sizes["velocity"] // 2
 
 
-def _plan(runs: xr.Dataset) -> Plan:
-    """Every law has its curve."""
+def _plan_laws(runs: xr.Dataset) -> Plan:
+    """Plan a curve for every law."""
     laws = runs.sizes["contact"]
     return plan(runs, "status", along=["velocity"], prefer=["contact"], most=laws)
 
@@ -122,5 +179,14 @@ def _outside(runs: xr.Dataset, selected: Plan, curve: Choice) -> np.ndarray:
 
 
 def _open(curve: Choice) -> dict[str, Any]:
-    """Over the marker, without a label or a line."""
+    """Return the look of an open marker, drawn over the filled one."""
     return curves.marked(curve) | {"linestyle": "", "markerfacecolor": "white", "label": "_open"}
+
+
+CONTACT_LAWS = Figure(
+    "contact_laws",
+    "Contact laws side by side",
+    _laws_applies,
+    _plot_laws,
+    _laws_caption,
+)
