@@ -66,6 +66,17 @@ def test_numbers_that_are_not_defined_are_dashes(report: Any, discretisation_stu
     assert _row(page, POINTS, "Impulse")[3] == "5none below the most at 3 of 6 points"
 
 
+def test_the_index_and_uncertainties_shown_are_the_largest_over_the_grid(
+    report: Any, discretisation_study: Study
+) -> None:
+    runs, analysis = discretisation_study
+    first = {"response": "peak_force", "velocity": analysis["velocity"].values[0]}
+    analysis["nodes_gci"].loc[first] = 0.07
+    analysis["nodes_uncertainty"].loc[first] = 1e-5
+    row = _row(report(runs, analysis), NODES, "Peak force")
+    assert (row[4], row[7]) == ("7 %", "0.2 %")
+
+
 def test_what_is_refined_along_and_what_has_no_limit_is_said(
     report: Any, discretisation_study: Study
 ) -> None:
