@@ -157,7 +157,7 @@ def solid_response(data: Data, response: str, velocity: float, least: float = 0.
         raise UnknownError(f"the runs of the study {study} do not hold the {response}")
     values = select_response(runs, response, velocity=velocity, beam_model=SOLID)
     elements = refined_elements(runs)
-    spacings = SPACINGS[elements](runs[elements].values.astype(float))
+    spacings = ELEMENT_SIZE.spacings[elements](runs[elements].values.astype(float))
     finest_first = np.argsort(spacings)
     found = values.values.astype(float)[finest_first]
     width = max(float(numerical_uncertainty(found, spacings[finest_first]).amounts[0]), least)
