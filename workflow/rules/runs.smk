@@ -1,0 +1,72 @@
+# From a study file to its solved runs.
+
+
+rule resolution:
+    input:
+        code=code(*SOLVER, "study/**/*.py", "analysis/convergence/*.py"),
+        study="studies/{study}.yaml",
+    output:
+        "results/{study}/resolution.nc",
+    log:
+        "results/{study}/logs/resolution.log",
+    benchmark:
+        "results/{study}/benchmarks/resolution.tsv"
+    threads: os.cpu_count()  # scaled down to --cores
+    conda:
+        "../../environment.yaml"
+    shell:
+        "impactlab --log {log} recommend {input.study} --output {output} --workers {threads}"
+
+
+# An auto discretisation is read from the resolution, which lies beside the output.
+rule design:
+    input:
+        code=code(*MODEL, "study/**/*.py"),
+        study="studies/{study}.yaml",
+        resolution=where("auto", "resolution.nc"),
+    output:
+        "results/{study}/design.nc",
+    log:
+        "results/{study}/logs/design.log",
+    benchmark:
+        "results/{study}/benchmarks/design.tsv"
+    threads: 1
+    conda:
+        "../../environment.yaml"
+    shell:
+        "impactlab --log {log} design {input.study} --output {output}"
+
+
+# Its shards live beside the output, not as one: Snakemake would remove them when a job fails.
+rule runs:
+    input:
+        code=solving,
+        design="results/{study}/design.nc",
+    output:
+        "results/{study}/runs.nc",
+    log:
+        "results/{study}/logs/runs.log",
+    benchmark:
+        "results/{study}/benchmarks/runs.tsv"
+    threads: os.cpu_count()  # scaled down to --cores
+    conda:
+        "../../environment.yaml"
+    shell:
+        "impactlab --log {log} run {input.design} --output {output} --workers {threads}"
+
+
+rule refinement:
+    input:
+        code=code(*SOLVER, "study/**/*.py"),
+        runs="results/{study}/runs.nc",
+    output:
+        "results/{study}/refinement.nc",
+    log:
+        "results/{study}/logs/refinement.log",
+    benchmark:
+        "results/{study}/benchmarks/refinement.tsv"
+    threads: os.cpu_count()  # scaled down to --cores
+    conda:
+        "../../environment.yaml"
+    shell:
+        "impactlab --log {log} refine {input.runs} --output {output} --workers {threads}"
