@@ -57,10 +57,10 @@ def _study_of(shards: Path, folder: Path) -> Path | None:
 
 def _stale(file: Path | None, shards: Path) -> dict[Path, str]:
     """What can go of one study's shards; nothing while its discretisation has to be found."""
-    from impactlab.study.declaration import read_study
     from impactlab.study.runs import outdated, stale
-    from impactlab.study.sampling import design
-    from impactlab.study.sampling.stages import stages
+    from impactlab.study.sampling.design import design
+    from impactlab.study.sampling.doubling import stages
+    from impactlab.study.schema.files import read_study
 
     if file is None:
         return stale(shards, ())

@@ -20,10 +20,10 @@ def design(
 
     A discretisation that is `auto` is found first, as by `impactlab recommend`.
     """
-    from impactlab.study.declaration import read_study
     from impactlab.study.engine import Engine
     from impactlab.study.netcdf import write_netcdf
-    from impactlab.study.sampling import design as sampled
+    from impactlab.study.sampling.design import design as sampled
+    from impactlab.study.schema.files import read_study
 
     declared = read_study(study)
     path = output or results_file(declared.name, "design.nc")

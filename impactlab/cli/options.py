@@ -30,7 +30,7 @@ WITNESS = "witness"
 
 def results_file(study: str, name: str) -> Path:
     """results/STUDY/NAME. Raises ValueError where a study's name or a link leads elsewhere."""
-    from impactlab.study.declaration.reading import check_name
+    from impactlab.study.schema.yaml_file import check_name
 
     check_name(study, f"study {study!r}")
     folder = RESULTS / study

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from impactlab.study.declaration import FunctionStudy, Study
+    from impactlab.study.schema.study import FunctionStudy, Study
 
 
 def allowed(
@@ -37,8 +37,8 @@ def allowed(
 def _found(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy:
     """The study, with the discretisation that trials have found for it, where they have."""
     from impactlab.study.adaptive.recommendation import fits, resolved
-    from impactlab.study.declaration import FunctionStudy
     from impactlab.study.netcdf import read_netcdf
+    from impactlab.study.schema.study import FunctionStudy
 
     if isinstance(study, FunctionStudy) or study.auto is None or not evidence.exists():
         return study

@@ -39,9 +39,10 @@ def recommend(
     """
     from impactlab.report.console import print_recommendation
     from impactlab.study.adaptive.recommendation import recommend as recommended
-    from impactlab.study.declaration import Auto, read_impacts
     from impactlab.study.engine import Engine
     from impactlab.study.netcdf import write_netcdf
+    from impactlab.study.schema.files import read_impacts
+    from impactlab.study.schema.model import Auto
 
     declared = read_impacts(study)
     path = output or results_file(declared.name, "resolution.nc")

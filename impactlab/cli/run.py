@@ -43,17 +43,17 @@ def run(
     stop_at_once()
     from functools import partial
 
-    from impactlab.study.declaration import read_study
     from impactlab.study.engine import Engine, read_profile
     from impactlab.study.execute import execute, executed
     from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.study.runs import note_study
-    from impactlab.study.sampling import design as sampled
-    from impactlab.study.sampling.doubling import declared
+    from impactlab.study.sampling.design import design as sampled
+    from impactlab.study.sampling.doubling import study_of_design
+    from impactlab.study.schema.files import read_study
     from impactlab.study.store import locked
 
     stored = read_netcdf(design_file) if design_file.suffix == ".nc" else None
-    study = read_study(design_file) if stored is None else declared(stored, design_file)
+    study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
     path = output or results_file(study.name, "runs.nc")
     evidence = path.with_name("resolution.nc")
     if not allowed(study, path, workers, dry_run=dry_run, force=force):

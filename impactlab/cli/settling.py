@@ -11,8 +11,8 @@ from impactlab.cli.options import TRIALS
 if TYPE_CHECKING:
     import xarray as xr
 
-    from impactlab.study.declaration import FunctionStudy, Study
     from impactlab.study.engine import Engine
+    from impactlab.study.schema.study import FunctionStudy, Study
 
 
 def settled(study: Study | FunctionStudy, evidence: Path, engine: Engine) -> Study | FunctionStudy:
@@ -20,7 +20,7 @@ def settled(study: Study | FunctionStudy, evidence: Path, engine: Engine) -> Stu
 
     engine: solves the trials.
     """
-    from impactlab.study.declaration import FunctionStudy
+    from impactlab.study.schema.study import FunctionStudy
 
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
@@ -39,7 +39,7 @@ def settled(study: Study | FunctionStudy, evidence: Path, engine: Engine) -> Stu
 
 def settled_before(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy | None:
     """The study as `settled` gives it; None where the trials have still to be made."""
-    from impactlab.study.declaration import FunctionStudy
+    from impactlab.study.schema.study import FunctionStudy
 
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study

@@ -20,10 +20,10 @@ def status(
     Nothing is changed; a study may be at work meanwhile.
     """
     from impactlab.report.console import print_status
-    from impactlab.study.declaration import read_study
     from impactlab.study.runs import status as status_of
-    from impactlab.study.sampling import design
-    from impactlab.study.sampling.stages import stages
+    from impactlab.study.sampling.design import design
+    from impactlab.study.sampling.doubling import stages
+    from impactlab.study.schema.files import read_study
 
     folder = results / study.stem
     declared = settled_before(read_study(study), folder / "resolution.nc")

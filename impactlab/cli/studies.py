@@ -26,7 +26,7 @@ def studies(
         print(json.dumps([describe(path) for path in files], indent=1))
         return
     from impactlab.report.console import print_studies
-    from impactlab.study.declaration import read_any
+    from impactlab.study.schema.files import read_any
 
     read = [read_any(path) for path in files]
     print_studies((study.name, study.size, study.title) for study in read)

@@ -28,8 +28,8 @@ def verify(
     """
     from impactlab.report.console import print_outcomes
     from impactlab.study.checking import check, failure
-    from impactlab.study.declaration import read_verification
     from impactlab.study.netcdf import read_netcdf, write_netcdf
+    from impactlab.study.schema.files import read_verification
     from impactlab.verification.stored import unpacked
 
     if study.suffix == ".nc":

@@ -119,7 +119,7 @@ def _folder_name(asked: Mapping[str, str]) -> str:
 def _case(study: Path | None, velocity: str, contact: str) -> Case:
     """What is solved; of a study that varies what this takes one value of, that is said."""
     from impactlab.fem3d.comparison.plan import case_of, paper_case
-    from impactlab.study.declaration import read_impacts
+    from impactlab.study.schema.files import read_impacts
 
     case = case_of(read_impacts(study)) if study else paper_case()
     speed = given("--velocity", velocity, "m s-1") if velocity else None

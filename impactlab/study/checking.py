@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import xarray as xr
 
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.declaration import Verification
 from impactlab.study.progress import Progress
+from impactlab.study.schema.study import Verification
 from impactlab.variables import provenance
 from impactlab.verification.catalogue import run
 from impactlab.verification.finding import Outcome

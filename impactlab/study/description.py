@@ -6,9 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from impactlab.study.declaration import Sample, Sobol, Study, Verification, read_any
-from impactlab.study.declaration.solid import asks_for_solid
 from impactlab.study.errors import StudyError
+from impactlab.study.sampling.sections import Sample
+from impactlab.study.sampling.sobol import Sobol
+from impactlab.study.schema.checks import has_solid_runs
+from impactlab.study.schema.files import read_any
+from impactlab.study.schema.study import Study, Verification
 
 
 def describe(path: Path) -> dict[str, Any]:
@@ -45,5 +48,5 @@ def _traits(study: Any) -> Iterator[str]:
         yield "sample"
     if isinstance(sampling, Sobol):
         yield "sobol"
-    if asks_for_solid(study):
+    if has_solid_runs(study):
         yield "fem3d"

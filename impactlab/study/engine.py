@@ -19,9 +19,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from tornado.ioloop import PeriodicCallback
 from tornado.util import TimeoutError as TornadoTimeoutError
 
-from impactlab.study.declaration.messages import problems
-from impactlab.study.declaration.reading import read_mapping, read_text
 from impactlab.study.errors import StudyError
+from impactlab.study.schema.section import validation_problems
+from impactlab.study.schema.yaml_file import read_mapping, read_text
 
 if TYPE_CHECKING:
     from dask_jobqueue.slurm import SLURMCluster
@@ -166,7 +166,7 @@ def read_profile(path: Path) -> Profile:
         return Profile.model_validate(data)
     except ValidationError as error:
         keys = {id(data): list(Profile.model_fields)}
-        raise StudyError(*problems(error, data, str(path), keys)) from None
+        raise StudyError(*validation_problems(error, data, str(path), keys)) from None
 
 
 def slurm_cluster(profile: Profile) -> SLURMCluster:

@@ -19,12 +19,15 @@ from impactlab.model.impact import SOLID
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
 from impactlab.simulate import case_table
-from impactlab.study.declaration import FunctionStudy, Grid, Sample, Sobol, Study
-from impactlab.study.declaration.plausible import doubts, ends_of, stated_at
-from impactlab.study.declaration.solid import asks_for_solid
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.quantities import amount, time
 from impactlab.study.runs import disk_size
+from impactlab.study.sampling.grid import Grid
+from impactlab.study.sampling.sections import Sample
+from impactlab.study.sampling.sobol import Sobol
+from impactlab.study.schema.checks import has_solid_runs
+from impactlab.study.schema.plausibility import extremes, implausibilities, key_of
+from impactlab.study.schema.study import FunctionStudy, Study
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
 Array = np.ndarray[Any, Any]
@@ -163,7 +166,7 @@ def _parameters(study: Study | FunctionStudy, runs: int) -> float:
 def _slow(study: Study, case: Array, runs: int) -> dict[str, float]:
     """Return the factor of time that each parameter or key would save at the paper's value."""
     work, impact = _costs(study).work, paper_impact()
-    if asks_for_solid(study) and wings.load(wings.SOLID["cases"]).is_solid(case).all():
+    if has_solid_runs(study) and wings.load(wings.SOLID["cases"]).is_solid(case).all():
         impact = replace(impact, beam_model=SOLID)
     grid = Discretisation(element_size=_USUAL_SIZE)
     usual = _case_table(study)(impact, grid, duration=_USUAL_DURATION, varied={})
@@ -188,7 +191,7 @@ def _large(study: Study, case: Array, runs: int) -> dict[str, float]:
 def _key(study: Study, gains: Mapping[str, float]) -> str:
     """Return the dotted key in the study file of the largest gain."""
     name = max(gains, key=gains.__getitem__)
-    return stated_at(name, study.sampling) if name in PARAMETERS else name
+    return key_of(name, study.sampling) if name in PARAMETERS else name
 
 
 class _Costs(Protocol):
@@ -204,13 +207,13 @@ class _Costs(Protocol):
 
 
 def _costs(study: Study) -> _Costs:
-    found: _Costs = wings.load(wings.SOLID["costs"]) if asks_for_solid(study) else beam_cost
+    found: _Costs = wings.load(wings.SOLID["costs"]) if has_solid_runs(study) else beam_cost
     return found
 
 
 def _case_table(study: Study) -> Callable[..., Array]:
     """Return the function that makes the table of cases of a study."""
-    if not asks_for_solid(study):
+    if not has_solid_runs(study):
         return case_table
     found: Callable[..., Array] = wings.load(wings.SOLID["cases"]).table
     return found
@@ -272,9 +275,9 @@ def implausible(study: Study | FunctionStudy) -> list[Problem]:
     """Return the parameters of a study's impacts whose values are possible but implausible."""
     if isinstance(study, FunctionStudy):
         return []
-    found = doubts(ends_of((study.impact, study.discretisation), study.sampling))
+    found = implausibilities(extremes((study.impact, study.discretisation), study.sampling))
     file = str(study.path)
-    return [Problem(file, stated_at(each.name, study.sampling), each.reason) for each in found]
+    return [Problem(file, key_of(each.name, study.sampling), each.reason) for each in found]
 
 
 def exceeded_limits(cost: Estimate, folder: Path) -> list[Problem]:

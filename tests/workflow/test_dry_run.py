@@ -74,4 +74,4 @@ def test_what_is_hardly_meant_is_told(impactlab):
     _, said = impactlab("run", "--dry-run", "studies/some.yaml")
     assert "WARNING" not in said
     _, said = impactlab("run", "--dry-run", "studies/some.yaml", grid="{nodes: 21}", gravity=9810)
-    assert "WARNING: studies/some.yaml: impact.gravity: 9810 m/s2 is hardly meant" in said
+    assert "WARNING: studies/some.yaml: impact.gravity: 9810 m/s2 is implausible" in said

@@ -177,5 +177,5 @@ def test_a_design_does_not_say_where_its_runs_go(folder, capsys, name):
     stored.to_netcdf(folder / "design.nc")
     before = everything(folder.parent)
     assert impactlab("run", "design.nc") == 1
-    assert "its name becomes that of a folder" in capsys.readouterr().err
+    assert "its name becomes the name of a folder" in capsys.readouterr().err
     assert everything(folder.parent) == before

@@ -10,11 +10,11 @@ from scipy.stats import norm
 from impactlab.analysis.analyse import analyse
 from impactlab.figures.draw import draw_all
 from impactlab.report.study import write_report
-from impactlab.study.declaration import read_study
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.netcdf import read_netcdf, write_netcdf
-from impactlab.study.sampling import design
+from impactlab.study.sampling.design import design
+from impactlab.study.schema.files import read_study
 from impactlab.variables import FAILURES
 from impactlab.verification.functions import FUNCTIONS
 
@@ -187,8 +187,8 @@ def test_the_committed_study_states_what_is_known():
 
 
 def test_the_command_recommend_refuses_a_function():
-    from impactlab.study.declaration import read_impacts
     from impactlab.study.errors import StudyError
+    from impactlab.study.schema.files import read_impacts
 
     with pytest.raises(StudyError, match="has no discretisation"):
         read_impacts(ROOT / "studies" / "ishigami.yaml")

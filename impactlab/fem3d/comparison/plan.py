@@ -18,8 +18,8 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
 from impactlab.model.parameters import Value, flatten, with_values
-from impactlab.study.declaration import Study
 from impactlab.study.quantities import amount, time
+from impactlab.study.schema.study import Study
 
 _LONGEST = 5e-3
 """Simulated time of the paper's case in s, within which its first contact ends at any velocity."""

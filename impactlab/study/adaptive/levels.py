@@ -15,7 +15,7 @@ from impactlab.analysis.convergence.judgement import numerical_uncertainty
 from impactlab.model.cost import node_steps
 from impactlab.model.discretisation import Discretisation
 from impactlab.simulate import case_table
-from impactlab.study.declaration import Study
+from impactlab.study.schema.study import Study
 
 _COARSEST, _FINEST = 50, 800
 """Spans between nodes: the finer the last rung, the less has to be added for what lies beyond."""

@@ -23,9 +23,10 @@ from impactlab.analysis.convergence.axis import without_limit
 from impactlab.analysis.responses import usable
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten
-from impactlab.study.declaration import Grid, Study
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
+from impactlab.study.sampling.grid import Grid
+from impactlab.study.schema.study import Study
 from impactlab.variables import described
 
 Cases = Mapping[str, Sequence[Value]]

@@ -28,9 +28,10 @@ from impactlab.study.adaptive.levels import (
     uncertainty,
 )
 from impactlab.study.adaptive.pilot_runs import Trials, corner_cases
-from impactlab.study.declaration import Auto, Study
 from impactlab.study.engine import Engine
 from impactlab.study.errors import Problem, StudyError
+from impactlab.study.schema.model import Auto
+from impactlab.study.schema.study import Study
 from impactlab.study.store import locked
 from impactlab.variables import provenance
 

@@ -1,18 +1,5 @@
-"""From a study to its design: the coordinates of all runs, multiplied out or drawn."""
+"""Sampling methods, one file each, and the designs that they draw.
 
-from __future__ import annotations
-
-import xarray as xr
-
-from impactlab.study.declaration import FunctionStudy, Study
-from impactlab.study.sampling.function import function_design
-from impactlab.study.sampling.impact import impact_design
-
-
-def design(study: Study | FunctionStudy) -> xr.Dataset:
-    """The runs of a study, as a Dataset of coordinates alone: see impact_design.
-
-    The attributes say what solves them, what is asked of them, and how they were chosen. Raises
-    StudyError when a drawn run is impossible.
-    """
-    return function_design(study) if isinstance(study, FunctionStudy) else impact_design(study)
+A method's file holds its section of the study file, its draws and its `SamplingMethod`; `methods`
+is the registry. The indices of a method are in the file of the same name in analysis.sensitivity.
+"""

@@ -6,7 +6,7 @@ import pytest
 
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.checking import check, failure
-from impactlab.study.declaration import Verification
+from impactlab.study.schema.study import Verification
 from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.finding import Check, Finding, relative
 from impactlab.verification.stored import unpacked

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from impactlab.model.cost import memory, work
-from impactlab.study.declaration import study_of_text
 from impactlab.study.estimate import (
     _PROGRAM,
     A_SECOND,
@@ -20,7 +19,8 @@ from impactlab.study.estimate import (
     exceeded_limits,
     free_disk,
 )
-from impactlab.study.sampling import design
+from impactlab.study.sampling.design import design
+from impactlab.study.schema.files import study_of_text
 from impactlab.study.solvers import solver_named
 
 GRID = """

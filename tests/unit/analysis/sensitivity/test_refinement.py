@@ -8,8 +8,8 @@ from impactlab.analysis.numerical import numerical
 from impactlab.analysis.sensitivity.refinement import uncertainty
 from impactlab.analysis.surrogate import fit
 from impactlab.study.adaptive.refining import refined
-from impactlab.study.declaration import study_of_text
-from impactlab.study.sampling import design
+from impactlab.study.sampling.design import design
+from impactlab.study.schema.files import study_of_text
 
 NODES, POINTS = 51, 9
 LIMIT = np.array([3.0, 2.0, 1.0])

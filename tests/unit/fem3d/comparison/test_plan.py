@@ -10,8 +10,8 @@ import pytest
 from impactlab.fem3d.comparison import plan as plans
 from impactlab.fem3d.comparison.plan import USUAL_TIME, case_of, paper_case, planned
 from impactlab.fem3d.solver import estimate, least_cost, quarter_mesh
-from impactlab.study.declaration import read_impacts
 from impactlab.study.errors import StudyError
+from impactlab.study.schema.files import read_impacts
 
 STUDIES = Path(__file__).parents[4] / "studies"
 

@@ -13,12 +13,12 @@ from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.fem3d.study import cases as case_tables
 from impactlab.fem3d.study import solver as witness
 from impactlab.model.cost import A_SECOND
-from impactlab.study.declaration import study_of_text
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate
 from impactlab.study.execute import execute
 from impactlab.study.runs import Work
-from impactlab.study.sampling import design
+from impactlab.study.sampling.design import design
+from impactlab.study.schema.files import study_of_text
 from impactlab.study.store import OutputSpec
 from impactlab.variables import STATUS_FLAGS
 

@@ -9,8 +9,8 @@ import xarray as xr
 
 from impactlab.analysis.analyse import analyse
 from impactlab.study.adaptive.extending import extended, widest
-from impactlab.study.declaration import study_of_text
-from impactlab.study.sampling import design
+from impactlab.study.sampling.design import design
+from impactlab.study.schema.files import study_of_text
 
 RESPONSES = ["peak_force", "contact_duration", "number_of_contacts"]
 

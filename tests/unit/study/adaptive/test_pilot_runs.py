@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.study.adaptive.pilot_runs import corner_cases, corners
-from impactlab.study.declaration import read_study
+from impactlab.study.schema.files import read_study
 
 STUDY = """
 title: Corners

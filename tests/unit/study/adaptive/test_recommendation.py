@@ -8,10 +8,10 @@ import pytest
 
 from impactlab.study.adaptive import recommendation
 from impactlab.study.adaptive.recommendation import fits, recommend, recommended, resolved
-from impactlab.study.declaration import read_study
 from impactlab.study.engine import Engine
 from impactlab.study.errors import StudyError
-from impactlab.study.sampling import design
+from impactlab.study.sampling.design import design
+from impactlab.study.schema.files import read_study
 from impactlab.study.store import holder
 from impactlab.verification.solutions import modal
 
@@ -95,7 +95,7 @@ def test_a_response_without_variation_is_certain(found):
 
 def test_auto_becomes_what_was_recommended(study, tmp_path):
     declared = study(ELASTIC.replace("DISCRETISATION", "{auto: {tolerance: 1 %}, rule: legendre}"))
-    with pytest.raises(StudyError, match="has to be found before"):
+    with pytest.raises(StudyError, match="find it before the runs are drawn"):
         design(declared)
     trials = recommend(declared, tmp_path / "trials", Engine(workers=2))
     settled = resolved(declared, trials)

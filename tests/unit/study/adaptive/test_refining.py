@@ -7,10 +7,10 @@ import pytest
 
 from impactlab.analysis.analyse import analyse
 from impactlab.study.adaptive.refining import base_samples, refined
-from impactlab.study.declaration import study_of_text
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.sampling import design
+from impactlab.study.sampling.design import design
+from impactlab.study.schema.files import study_of_text
 
 STUDY = """
 title: Elastic impacts on a coarse grid

@@ -47,5 +47,5 @@ def test_a_design_drawn_in_another_way_is_refused(sampled):
 
 
 def test_only_sobols_sample_can_be_doubled(sampled):
-    with pytest.raises(ValueError, match="only a sample of method sobol can be extended"):
+    with pytest.raises(ValueError, match="only a sample with method: sobol can be extended"):
         doubled(sampled("delta", samples=64))

@@ -1,0 +1,230 @@
+"""The record of a sampling method, and the base classes of its section `sampling`."""
+
+from __future__ import annotations
+
+import re
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Self
+
+import numpy as np
+import numpy.typing as npt
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PlainValidator,
+    ValidationInfo,
+    create_model,
+    model_validator,
+)
+
+from impactlab.model.parameters import Value
+from impactlab.study.errors import unknown
+from impactlab.study.schema.parameters import Distribution, Factor, Fixed, distribution_reader
+from impactlab.study.schema.section import Names, Reader, Section, Whole, at_key, between
+
+Draws = npt.NDArray[np.float64]
+MOST_RUNS = 10_000_000
+
+
+@dataclass(frozen=True)
+class SamplingMethod:
+    """One way of choosing the runs of a study.
+
+    name: as in study files. section: its keys. summary: its purpose, one line of docs/studies.md.
+    draws: from the section to draws in the unit cube, (run, varied parameter), in the order of
+    SALib's runs; None for a grid. indices: dotted name of the SensitivityMethod that analyses the
+    runs; empty for a grid.
+    """
+
+    name: str
+    section: type[Sampling]
+    summary: str
+    draws: Callable[[Any], Draws] | None = None
+    indices: str = ""
+
+
+class Sampling(Section):
+    """The section `sampling`: the varied parameters, in the order of the file."""
+
+    fewest: ClassVar[int] = 1
+
+    method: str
+    parameters: Mapping[str, Any]
+
+    @staticmethod
+    @abstractmethod
+    def entry(factor: Factor) -> Reader:
+        """Return the reader of one parameter's entry."""
+
+    @property
+    @abstractmethod
+    def runs(self) -> int:
+        """Number of runs of the study."""
+
+    @property
+    def varied(self) -> Mapping[str, Any]:
+        """Entries of the parameters that differ between runs."""
+        return self.parameters
+
+    @property
+    def fixed(self) -> dict[str, Value]:
+        """Values of the parameters that are listed with a single value."""
+        return {}
+
+    @abstractmethod
+    def bounds(self) -> dict[str, tuple[Value, ...]]:
+        """Return the least and greatest value of each bounded parameter, or its words."""
+
+    @classmethod
+    def of(cls, factors: Mapping[str, Factor]) -> type[Self]:
+        """Return this section for studies that can vary these factors."""
+        parameters = Annotated[Mapping[str, Any], _by_name(cls, factors)]
+        fields: Any = {"parameters": (parameters, ...)}
+        return create_model(cls.__name__, __base__=cls, **fields)
+
+    @model_validator(mode="after")
+    def _check_counts(self) -> Self:
+        if len(self.varied) < self.fewest:
+            reason = f"too few: method {self.method} varies {self.fewest} or more"
+            raise at_key("parameters", reason + " (fixed ones do not count)" * bool(self.fixed))
+        if self.runs > MOST_RUNS:
+            raise ValueError(f"makes {self.runs:,} runs: reduce them to {MOST_RUNS:,} or fewer")
+        return self
+
+
+def _by_name(method: type[Sampling], factors: Mapping[str, Factor]) -> PlainValidator:
+    """Return a reader of a mapping from names of factors, which keeps the order of the file."""
+    entries: Any = {
+        name: (Annotated[Any, PlainValidator(method.entry(factor))], None)
+        for name, factor in factors.items()
+    }
+    section = create_model("Parameters", __base__=Section, **entries)
+
+    def read(data: Any, info: ValidationInfo) -> dict[str, Any]:
+        parameters = section.model_validate(data, context=info.context)
+        return {name: getattr(parameters, name) for name in data}
+
+    return PlainValidator(read)
+
+
+class Sample(Sampling):
+    """Draws of two or more independent parameters.
+
+    seed: equal seeds give equal draws; 0 is a seed like any other. parameters: a distribution or
+    one fixed value each.
+    """
+
+    fewest: ClassVar[int] = 2
+
+    seed: Annotated[Whole, between(0, 2**32 - 1)] = 1
+    parameters: Mapping[str, Distribution | Fixed[Any]]
+
+    @staticmethod
+    def entry(factor: Factor) -> Reader:
+        """Return the reader of a distribution, or of a fixed value."""
+        return distribution_reader(factor)
+
+    @property
+    def varied(self) -> dict[str, Distribution]:
+        """Distributions by parameter, without the fixed ones, which no sampler sees."""
+        entries = self.parameters.items()
+        return {name: each for name, each in entries if isinstance(each, Distribution)}
+
+    @property
+    def fixed(self) -> dict[str, Value]:
+        """Values of the parameters that are listed with a single value."""
+        entries = self.parameters.items()
+        return {name: each.value for name, each in entries if isinstance(each, Fixed)}
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Other keys of the section: the attributes of the design that describe its draws."""
+        keys = self.model_dump(exclude={"method", "parameters", "groups", "until"})
+        return {key: int(value) for key, value in keys.items()}
+
+    def bounds(self) -> dict[str, tuple[Value, ...]]:
+        """Return low and high of the bounded distributions, and the fixed values."""
+        ends = {name: tuple(each.bounds().values()) for name, each in self.varied.items()}
+        single = {name: (value,) for name, value in self.fixed.items()}
+        return {name: values for name, values in (ends | single).items() if values}
+
+    def generator(self) -> np.random.Generator:
+        """Return the source of randomness. SALib ignores some seeds of 0, but no generator."""
+        return np.random.default_rng(self.seed)
+
+
+def problem(names: Sequence[str], groups: Sequence[str] = ()) -> dict[str, Any]:
+    """Return SALib's problem of parameters in the unit cube. groups: the group of each one."""
+    found = {"num_vars": len(names), "names": list(names), "bounds": [[0.0, 1.0]] * len(names)}
+    return found | ({"groups": list(groups)} if groups else {})
+
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
+"""Excludes formulas in tables, and labels that a legend leaves out."""
+
+
+def _check_names(data: Any) -> Any:
+    if not isinstance(data, dict):
+        raise ValueError("expected a mapping such as {steel: [beam_density, beam_yield_stress]}")
+    if odd := [name for name in data if not isinstance(name, str) or not _NAME.fullmatch(name)]:
+        raise ValueError(
+            f"{odd[0]!r} cannot name a group: use letters, digits, _ and -, starting with a "
+            "letter or a digit"
+        )
+    return data
+
+
+Groups = Annotated[Mapping[str, Names], BeforeValidator(_check_names)]
+
+
+class Grouped(Sample):
+    """A sample that gives one index per group of parameters.
+
+    groups: the varied parameters of each group by its name; a parameter that is not named is a
+    group of its own.
+
+    Raises ValueError unless every group has a name of its own, each member is a varied parameter
+    of one group alone, and there are two groups or more (SALib takes a single group for none).
+    """
+
+    groups: Groups = Field(default_factory=dict)
+
+    @property
+    def group_of(self) -> dict[str, str]:
+        """The group of each varied parameter, in their order."""
+        group = {member: name for name, members in self.groups.items() for member in members}
+        return {name: group.get(name, name) for name in self.varied}
+
+    @property
+    def group_count(self) -> int:
+        """Number of varied groups, each of which has indices of its own."""
+        return len(set(self.group_of.values()))
+
+    @model_validator(mode="after")
+    def _check_groups(self) -> Self:
+        for key, reason in self._wrong_groups():
+            raise at_key(key, reason)
+        return self
+
+    def _wrong_groups(self) -> Iterator[tuple[str, str]]:
+        """Yield the dotted key and the reason of each problem."""
+        seen: set[str] = set()
+        for group, members in self.groups.items():
+            if group in self.parameters:
+                yield f"groups.{group}", "is the name of a parameter: choose another name"
+            for at, member in enumerate(members):
+                if reason := self._wrong_member(member, seen):
+                    yield f"groups.{group}.{at}", reason
+                seen.add(member)
+        if self.group_count < self.fewest:
+            reason = f"too few: {self.group_count} group, but {self.fewest} or more are needed"
+            yield "groups", reason
+
+    def _wrong_member(self, member: str, seen: set[str]) -> str:
+        if member in self.fixed:
+            return "is fixed, so it belongs to no group: take it out"
+        if member not in self.varied:
+            return unknown("varied parameter", member, self.varied)
+        return "is named more than once: each parameter has one group" if member in seen else ""

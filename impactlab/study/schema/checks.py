@@ -1,0 +1,225 @@
+"""Checks between the sections of a study of impacts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from impactlab.model.impact import SOLID
+from impactlab.model.parameters import ELEMENTS, Value, flatten
+from impactlab.solver import BEAM_MODELS
+from impactlab.study.errors import Problem, unknown
+from impactlab.study.sampling.grid import Grid
+from impactlab.study.sampling.sections import Sample
+from impactlab.study.sampling.sobol import Sobol
+from impactlab.study.schema.plausibility import extremes, implausibilities, key_of
+from impactlab.study.schema.study import Study, StudyFile
+from impactlab.study.validity import refused_corner
+from impactlab.variables import ANALYSES
+
+Reasons = Iterator[tuple[str, str]]
+"""Dotted keys, and the reason why each is wrong."""
+
+_MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
+"""Parameters that move the places at which profiles are given."""
+_FIBRES = ("euler_bernoulli", "elastic")
+"""Beam models that have both time schemes."""
+_NOT_SOLID = "contact_dissipation"
+"""The one response that the 3-D model cannot give by itself."""
+
+
+def problems(file: StudyFile, path: str, sound: set[str]) -> list[Problem]:
+    """Return the contradictions between sections.
+
+    sound: the sections without errors of their own; a check that reads any other is left out.
+    """
+    return [
+        Problem(path, key, reason)
+        for check, sections in _CHECKS
+        if sections <= sound
+        for key, reason in check(file)
+    ]
+
+
+def has_solid_runs(study: Study | StudyFile) -> bool:
+    """Return True if any run is of the 3-D model."""
+    sampling = study.sampling
+    listed = sampling.parameters if isinstance(sampling, Grid) else sampling.fixed
+    models = listed.get("beam_model", study.impact.beam_model)
+    return SOLID in (models if isinstance(models, tuple) else (models,))
+
+
+def _mass_and_density(file: StudyFile) -> Reasons:
+    """Density and radius have no effect beside a stated mass."""
+    varied = file.sampling.parameters
+    for name in ("sphere_radius", "sphere_density"):
+        if name in varied and file.impact.sphere.mass is not None and "sphere_mass" not in varied:
+            yield (
+                f"sampling.parameters.{name}",
+                f"has no effect on the stated mass of the sphere ({file.impact.sphere.mass!r} kg): "
+                "set impact.sphere.mass: null to let it follow from density and radius",
+            )
+    if {"sphere_mass", "sphere_density"} <= varied.keys():
+        reason = "has no effect beside sphere_mass: take out one of the two"
+        yield "sampling.parameters.sphere_density", reason
+
+
+def _one_mesh_for_profiles(file: StudyFile) -> Reasons:
+    """Profiles of all runs share their x and z."""
+    for name in _MESH:
+        if file.store.profiles and name in file.sampling.varied:
+            yield (
+                f"sampling.parameters.{name}",
+                "cannot be varied with store.profiles: true, because the places x and z of the "
+                "profiles would differ between runs: set profiles: false, or fix it",
+            )
+
+
+def _analysis_of_a_sample(file: StudyFile) -> Reasons:
+    """The section `analysis` is for samples."""
+    if file.analysis is not None and not isinstance(file.sampling, Sample):
+        yield "analysis", "has no effect with method: grid: take it out"
+
+
+def _runs_for_the_analyses(file: StudyFile) -> Reasons:
+    """Each analysis that is listed by name has the runs that it needs."""
+    grid = file.sampling.parameters if isinstance(file.sampling, Grid) else {}
+    counts = {name: len(values) for name, values in grid.items()}
+    possible = {
+        "convergence_in_nodes": counts.get("nodes", 0) >= 3,
+        "convergence_in_time_step": counts.get("courant", 0) >= 3,
+        "convergence_in_element_size": any(counts.get(name, 0) >= 3 for name in ELEMENTS),
+        "convergence_in_points": counts.get("points", 0) >= 2,
+        "sensitivity": not grid,
+        "surrogate": not grid,
+    }
+    for name in file.analyses if file.analyses != tuple(ANALYSES) else ():
+        if not possible[name]:
+            yield "analyses", f"{name} needs {ANALYSES[name]}: take it out, or change the sampling"
+
+
+def _automatic_discretisation(file: StudyFile) -> Reasons:
+    """An automatic discretisation is not varied, and is judged by responses of the study."""
+    auto = file.discretisation.auto
+    for name in ("nodes", "points", "courant") if auto else ():
+        if name in file.sampling.parameters:
+            reason = "cannot be varied beside discretisation: auto, which finds it"
+            yield f"sampling.parameters.{name}", reason
+    missing = set(auto.responses or () if auto else ()) - set(file.responses)
+    if missing:
+        reason = f"names {', '.join(sorted(missing))}, which `responses` of the study leaves out"
+        yield "discretisation.auto.responses", reason
+
+
+def _indices_to_grow_by(file: StudyFile) -> Reasons:
+    """A sample that grows until its indices are good enough has these indices."""
+    until = file.sampling.until if isinstance(file.sampling, Sobol) else None
+    if until is None:
+        return
+    if "sensitivity" not in file.analyses:
+        yield "sampling.until", "needs the analysis sensitivity: list it in analyses"
+    for at, name in enumerate(until.responses or ()):
+        if name not in file.responses:
+            yield f"sampling.until.responses.{at}", unknown("response", name, file.responses)
+
+
+def _corners(file: StudyFile) -> Reasons:
+    """The model accepts all combinations of varied values."""
+    varied = file.sampling.bounds()
+    if refused := refused_corner((file.impact, file.discretisation.discretisation), varied):
+        name = refused.name if refused.name in varied else next(iter(refused.values))
+        values = ", ".join(f"{key} = {value!r}" for key, value in refused.values.items())
+        yield f"sampling.parameters.{name}", f"{values}: {refused.name} {refused.reason}"
+
+
+def _physics(file: StudyFile) -> Reasons:
+    """No impact is physically impossible."""
+    base = file.impact, file.discretisation.discretisation
+    for each in implausibilities(extremes(base, file.sampling)):
+        if each.impossible:
+            yield key_of(each.name, file.sampling), each.reason
+
+
+def _scheme_of_the_beam_model(file: StudyFile) -> Reasons:
+    """Each beam model has the time scheme it is solved by."""
+    base = flatten(file.impact, file.discretisation.discretisation)
+    used: dict[str, tuple[Value, ...]] = {name: (base[name],) for name in ("scheme", "beam_model")}
+    used |= {name: words for name, words in _words(file.sampling).items() if name in used}
+    others = [name for name in BEAM_MODELS if name in used["beam_model"] and name not in _FIBRES]
+    if others and "semi_implicit" in used["scheme"]:
+        reason = (
+            f"semi_implicit is for {' and '.join(_FIBRES)}, and {others[0]} has leapfrog alone: "
+            "set scheme: leapfrog, or take out the beam model"
+        )
+        yield key_of("scheme", file.sampling), reason
+
+
+def _words(sampling: Grid | Sample) -> dict[str, tuple[Value, ...]]:
+    """Return all values of the parameters that a sample cannot draw."""
+    if isinstance(sampling, Sample):
+        return {name: (value,) for name, value in sampling.fixed.items()}
+    return dict(sampling.parameters)
+
+
+def _solid(file: StudyFile) -> Reasons:
+    """Runs of the 3-D model have an element size, and none of the options that it lacks."""
+    solid = has_solid_runs(file)
+    yield from _element_size(list(_element_keys(file)), solid)
+    if not solid:
+        return
+    if not isinstance(file.sampling, Grid):
+        yield (
+            "sampling.method",
+            f"beam_model: {SOLID} needs method: grid, because a run takes minutes",
+        )
+    if file.discretisation.auto is not None:
+        yield (
+            "discretisation.auto",
+            f"is not possible with beam_model: {SOLID}: state the discretisation",
+        )
+    if file.store.profiles:
+        yield "store.profiles", f"must be false with beam_model: {SOLID}, which has no profiles"
+    if _NOT_SOLID in file.responses:
+        reason = (
+            f"{_NOT_SOLID} is not available with beam_model: {SOLID}, whose plastic_dissipation "
+            "includes that of the contact: list the responses without it"
+        )
+        yield "responses", reason
+
+
+def _element_keys(file: StudyFile) -> Iterator[str]:
+    """Yield the keys that give the size of the solid elements."""
+    for name in ELEMENTS:
+        if name in file.sampling.parameters:
+            yield f"sampling.parameters.{name}"
+        elif getattr(file.discretisation.discretisation, name) is not None:
+            yield f"discretisation.{name}"
+
+
+def _element_size(keys: list[str], solid: bool) -> Reasons:
+    """The 3-D model takes one element size, the others none."""
+    if not solid:
+        for key in keys:
+            yield key, f"has no effect without beam_model: {SOLID}: take it out"
+    elif not keys:
+        reason = (
+            f"is required for beam_model: {SOLID} (with 1 mm a run takes seconds, with 0.5 mm a "
+            "minute)"
+        )
+        yield f"discretisation.{ELEMENTS[0]}", reason
+    for key in keys[1:] if solid else []:
+        yield key, f"has no effect beside {keys[0]}: take one of them out"
+
+
+_CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
+    (_mass_and_density, {"impact", "sampling"}),
+    (_one_mesh_for_profiles, {"store", "sampling"}),
+    (_analysis_of_a_sample, {"analysis", "sampling"}),
+    (_runs_for_the_analyses, {"analyses", "sampling"}),
+    (_automatic_discretisation, {"discretisation", "responses", "sampling"}),
+    (_indices_to_grow_by, {"analyses", "responses", "sampling"}),
+    (_corners, {"impact", "discretisation", "sampling"}),
+    (_physics, {"impact", "discretisation", "sampling"}),
+    (_scheme_of_the_beam_model, {"impact", "discretisation", "sampling"}),
+    (_solid, {"impact", "discretisation", "sampling", "responses", "store"}),
+)
+"""The checks, and the sections that each reads."""

@@ -1,0 +1,191 @@
+"""Readers of study files: of impacts, of a test function, and of checks."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, PlainValidator, ValidationError, create_model
+
+from impactlab.model.parameters import Parameter, Value
+from impactlab.study.errors import Problem, StudyError, unknown
+from impactlab.study.sampling.grid import Grid
+from impactlab.study.sampling.methods import sampling_reader
+from impactlab.study.sampling.sections import Sample
+from impactlab.study.schema import checks
+from impactlab.study.schema.parameters import Factor
+from impactlab.study.schema.section import Heading, names, validation_problems
+from impactlab.study.schema.study import Analysis, FunctionStudy, Study, StudyFile, Verification
+from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
+from impactlab.verification.functions import FUNCTIONS
+
+
+def read_any(path: str | Path) -> Study | FunctionStudy | Verification:
+    """Read a YAML file: a verification if it has the key `checks`, else a study of runs.
+
+    docs/studies.md describes all kinds of files. Raises StudyError with every problem of the file,
+    one line each with file, key and value; with the first problem alone where the file is missing,
+    is not YAML, or holds no mapping.
+    """
+    source = read_source(path)
+    return _verification(source) if _has(source, "checks") else _runs(source)
+
+
+def read_study(path: str | Path) -> Study | FunctionStudy:
+    """Read a study of runs. Raises StudyError as `read_any`, and for a file of checks."""
+    source = read_source(path)
+    if _has(source, "checks"):
+        raise _wrong_kind(source, "lists checks and has no runs", "verify")
+    return _runs(source)
+
+
+def read_impacts(path: str | Path) -> Study:
+    """Read a study of impacts. Raises StudyError as `read_study`, and for a test function."""
+    study = read_study(path)
+    if isinstance(study, FunctionStudy):
+        reason = "is a study of a function, which has no discretisation: use a study of impacts"
+        raise StudyError(Problem(str(path), "function", reason, study.function))
+    return study
+
+
+def study_of_text(name: str, text: str) -> Study | FunctionStudy:
+    """Read a study of runs from the text of a file NAME.yaml, as datasets keep both.
+
+    Raises StudyError as `read_any`.
+    """
+    path = Path(f"{name}.yaml")
+    return _runs(Source(name, path, text, read_mapping(text, str(path))))
+
+
+def read_verification(path: str | Path) -> Verification:
+    """Read a file of checks. Raises StudyError as `read_any`, and for a study of runs."""
+    source = read_source(path)
+    if not _has(source, "checks"):
+        raise _wrong_kind(source, "has no key checks, so it is a study of runs", "run")
+    return _verification(source)
+
+
+def _runs(source: Source) -> Study | FunctionStudy:
+    return _function_study(source) if _has(source, "function") else _study(source)
+
+
+def _has(source: Source, key: str) -> bool:
+    """Return True if the file has the key, or a misspelling of it."""
+    return bool(get_close_matches(key, map(str, source.data), n=1, cutoff=0.75))
+
+
+def _wrong_kind(source: Source, reason: str, command: str) -> StudyError:
+    file = str(source.path)
+    return StudyError(Problem(file, "", f"{reason}: use `impactlab {command} {file}`"))
+
+
+_STAND_INS: dict[str, Any] = {
+    "title": "-",
+    "impact": {"base": "paper"},
+    "duration": 1.0,
+    "sampling": {"method": "grid", "parameters": {"velocity": [1.0]}},
+}
+"""Values of required sections that are wrong, so that the other sections can be checked."""
+
+
+def _study(source: Source) -> Study:
+    """Return a study of impacts. Raises StudyError with every problem of the file."""
+    data, path = source.data, source.path
+    file, problems = _validated(data, str(path))
+    sound = set(StudyFile.model_fields) - {problem.key.split(".")[0] for problem in problems}
+    problems += checks.problems(file, str(path), sound)
+    if problems:
+        raise StudyError(*problems)
+    return Study(
+        name=source.name,
+        path=path,
+        title=file.title,
+        description=file.description,
+        impact=file.impact,
+        discretisation=file.discretisation.discretisation,
+        auto=file.discretisation.auto,
+        duration=file.duration,
+        sampling=file.sampling,
+        responses=file.responses,
+        analyses=file.analyses,
+        store=file.store,
+        analysis=file.analysis or Analysis(),
+        text=source.text,
+    )
+
+
+def _validated(data: dict[str, Any], path: str) -> tuple[StudyFile, list[Problem]]:
+    keys: dict[int, tuple[str, ...]] = {}
+    try:
+        return StudyFile.model_validate(data, context=keys), []
+    except ValidationError as error:
+        wrong = {line["loc"][0] for line in error.errors(include_url=False)}
+        sound = {key: data[key] for key in StudyFile.model_fields if key in data.keys() - wrong}
+        file = StudyFile.model_validate(_STAND_INS | sound)
+        return file, validation_problems(error, data, path, keys)
+
+
+def _function_study(source: Source) -> FunctionStudy:
+    """Return a study of a test function. Raises StudyError with every problem of the file."""
+    name, path = source.data.get("function"), str(source.path)
+    if not isinstance(name, str) or name not in FUNCTIONS:
+        raise StudyError(Problem(path, "function", unknown("function", name, FUNCTIONS), name))
+    file = _valid(_function_file(name), source)
+    return FunctionStudy(
+        name=source.name,
+        path=source.path,
+        title=file.title,
+        description=file.description,
+        sampling=file.sampling,
+        responses=("value",),
+        analyses=("sensitivity", "surrogate"),
+        analysis=file.analysis,
+        text=source.text,
+        function=name,
+    )
+
+
+@cache
+def _function_file(name: str) -> type[Heading]:
+    """Return the keys of a study of this test function."""
+    title = FUNCTIONS[name].title
+    factors = {
+        key: Factor(Parameter(key, "1", f"{key} of the {title}", ()), _accept)
+        for key in FUNCTIONS[name].ranges
+    }
+    sampling = Annotated[Grid | Sample, PlainValidator(sampling_reader(factors))]
+    fields: Any = {
+        "function": (str, ...),
+        "sampling": (sampling, ...),
+        "analysis": (Analysis, Field(default_factory=Analysis)),
+    }
+    return create_model("FunctionFile", __base__=Heading, **fields)
+
+
+def _accept(value: Value) -> None:
+    """Accept every number."""
+
+
+def _verification(source: Source) -> Verification:
+    """Return the checks of a file. Raises StudyError with every problem of the file."""
+    values = _valid(_verification_file(), source).model_dump()
+    return Verification(name=source.name, path=source.path, text=source.text, **values)
+
+
+@cache
+def _verification_file() -> type[Heading]:
+    from impactlab.verification.catalogue import CATALOGUE  # late: loads all independent solutions
+
+    checks = Annotated[tuple[str, ...], names("check", CATALOGUE)]
+    return create_model("VerificationFile", __base__=Heading, checks=(checks, ...))
+
+
+def _valid(kind: type[Heading], source: Source) -> Any:
+    """Validate a whole file. Raises StudyError with every problem."""
+    keys: dict[int, tuple[str, ...]] = {}
+    try:
+        return kind.model_validate(source.data, context=keys)
+    except ValidationError as error:
+        raise StudyError(*validation_problems(error, source.data, str(source.path), keys)) from None

@@ -1,0 +1,171 @@
+"""Physical limits of beams and spheres, which a study is checked against before it is solved.
+
+The model's classes refuse values that have no meaning in an equation (a mass of zero, a depth
+above the span). The limits here come from physics, each with its reason: impossible values are
+refused, and implausible ones give a warning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import inf, sqrt
+
+import numpy as np
+
+from impactlab.model.parameters import PARAMETERS, Value, flatten
+from impactlab.study.sampling.sections import Sampling
+from impactlab.study.schema.parameters import Distribution
+from impactlab.study.validity import Base
+
+LIGHT = 299_792_458.0
+"""Speed of light, m/s."""
+_PIERCES = 0.1
+"""Damage number rho v^2/sigma_y from which on metals deform extensively (Johnson, Impact Strength
+of Materials, 1972): a dent is then no longer small beside the sphere."""
+_STOCKY = 0.2
+"""Depth over span from which on shear is no small part of a beam's deflection."""
+_TAILS = np.array([1e-3, 1 - 1e-3])
+
+
+@dataclass(frozen=True)
+class Implausibility:
+    """An implausible value of a parameter, in SI units, with the reason.
+
+    impossible: whether the study is refused for it.
+    """
+
+    name: str
+    value: float
+    reason: str
+    impossible: bool = False
+
+
+@dataclass(frozen=True)
+class _Limits:
+    """Limits outside which values are impossible (least, most) or implausible (low, high)."""
+
+    least: float
+    low: float
+    high: float
+    most: float
+    units: str
+    words: str
+
+
+HEAVIEST = 23e3
+"""Density of osmium in kg/m3; a denser body stands for one that does not move: no waves in it."""
+_DENSITY = _Limits(0.1, 10.0, HEAVIEST, inf, "kg/m3", "solids have 10 (foam) to 22,600 (osmium)")
+_STIFFNESS = _Limits(
+    1e3, 1e6, 1.3e12, 1e15, "Pa", "solids have 1 MPa (rubber) to 1.2 TPa (diamond)"
+)
+_STRENGTH = _Limits(1e3, 1e5, 1e11, 1e15, "Pa", "solids yield from 0.1 MPa on; mPa is not MPa")
+LIMITS: dict[str, _Limits] = {
+    "sphere_density": _DENSITY,
+    "beam_density": _DENSITY,
+    "sphere_youngs_modulus": _STIFFNESS,
+    "beam_youngs_modulus": _STIFFNESS,
+    "sphere_yield_stress": _STRENGTH,
+    "beam_yield_stress": _STRENGTH,
+    "gravity": _Limits(0.0, 0.0, 300.0, inf, "m/s2", "274 is that of the sun"),
+    "velocity": _Limits(1e-9, 1e-6, inf, inf, "m/s", "atoms are 1e-10 m wide"),
+    "sphere_mass": _Limits(1e-18, 1e-12, 1e6, inf, "kg", "a speck of dust has 1e-12 kg"),
+    "beam_span": _Limits(1e-9, 1e-6, 1e3, inf, "m", "atoms are 1e-10 m wide"),
+    "sphere_radius": _Limits(1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
+    "beam_depth": _Limits(1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
+    "beam_width": _Limits(1e-9, 1e-6, 100.0, inf, "m", "atoms are 1e-10 m wide"),
+}
+"""By parameter."""
+
+Extremes = Mapping[str, tuple[float, float]]
+"""The least and the greatest value of every number of a study's impacts, in SI units."""
+
+
+def extremes(base: Base, sampling: Sampling) -> Extremes:
+    """Return the least and greatest values of a study, of base and varied parameters.
+
+    A tail ends at its last thousandth; one that reaches below zero is left to the check of draws.
+    """
+    found = {name: (value, value) for name, value in flatten(*base).items() if _number(value)}
+    for name, values in sampling.bounds().items():
+        if _number(values[0]):
+            found[name] = min(values), max(values)
+    for name, given in sampling.varied.items():
+        if isinstance(given, Distribution) and not given.bounds():
+            low, high = given.quantile(_TAILS).tolist()
+            found[name] = (low, high) if low > 0 else found.get(name, (high, high))
+    return found  # type: ignore[return-value]
+
+
+def key_of(name: str, sampling: Sampling) -> str:
+    """Return the key of a parameter in the study, whether it is given or not."""
+    varied = name in sampling.parameters
+    return f"sampling.parameters.{name}" if varied else ".".join(PARAMETERS[name].path)
+
+
+def _number(value: Value) -> bool:
+    return not isinstance(value, str)
+
+
+def implausibilities(ends: Extremes) -> list[Implausibility]:
+    """Return the impossible and implausible values, one per parameter."""
+    found = sorted((*_alone(ends), *_together(ends)), key=lambda each: each.impossible)
+    return list({each.name: each for each in found}.values())
+
+
+def _alone(ends: Extremes) -> Iterator[Implausibility]:
+    for name, limits in LIMITS.items():
+        least, most = ends.get(name, (limits.low, limits.high))
+        for value, none, few in (
+            (least, least < limits.least, least < limits.low),
+            (most, most > limits.most, most > limits.high),
+        ):
+            if none or few:
+                what = "is impossible" if none else "is implausible"
+                reason = f"{value:g} {limits.units} {what}: {limits.words}"
+                yield Implausibility(name, value, reason, impossible=none)
+
+
+def _together(ends: Extremes) -> Iterator[Implausibility]:
+    """Yield values that are implausible beside others, at the worst ends of all."""
+    for body in ("beam", "sphere"):
+        density, modulus = ends[f"{body}_density"], ends[f"{body}_youngs_modulus"]
+        if (fastest := sqrt(modulus[1] / density[0])) >= LIGHT:
+            reason = (
+                f"a bar wave in the {body} would run at {fastest:.3g} m/s, faster than light: "
+                "check the units of density and Young's modulus"
+            )
+            yield Implausibility(f"{body}_density", density[0], reason, impossible=True)
+        yield from _velocity(ends, body, sqrt(modulus[0] / min(density[1], HEAVIEST)))
+        stress = ends[f"{body}_yield_stress"][1]
+        if stress > 0.1 * modulus[0]:
+            reason = f"{stress:g} Pa is above a tenth of Young's modulus, the strength of a perfect"
+            yield Implausibility(
+                f"{body}_yield_stress", stress, f"{reason} crystal: are both in Pa?"
+            )
+    depth, span = ends["beam_depth"][1], ends["beam_span"][0]
+    if depth > _STOCKY * span:
+        reason = f"{depth:g} m is above a fifth of the span: shear matters (beam_model: timoshenko)"
+        yield Implausibility("beam_depth", depth, reason)
+    if (radius := ends["sphere_radius"][1]) > 0.5 * span:
+        yield Implausibility(
+            "sphere_radius", radius, f"{radius:g} m makes the sphere wider than the span"
+        )
+
+
+def _velocity(ends: Extremes, body: str, wave: float) -> Iterator[Implausibility]:
+    velocity = ends["velocity"][1]
+    if velocity >= wave:
+        reason = (
+            f"{velocity:g} m/s is above the speed of a bar wave in the {body} ({wave:.4g} m/s): "
+            "quasi-static contact laws and beam theory do not apply: reduce it"
+        )
+        yield Implausibility("velocity", velocity, reason, impossible=True)
+    density = min(ends[f"{body}_density"][0], HEAVIEST)
+    number = density * velocity**2 / ends[f"{body}_yield_stress"][1]
+    if number > _PIERCES:
+        reason = (
+            f"{velocity:g} m/s: density velocity²/yield stress of the {body} is {number:.2g}; "
+            f"above {_PIERCES} metals flow, and the dent is no longer small"
+        )
+        yield Implausibility("velocity", velocity, reason)

@@ -1,0 +1,223 @@
+"""Base class of the sections of a study file, types of their values, and messages."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import partial
+from typing import Annotated, Any
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    PlainValidator,
+    StrictStr,
+    StringConstraints,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
+
+from impactlab.study.errors import Problem, dotted, unknown
+from impactlab.study.quantities import si, whole
+
+Reader = Callable[[Any, ValidationInfo], Any]
+"""Turns data of the file into values of the study; raises ValueError."""
+
+
+class Section(BaseModel):
+    """A mapping with fixed keys; any other key is refused.
+
+    The allowed keys are noted in the context of the validation, by the id of the mapping, so that
+    a message about an unknown key can list them.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _note_keys(cls, data: Any, info: ValidationInfo) -> Any:
+        if info.context is not None:
+            info.context[id(data)] = tuple(cls.model_fields)
+        return data
+
+
+def at_key(key: str, reason: str) -> PydanticCustomError:
+    """Return an error at a (dotted) key below the mapping under validation."""
+    return PydanticCustomError("at_key", "{reason}", {"key": key, "reason": reason})
+
+
+def quantity(units: str) -> Any:
+    """Return the type of a number in SI `units`, or a string with a unit of that dimension."""
+    return Annotated[float, BeforeValidator(partial(si, units=units))]
+
+
+def one_of(kind: str, choices: Collection[str]) -> BeforeValidator:
+    """Return a check that a value is a word out of `choices`."""
+
+    def check(value: object) -> object:
+        if not isinstance(value, str) or value not in choices:
+            raise ValueError(unknown(kind, value, choices))
+        return value
+
+    return BeforeValidator(check)
+
+
+def names(kind: str, choices: Collection[str]) -> PlainValidator:
+    """Return the reader of `all`, or of a list of some of the choices."""
+    words: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of(kind, choices)]])
+
+    def read(data: Any) -> tuple[str, ...]:
+        if data == "all":
+            return tuple(choices)
+        if not isinstance(data, list) or not data:
+            raise ValueError(
+                f"expected `all`, or a list of names: choose from {', '.join(choices)}"
+            )
+        found = words.validate_python(data)
+        if twice := [name for at, name in enumerate(found) if name in found[:at]]:
+            raise ValueError(f"names {twice[0]} more than once: name each {kind} once")
+        return tuple(found)
+
+    return PlainValidator(read)
+
+
+def section_by(key: str, sections: Mapping[str, type[Section]]) -> Reader:
+    """Return the reader of a mapping whose entry at `key` names its section."""
+
+    def read(data: Any, info: ValidationInfo) -> Section:
+        if not isinstance(data, dict):
+            raise ValueError(f"expected a mapping with the key {key} ({', '.join(sections)})")
+        name = data.get(key)
+        if key not in data:
+            raise at_key(key, f"is required: choose from {', '.join(sections)}")
+        if not isinstance(name, str) or name not in sections:
+            raise at_key(key, unknown(key, name, sections))
+        return sections[name].model_validate(data, context=info.context)
+
+    return read
+
+
+def above_zero(value: float) -> float:
+    """Return the value. Raises ValueError unless it is above zero."""
+    if value <= 0:
+        raise ValueError("must be above zero")
+    return value
+
+
+def between(least: float, most: float) -> AfterValidator:
+    """Return a check that a number lies from `least` to `most`."""
+
+    def check(value: float) -> float:
+        if not least <= value <= most:
+            raise ValueError(f"must lie from {least:,} to {most:,}")
+        return value
+
+    return AfterValidator(check)
+
+
+def _not_empty(listed: tuple[str, ...]) -> tuple[str, ...]:
+    if not listed:
+        raise ValueError("is empty: list at least one name")
+    return listed
+
+
+Names = Annotated[tuple[StrictStr, ...], AfterValidator(_not_empty)]
+"""A list of words, at least one."""
+Number = Annotated[float, BeforeValidator(partial(si, units="1"))]
+"""A pure number."""
+Whole = Annotated[int, BeforeValidator(whole)]
+"""A whole number."""
+
+
+def _printable(text: str) -> str:
+    if not all(line.isprintable() for line in text.replace("\t", " ").split("\n")):
+        raise ValueError("holds characters that cannot be printed: take them out")
+    return text
+
+
+def _one_line(text: str) -> str:
+    if len(text.splitlines()) != 1:
+        raise ValueError("must be one line of text: put more into the key description")
+    return text
+
+
+Text = Annotated[
+    str,
+    StringConstraints(strict=True, strip_whitespace=True, max_length=2000),
+    AfterValidator(_printable),
+]
+
+
+class Heading(Section):
+    """The first keys of every study file, which head the report."""
+
+    title: Annotated[Text, StringConstraints(max_length=200), AfterValidator(_one_line)]
+    description: Text = ""
+
+
+_WORDS = {
+    "missing": "is required",
+    "string_type": "expected text: put it in quotes",
+    "bool_type": "expected true or false",
+    "invalid_key": "a key must be a word",
+    "model_type": "expected a mapping with keys of its own",
+    "too_short": "is empty: list at least one value",
+    "tuple_type": "expected a list of names",
+}
+"""Messages for pydantic's types of error; any other keeps its own message."""
+_NOT_HERE = {
+    r".*(correlat|covarian|copula).*": (
+        "correlated parameters are not possible, because the indices divide the variance among "
+        "independent parameters: vary the quantities that they depend on, give them one index "
+        "together (groups), or fix all but one ({distribution: fixed, value: ...})"
+    ),
+    "groups?": "groups belong to the section sampling with method: sobol or morris",
+    "until": "belongs to the section sampling with method: sobol",
+}
+"""Keys that people look for, as patterns, and messages for where there is no such key."""
+
+
+def validation_problems(
+    error: ValidationError, data: Any, file: str, keys: Mapping[int, Sequence[str]]
+) -> list[Problem]:
+    """Return the problems of a study file.
+
+    data: the validated data. keys: the allowed keys of each mapping in it, by the mapping's id.
+    """
+    return [_problem(line, data, file, keys) for line in error.errors(include_url=False)]
+
+
+def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]]) -> Problem:
+    kind, context = line["type"], line.get("ctx", {})
+    path = [*line["loc"], *context["key"].split(".")] if kind == "at_key" else [*line["loc"]]
+    parent, present, value = _value_at(data, path)
+    if kind == "extra_forbidden":
+        reason = _no_such_key(path[-1], keys[id(parent)])
+    elif kind == "value_error":
+        reason = str(context["error"])
+    else:
+        reason = _WORDS.get(kind, line["msg"])
+    shown = {"value": value} if present and not isinstance(value, dict) else {}
+    return Problem(file, dotted(path), reason, **shown)
+
+
+def _no_such_key(key: Any, allowed: Sequence[str]) -> str:
+    looked_for = (words for like, words in _NOT_HERE.items() if re.fullmatch(like, str(key)))
+    return next(looked_for, None) or unknown("key", key, allowed)
+
+
+def _value_at(data: Any, path: Sequence[Any]) -> tuple[Any, bool, Any]:
+    """Return the mapping or list that holds the end of a path, whether it does, and the value."""
+    parent = None
+    for step in path:
+        parent = data
+        known = step in parent if isinstance(parent, dict) else isinstance(parent, list)
+        if not known:
+            return parent, False, None
+        data = parent[int(step)] if isinstance(parent, list) else parent[step]
+    return parent, True, data

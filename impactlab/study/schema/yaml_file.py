@@ -1,0 +1,237 @@
+"""YAML files of bounded size, read as plain Python data.
+
+Aliases and merge keys let a short text stand for more than a machine can hold. Their expanded size
+is counted on the parsed graph, in a time that grows with the text alone, before it is built.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.composer import Composer
+from ruamel.yaml.constructor import ConstructorError, SafeConstructor
+from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+
+from impactlab.study.errors import Problem, StudyError, dotted
+
+LARGEST = 256 * 1024
+"""Largest size of a study file in bytes."""
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,99}")
+"""Names of folders; a name that begins with "-" would be taken for an option."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """A study file as read. name: that of the file without its ending; data: its parsed content."""
+
+    name: str
+    path: Path
+    text: str
+    data: dict[str, Any]
+
+
+def read_source(path: str | Path) -> Source:
+    """Read name, text and data of a study file. Raises StudyError, naming the file."""
+    path = Path(path)
+    name, text = read_name(path), read_text(path)
+    return Source(name, path, text, read_mapping(text, str(path)))
+
+
+def read_name(path: Path) -> str:
+    """Return the name of the study: that of its file, without the ending.
+
+    Raises StudyError unless it is a plain word, because it names folders.
+    """
+    if path.suffix != ".yaml":
+        raise StudyError(
+            Problem(str(path), "", "the name of a study file must end in .yaml: rename it")
+        )
+    check_name(path.stem, str(path))
+    return path.stem
+
+
+def check_name(name: str, file: str) -> None:
+    """Raises StudyError, naming the file, unless a study can have this name."""
+    if not _NAME.fullmatch(name):
+        reason = (
+            "its name becomes the name of a folder: use at most 100 letters, digits, _ and -, with "
+            "no - first"
+        )
+        raise StudyError(Problem(file, "", reason))
+
+
+def read_text(path: Path) -> str:
+    """Return the file's text. Raises StudyError when it cannot be read, or is too large."""
+    try:
+        if not path.is_file():
+            reason = "is not a file" if path.exists() else "there is no such file"
+            raise StudyError(Problem(str(path), "", reason))
+        with path.open("rb") as file:
+            raw = file.read(LARGEST + 1)
+        if len(raw) > LARGEST:
+            raise StudyError(
+                Problem(str(path), "", f"is larger than {LARGEST // 1024} KiB: shorten it")
+            )
+        return raw.decode("utf-8")
+    except OSError as error:
+        raise StudyError(Problem(str(path), "", f"cannot be read: {error.strerror}")) from None
+    except UnicodeDecodeError:
+        raise StudyError(Problem(str(path), "", "is not text in UTF-8: save it as such")) from None
+
+
+def read_mapping(text: str, file: str) -> dict[str, Any]:
+    """Return the mapping in a YAML text; a key that occurs twice is refused.
+
+    file: named in errors. Raises StudyError when the text is not YAML, or not a mapping.
+    """
+    try:
+        data = _parsed(text)
+    except RefusedError as error:
+        raise StudyError(Problem(file, error.key, str(error))) from None
+    except MarkedYAMLError as error:
+        mark = error.problem_mark
+        where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
+        raise _no_yaml(file, f"{where}{error.problem}") from None
+    except RecursionError:
+        raise _no_yaml(file, "nests too deeply") from None
+    except Exception as error:  # a hostile text can make the parser fail in any way
+        raise _no_yaml(file, str(error) or type(error).__name__) from None
+    if not isinstance(data, dict):
+        raise StudyError(Problem(file, "", "holds no keys such as `title: ...`"))
+    return data
+
+
+def _parsed(text: str) -> Any:
+    """Build the data only after the size of the graph is known to be within limits."""
+    yaml = YAML(typ="safe", pure=True)
+    yaml.Composer, yaml.Constructor = BoundedComposer, Constructor
+    root = yaml.compose(text)
+    if root is None:
+        return None
+    check_size(root)
+    return yaml.constructor.construct_document(root)
+
+
+def _no_yaml(file: str, words: str) -> StudyError:
+    return StudyError(Problem(file, "", f"is not YAML: {(words.splitlines() or [''])[0]}"))
+
+
+MOST = 50_000
+"""Largest number of keys and values in a study file, with its aliases expanded."""
+_DEEPEST = 20
+_DIGITS = 1000
+"""Largest number of characters of a number; Python prints numbers of up to 4300 digits."""
+_CORE = "tag:yaml.org,2002:"
+_TAGS = {"str", "int", "float", "bool", "null", "timestamp", "merge", "value", "seq", "map"}
+"""Tags of plain values; any other tag stands for a kind of value that no key takes."""
+
+Key = tuple[str, ...]
+
+
+class RefusedError(ValueError):
+    """Content that a study file may not have. key: dotted, of at most three steps."""
+
+    def __init__(self, path: Key, reason: str) -> None:
+        """Note the place (path) and the reason."""
+        super().__init__(reason)
+        self.key = dotted(path[:3])
+
+
+class BoundedComposer(Composer):
+    """A composer of the graph of a text that stops when there are too many nodes."""
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        """Return the next node. Raises RefusedError when there are too many."""
+        self.count = getattr(self, "count", 0) + 1
+        if self.count > MOST:
+            raise RefusedError((), f"holds more than {MOST:,} keys and values: shorten it")
+        return super().compose_node(parent, index)
+
+
+class Constructor(SafeConstructor):
+    """A constructor of plain values whose errors name the place in the text."""
+
+    def construct_object(self, node: Any, deep: bool = False) -> Any:
+        """Return the value of a node. Raises MarkedYAMLError where it has none."""
+        try:
+            return super().construct_object(node, deep)
+        except (MarkedYAMLError, RecursionError):
+            raise
+        except Exception as error:  # int, float, datetime and base64 each have their own
+            kind = str(node.tag).removeprefix(_CORE)
+            reason = f"cannot be read as {kind} ({str(error)[:80]})"
+            raise ConstructorError(None, None, reason, node.start_mark) from None
+
+
+def check_size(root: Node) -> None:
+    """Check a graph with its aliases expanded.
+
+    Raises RefusedError for too many nodes, or a node too deep; also for a tag, a number or a key of
+    a kind that no study needs.
+    """
+    _Counter().measured(root, ())
+
+
+class _Counter:
+    """Sizes and heights of expanded nodes; each node is visited once."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[int, int]] = {}
+
+    def measured(self, node: Node, path: Key) -> tuple[int, int]:
+        """Return (nodes, levels) of a node with its aliases expanded."""
+        if id(node) not in self._known:
+            if len(path) > _DEEPEST:  # ends at a node that holds itself, too
+                raise RefusedError(path, "nests too deeply")
+            _check_kind(node, path)
+            below = [self.measured(child, (*path, step)) for step, child in _children(node)]
+            size = 1 + sum(each for each, _ in below)
+            height = 1 + max((each for _, each in below), default=0)
+            self._known[id(node)] = size, height
+        size, height = self._known[id(node)]
+        if size > MOST:
+            raise RefusedError(path, "holds too much: its aliases count as often as they are used")
+        if len(path) + height > _DEEPEST + 1:
+            raise RefusedError(path, "nests too deeply")
+        return size, height
+
+
+def _children(node: Node) -> Iterator[tuple[str, Node]]:
+    if isinstance(node, SequenceNode):
+        yield from ((str(at), child) for at, child in enumerate(node.value))
+    elif isinstance(node, MappingNode):
+        for key, child in node.value:
+            step = str(key.value) if isinstance(key, ScalarNode) else "?"
+            yield step, key
+            yield step, child
+
+
+def _check_kind(node: Node, path: Key) -> None:
+    """Raises RefusedError for anything but plain keys, lists and values."""
+    tag = str(node.tag)
+    if tag.removeprefix(_CORE) not in _TAGS:
+        raise RefusedError(path, f"has the tag {dotted([tag.replace(_CORE, '!!')])}: take it out")
+    if isinstance(node, ScalarNode) and not _whole_letters(node.value):
+        raise RefusedError(
+            path, "holds half of a character (\\ud800 to \\udfff): write the whole character"
+        )
+    number = tag.removeprefix(_CORE) in ("int", "float")
+    if number and len(node.value) > _DIGITS:
+        raise RefusedError(
+            path, f"is a number of {len(node.value):,} characters: write at most {_DIGITS:,}"
+        )
+    if isinstance(node, MappingNode):
+        for key, _ in node.value:
+            if not isinstance(key, ScalarNode):
+                raise RefusedError(path, "a key must be a word, not a list or a mapping")
+
+
+def _whole_letters(text: str) -> bool:
+    """Return False if the text holds half of a character, as the escapes of YAML allow."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in text)

@@ -1,0 +1,188 @@
+"""Contradictions between the sections of a study of impacts."""
+
+from __future__ import annotations
+
+import pytest
+
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.paper import paper_impact
+from impactlab.model.parameters import flatten
+from impactlab.study.sampling.design import design
+from impactlab.variables import ANALYSES
+
+UNIFORM = {"distribution": "uniform", "low": 1, "high": 2}
+
+
+def test_a_sample_of_one_parameter_is_refused(problems, sample):
+    ((where, said),) = problems(sample({"sampling.parameters": {"velocity": UNIFORM}}))
+    assert where == "sampling.parameters"
+    assert "varies 2 or more" in said
+
+
+def test_more_runs_than_possible_are_refused(problems, grid, sample):
+    many = {"start": 1, "stop": 2, "number": 10_000}
+    ((where, said),) = problems(grid({"sampling.parameters": {"velocity": many, "gravity": many}}))
+    assert where == "sampling"
+    assert "100,000,000 runs" in said
+    ((where, said),) = problems(sample({"sampling.base_samples": 2**22}))
+    assert where == "sampling"
+    assert f"{2**22 * 6:,} runs" in said
+
+
+@pytest.mark.parametrize("name", ["nodes", "points", "rule", "beam_span", "beam_depth"])
+def test_profiles_need_one_mesh(problems, read, grid, name):
+    value = flatten(paper_impact(), Discretisation())[name]
+    varied = {"sampling.parameters": {name: [value]}}
+    ((key, said),) = problems(grid(varied | {"store.profiles": True}))
+    assert key == f"sampling.parameters.{name}"
+    assert "would differ between runs" in said
+    read(grid(varied | {"store.profiles": False}))
+
+
+@pytest.mark.parametrize(("name", "value"), [("sphere_radius", 0.02), ("sphere_density", 5000)])
+def test_a_stated_mass_leaves_no_say_to_density_and_radius(problems, read, grid, name, value):
+    varied = {"sampling.parameters": {name: [value]}}
+    ((key, said),) = problems(grid(varied | {"impact.sphere.mass": "1.4 kg"}))
+    assert key == f"sampling.parameters.{name}"
+    assert "set impact.sphere.mass: null" in said
+    assert read(grid(varied | {"impact.sphere.mass": None})).impact.sphere.mass is None
+
+
+def test_a_varied_mass_leaves_no_say_to_the_density(problems, read, grid):
+    ((key, said),) = problems(
+        grid({"sampling.parameters": {"sphere_mass": [1], "sphere_density": [5000]}})
+    )
+    assert key == "sampling.parameters.sphere_density"
+    assert "has no effect" in said
+    both = {"sampling.parameters": {"sphere_mass": [1], "sphere_radius": [0.02]}}
+    read(grid(both))
+    read(grid(both | {"impact.sphere.mass": "1.4 kg"}))
+
+
+def test_combinations_in_a_grid_are_checked_and_only_they_count(problems, read, grid):
+    stiff = {"beam_youngs_modulus": [1e9, 2e9], "beam_yield_stress": [1e8, 1.5e9]}
+    ((key, said),) = problems(grid({"sampling.parameters": stiff}))
+    assert key == "sampling.parameters.beam_yield_stress"
+    assert "beam_youngs_modulus = 1000000000.0" in said
+    assert "must be below youngs_modulus" in said
+    soft = {"beam_youngs_modulus": [1e8, 2e8], "beam_yield_stress": [1e6, 2e6]}
+    hard = {"beam_youngs_modulus": [1e12], "beam_yield_stress": [3e11]}
+    for each in (soft, hard):  # values of which one alone would contradict the base
+        read(grid({"sampling.parameters": each}))
+
+
+def test_the_bounds_of_a_sample_are_checked_against_the_rest(problems, read, sample):
+    wide = {"distribution": "uniform", "low": 0.1, "high": 0.9}
+    ((key, said),) = problems(sample({"sampling.parameters.beam_depth": wide}))
+    assert key == "sampling.parameters.beam_depth"
+    assert "must be below the span (0.78 m)" in said
+    read(sample({"sampling.parameters.beam_depth": wide, "impact.beam.span": 1}))
+
+
+def test_contradictions_are_found_beside_mistakes_elsewhere(problems, grid):
+    text = grid(
+        {
+            "bogus": 1,
+            "impact.sphere.mass": "1.4 kg",
+            "sampling.parameters": {"sphere_radius": [0.02], "nodes": [11, 21]},
+            "store.profiles": True,
+        }
+    )
+    parameters = "sampling.parameters"
+    expected = {"bogus", f"{parameters}.sphere_radius", f"{parameters}.nodes"}
+    assert {key for key, _ in problems(text)} == expected
+
+
+def test_a_broken_section_brings_no_contradictions(problems, grid):
+    text = grid({"impact": "x", "sampling.parameters": {"beam_depth": [0.9]}})
+    assert [key for key, _ in problems(text)] == ["impact"]
+
+
+@pytest.mark.parametrize("name", list(ANALYSES))
+def test_an_analysis_asked_for_by_name_must_be_possible(problems, read, grid, sample, name):
+    ((key, said),) = problems(grid({"analyses": [name]}))
+    assert key == "analyses"
+    assert name in said
+    assert read(grid({"analyses": "all"})).analyses
+    assert read(sample({"analyses": ["sensitivity"]})).analyses == ("sensitivity",)
+    several = {"nodes": [11, 21, 41], "courant": [0.2, 0.4, 0.8], "points": [3, 5]}
+    several |= {"beam_model": ["solid"], "element_size": ["1 mm", "2 mm", "3 mm"]}
+    asked = {"analyses": [entry for entry in ANALYSES if entry.startswith("convergence")]}
+    asked |= {"responses": ["peak_force"]}
+    read(grid({"sampling.parameters": several} | asked))
+
+
+SOLID = {
+    "sampling.parameters": {"beam_model": ["timoshenko", "solid"]},
+    "discretisation": {"element_size": "2 mm"},
+    "responses": ["peak_force", "maximum_deflection"],
+}
+
+
+def test_a_study_of_both_is_of_the_witness(read, grid):
+    study = read(grid(SOLID))
+    assert study.discretisation.element_size == 2e-3
+    assert design(study).attrs["solver"] == "witness"
+    assert design(study)["element_size"].item() == 2e-3
+    plain = design(read(grid({"sampling.parameters": {"beam_model": ["timoshenko"]}})))
+    assert plain.attrs["solver"] == "impact"
+    assert "element_size" not in plain.coords
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "read_as"),
+    [("element_size", ["2 mm", 1e-3], (2e-3, 1e-3)), ("elements_per_radius", [2, 4.5], (2.0, 4.5))],
+)
+def test_sizes_can_be_varied(read, grid, name, values, read_as):
+    several = {"beam_model": ["solid"], name: values}
+    study = read(grid(SOLID | {"sampling.parameters": several, "discretisation": {}}))
+    assert study.sampling.parameters[name] == read_as
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "said"),
+    [
+        ({"discretisation": {"nodes": 51}}, "discretisation.element_size", "is required"),
+        (
+            {"responses": "all"},
+            "responses",
+            "contact_dissipation is not available with",
+        ),
+        ({"store": {"profiles": True}}, "store.profiles", "must be false"),
+        (
+            {"discretisation": "auto"},
+            "discretisation.auto",
+            "is not possible with",
+        ),
+        (
+            {"sampling.parameters": {"velocity": [1.0]}},
+            "discretisation.element_size",
+            "has no effect without beam_model: solid",
+        ),
+        (
+            {"sampling.parameters": {"element_size": [1e-3]}, "discretisation": {}},
+            "sampling.parameters.element_size",
+            "has no effect without beam_model: solid",
+        ),
+        ({"discretisation": {"element_size": 0}}, "discretisation.element_size", "above zero"),
+        (
+            {"sampling.parameters": {"beam_model": ["solid"], "elements_per_radius": [2, 4]}},
+            "sampling.parameters.elements_per_radius",
+            "has no effect beside discretisation.element_size",
+        ),
+    ],
+)
+def test_what_contradicts_it_is_told_at_its_key(problems, grid, changes, key, said):
+    found = dict(problems(grid(SOLID | changes)))
+    assert said in found[key]
+
+
+def test_a_sample_has_no_solid(problems, sample):
+    changes = {
+        "impact.beam_model": "solid",
+        "discretisation": {"element_size": "1 mm"},
+        "responses": ["peak_force"],
+    }
+    ((key, said),) = problems(sample(changes))
+    assert key == "sampling.method"
+    assert "method: grid" in said

@@ -1,0 +1,241 @@
+"""Study files of every kind."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import pytest
+
+from impactlab.model.beam import Beam
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.model.material import Material
+from impactlab.model.paper import paper_impact
+from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten
+from impactlab.model.sphere import Sphere
+from impactlab.study.errors import StudyError
+from impactlab.study.sampling.grid import Grid
+from impactlab.study.sampling.sobol import Sobol
+from impactlab.study.schema.files import read_any, read_study, read_verification
+from impactlab.study.schema.study import Analysis, Store, Study, Verification
+from impactlab.variables import RESPONSES
+from impactlab.verification.catalogue import CATALOGUE
+
+STUDIES = sorted((Path(__file__).parents[4] / "studies").glob("*.yaml"))
+
+SPELLED_OUT = """
+title: Spelled out
+impact:
+  velocity: 2 m/s
+  contact: hertz
+  sphere:
+    radius: 10 mm
+    material: {density: 2500, youngs_modulus: 70 GPa, poissons_ratio: 20 %, yield_stress: 1 GPa}
+  beam:
+    span: 200 mm
+    width: 1 cm
+    depth: 5 mm
+    material:
+      density: 2.7 g/cm3
+      youngs_modulus: 70 GPa
+      poissons_ratio: 0.33
+      yield_stress: 250 MPa
+      kinematic_hardening_modulus: 1 GPa
+discretisation: {nodes: 51, points: 4, rule: legendre, courant: 0.5}
+duration: 0.001
+sampling: {method: grid, parameters: {contact: [hertz]}}
+responses: [restitution, peak_force]
+store: {histories: true, profiles: true, samples: 11}
+"""
+
+
+@pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
+def test_committed_studies_are_sound(path):
+    study = read_any(path)
+    assert study.name == path.stem
+    assert study.text == path.read_text(encoding="utf-8")
+
+
+def test_committed_studies_are_those_asked_for():
+    by_name = {path.stem: path for path in STUDIES}
+    assert {
+        "velocity",
+        "discretisation",
+        "material",
+        "sobol",
+        "smoke",
+        "verification",
+    } <= by_name.keys()
+    sobol = read_study(by_name["sobol"]).sampling
+    assert isinstance(sobol, Sobol)
+    assert sobol.base_samples >= 1024
+    assert sobol.second_order
+
+
+def test_a_short_file_takes_the_rest_from_base_and_defaults(read, grid):
+    study = read(grid())
+    assert study.impact == paper_impact()
+    assert study.discretisation == Discretisation()
+    assert study.duration == 0.012
+    assert isinstance(study.sampling, Grid)
+    assert study.sampling.parameters == {"velocity": (0.5, 1.0)}
+    assert study.responses == tuple(RESPONSES)
+    assert study.store == Store(histories=False, profiles=False, samples=1000)
+    assert study.analysis == Analysis(confidence=0.95, resamples=200)
+    assert (study.name, study.title, study.description) == ("some-study_1", "A grid", "")
+    assert study.sha256 == hashlib.sha256(grid().encode()).hexdigest()
+
+
+def test_everything_can_be_spelled_out(read):
+    study = read(SPELLED_OUT)
+    glass = Material(density=2500, youngs_modulus=70e9, poissons_ratio=0.2, yield_stress=1e9)
+    aluminium = Material(
+        density=2700,
+        youngs_modulus=70e9,
+        poissons_ratio=0.33,
+        yield_stress=250e6,
+        kinematic_hardening_modulus=1e9,
+    )
+    assert study.impact == Impact(
+        sphere=Sphere(radius=0.01, material=glass),
+        beam=Beam(span=0.2, width=0.01, depth=0.005, material=aluminium),
+        velocity=2.0,
+        contact="hertz",
+    )
+    assert study.discretisation == Discretisation(nodes=51, points=4, rule="legendre", courant=0.5)
+    assert study.responses == ("restitution", "peak_force")
+    assert study.store == Store(histories=True, profiles=True, samples=11)
+
+
+def test_a_base_is_changed_in_parts(read, grid):
+    study = read(grid({"impact.beam.material.yield_stress": "420 MPa"}))
+    assert study.impact.beam.material.yield_stress == 420e6
+    assert study.impact.beam.material.youngs_modulus == paper_impact().beam.material.youngs_modulus
+    assert study.impact.sphere == paper_impact().sphere
+
+
+def test_a_grid_keeps_its_parameters_and_values_in_the_order_of_the_file(read, grid):
+    wanted = {"rule": ["legendre", "lobatto"], "nodes": [21, 11], "gravity": [0, 9.81]}
+    study = read(grid({"sampling.parameters": wanted}))
+    assert list(study.sampling.parameters.items()) == [
+        ("rule", ("legendre", "lobatto")),
+        ("nodes", (21, 11)),
+        ("gravity", (0.0, 9.81)),
+    ]
+    assert study.runs == 8
+
+
+def test_a_sample_keeps_its_parameters_in_the_order_of_the_file(read, sample):
+    uniform = {"distribution": "uniform", "low": 1, "high": 2}
+    wanted = dict.fromkeys(["sphere_mass", "gravity", "velocity"], uniform)
+    study = read(sample({"sampling.parameters": wanted}))
+    assert isinstance(study.sampling, Sobol)
+    assert list(study.sampling.parameters) == list(wanted)
+    assert study.runs == 8 * (2 * 3 + 2)
+    assert study.sampling.seed == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "values"),
+    [
+        ("gravity", {"start": 0, "stop": 1, "number": 11}, tuple(n / 10 for n in range(11))),
+        (
+            "beam_depth",
+            {"start": "20 mm", "stop": "40 mm", "number": 3, "spacing": "linear"},
+            (0.02, 0.03, 0.04),
+        ),
+        (
+            "velocity",
+            {"start": "0.1 m/s", "stop": 10, "number": 3, "spacing": "log"},
+            (0.1, 1.0, 10.0),
+        ),
+        ("nodes", {"start": 11, "stop": 31, "number": 3}, (11, 21, 31)),
+    ],
+)
+def test_ranges(read, grid, name, given, values):
+    result = read(grid({"sampling.parameters": {name: given}})).sampling.parameters[name]
+    assert result == values
+    assert {type(value) for value in result} == {type(values[0])}
+
+
+def test_every_parameter_can_be_varied(read, grid):
+    values = flatten(paper_impact(), Discretisation()) | {"sphere_mass": 1.4}
+    assert values.keys() == PARAMETERS.keys() - {*ELEMENTS}  # see test_solid
+    for name, value in values.items():
+        study = read(grid({"sampling.parameters": {name: [value]}}))
+        assert study.sampling.parameters == {name: (value,)}
+
+
+TEXT = "title: Checks\nchecks: [half_space]\n"
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Writes a study file."""
+
+    def write(text, name="some.yaml"):
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def said(read, path):
+    with pytest.raises(StudyError) as caught:
+        read(path)
+    return str(caught.value)
+
+
+def test_a_list_of_checks(file):
+    path = file(TEXT)
+    read = read_verification(path)
+    assert (read.name, read.path, read.text) == ("some", path, TEXT)
+    assert (read.title, read.description) == ("Checks", "")
+    assert read.checks == ("half_space",)
+    assert read.size == "1 check"
+    assert read.sha256 == hashlib.sha256(TEXT.encode()).hexdigest()
+
+
+def test_all_checks_in_the_order_of_the_catalogue(file):
+    assert read_verification(file("title: x\nchecks: all\n")).checks == tuple(CATALOGUE)
+
+
+def test_the_key_checks_tells_the_kinds_apart(file, grid):
+    assert isinstance(read_any(file(TEXT)), Verification)
+    assert isinstance(read_any(file(grid())), Study)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("title: x\nchecks: [half_spce]\n", "checks.0 = 'half_spce': unknown check; did you mean"),
+        ("title: x\nchecks: [half_space, half_space]\n", "names half_space more than once"),
+        ("title: x\nchecks: []\n", "checks = []: expected `all`, or a list of names"),
+        ("title: x\nchecks: some\n", "checks = 'some': expected `all`, or a list of names"),
+        ("title: x\nchecks:\n", "checks = null: expected `all`, or a list of names"),
+        ("title: x\nchecks: all\nduration: 1 ms\n", "duration = '1 ms': unknown key"),
+        ("titel: x\nchecks: all\n", "titel = 'x': unknown key; did you mean 'title'?"),
+        ("checks: all\n", "title: is required"),
+        ("title: x\ncheck: all\n", "check = 'all': unknown key; did you mean 'checks'?"),
+        ("title: x\nchecks: all\nchecks: all\n", 'duplicate key "checks"'),
+    ],
+)
+def test_mistakes_name_file_and_key(file, text, words):
+    path = file(text)
+    for read in (read_any, read_verification):
+        told = said(read, path)
+        assert words in told
+        assert all(line.startswith(f"{path}: ") for line in told.splitlines())
+
+
+def test_all_mistakes_are_told_at_once(file):
+    told = said(read_any, file("titel: x\nchecks: [half_spce]\n"))
+    assert len(told.splitlines()) == 3
+
+
+def test_the_other_kind_is_sent_to_its_command(file, grid):
+    checks, runs = file(TEXT, "checks.yaml"), file(grid(), "runs.yaml")
+    assert f"use `impactlab verify {checks}`" in said(read_study, checks)
+    assert f"use `impactlab run {runs}`" in said(read_verification, runs)

@@ -1,0 +1,170 @@
+"""Distributions and fixed values of sampled parameters."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from impactlab.study.schema.parameters import DISTRIBUTIONS
+
+CASES = {
+    "uniform": {"low": 2.0, "high": 5.0},
+    "log_uniform": {"low": 2.0, "high": 32.0},
+    "normal": {"mean": 10.0, "standard_deviation": 2.0},
+    "truncated_normal": {"mean": 10.0, "standard_deviation": 2.0, "low": 9.0, "high": 14.0},
+    "lognormal": {"median": 10.0, "geometric_standard_deviation": 1.3},
+    "triangular": {"low": 2.0, "mode": 3.0, "high": 8.0},
+}
+
+
+def made(name, **arguments):
+    return DISTRIBUTIONS[name][float](distribution=name, **arguments)
+
+
+def normal_density(x):
+    return math.exp(-(x**2) / 2) / math.sqrt(2 * math.pi)
+
+
+def normal_probability(x):
+    return (1 + math.erf(x / math.sqrt(2))) / 2
+
+
+def truncated_normal_mean(mean, deviation, low, high):
+    a, b = (low - mean) / deviation, (high - mean) / deviation
+    share = normal_probability(b) - normal_probability(a)
+    return mean + deviation * (normal_density(a) - normal_density(b)) / share
+
+
+MEANS = {
+    "uniform": 3.5,
+    "log_uniform": 30.0 / math.log(16.0),
+    "normal": 10.0,
+    "truncated_normal": truncated_normal_mean(10.0, 2.0, 9.0, 14.0),
+    "lognormal": 10.0 * math.exp(math.log(1.3) ** 2 / 2),
+    "triangular": 13.0 / 3.0,
+}
+
+
+def test_every_distribution_is_tested():
+    assert CASES.keys() == DISTRIBUTIONS.keys() == MEANS.keys()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_mean_of_the_quantiles_is_that_of_the_closed_form(name):
+    middle = (np.arange(200_000) + 0.5) / 200_000
+    assert made(name, **CASES[name]).quantile(middle).mean() == pytest.approx(MEANS[name], rel=2e-5)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_quantiles_rise_and_keep_to_the_bounds(name):
+    given = made(name, **CASES[name])
+    values = given.quantile(np.array([2.0**-31, 1e-6, 0.3, 0.5, 0.9, 1 - 1e-6, 1 - 2.0**-31]))
+    assert np.all(np.diff(values) > 0)
+    assert np.all(np.isfinite(values))
+    bounds = given.bounds()
+    assert ("low" in CASES[name]) == bool(bounds)
+    if bounds:
+        assert bounds["low"] <= values[0] < values[-1] <= bounds["high"]
+
+
+def test_special_quantiles():
+    one_deviation = np.array([normal_probability(1.0)])
+    half = np.array([0.5])
+    assert made("normal", **CASES["normal"]).quantile(one_deviation) == pytest.approx(12.0)
+    assert made("lognormal", **CASES["lognormal"]).quantile(one_deviation) == pytest.approx(13.0)
+    assert made("log_uniform", **CASES["log_uniform"]).quantile(half) == pytest.approx(8.0)
+    at_mode = np.array([1 / 6])  # (mode - low)/(high - low): the share below the mode
+    assert made("triangular", **CASES["triangular"]).quantile(at_mode) == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_arguments_are_those_given(name):
+    assert made(name, **CASES[name]).arguments() == {"distribution": name, **CASES[name]}
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "where", "words"),
+    [
+        ("uniform", {"high": 2.0}, "high", "must be above low"),
+        ("uniform", {"low": 9.0}, "high", "must be above low"),
+        ("log_uniform", {"low": 0.0}, "low", "must be above zero"),
+        ("normal", {"standard_deviation": 0.0}, "standard_deviation", "must be above zero"),
+        ("truncated_normal", {"high": 8.0}, "high", "must be above low"),
+        ("truncated_normal", {"mean": 99.0}, None, "more than 8 standard deviations"),
+        ("lognormal", {"median": -1.0}, "median", "must be above zero"),
+        ("lognormal", {"geometric_standard_deviation": 0.1}, "geometric_standard_deviation", "1.1"),
+        ("triangular", {"mode": 9.0}, "mode", "must lie from low to high"),
+        ("triangular", {"mode": 1.0}, "mode", "must lie from low to high"),
+    ],
+)
+def test_contradictory_arguments_are_refused(name, change, where, words):
+    with pytest.raises(ValidationError) as caught:
+        made(name, **(CASES[name] | change))
+    (line,) = caught.value.errors()
+    assert line["loc"] == ((where,) if where else ())
+    assert words in line["msg"]
+
+
+UNIFORM = {"distribution": "uniform", "low": 1, "high": 2}
+
+
+def fixed(value):
+    return {"distribution": "fixed", "value": value}
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "value"),
+    [("beam_width", "60 mm", 0.06), ("nodes", 51, 51), ("contact", "hertz", "hertz")],
+)
+def test_a_fixed_parameter_is_not_varied(read, sampled, name, given, value):
+    sampling = read(sampled("sobol", {name: fixed(given)}, base_samples=8)).sampling
+    assert list(sampling.varied) == ["velocity", "beam_depth", "gravity"]
+    assert sampling.fixed == {name: value}
+    assert type(sampling.fixed[name]) is type(value)
+    assert sampling.runs == 8 * (2 * 3 + 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("beam_width", "60 kg", "expected a length"),
+        ("beam_width", -1, "must be above zero"),
+        ("nodes", 50, "must be odd"),
+        ("contact", "herz", "did you mean 'hertz'?"),
+    ],
+)
+def test_a_fixed_value_must_be_possible(problems, sampled, name, value, words):
+    ((key, said),) = problems(sampled("sobol", {name: fixed(value)}, base_samples=8))
+    assert key == f"sampling.parameters.{name}.value"
+    assert words in said
+
+
+def test_a_whole_number_may_be_fixed_but_not_drawn(problems, sampled):
+    ((_, said),) = problems(sampled("sobol", {"nodes": UNIFORM}, base_samples=8))
+    assert "or write {distribution: fixed, value: ...}" in said
+
+
+@pytest.mark.parametrize("method", ["sobol", "morris", "fast", "delta", "pawn", "regression"])
+def test_two_parameters_must_be_left_to_vary(problems, sampled, method):
+    own = {"sobol": {"base_samples": 8}, "morris": {"trajectories": 4}}
+    held = {"velocity": fixed(1), "beam_depth": fixed(0.02)}
+    ((key, said),) = problems(sampled(method, held, **own.get(method, {"samples": 100})))
+    assert key == "sampling.parameters"
+    assert f"too few: method {method} varies 2 or more (fixed ones do not count)" in said
+
+
+def test_fixed_values_are_checked_against_the_rest(problems, sampled):
+    ((key, said),) = problems(sampled("sobol", {"beam_span": fixed(0.025)}, base_samples=8))
+    assert key.startswith("sampling.parameters.beam_")
+    assert "must be below the span" in said
+
+
+def test_a_fixed_place_of_profiles_is_no_varied_one(problems, read, sample):
+    profiles = {"store.profiles": True}
+    depth = {"sampling.parameters.gravity": UNIFORM, "sampling.parameters.beam_depth": fixed(0.02)}
+    assert read(sample(profiles | depth)).store.profiles
+    ((key, _),) = problems(sample(profiles))
+    assert key == "sampling.parameters.beam_depth"

@@ -1,0 +1,92 @@
+"""What no beam and no sphere can be is refused by name; what they hardly are is told."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from impactlab.study.estimate import remarks
+
+IMPOSSIBLE = [
+    ("velocity", 1e9, "above the speed of a bar wave in the sphere (5164 m/s)"),
+    ("velocity", 5300, "above the speed of a bar wave"),
+    ("velocity", 1e-12, "is impossible"),
+    ("beam_density", 1e-6, "faster than light"),
+    ("sphere_density", 0.01, "solids have 10"),
+    ("beam_yield_stress", "345 mPa", "mPa is not MPa"),
+    ("sphere_yield_stress", "2550 mPa", "mPa is not MPa"),
+    ("beam_width", 1e-10, "atoms are"),
+    ("sphere_mass", 1e-30, "a speck of dust"),
+]
+DOUBTED = [
+    ("velocity", 100, "density velocity²/yield stress of the beam is 0.23"),
+    ("beam_density", 78e6, "is implausible: solids have 10 (foam) to 22,600 (osmium)"),
+    ("beam_yield_stress", "30 GPa", "a tenth of Young's modulus"),
+    ("beam_depth", 0.2, "above a fifth of the span"),
+    ("gravity", 9810, "274 is that of the sun"),
+    ("sphere_radius", 0.5, "wider than the span"),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "words"), IMPOSSIBLE)
+def test_the_impossible_is_refused_where_it_is_stated(problems, grid, name, value, words):
+    ((where, said),) = problems(grid({"sampling.parameters": {name: [value]}}))
+    assert where == f"sampling.parameters.{name}"
+    assert words in said
+
+
+@pytest.mark.parametrize(("name", "value", "words"), DOUBTED)
+def test_an_implausible_value_gives_a_warning(read, grid, name, value, words):
+    (remark,) = remarks(read(grid({"sampling.parameters": {name: [value]}})))
+    assert remark.key == f"sampling.parameters.{name}"
+    assert words in str(remark)
+
+
+def test_the_key_is_that_of_the_section_where_it_is_not_varied(problems, grid):
+    ((where, _),) = problems(grid({"impact.beam.material.yield_stress": "345 mPa"}))
+    assert where == "impact.beam.material.yield_stress"
+
+
+def test_the_paper_s_case_is_beyond_doubt(read, grid, sample):
+    assert remarks(read(grid())) == remarks(read(sample())) == []
+
+
+def test_the_speed_of_a_bar_wave_is_that_of_the_softest_and_heaviest_beam(problems, read, grid):
+    speed = math.sqrt(2.1e9 / 7800)
+    soft = {"beam_youngs_modulus": ["2.1 GPa", "210 GPa"]}
+    ((_, said),) = problems(grid({"sampling.parameters": soft | {"velocity": [1.001 * speed]}}))
+    assert f"({speed:.4g} m/s)" in said
+    read(grid({"sampling.parameters": soft | {"velocity": [0.999 * speed]}}))
+
+
+def test_a_beam_too_heavy_to_move_is_no_obstacle_to_a_wave(read, grid):
+    heavy = {"beam_density": [7.8e9], "velocity": [20]}
+    (remark,) = remarks(read(grid({"sampling.parameters": heavy})))
+    assert remark.key == "sampling.parameters.beam_density"
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"distribution": "uniform", "low": 1, "high": 6000},
+        {"distribution": "lognormal", "median": 100, "geometric_standard_deviation": 5},
+    ],
+)
+def test_the_ends_of_distributions_count(problems, sample, given):
+    ((where, said),) = problems(sample({"sampling.parameters.velocity": given}))
+    assert where == "sampling.parameters.velocity"
+    assert "above the speed of a bar wave" in said
+
+
+@pytest.mark.parametrize("model", ["timoshenko", "spring_mass", "rigid"])
+def test_a_scheme_that_a_model_has_not_is_refused_before_the_run(problems, read, grid, model):
+    wrong = {"impact.beam_model": model, "discretisation": {"scheme": "semi_implicit"}}
+    ((where, said),) = problems(grid(wrong))
+    assert where == "discretisation.scheme"
+    assert f"{model} has leapfrog alone" in said
+    varied = {"sampling.parameters": {"beam_model": ["elastic", model], "velocity": [1]}}
+    ((where, _),) = problems(grid(varied | {"discretisation": {"scheme": "semi_implicit"}}))
+    assert where == "discretisation.scheme"
+    fixed = {"scheme": ["leapfrog"], "beam_model": [model]}
+    read(grid({"sampling.parameters": fixed, "discretisation": {"scheme": "semi_implicit"}}))

@@ -1,0 +1,229 @@
+"""The section `sampling`: its methods, groups and `until`."""
+
+from __future__ import annotations
+
+import pytest
+
+from impactlab.model.parameters import Parameter
+from impactlab.study.sampling.methods import METHODS, sampling_reader
+from impactlab.study.schema.parameters import Factor
+
+RUNS = [
+    ("sobol", {"base_samples": 16}, 16 * (2 * 3 + 2)),
+    ("sobol", {"base_samples": 16, "second_order": False}, 16 * (3 + 2)),
+    ("morris", {"trajectories": 10}, 10 * (3 + 1)),
+    ("morris", {"trajectories": 10, "optimal_trajectories": 4, "levels": 6}, 4 * (3 + 1)),
+    ("fast", {"samples": 65}, 65 * (3 + 1)),
+    ("fast", {"samples": 145, "harmonics": 6}, 145 * (3 + 1)),
+    ("delta", {"samples": 100}, 100),
+    ("pawn", {"samples": 100}, 100),
+    ("regression", {"samples": 100}, 100),
+]
+WRONG = [
+    ("morris", {"trajectories": 1}, "trajectories", "must lie from 2"),
+    ("morris", {"trajectories": 4, "levels": 5}, "levels", "must be even"),
+    ("morris", {"trajectories": 4, "optimal_trajectories": 4}, "optimal_trajectories", "2 to 3"),
+    ("morris", {"trajectories": 4, "optimal_trajectories": 1}, "optimal_trajectories", "2 to 3"),
+    (
+        "morris",
+        {"trajectories": 1000, "optimal_trajectories": 50},
+        "optimal_trajectories",
+        "takes too long to choose",
+    ),
+    ("fast", {"samples": 64}, "samples", "must be at least 65 (above 4 harmonics²)"),
+    ("fast", {"samples": 144, "harmonics": 6}, "samples", "must be at least 145"),
+    ("delta", {"samples": 63}, "samples", "must lie from 64"),
+    ("pawn", {"samples": 100, "base_samples": 8}, "base_samples", "unknown key; did you mean"),
+    ("sobol", {}, "base_samples", "is required"),
+]
+
+
+@pytest.mark.parametrize(("method", "given", "runs"), RUNS)
+def test_number_of_runs(read, sampled, method, given, runs):
+    study = read(sampled(method, **given))
+    assert (study.sampling.method, study.runs) == (method, runs)
+    assert study.size == f"{runs} runs"
+    assert study.sampling.seed == 1
+
+
+def test_every_method_is_counted():
+    assert {method for method, *_ in RUNS} | {"grid"} == METHODS.keys()
+
+
+@pytest.mark.parametrize(("method", "given", "key", "words"), WRONG)
+def test_a_mistake_is_one_problem_at_its_key(problems, sampled, method, given, key, words):
+    ((where, said),) = problems(sampled(method, **given))
+    assert where == f"sampling.{key}"
+    assert words in said
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"distribution": "normal", "mean": 1, "standard_deviation": 0.1},
+        {"distribution": "lognormal", "median": 1, "geometric_standard_deviation": 1.1},
+    ],
+)
+def test_morris_takes_no_distribution_without_ends(problems, read, sampled, given):
+    text = sampled("morris", {"sphere_mass": given}, trajectories=4)
+    ((key, said),) = problems(text)
+    assert key == "sampling.parameters.sphere_mass.distribution"
+    assert "has no ends" in said
+    assert "truncated_normal" in said
+    assert read(sampled("fast", {"sphere_mass": given}, samples=65)).runs == 65 * 5
+
+
+@pytest.mark.parametrize("method", sorted(METHODS.keys() - {"grid"}))
+def test_failed_runs_are_no_indices_unless_asked_to_be_supplied(read, problems, sampled, method):
+    own = {name: given for name, given, _ in RUNS}
+    text = sampled(method, **own[method])
+    assert read(text).analysis.failed_runs == "fail"
+    asked = text[:-1] + ', "analysis": {"failed_runs": "impute"}}'
+    assert read(asked).analysis.failed_runs == "impute"
+    ((key, said),) = problems(text[:-1] + ', "analysis": {"failed_runs": "mean"}}')
+    assert key == "analysis.failed_runs"
+    assert "unknown policy; choose from fail, impute" in said
+
+
+def test_other_parameters_than_those_of_an_impact(read):
+    """Of a test function, say."""
+
+    def below_four(value):
+        if value >= 4:
+            raise ValueError("must be below 4")
+
+    factors = {
+        name: Factor(Parameter(name, "1", name, ()), below_four) for name in ("x1", "x2", "x3")
+    }
+    reader = sampling_reader(factors)
+    uniform = {"distribution": "uniform", "low": -3, "high": 3}
+    section = {"method": "sobol", "base_samples": 8, "parameters": {"x1": uniform, "x3": uniform}}
+    info = type("Info", (), {"context": None})()
+    sampling = reader(section, info)
+    assert list(sampling.varied) == ["x1", "x3"]
+    assert sampling.runs == 8 * 6
+    section["parameters"]["x2"] = uniform | {"high": 4}
+    with pytest.raises(ValueError, match="must be below 4"):
+        reader(section, info)
+
+
+GROUPS = {"others": ["gravity", "velocity"]}
+WRONG_GROUPS = [
+    (
+        {"all": ["velocity", "beam_depth", "gravity"]},
+        "groups",
+        "too few: 1 group, but 2 or",
+    ),
+    ({"beam_depth": ["velocity", "gravity"]}, "groups.beam_depth", "is the name of a parameter"),
+    ({"a": ["velocity", "gravty"]}, "groups.a.1", "did you mean 'gravity'?"),
+    ({"a": ["velocity", "beam_width"]}, "groups.a.1", "unknown varied parameter"),
+    ({"a": ["velocity"], "b": ["velocity"]}, "groups.b.0", "is named more than once"),
+    ({"a": ["velocity", "velocity"]}, "groups.a.1", "is named more than once"),
+    ({"a": ["velocity", "sphere_mass"]}, "groups.a.1", "is fixed, so it belongs to no group"),
+    ({"a": []}, "groups.a", "list at least one"),
+    ({"a": "velocity"}, "groups.a", "expected a list of names"),
+    ({"a": [3]}, "groups.a.0", "expected text"),
+    ({"3 4": ["velocity"]}, "groups", "'3 4' cannot name a group"),
+    (["velocity"], "groups", "expected a mapping such as"),
+]
+
+
+@pytest.mark.parametrize(
+    ("method", "given", "runs"),
+    [
+        ("sobol", {"base_samples": 16}, 16 * (2 * 2 + 2)),
+        ("sobol", {"base_samples": 16, "second_order": False}, 16 * (2 + 2)),
+        ("morris", {"trajectories": 10}, 10 * (2 + 1)),
+        ("morris", {"trajectories": 10, "optimal_trajectories": 4}, 4 * (2 + 1)),
+    ],
+)
+def test_groups_count_instead_of_parameters(read, sampled, method, given, runs):
+    sampling = read(sampled(method, groups=GROUPS, **given)).sampling
+    assert sampling.runs == runs
+    assert sampling.group_of == {
+        "velocity": "others",
+        "beam_depth": "beam_depth",
+        "gravity": "others",
+    }
+
+
+def test_without_groups_each_parameter_is_its_own(read, sampled):
+    sampling = read(sampled("morris", trajectories=4)).sampling
+    assert all(name == group for name, group in sampling.group_of.items())
+
+
+@pytest.mark.parametrize(("groups", "key", "words"), WRONG_GROUPS)
+def test_a_mistake_in_groups_is_one_problem_at_its_key(problems, sampled, groups, key, words):
+    mass = {"sphere_mass": {"distribution": "fixed", "value": 1}}
+    text = sampled("sobol", mass, base_samples=8, groups=groups)
+    ((where, said),) = problems(text)
+    assert where == f"sampling.{key}"
+    assert words in said
+
+
+def test_a_group_that_yaml_takes_for_a_number_is_refused(problems, sample):
+    text = sample().replace("  parameters:", "  groups: {3: [velocity]}\n  parameters:")
+    ((where, said),) = problems(text)
+    assert where == "sampling.groups"
+    assert "3 cannot name a group" in said
+
+
+@pytest.mark.parametrize("method", ["fast", "delta", "pawn", "regression"])
+def test_methods_without_groups_say_so(problems, sampled, method):
+    ((where, said),) = problems(sampled(method, samples=100, groups=GROUPS))
+    assert where == "sampling.groups"
+    assert "with method: sobol or morris" in said
+
+
+UNTIL = {"interval": "2 %", "runs": 2000}
+WRONG_UNTIL = [
+    ({"interval": 0.0009}, "interval", "must lie from 0.001 to 0.5"),
+    ({"interval": 0.6}, "interval", "must lie from 0.001 to 0.5"),
+    ({"runs": 511}, "runs", "must be at least the first sample's 512 runs"),
+    ({"runs": 10_000_001}, "runs", "must lie from 1 to 10,000,000"),
+    ({"responses": []}, "responses", "list at least one"),
+    ({"responses": ["peak_forse"]}, "responses.0", "did you mean 'peak_force'?"),
+    ({"intervall": 0.1}, "intervall", "did you mean 'interval'?"),
+]
+
+
+def test_a_sample_may_grow(read, sampled):
+    study = read(sampled("sobol", base_samples=64, until=UNTIL))
+    assert study.sampling.until.interval == 0.02
+    assert study.runs == 512
+    assert study.size == "512 runs, at most 2,000"
+    read(sampled("sobol", base_samples=64, until=UNTIL | {"runs": 512}))
+
+
+@pytest.mark.parametrize(("change", "key", "words"), WRONG_UNTIL)
+def test_a_mistake_in_until_is_one_problem_at_its_key(problems, sampled, change, key, words):
+    ((where, said),) = problems(sampled("sobol", base_samples=64, until=UNTIL | change))
+    assert where == f"sampling.until.{key}"
+    assert words in said
+
+
+def test_both_limits_are_required(problems, sampled):
+    found = problems(sampled("sobol", base_samples=64, until={}))
+    assert {key for key, _ in found} == {"sampling.until.interval", "sampling.until.runs"}
+
+
+def test_intervals_of_very_few_samples_decide_nothing(problems, sampled):
+    ((where, said),) = problems(sampled("sobol", base_samples=32, until=UNTIL))
+    assert where == "sampling.base_samples"
+    assert "must be at least 64 with until" in said
+
+
+def test_responses_must_be_asked_of_the_study(problems, read, sampled):
+    until = UNTIL | {"responses": ["contact_duration"]}
+    text = sampled("sobol", base_samples=64, until=until)
+    asked = text[:-1] + ', "responses": ["peak_force"]}'
+    ((where, said),) = problems(asked)
+    assert where == "sampling.until.responses.0"
+    assert "choose from peak_force" in said
+    assert read(text).sampling.until.responses == ("contact_duration",)
+
+
+def test_the_indices_must_be_asked_for(problems, sampled):
+    text = sampled("sobol", base_samples=64, until=UNTIL)
+    text = text[:-1] + ', "analyses": ["convergence_in_nodes"]}'
+    assert "sampling.until" in {key for key, _ in problems(text)}

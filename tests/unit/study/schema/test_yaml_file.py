@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+import pytest
+
+from impactlab.study.errors import StudyError
+from impactlab.study.schema.files import read_study
+
+NO_STUDY = {
+    "nothing": ("", "holds no keys"),
+    "list": ("- 1\n", "holds no keys"),
+    "words": ("just words", "holds no keys"),
+    "open bracket": ("a: [1\n", "is not YAML: line 2"),
+    "key twice": ("title: x\ntitle: y\n", 'duplicate key "title"'),
+    "python object": ("a: !!python/object/apply:os.system [ls]\n", "has the tag !!python/object"),
+    "two documents": ("a: 1\n---\nb: 2\n", "is not YAML"),
+    "endless number": ("a: 1" + "0" * 5000, "a: is a number of 5,001 characters"),
+    "deep": ("[" * 500, "nests too deeply"),
+    "in itself": ("a: &a [*a]\n", "nests too deeply"),
+    "binary": (b"\xff\xfe\x00", "not text in UTF-8"),
+    "large": ("title: " + "x" * 300_000, "larger than 256 KiB"),
+}
+
+
+@pytest.mark.parametrize(("content", "words"), NO_STUDY.values(), ids=NO_STUDY.keys())
+def test_what_is_no_study_at_all_is_one_clear_problem(problems, content, words):
+    ((_, said),) = problems(content)
+    assert words in said
+    assert "some-study_1.yaml: " in said
+    assert "\n" not in said
+
+
+def test_aliases_that_explode_are_refused(problems):
+    lines = ["a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]"]
+    lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, 12)]
+    ((_, said),) = problems("\n".join(lines))
+    assert "holds too much" in said
+
+
+@pytest.mark.parametrize(
+    "name", ["two words.yaml", "dot.ted.yaml", "é.yaml", "study.yml", "x" * 101 + ".yaml"]
+)
+def test_a_study_is_named_by_a_plain_word(problems, grid, name):
+    ((_, said),) = problems(grid(), name)
+    assert "name" in said
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(StudyError, match=r"nothing\.yaml: there is no such file"):
+        read_study(tmp_path / "nothing.yaml")
+
+
+def test_a_folder_is_no_study(tmp_path):
+    (tmp_path / "folder.yaml").mkdir()
+    with pytest.raises(StudyError, match=r"folder\.yaml: is not a file"):
+        read_study(tmp_path / "folder.yaml")
+
+
+def test_a_file_that_starts_with_a_byte_order_mark(read, grid):
+    assert read(b"\xef\xbb\xbf" + grid().encode()).title == "A grid"
