@@ -1,4 +1,4 @@
-"""The 3-D model beside the beam models."""
+"""The command `witness`: the 3-D FE model beside the beam models."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def witness(
     element_size: Annotated[
         str,
         typer.Option(
-            help="Of the elements about the contact, such as '0.5 mm'. Default: what takes about a "
+            help="Size of the elements about the contact, such as '0.5 mm'. Default: takes about a "
             "minute on two cores."
         ),
     ] = "",
@@ -65,33 +65,33 @@ def witness(
         str, typer.Option(help="abaqus or calculix: write its input deck, and solve nothing.")
     ] = "",
     elastic: Annotated[
-        bool, typer.Option("--elastic", help="Of a deck: nothing yields (CalculiX needs it).")
+        bool, typer.Option("--elastic", help="Write a deck without yielding (CalculiX needs it).")
     ] = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Tell elements, time and memory, and solve nothing.")
+        bool, typer.Option("--dry-run", help="Print elements, time and memory, and solve nothing.")
     ] = False,
     force: Annotated[
-        bool, typer.Option("--force", help="Also what takes hours, or all memory.")
+        bool, typer.Option("--force", help="Run even if it takes hours, or all memory.")
     ] = False,
 ) -> None:
-    """Hold the beam models against 3-D finite elements.
+    """Compare the beam models with 3-D finite elements.
 
-    What they answer is compared in a table; fields, histories and figures are kept. Ctrl-C keeps
-    what was computed until then.
+    A table compares their answers; fields, histories and figures are kept. Ctrl-C keeps what was
+    computed until then.
     """
     from impactlab.fem3d.comparison.terminal import print_comparison, print_plan, print_yielding
 
     _check_deck(deck, elastic=elastic)
     case = _case(study, velocity, contact)
     plan = _plan(case, element_size, patch, duration)
-    asked = {
+    options = {
         "velocity": velocity,
         "contact": contact,
         "element-size": element_size,
         "patch": patch,
         "duration": duration,
     }
-    folder = output or results_file(case.name, _folder_name(asked))
+    folder = output or results_file(case.name, _folder_name(options))
     problems = [] if deck and plan.mesh else plan.problems(workers)
     if dry_run or not problems or force:
         print_plan(plan, None if deck else workers, problems)
@@ -110,14 +110,14 @@ def witness(
     _end(found.solid, found.folder)
 
 
-def _folder_name(asked: Mapping[str, str]) -> str:
-    """Of the answers to these options: those to others are not written over."""
-    said = [f"{name}-{text}" for name, text in asked.items() if text]
-    return "_".join((WITNESS, *(re.sub(r"[^\w.]+", "-", each) for each in said)))
+def _folder_name(options: Mapping[str, str]) -> str:
+    """Return a folder name for the answers to these options, so that none are overwritten."""
+    parts = [f"{name}-{text}" for name, text in options.items() if text]
+    return "_".join((WITNESS, *(re.sub(r"[^\w.]+", "-", each) for each in parts)))
 
 
 def _case(study: Path | None, velocity: str, contact: str) -> Case:
-    """What is solved; of a study that varies what this takes one value of, that is said."""
+    """Return the case to solve, and log which parameters that the study varies are held."""
     from impactlab.fem3d.comparison.plan import case_of, paper_case
     from impactlab.study.schema.files import read_impacts
 
@@ -125,9 +125,9 @@ def _case(study: Path | None, velocity: str, contact: str) -> Case:
     speed = given("--velocity", velocity, "m s-1") if velocity else None
     case = case.with_impact(speed, contact or None)
     if case.held:
-        told = ", ".join(f"{name} = {value}" for name, value in case.held.items())
+        values = ", ".join(f"{name} = {value}" for name, value in case.held.items())
         logging.getLogger("impactlab").info(
-            "%s varies what a witness has one value of: here %s", case.file, told
+            "%s varies parameters of which this command takes one value: %s", case.file, values
         )
     return case
 
@@ -149,7 +149,7 @@ def _check_deck(deck: str, *, elastic: bool) -> None:
     if deck and deck not in FLAVOURS:
         raise ValueError(f"--deck {deck}: must be one of {', '.join(FLAVOURS)}")
     if elastic and not deck:
-        raise ValueError("--elastic: is of a deck; say which one with --deck")
+        raise ValueError("--elastic: applies to a deck only; select one with --deck")
 
 
 def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
@@ -176,7 +176,7 @@ def _watched() -> Iterator[Progress]:
     """Show the share done; on Ctrl-C, break the 3-D run off at a checkpoint, to keep it whole."""
     from impactlab.study.progress import share_done
 
-    with stop_kept() as asked_to_stop, share_done("3-D model") as show:
+    with stop_kept() as asked_to_stop, share_done("3-D FE model") as show:
 
         def progress(time: float, share: float) -> None:
             show(share)
@@ -187,7 +187,7 @@ def _watched() -> Iterator[Progress]:
 
 
 def _end(solid: xr.Dataset, folder: Path) -> None:
-    """Where the answers lie; exit code 130 where broken off, 1 where the run went wrong."""
+    """Print where the answers are; exit with 130 if interrupted, with 1 if the run failed."""
     stopped = str(solid.attrs.get("stopped", ""))
     log = logging.getLogger("impactlab")
     if stopped.startswith("interrupted"):

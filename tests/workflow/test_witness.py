@@ -70,7 +70,8 @@ def test_a_study_gives_the_case_and_options_change_it(impactlab, tmp_path, undra
     asked = ("studies/some.yaml", "--velocity", "3 m/s", "--output", "here")
     code, said = impactlab("witness", *asked, *COARSE)
     assert code == 0, said
-    assert "some.yaml varies what a witness has one value of: here contact = stronge" in said
+    held = "some.yaml varies parameters of which this command takes one value: contact = stronge"
+    assert held in said
     beams = xr.load_dataset(tmp_path / "here" / "beams.nc")
     assert beams["velocity"] == xr.load_dataset(tmp_path / "here" / "witness.nc")["velocity"] == 3
     assert beams["nodes"] == 21
@@ -84,7 +85,7 @@ def test_a_dry_run_tells_the_cost_and_leaves_nothing(impactlab, tmp_path):
         assert words in said
     code, said = impactlab("witness", "--dry-run", "--element-size", "1 um")
     assert code == 0
-    assert "beyond bearing: the paper's case: --element-size 0.001 mm: about" in said
+    assert "exceeds the limit: the paper's case: --element-size 0.001 mm: about" in said
     assert [path.name for path in tmp_path.iterdir()] == ["studies"]
 
 

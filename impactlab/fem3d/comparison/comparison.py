@@ -16,11 +16,11 @@ from impactlab.variables import RESPONSES, UNLIKE, attributes, status_bits
 MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")
 """In the order of tables and figures."""
 _COARSE = 101
-"""Nodes that tell the duration of a contact within some percent."""
+"""Nodes that resolve the duration of a contact within some percent."""
 
 
 def simulate_beams(impact: Impact, discretisation: Discretisation, duration: float) -> xr.Dataset:
-    """What `simulate` gives for each of MODELS, on the dimension `beam_model`.
+    """Return the answers of `simulate` for each of MODELS, on the dimension `beam_model`.
 
     All take the leapfrog scheme, the only one that they share. duration: in s.
     """
@@ -41,7 +41,7 @@ def beam_seconds(impact: Impact, discretisation: Discretisation, duration: float
 
 
 def first_contact(impact: Impact, discretisation: Discretisation, longest: float) -> float:
-    """Duration of the Euler-Bernoulli beam's first contact in s; NaN if it outlasts `longest`.
+    """Return the duration of the Euler-Bernoulli beam's first contact in s; NaN beyond `longest`.
 
     Roughly: on a coarse grid, which is quick for any duration.
     """
@@ -53,20 +53,20 @@ def first_contact(impact: Impact, discretisation: Discretisation, longest: float
 
 
 SOLID = "solid"
-"""The 3-D model's name among the beam models."""
+"""Name of the 3-D FE model among the beam models."""
 COUNTS = ("number_of_contacts",)
 
 
 def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
-    """`value` and `difference` on (response, model), `status` on (model).
+    """Return `value` and `difference` on (response, model), and `status` on (model).
 
     value: in SI units, as `units` (response) has them; NaN where a model gives none, and `status`
-    says why. difference: relative to the 3-D model's value; NaN for responses that are UNLIKE and
-    for COUNTS.
+    says why. difference: relative to the 3-D FE model; NaN for responses that are UNLIKE and for
+    COUNTS.
     """
     names = [name for name in RESPONSES if name in solid]
     models = [SOLID, *beams["beam_model"].values.tolist()]
-    value = np.array([[*_held(solid, name), *_held(beams, name)] for name in names])
+    value = np.array([[*_valid(solid, name), *_valid(beams, name)] for name in names])
     with np.errstate(divide="ignore", invalid="ignore"):
         difference = value / value[:, :1] - 1.0
     difference[~np.isfinite(difference)] = np.nan
@@ -87,8 +87,8 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _held(runs: xr.Dataset, name: str) -> list[float]:
-    """A response of each run, NaN where the status says that it does not hold."""
+def _valid(runs: xr.Dataset, name: str) -> list[float]:
+    """Return a response of each run, NaN where the status says that it does not hold."""
     sound = (runs["status"] & status_bits([name])) == 0
     values: list[float] = np.atleast_1d(runs[name].where(sound).values).astype(float).tolist()
     return values

@@ -29,8 +29,8 @@ _LONGEST = 5e-3
 class Case:
     """name: of the study. file: where it stands. discretisation: of the beam models.
 
-    longest: simulated time of the study in s. held: what the study varies, which one value stands
-    for here, by name.
+    longest: simulated time of the study in s. held: base values of the parameters that the study
+    varies, by name.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Case:
     held: dict[str, Value] = field(default_factory=dict)
 
     def with_impact(self, velocity: float | None, contact: str | None) -> Case:
-        """The case with another velocity (m/s) or contact law. Raises ValueError as Impact does."""
+        """Return the case with another velocity (m/s) or contact law. Raises as Impact does."""
         changed = {"velocity": velocity, "contact": contact}
         given = {name: value for name, value in changed.items() if value is not None}
         held = {name: value for name, value in self.held.items() if name not in given}
@@ -49,13 +49,13 @@ class Case:
 
 
 def paper_case() -> Case:
-    """The paper's own case, for the beam models with the nodes that it takes."""
+    """Return the paper's own case, with as many nodes for the beam models as it takes."""
     grid = Discretisation(nodes=601)
     return Case("paper", "the paper's case", paper_impact(), grid, _LONGEST)
 
 
 def case_of(study: Study) -> Case:
-    """A study's base with its fixed values; of what it varies, the base has one value each."""
+    """Return the base of a study with its fixed values; varied parameters keep their base value."""
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
     values = flatten(*base) | {"sphere_mass": base[0].sphere.total_mass}
     held = {name: values[name] for name in study.sampling.varied if name in values}
@@ -68,7 +68,7 @@ def _replaced(impact: Impact, values: dict[str, float | str]) -> Impact:
 
 
 USUAL_TIME = 120.0
-"""Seconds of one core that a run may take where no element size is asked for."""
+"""Seconds of one core that a run may take where no element size is given."""
 MOST_TIME = 3600.0
 """Seconds that a run may take unless it is forced."""
 _CONTACTS = 2.25
@@ -76,9 +76,9 @@ _CONTACTS = 2.25
 _LONG = 2.0
 """Durations over the usual one from which on it is the duration that makes a run long."""
 _MOST_ELEMENTS = 10_000
-"""Of a size that is chosen, by the least cost: time sets no bound to a moment of few steps."""
+"""Elements of a chosen size at most, by the least cost: time alone does not limit short runs."""
 _FEWEST = 2.0
-"""Elements over the contact's radius, at the least, of a size that is chosen."""
+"""Elements over the contact's radius at least, of a chosen size."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Plan:
     """One 3-D run. mesh: None where it does not fit memory. Lengths in m, times in s.
 
     first_contact: NaN where it outlasts the study. contact_radius: the largest to expect.
-    beam_seconds: what the beam models take beside it.
+    beam_seconds: time that the beam models take.
     """
 
     case: Case
@@ -101,19 +101,19 @@ class Plan:
     mesh: Mesh | None
 
     def seconds(self, workers: int) -> float:
-        """About how long it takes with so many threads, the beam models' runs included."""
+        """Return the estimated time with so many threads, the beam models' runs included."""
         busy: int = min(workers, CPU_COUNT, MOST_THREADS)
         return self.cost.cpu_seconds / busy + self.beam_seconds
 
     def problems(self, workers: int) -> list[str]:
-        """Why it should not be begun, a line each, at the option that drives it."""
+        """Return the reasons not to start, one line each, naming the option that drives it."""
         return [
             f"{self.case.file}: {option}: {reason}; see --dry-run, and --force runs it all the same"
             for option, reason in self._beyond(workers)
         ]
 
     def solved_mesh(self) -> Mesh:
-        """The mesh, though it may not fit memory."""
+        """Return the mesh, even if it may not fit memory."""
         size = self.element_size
         return self.mesh or quarter_mesh(self.case.impact, element_size=size, patch=self.patch)
 
@@ -126,9 +126,9 @@ class Plan:
         elif self.seconds(workers) > MOST_TIME:
             lasting = self.duration > _LONG * self.usual_duration
             option = f"--duration {1e3 * self.duration:g} ms" if lasting else size
-            told = f"{self.cost.steps:,} steps of {elements}"
+            work = f"{self.cost.steps:,} steps of {elements}"
             long = time(self.seconds(workers))
-            yield option, f"about {long}, above the hour that a run may take, for {told}"
+            yield option, f"about {long}, above the hour that a run may take, for {work}"
 
 
 def planned(
@@ -138,7 +138,7 @@ def planned(
     patch: float | None = None,
     duration: float | None = None,
 ) -> Plan:
-    """The run that is asked for; what is None is chosen.
+    """Return the plan of a run; arguments that are None are chosen.
 
     element_size: the finest of 1, 2 or 5 times a power of ten that keeps within USUAL_TIME.
     duration: 2.25 times the first contact of the Euler-Bernoulli beam, at most the study's.
@@ -149,19 +149,19 @@ def planned(
             positive("witness", name, value)
     first = first_contact(case.impact, case.discretisation, case.longest)
     usual = case.longest if math.isnan(first) else min(_two_digits(_CONTACTS * first), case.longest)
-    asked = usual if duration is None else duration
-    size = _usual_size(case.impact, patch, asked) if element_size is None else element_size
-    cost, mesh = _cost(case.impact, size, patch, asked)
+    simulated = usual if duration is None else duration
+    size = _usual_size(case.impact, patch, simulated) if element_size is None else element_size
+    cost, mesh = _cost(case.impact, size, patch, simulated)
     half = mesh.patch if mesh else checked_patch(case.impact, size, patch)
     radius = contact_radius(case.impact)
-    beside = beam_seconds(case.impact, case.discretisation, asked)
-    return Plan(case, size, half, asked, first, usual, radius, beside, cost, mesh)
+    beside = beam_seconds(case.impact, case.discretisation, simulated)
+    return Plan(case, size, half, simulated, first, usual, radius, beside, cost, mesh)
 
 
 def _cost(
     impact: Impact, size: float, patch: float | None, duration: float
 ) -> tuple[Cost, Mesh | None]:
-    """Of the mesh; of what it has at the least where that does not fit memory already."""
+    """Return the cost on the mesh, or the least cost if that does not fit memory already."""
     least = least_cost(impact, element_size=size, duration=duration, patch=patch)
     if least.memory_bytes > MEMORY_LIMIT:
         return least, None
@@ -170,7 +170,7 @@ def _cost(
 
 
 def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
-    """The finest size within USUAL_TIME and _MOST_ELEMENTS; else the coarsest that makes sense."""
+    """Return the finest size within USUAL_TIME and _MOST_ELEMENTS, else the coarsest one."""
     beam = impact.beam
     fits = min(impact.sphere.radius, beam.width, beam.span) / 10.0
     coarsest, *finer = _sizes(min(contact_radius(impact) / _FEWEST, fits))
@@ -186,7 +186,7 @@ def _quick(impact: Impact, size: float, patch: float | None, duration: float) ->
 
 
 def _sizes(largest: float) -> list[float]:
-    """1, 2 and 5 times powers of ten in m, downwards from `largest` over three decades."""
+    """Return 1, 2 and 5 times powers of ten in m, from `largest` down over three decades."""
     first = math.floor(math.log10(largest))
     sizes = [float(f"{digit}e{first - down}") for down in range(4) for digit in (5, 2, 1)]
     return [size for size in sizes if size <= largest]

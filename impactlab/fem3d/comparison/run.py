@@ -104,7 +104,7 @@ def _is_complete(file: Path) -> bool:
 
 
 def write_csv(found: xr.Dataset, path: Path) -> None:
-    """A row a response and model, in SI units; whole or not at all. Raises OSError, see whole."""
+    """Write one row per response and model, in SI units; whole or not at all (see whole)."""
     with (
         whole(path, found["value"].size * len(_HEAD) * _NUMBER) as unfinished,
         unfinished.open("w", encoding="utf-8", newline="") as file,
@@ -124,7 +124,7 @@ def _row(one: xr.Dataset) -> list[str]:
 
 
 def write_vtu(dataset: xr.Dataset, path: Path) -> None:
-    """Write a 3-D model's mesh with all its fields; all of it or nothing, under the same names.
+    """Write a 3-D FE model's mesh with all its fields; all of it or nothing, under the same names.
 
     dataset: of fem3d.solver. What lies on `element` becomes cell data, what lies on `node` and
     `axis` vectors of the points, in SI units; points are where they were at first touch.
@@ -160,5 +160,5 @@ def _columns(vectors: Array) -> tuple[Array, ...]:
 
 
 def _plain(values: Array) -> Array:
-    """VTK has no truth values."""
+    """Return the values without booleans, which VTK does not have."""
     return values.astype(np.int8) if values.dtype == bool else np.ascontiguousarray(values)

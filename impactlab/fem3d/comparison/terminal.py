@@ -1,4 +1,4 @@
-"""What a 3-D run will cost, and its answers beside those of the beam models, for a terminal."""
+"""Terminal output: the cost of a 3-D run, and its answers beside those of the beam models."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ _NAMES = {SOLID: "3-D"}
 _NARROW: dict[str, Any] = {"box": box.SIMPLE, "show_edge": False, "padding": 0}
 """Fits 80 columns."""
 _WHOLE = 9.95
-"""Difference in % from which on it is told without a decimal."""
+"""Difference in % from which on it is printed without a decimal."""
 _FAR = 1e-3
-"""PEEQ of elements that are not fully integrated, from which on it is told."""
+"""PEEQ of elements that are not fully integrated, from which on it is printed."""
 
 
 def print_plan(plan: Plan, workers: int | None, problems: Iterable[str]) -> None:
-    """What is solved and what it costs, a line each; and why it is not unless it is forced.
+    """Print what is solved and what it costs, one line each, and the problems, if any.
 
-    workers: None of a deck, which others solve.
+    workers: None for a deck, which another program solves.
     """
     cost, across = plan.cost, plan.contact_radius / plan.element_size
     lines = {
@@ -49,13 +49,13 @@ def print_plan(plan: Plan, workers: int | None, problems: Iterable[str]) -> None
     for name, text in lines.items():
         console.print(f"{name:15s}{text}", markup=False, highlight=False)
     for problem in problems:
-        console.print(f"beyond bearing: {problem}", markup=False, highlight=False)
+        console.print(f"exceeds the limit: {problem}", markup=False, highlight=False)
 
 
 def print_comparison(found: xr.Dataset) -> None:
-    """A row a response: the 3-D model's value, and each beam model's with its difference in %.
+    """Print one row per response: the 3-D value, and each beam model's with its difference in %.
 
-    found: of fem3d.comparison. Below, what is missing and why, model by model.
+    found: see compared. Below the table, the missing responses and the reasons, by model.
     """
     models = found["model"].values.tolist()
     right = [Column(name, justify="right") for name in map(_named, models)]
@@ -64,7 +64,7 @@ def print_comparison(found: xr.Dataset) -> None:
         table.add_row(*_row(found.sel(response=name)))
     console = Console()
     console.print(table)
-    console.print("In %: difference from the 3-D model.", markup=False)
+    console.print("In %: difference from the 3-D FE model.", markup=False)
     for why in dict.fromkeys(UNLIKE.values()):
         which = labels.listing([name for name, given in UNLIKE.items() if given == why])
         console.print(f"not compared: {which}: {why}", markup=False)
@@ -74,27 +74,27 @@ def print_comparison(found: xr.Dataset) -> None:
 
 
 def print_yielding(solid: xr.Dataset) -> None:
-    """What yields where the responses do not tell it, a line each.
+    """Print one line per body or region that yields where the responses do not show it.
 
-    solid: of solve. Elements with one point beyond the middle yield all at once, and late in
-    bending.
+    solid: a dataset of fem3d.solver. Elements with one point beyond the middle yield all at once,
+    and late in bending.
     """
     console = Console()
     sphere = float(solid["sphere_plastic_strain"])
     if sphere > 0.0:
-        told = f"the sphere yields, too: PEEQ up to {sphere:.2%}, in plastic_dissipation alone"
-        console.print(told, markup=False, highlight=False)
+        text = f"the sphere yields, too: PEEQ up to {sphere:.2%}, in plastic_dissipation alone"
+        console.print(text, markup=False, highlight=False)
     coarse = float(solid["one_point_plastic_strain"])
     if coarse > _FAR:
-        told = (
+        text = (
             f"elements with one integration point yield: PEEQ up to {coarse:.2%} away from contact "
             "and middle, where they are too stiff in bending"
         )
-        console.print(told, markup=False, highlight=False)
+        console.print(text, markup=False, highlight=False)
 
 
 def _missing(found: xr.Dataset) -> dict[str, list[str]]:
-    """Models by the reason why they lack a response."""
+    """Return the models that lack a response, by the reason."""
     which: dict[str, list[str]] = {}
     for model in found["model"].values.tolist():
         for reason in reasons(int(found["status"].sel(model=model))):
@@ -103,7 +103,7 @@ def _missing(found: xr.Dataset) -> dict[str, list[str]]:
 
 
 def _contact(plan: Plan) -> str:
-    """How long the first contact is beside it, in words."""
+    """Return a phrase about the duration of the first contact."""
     if np.isnan(plan.first_contact):
         return f"the first contact is longer than {1e3 * plan.case.longest:.4g} ms"
     contact = (
@@ -115,7 +115,7 @@ def _contact(plan: Plan) -> str:
 
 
 def _row(one: xr.Dataset) -> list[str]:
-    """Values in the unit that fits the largest of them."""
+    """Return the cells of a row, in the unit that fits the largest value."""
     name = str(one["response"].item())
     values = one["value"].rename(name).assign_attrs(units=str(one["units"].item()))
     unit = display(values)
@@ -127,9 +127,9 @@ def _row(one: xr.Dataset) -> list[str]:
 def _cell(value: float, share: float) -> str:
     if np.isnan(value):
         return "missing"
-    told = f"{value:.4g}"
+    text = f"{value:.4g}"
     digits = 1 if abs(share) < _WHOLE else 0
-    return told if np.isnan(share) else f"{told} {share:+.{digits}f}%"
+    return text if np.isnan(share) else f"{text} {share:+.{digits}f}%"
 
 
 def _named(model: str) -> str:

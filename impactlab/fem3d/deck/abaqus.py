@@ -1,4 +1,4 @@
-"""Abaqus/Explicit: the program of the paper's 3-D model.
+"""Abaqus/Explicit: the program of the paper's 3-D FE model.
 
 Source of the syntax: Abaqus Keywords Guide, read in part (docs/decks.md). No deck has been run.
 """

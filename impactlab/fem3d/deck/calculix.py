@@ -46,7 +46,7 @@ def _contact(case: Case) -> Iterator[str]:
 
 
 def _slope(case: Case) -> float:
-    """Pressure over overclosure in Pa/m.
+    """Return the slope of pressure over overclosure in Pa/m.
 
     Hertz's largest pressure is 2 E* a/(pi R), his indentation a^2/R.
     """

@@ -36,7 +36,7 @@ _LIMITS = (
 
 
 def header(case: Case, flavour: Flavour) -> Iterator[str]:
-    """Lines of comment."""
+    """Yield the lines of the comment."""
     mesh = case.mesh
     yield from _said(
         f"impactlab {version('impactlab')}: a sphere strikes a beam, for {flavour.program}"
@@ -70,7 +70,7 @@ _LONGEST = 10.0
 
 
 def materials(case: Case, hardening: Hardening) -> Iterator[str]:
-    """Both bodies' materials. hardening: the program's cards for plasticity, in MPa."""
+    """Yield both bodies' materials. hardening: the program's cards for plasticity, in MPa."""
     for name, material, density in (
         ("BEAM", case.impact.beam.material, case.impact.beam.material.density),
         ("SPHERE", case.impact.sphere.material, _sphere_density(case)),
@@ -85,20 +85,20 @@ def materials(case: Case, hardening: Hardening) -> Iterator[str]:
 
 
 def _sphere_density(case: Case) -> float:
-    """In kg/m3: that which gives the sphere of the mesh the mass of the impact."""
+    """Return the density in kg/m3 that gives the meshed sphere the mass of the impact."""
     quarter = element_volumes(case.mesh)[case.mesh.body == SPHERE].sum()
     return float(case.impact.sphere.total_mass / 4.0 / quarter)
 
 
 def curve(material: Material, modulus: float) -> Iterator[str]:
-    """Stress against equivalent plastic strain that rises by `modulus` (Pa): one point if by 0."""
+    """Yield stress against equivalent plastic strain, rising by `modulus` (Pa): one point if 0."""
     yield values(material.yield_stress * STRESS, 0.0)
     if modulus > 0.0:
         yield values((material.yield_stress + modulus * _LONGEST) * STRESS, _LONGEST)
 
 
 def supports() -> Iterator[str]:
-    """Planes of symmetry, and the beam's ends held at mid-depth."""
+    """Yield the planes of symmetry, and the supports of the beam's ends at mid-depth."""
     yield "*BOUNDARY"
     yield f"{SYMMETRY_X}, 1, 1"
     yield f"{SYMMETRY_Y}, 2, 2"
@@ -106,13 +106,13 @@ def supports() -> Iterator[str]:
 
 
 def start(case: Case) -> Iterator[str]:
-    """The sphere moves downwards at first touch."""
+    """Yield the downward velocity of the sphere at first touch."""
     yield "*INITIAL CONDITIONS, TYPE=VELOCITY"
     yield f"{SPHERE_NODES}, 3, {values(-case.impact.velocity * VELOCITY)}"
 
 
 def gravity(case: Case) -> Iterator[str]:
-    """On the sphere alone, as in the beam models."""
+    """Yield gravity on the sphere alone, as in the beam models."""
     if case.impact.gravity > 0.0:
         yield "*DLOAD"
         yield f"SPHERE, GRAV, {values(case.impact.gravity * ACCELERATION, 0.0, 0.0, -1.0)}"

@@ -33,17 +33,17 @@ PER_LINE = 16
 
 
 def number(value: float) -> str:
-    """At most 19 characters, of the 20 that CalculiX reads; 13 digits."""
+    """Return at most 19 characters, of the 20 that CalculiX reads, with 13 digits."""
     return f"{value:.12e}"
 
 
 def values(*entries: float) -> str:
-    """One data line."""
+    """Return one data line."""
     return ", ".join(f"{entry:.9g}" for entry in entries)
 
 
 def listed(numbers: Iterable[int] | NDArray[np.integer]) -> Iterator[str]:
-    """Data lines of whole numbers, as many on each as it may hold."""
+    """Yield data lines of whole numbers, as many per line as allowed."""
     words = [str(entry) for entry in np.asarray(numbers).tolist()]
     for start in range(0, len(words), PER_LINE):
         yield ", ".join(words[start : start + PER_LINE])
@@ -81,7 +81,7 @@ class Case:
 
     @property
     def time_between(self) -> float:
-        """Between results, in s."""
+        """Return the time between results, in s."""
         if self.interval is not None:
             return self.interval
         contact = hertz.contact_duration(
@@ -102,7 +102,7 @@ class Case:
             )
 
     def _check_sizes(self) -> None:
-        """The mesh's extents are those of the impact's bodies."""
+        """Raise ValueError unless the mesh's extents are those of the impact's bodies."""
         beam, nodes = self.impact.beam, self.mesh.nodes
         for name, meshed, wanted in (
             ("beam's span", 2.0 * nodes[self.mesh.support, 0].max(), beam.span),

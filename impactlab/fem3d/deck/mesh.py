@@ -22,7 +22,7 @@ SPHERE_SURFACE, BEAM_SURFACE = "SPHERE_SURFACE", "BEAM_SURFACE"
 
 
 def node_sets(impact: Impact, mesh: Mesh) -> dict[str, Integers]:
-    """Node numbers from 0."""
+    """Return node numbers, from 0, by the name of the set."""
     centre = np.array([0.0, 0.0, impact.sphere.radius])
     single = {
         MIDSPAN: mesh.axis_node,
@@ -41,7 +41,7 @@ def node_sets(impact: Impact, mesh: Mesh) -> dict[str, Integers]:
 
 
 def element_groups(mesh: Mesh) -> dict[str, tuple[bool, Truths]]:
-    """Elements of one body and one kind by the group's name: whether fully integrated, and which.
+    """Return per group (one body, one kind) whether it is fully integrated, and its elements.
 
     Groups without elements are left out.
     """
@@ -65,13 +65,13 @@ Faces = NDArray[np.int64]
 
 
 def top_of_beam(mesh: Mesh) -> Faces:
-    """All faces of the beam that look to the sphere."""
+    """Return all faces of the beam that face the sphere."""
     faces, nodes = _outer(mesh, BEAM)
     return np.asarray(faces[_on(mesh, nodes, 2)])
 
 
 def lower_sphere(mesh: Mesh) -> Faces:
-    """The faces of the sphere's surface below its centre."""
+    """Return the faces of the sphere's surface below its centre."""
     faces, nodes = _outer(mesh, SPHERE)
     middle = mesh.nodes[nodes, 2].mean(axis=1)
     height = 0.5 * np.ptp(mesh.nodes[np.unique(nodes), 2])
@@ -80,12 +80,12 @@ def lower_sphere(mesh: Mesh) -> Faces:
 
 
 def _on(mesh: Mesh, nodes: Integers, axis: int) -> Truths:
-    """Whether a face lies in the plane through the origin across `axis`."""
+    """Return which faces lie in the plane through the origin across `axis`."""
     return np.asarray(np.all(np.abs(mesh.nodes[nodes, axis]) < _NEAR * mesh.element_size, axis=1))
 
 
 def _outer(mesh: Mesh, body: int) -> tuple[Faces, Integers]:
-    """Faces that one element of the body alone has, and their nodes, (f, 4)."""
+    """Return the faces that only one element of the body has, and their nodes, (f, 4)."""
     own = np.flatnonzero(mesh.body == body)
     nodes = mesh.elements[own][:, _CORNERS].reshape(-1, 4)
     _, first, count = np.unique(
@@ -97,7 +97,7 @@ def _outer(mesh: Mesh, body: int) -> tuple[Faces, Integers]:
 
 
 def geometry(case: Case, kinds: Mapping[bool, str]) -> Iterator[str]:
-    """kinds: names of the element types, fully integrated (True) and not."""
+    """Yield the mesh. kinds: element types, fully integrated (True) and not."""
     yield "*NODE, NSET=ALL_NODES"
     for place, (x, y, z) in enumerate((LENGTH * case.mesh.nodes).tolist(), start=1):
         yield f"{place}, {number(x)}, {number(y)}, {number(z)}"

@@ -31,7 +31,7 @@ class Side(NamedTuple):
 
 
 def differ(runs: xr.Dataset) -> bool:
-    """Whether a grid has the 3-D model beside others at three velocities or more."""
+    """Return whether a grid has the 3-D FE model beside others at three velocities or more."""
     if "beam_model" not in runs.dims or runs.sizes.get("velocity", 0) < _FEWEST:
         return False
     rest = set(runs.dims) - {"time", "x", "z", "velocity", "beam_model", *AXES}
@@ -39,28 +39,28 @@ def differ(runs: xr.Dataset) -> bool:
 
 
 def models(runs: xr.Dataset) -> list[str]:
-    """The 3-D model first, then the others in the study's order."""
+    """Return the 3-D FE model first, then the others in the study's order."""
     listed = [str(name) for name in runs["beam_model"].values]
     return [SOLID, *(name for name in listed if name != SOLID)]
 
 
 def label(model: str) -> str:
-    """A model of the beam in words."""
-    return "3-D solid" if model == SOLID else "-".join(map(str.capitalize, model.split("_")))
+    """Return the label of a model of the beam."""
+    return "3-D FE model" if model == SOLID else "-".join(map(str.capitalize, model.split("_")))
 
 
-def asked(runs: xr.Dataset) -> list[str]:
-    """The responses, but for the check of the numerics."""
+def compared_responses(runs: xr.Dataset) -> list[str]:
+    """Return the responses, without the check of the numerics."""
     return [name for name in responses(runs) if name != "energy_error"]
 
 
 def finest(runs: xr.Dataset) -> dict[str, int]:
-    """Where the finest grid is, by dimension."""
+    """Return the index of the finest grid, by dimension."""
     return {dim: int(at(runs[dim].values)) for dim, at in AXES.items() if dim in runs.dims}
 
 
 def side(runs: xr.Dataset, analysis: xr.Dataset, name: str, model: str) -> Side:
-    """A response of a model against the velocity, in the order of the runs."""
+    """Return a response of one model against the velocity, in the order of the runs."""
     values = usable(runs, name).sel(beam_model=model).isel(finest(runs), missing_dims="ignore")
     found = values.values.astype(float)
     axis = "element_size" if model == SOLID else "nodes"
@@ -68,16 +68,16 @@ def side(runs: xr.Dataset, analysis: xr.Dataset, name: str, model: str) -> Side:
     return Side(found, width)
 
 
-def difference(ours: Side, witness: Side) -> Side:
-    """Ours over the witness's, minus one, with the uncertainties of both; NaN where that is 0."""
+def difference(ours: Side, solid: Side) -> Side:
+    """Return ours over that of the 3-D FE model, minus one, with both uncertainties; NaN for 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(witness.value != 0.0, ours.value / witness.value, np.nan)
-        shares = [abs(each.uncertainty / each.value) for each in (ours, witness)]
+        ratio = np.where(solid.value != 0.0, ours.value / solid.value, np.nan)
+        shares = [abs(each.uncertainty / each.value) for each in (ours, solid)]
     return Side(ratio - 1.0, np.asarray(abs(ratio) * (shares[0] + shares[1])))
 
 
 def _share(analysis: xr.Dataset, name: str, model: str, axis: str) -> Array:
-    """The relative numerical uncertainty of the finest value, NaN where it was not judged."""
+    """Return the relative numerical uncertainty of the finest value, NaN where not judged."""
     variable = f"{axis}_uncertainty"
     if variable not in analysis or not known(analysis, name):
         return np.array(np.nan)
@@ -100,7 +100,7 @@ EFFECTS = {
 
 
 def separable(runs: xr.Dataset) -> bool:
-    """Whether a grid has all three models with two yield stresses, and no other parameter."""
+    """Return whether a grid varies only the three models and two yield stresses."""
     if "beam_model" not in runs.dims or runs.sizes.get(_YIELD, 0) != 2:
         return False
     rest = set(runs.dims) - {"time", "beam_model", _YIELD, *AXES}
@@ -109,11 +109,12 @@ def separable(runs: xr.Dataset) -> bool:
 
 
 def effects(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> dict[str, Side]:
-    """By which share each effect changes a response, by the keys of EFFECTS; of shape ().
+    """Return the share by which each effect changes a response, by the keys of EFFECTS.
 
-    With E, T and S the response of Euler-Bernoulli's beam, of Timoshenko's and of the solid, and e
-    for the runs in which nothing yields: shear T/E - 1, flexibility Se/Te - 1, law
-    (S/Se)/(T/Te) - 1, all S/E - 1. One plus the last is the product of one plus each other.
+    Each is of shape (). With E, T and S the response of the Euler-Bernoulli beam, the Timoshenko
+    beam and the 3-D FE model, and e for the runs in which nothing yields: shear T/E - 1,
+    flexibility Se/Te - 1, law (S/Se)/(T/Te) - 1, all S/E - 1. One plus the last is the product of
+    one plus each other.
     """
     soft, hard = np.argsort(runs[_YIELD].values)
     both = {model: side(runs, analysis, name, model) for model in (EULER, TIMOSHENKO, SOLID)}
@@ -132,7 +133,7 @@ def _at(curve: Side, where: int) -> Side:
 
 
 def _product(over: list[Side], under: list[Side]) -> Side:
-    """Product over product, minus one, with the uncertainties of all."""
+    """Return product over product, minus one, with the uncertainties of all."""
     ratio = np.prod([each.value for each in over]) / np.prod([each.value for each in under])
     share = sum(abs(each.uncertainty / each.value) for each in (*over, *under))
     return Side(np.asarray(ratio - 1.0), np.asarray(abs(ratio) * share))

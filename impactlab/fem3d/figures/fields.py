@@ -29,7 +29,7 @@ _FLAT = 1e-6
 
 
 def faces(solid: xr.Dataset, axis: int) -> tuple[Floats, Integers]:
-    """Faces in the plane through the origin across `axis` (0, 1, 2: x, y, z).
+    """Return the faces in the plane through the origin across `axis` (0, 1, 2: x, y, z).
 
     Returns their corners in mm, (faces, 4, 2), in the other two axes, and the number of the
     element that each belongs to, (faces,).
@@ -43,7 +43,7 @@ def faces(solid: xr.Dataset, axis: int) -> tuple[Floats, Integers]:
 
 
 def _draw_faces(ax: Axes, polygons: Floats, **looks: Any) -> PolyCollection:
-    """Polygons on axes of equal scale. The limits are the caller's."""
+    """Draw polygons on axes of equal scale; the caller sets the limits."""
     drawn = PolyCollection(list(polygons), **looks)
     ax.add_collection(drawn)
     ax.set_aspect("equal")
@@ -51,7 +51,7 @@ def _draw_faces(ax: Axes, polygons: Floats, **looks: Any) -> PolyCollection:
     return drawn
 
 
-MESH_TITLE = "Mesh of the 3-D model"
+MESH_TITLE = "Mesh of the 3-D FE model"
 _COLOURS = {"beam": "#DCE9F2", "sphere": "#F7E3D4", "fully integrated": "#9CC4DD"}
 _EDGE = "0.25"
 _ENLARGED = 3.0
@@ -59,7 +59,7 @@ _ENLARGED = 3.0
 
 
 def mesh_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
-    """How many elements, how large, and which views."""
+    """Return the caption: number and size of elements, and the views."""
     size, patch = 1e3 * float(solid["element_size"]), 1e3 * float(solid["patch"])
     return (
         f"The quarter model: {int(solid['number_of_elements']):,} hexahedra, "
@@ -72,7 +72,7 @@ def mesh_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
 
 @style.paper
 def plot_mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
-    """Side view above, the contact from the side and from above below."""
+    """Draw the side view above, and the contact from the side and from above below it."""
     figure = Figure(figsize=(style.DOUBLE * style.MILLIMETRE, 125 * style.MILLIMETRE))
     figure.set_layout_engine("constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.5])
@@ -108,7 +108,7 @@ def plot_mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
 
 
 def _draw_mesh(ax: Axes, solid: xr.Dataset, axis: int, width: float) -> None:
-    """The faces in a plane: both bodies' where it cuts them, the beam's alone where they touch."""
+    """Draw the faces in a plane: of both bodies, or of the beam where they touch."""
     polygons, elements = faces(solid, axis)
     body = solid["body"].values[elements]
     colours = np.where(body == BEAM, _COLOURS["beam"], _COLOURS["sphere"])
@@ -119,7 +119,7 @@ def _draw_mesh(ax: Axes, solid: xr.Dataset, axis: int, width: float) -> None:
 
 
 def _frame(ax: Axes, solid: xr.Dataset, sides: tuple[float, float], low: float) -> None:
-    """The patch of matched nodes."""
+    """Draw the patch of matched nodes."""
     patch = 1e3 * float(solid["patch"])
     width, height = (patch * side for side in sides)
     ax.add_patch(
@@ -137,7 +137,7 @@ _REACH = 1.6
 
 
 def strain_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
-    """What is shown, how far it reaches, and what does not converge."""
+    """Return the caption: the extent of the plastic zone, and what does not converge."""
     polygons, elements = faces(solid, 1)
     plastic = _plastic(solid, elements)
     reach = (
@@ -155,7 +155,7 @@ def strain_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
 
 @style.paper
 def plot_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
-    """Colours of elements, the sphere above the beam."""
+    """Draw the elements coloured by strain, the sphere above the beam."""
     figure = Figure(figsize=(style.SINGLE * style.MILLIMETRE, 68 * style.MILLIMETRE))
     figure.set_layout_engine("constrained")
     ax = figure.add_subplot()
@@ -183,7 +183,7 @@ def _plastic(solid: xr.Dataset, elements: Integers) -> np.ndarray[tuple[int], np
 
 
 def _extent(solid: xr.Dataset, plastic: Floats) -> float:
-    """How far the plastic zone reaches in mm, up to half the beam's depth."""
+    """Return the extent of the plastic zone in mm, at most half the beam's depth."""
     if not plastic.size:
         return 0.0
     return min(float(np.abs(plastic).max()), 0.5e3 * float(solid["beam_depth"]))

@@ -18,7 +18,7 @@ from impactlab.figures import labels, scales, style
 from impactlab.figures.draw import Drawing, draw
 from impactlab.figures.labels import display
 
-_TITLE = "The 3-D model beside the beam models"
+_TITLE = "The 3-D FE model beside the beam models"
 _PANELS = {
     "contact_force": "contact force",
     "midspan_deflection": "deflection at mid-span",
@@ -28,13 +28,13 @@ _SOLID = "3-D"
 
 
 def _caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
-    """What is shown, and what the quantities are in each model."""
+    """Return the caption: the quantities, and their meaning in each model."""
     velocity = labels.number(float(solid["velocity"]))
     size = labels.number(1e3 * float(solid["element_size"]))
     law = str(beams["contact"].item())
     return (
         f"Contact force, deflection of the beam's axis at mid-span and indentation (approach of "
-        f"the sphere's centre of mass and that axis) at {velocity} m/s: of the 3-D model with "
+        f"the sphere's centre of mass and that axis) at {velocity} m/s: of the 3-D FE model with "
         f"elements of {size} mm about the contact, and of beam models with the contact law "
         f"{law}. Downwards is positive."
     )
@@ -42,7 +42,7 @@ def _caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
 
 @style.paper
 def _plot(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
-    """A panel a quantity, a curve a model; the 3-D model's is black and below the others."""
+    """Draw one panel per quantity, one curve per model; the 3-D curve is black, at the bottom."""
     figure, axes = style.panels(len(_PANELS), columns=len(_PANELS), height=55)
     for ax, (name, label) in zip(axes, _PANELS.items(), strict=True):
         _draw(ax, solid, beams, name)

@@ -1,4 +1,4 @@
-"""The beam models and their 3-D witness against velocity, and by how much they differ."""
+"""The beam models and the 3-D FE model against velocity, and their differences."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from impactlab.figures import access, labels, scales, style
 from impactlab.figures.access import usable
 from impactlab.figures.labels import display
 
-TITLE = "The beam models and the 3-D witness"
+TITLE = "The beam models and the 3-D FE model"
 _NAMES = (
     *("peak_force", "contact_duration", "maximum_deflection"),
     *("permanent_indentation", "maximum_indentation"),
@@ -26,12 +26,12 @@ _LEAST, _ROOM = 2.0, 2.0
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Whether a grid has the 3-D model beside others, and a response to draw."""
+    """Return whether a grid has the 3-D FE model beside others, and a response to draw."""
     return differences.differ(runs) and bool(_drawn(runs))
 
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """What is shown and missing."""
+    """Return the caption, with the number of missing runs."""
     return (
         "Above: each model on its finest grid. Below: its difference from the 3-D "
         "finite-element model, in parts of that; bars: the numerical uncertainty of both models "
@@ -43,7 +43,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
 
 @style.paper
 def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
-    """A column a response: the values above, the differences from the witness below."""
+    """Draw one column per response: values above, differences from the 3-D FE model below."""
     names = _drawn(runs)
     figure, axes = style.panels(2 * len(names), columns=len(names), height=52)
     for at, name in enumerate(names):
@@ -54,7 +54,7 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             scales.logarithmic(ax, "x", runs["velocity"].values)
             scales.at(ax, "x", runs["velocity"].values)
         below.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
-    axes[len(names)].set_ylabel(labels.wrapped_axis("difference from the 3-D model", "%", 24))
+    axes[len(names)].set_ylabel(labels.wrapped_axis("difference from the 3-D FE model", "%", 24))
     style.legend(
         figure,
         "Model of the beam",
@@ -64,11 +64,11 @@ def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def _drawn(runs: xr.Dataset) -> list[str]:
-    return [name for name in _NAMES if name in differences.asked(runs)][:_MOST]
+    return [name for name in _NAMES if name in differences.compared_responses(runs)][:_MOST]
 
 
 def _look(at: int) -> dict[str, Any]:
-    """The witness black, the others in the colours of all figures, each with its own marker."""
+    """Return the style: 3-D black, others as in all figures, one marker each."""
     colour = "black" if at == 0 else style.COLOURS[at - 1]
     return {"color": colour, "marker": style.MARKERS[at], "linestyle": style.LINES[at]}
 

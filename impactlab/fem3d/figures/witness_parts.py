@@ -1,4 +1,4 @@
-"""Where the paper's beam and the 3-D witness differ: force against indentation, and each effect."""
+"""Differences between the paper's beam and the 3-D FE model: force, indentation, each effect."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from impactlab.figures.access import usable
 from impactlab.figures.labels import display
 from impactlab.model.impact import SOLID
 
-TITLE = "Where the 3-D witness differs from the paper's beam"
+TITLE = "Where the 3-D FE model differs from the paper's beam"
 _HISTORIES = ("contact_force", "indentation")
-_LABELS = {differences.TIMOSHENKO: "contact law (Timoshenko beam)", SOLID: "3-D solid"}
+_LABELS = {differences.TIMOSHENKO: "contact law (Timoshenko beam)", SOLID: "3-D FE model"}
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Whether the runs are those that take the effects apart, with histories."""
+    """Return whether the runs separate the effects, and have histories."""
     return differences.separable(runs) and all(name in runs for name in _HISTORIES)
 
 
 def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """What is shown, what it says in numbers, and missing."""
+    """Return the caption, with the findings in numbers and the number of missing runs."""
     return (
         "Left: force against indentation (to mid-depth) as the contact law has it and as the 3-D "
         "solid answers, elastic and yielding. Right: by how much each effect changes the answer of "
@@ -40,7 +40,7 @@ def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
 
 @style.paper
 def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
-    """Force against indentation at the left, the effects at the right."""
+    """Draw force against indentation on the left, the effects on the right."""
     figure, (left, right) = style.panels(2, columns=2, height=72)
     _curves(left, runs)
     _effects(right, runs, analysis)
@@ -101,7 +101,7 @@ def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
 
 
 def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """The shares in words."""
+    """Return the shares as sentences."""
     sentences = []
     for name in differences.NAMES:
         found = differences.effects(runs, analysis, name)

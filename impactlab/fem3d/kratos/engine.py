@@ -26,12 +26,12 @@ class Engine:
     version: str
 
     def variable(self, name: str) -> Any:
-        """A variable of the core or of an application."""
+        """Return a variable of the core or of an application."""
         return self.core.KratosGlobals.GetVariable(name)
 
 
 def engine(threads: int) -> Engine:
-    """Kratos on `threads` threads, silent but for warnings.
+    """Return Kratos on `threads` threads, silent except for warnings.
 
     Raises KratosMissingError, which says what to install.
     """
@@ -70,7 +70,7 @@ _MODULE = "KratosMultiphysics.ContactStructuralMechanicsApplication"
 
 
 def settings(duration: float, time_step: float, penalty: float) -> str:
-    """Project parameters in Kratos' JSON; s, s and N/m3."""
+    """Return project parameters in Kratos' JSON; arguments in s, s and N/m3."""
     return json.dumps(
         {
             "problem_data": {
@@ -117,7 +117,7 @@ def _solver(time_step: float) -> dict[str, Any]:
 
 
 def _contact(penalty: float) -> dict[str, Any]:
-    """The process that looks for what touches; penalty in N/mm3."""
+    """Return the process that searches for contact; penalty in N/mm3."""
     return {
         "python_module": "penalty_contact_process",
         "kratos_module": _MODULE,

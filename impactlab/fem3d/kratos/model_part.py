@@ -43,7 +43,7 @@ def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
 
 
 def hold(engine: Engine, part: Any, mesh: Mesh) -> None:
-    """Symmetry planes and supports."""
+    """Fix the nodes in the planes of symmetry and on the supports."""
     held = {"X": mesh.symmetry_x, "Y": mesh.symmetry_y, "Z": mesh.support}
     for axis, nodes in held.items():
         variable = engine.variable(f"DISPLACEMENT_{axis}")
@@ -52,7 +52,7 @@ def hold(engine: Engine, part: Any, mesh: Mesh) -> None:
 
 
 def launch(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
-    """The sphere's velocity, now and in the step before, and gravity, which acts on it alone."""
+    """Set the sphere's velocity, now and in the step before, and gravity, for it alone."""
     given = {"VELOCITY_Z": impact.velocity, "VOLUME_ACCELERATION_Z": impact.gravity}
     for node in (np.unique(mesh.elements[mesh.body == SPHERE]) + 1).tolist():
         for name, value in given.items():
@@ -61,7 +61,7 @@ def launch(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
 
 
 def _steel(engine: Engine, part: Any, number: int, material: Material, density: float) -> Any:
-    """Kratos' properties of a material; density in kg/m3."""
+    """Return Kratos' properties of a material; density in kg/m3."""
     if material.kinematic_hardening_modulus > 0.0:
         raise ValueError(
             f"kinematic_hardening_modulus = {material.kinematic_hardening_modulus!r}: {LAW} of "
@@ -86,13 +86,13 @@ def _steel(engine: Engine, part: Any, number: int, material: Material, density: 
 
 
 def _sphere_density(mesh: Mesh, impact: Impact) -> float:
-    """kg/m3 that give the meshed sphere the impact's mass."""
+    """Return the density in kg/m3 that gives the meshed sphere the mass of the impact."""
     quarter = float(element_volumes(mesh)[mesh.body == SPHERE].sum())
     return impact.sphere.total_mass / (4.0 * quarter)
 
 
 def _quads(patch: Integers) -> Integers:
-    """Faces (f, 4) of a square patch of nodes, counted with y fastest; normals upwards."""
+    """Return the faces (f, 4) of a square patch of nodes, y fastest; normals point upwards."""
     side = round(np.sqrt(patch.size))
     place = patch.reshape(side, side)
     corners = (place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:])
@@ -110,7 +110,7 @@ _TOUCHING = "ComputingContact"
 
 
 def vectors(engine: Engine, part: Any, name: str) -> Floats:
-    """A vector at every node, (n, 3), from mm to m."""
+    """Return a vector at every node, (n, 3), converted from mm to m."""
     values = engine.core.VariableUtils().GetSolutionStepValuesVector(
         part.Nodes, engine.variable(name), 0, 3
     )
@@ -118,7 +118,7 @@ def vectors(engine: Engine, part: Any, name: str) -> Floats:
 
 
 def contact_force(engine: Engine, part: Any) -> float:
-    """Force of the whole beam on the whole sphere in N, upwards: four quarters.
+    """Return the force of the whole beam on the whole sphere in N, upwards: four quarters.
 
     Of each pair of faces in contact, what its condition puts on the beam's four nodes, which come
     first in it, the other way round.
@@ -132,7 +132,7 @@ def contact_force(engine: Engine, part: Any) -> float:
 
 
 def plastic_strains(engine: Engine, part: Any) -> Floats:
-    """PEEQ at each element's integration points, (e, 8)."""
+    """Return PEEQ at each element's integration points, (e, 8)."""
     name = engine.variable("ACCUMULATED_PLASTIC_STRAIN")
     info = part.ProcessInfo
     return np.array([each.CalculateOnIntegrationPoints(name, info) for each in part.Elements])

@@ -37,14 +37,14 @@ class Moment(NamedTuple):
 
 @dataclass
 class History:
-    """moments: one a step and one before. stopped: why before its time, else ""."""
+    """moments: one per step and one before. stopped: why before its time, else ""."""
 
     moments: list[Moment] = field(default_factory=list)
     stopped: str = ""
     cpu_seconds: float = 0.0
 
     def table(self) -> Floats:
-        """The moments, (8, steps + 1)."""
+        """Return the moments, (8, steps + 1)."""
         return np.array(self.moments).T
 
 
@@ -74,8 +74,8 @@ class Run:
         model = engine.core.Model()
         self.part = model.CreateModelPart(PART)
         self.part.ProcessInfo[engine.variable("DOMAIN_SIZE")] = 3
-        told = engine.core.Parameters(settings(duration, time_step, penalty))
-        self._analysis = engine.analysis(model, told)
+        parameters = engine.core.Parameters(settings(duration, time_step, penalty))
+        self._analysis = engine.analysis(model, parameters)
         fill(engine, self.part, mesh, impact)
         self._analysis.Initialize()
         hold(engine, self.part, mesh)
@@ -99,7 +99,7 @@ class Run:
         return self.history
 
     def _take(self) -> None:
-        """One step, or as much of it as converges: what is left falls to the steps that follow."""
+        """Take one step, or as much of it as converges; the following steps take the rest."""
         analysis, before = self._analysis, self._analysis.time
         analysis.time = analysis._GetSolver().AdvanceInTime(before)
         for _ in range(1 + _HALVINGS):
@@ -113,7 +113,7 @@ class Run:
         self.history.stopped = f"Newton's iterations did not converge after {before:.4g} s"
 
     def _begin_again(self) -> None:
-        """Back to where the step began, to end at the analysis' time."""
+        """Go back to where the step began, to end at the analysis' time."""
         part = self.part
         part.OverwriteSolutionStepData(1, 0)
         part.ReduceTimeStep(part, self._analysis.time)
@@ -121,7 +121,7 @@ class Run:
         self.engine.core.VariableUtils().UpdateCurrentPosition(part.Nodes, displacement)
 
     def _balanced(self) -> bool:
-        """Whether forces balance, though Kratos' set of touching nodes does not settle.
+        """Return whether forces balance although Kratos' set of touching nodes does not settle.
 
         A node that barely touches may change sides with each iteration, and no force with it.
         """
@@ -156,7 +156,7 @@ class Run:
 
 
 def _shares(mesh: Mesh, impact: Impact) -> Floats:
-    """Each node's share of the sphere's mass, (n,): 0 in the beam."""
+    """Return each node's share of the sphere's mass, (n,): 0 in the beam."""
     mass = nodal_masses(mesh, impact)
     mass[np.setdiff1d(np.arange(mass.size), mesh.elements[mesh.body == SPHERE])] = 0.0
     return np.asarray(mass / mass.sum())

@@ -66,7 +66,7 @@ def solve_on(
     threads: they pay on an idle machine only. progress: called after each step with the simulated
     time (s) and the share done.
 
-    Returns a Dataset with the names of impactlab.fem3d: histories on `time` (one a step),
+    Returns a Dataset with the names of impactlab.fem3d: histories on `time` (one per step),
     responses (NaN where the run ends before they do), and plastic strains on `element`;
     `iterations` are Newton's. A run that was interrupted by Ctrl-C, or in which a step did not
     converge, gives what it has computed until then, and the attribute `stopped` says why.
@@ -97,7 +97,7 @@ _OWN = {
 
 
 def to_dataset(run: Run, impact: Impact, time_step: float, penalty: float) -> xr.Dataset:
-    """All that a run answers, as described in solve_on."""
+    """Return all answers of a run, as described in solve_on."""
     strain = plastic_strains(run.engine, run.part)
     largest = strain.max(axis=1)
     answers = _responses(run.history.table(), time_step)
@@ -126,7 +126,7 @@ def to_dataset(run: Run, impact: Impact, time_step: float, penalty: float) -> xr
 
 
 def _responses(table: Floats, time_step: float) -> dict[str, float]:
-    """Answers by the names of dataset.RESPONSES, NaN where the run ends before they do.
+    """Return responses by name, NaN where the run ends before they are known.
 
     A contact that pauses for less than two steps is one.
     """
@@ -164,7 +164,7 @@ def _histories(table: Floats) -> dict[str, Any]:
 
 
 def _named(dataset: xr.Dataset) -> xr.Dataset:
-    """With attributes on everything."""
+    """Return the dataset with attributes on all variables."""
     dataset = described(dataset)
     for name, (units, long_name) in _OWN.items():
         dataset[name].attrs |= {"units": units, "long_name": long_name}

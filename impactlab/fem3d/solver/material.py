@@ -24,14 +24,14 @@ Metal = tuple[float, float, float, float, float, float, float]
 
 @inlined
 def mises(s: Six) -> float:
-    """sqrt(3/2 s:s) of a deviator."""
+    """Return sqrt(3/2 s:s) of a deviator."""
     shear = s[3] * s[3] + s[4] * s[4] + s[5] * s[5]
     return math.sqrt(1.5 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * shear))
 
 
 @inlined
 def radial_return(trial: Six, a: Six, p: float, metal: Metal) -> tuple[Six, Six, float, float]:
-    """s, a, dp and the xx component of the plastic strain's increment, from an elastic trial s."""
+    """Return s, a, dp and the plastic strain increment's xx component, from an elastic trial s."""
     _, _, G, _, sigma_y, H_i, H_k = metal
     xi = less(trial, 1.0, a)
     q = mises(xi)
@@ -42,7 +42,7 @@ def radial_return(trial: Six, a: Six, p: float, metal: Metal) -> tuple[Six, Six,
 
 @inlined
 def less(a: Six, factor: float, b: Six) -> Six:
-    """a - factor b."""
+    """Return a - factor b."""
     return (
         a[0] - factor * b[0],
         a[1] - factor * b[1],
@@ -55,7 +55,7 @@ def less(a: Six, factor: float, b: Six) -> Six:
 
 @inlined
 def deviatoric_rate(L: Tensor) -> Six:
-    """Deviator of the strain rate, in 1/s."""
+    """Return the deviator of the strain rate, in 1/s."""
     third = (L[0][0] + L[1][1] + L[2][2]) / 3.0
     return (
         L[0][0] - third,
@@ -69,21 +69,21 @@ def deviatoric_rate(L: Tensor) -> Six:
 
 @inlined
 def spin(L: Tensor, dt: float) -> Vector:
-    """Angles in rad by which the material turns about x, y and z in a step."""
+    """Return the angles in rad by which the material turns about x, y and z in a step."""
     half = 0.5 * dt
     return (half * (L[2][1] - L[1][2]), half * (L[0][2] - L[2][0]), half * (L[1][0] - L[0][1]))
 
 
 @inlined
 def turned(s: Six, r: Vector) -> Six:
-    """The tensor turned by small angles, to second order (Jaumann's rate)."""
+    """Return the tensor turned by small angles, to second order (Jaumann's rate)."""
     first = _rate(s, r)
     return less(less(s, -1.0, first), -0.5, _rate(first, r))
 
 
 @inlined
 def _rate(s: Six, r: Vector) -> Six:
-    """W s - s W, W a = r x a."""
+    """Return W s - s W, where W a = r x a."""
     return (
         2.0 * (r[1] * s[4] - r[2] * s[5]),
         2.0 * (r[2] * s[5] - r[0] * s[3]),
@@ -104,7 +104,7 @@ POINT_ROWS = 14
 def advance(
     state: Array, row: int, lane: int, L: Tensor, dt: float, metal: Metal
 ) -> tuple[Six, float, float]:
-    """The deviator (Pa) at the step's end; the work on it and what of it is dissipated, in J/m3.
+    """Return the deviator (Pa) at the step's end, the work on it and the dissipated part, in J/m3.
 
     L: dv/dx at the middle of the step, in 1/s. row: the point's first in `state`, which is updated.
     """

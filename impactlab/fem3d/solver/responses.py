@@ -17,9 +17,9 @@ _IMBALANCE = 0.05
 
 
 def responses(history: History, impact: Impact, pause: float) -> tuple[dict[str, float], int]:
-    """Answers by the names of dataset.RESPONSES, NaN where there is none, and their status.
+    """Return the responses of the histories by name, NaN where missing, and their status.
 
-    pause: see contacts.contacts. Those of the fields are in fields.py.
+    pause: see contacts. Those of the fields are in plastic_responses.
     """
     time, force, sphere, pole, axis, top, velocity = history.table()
     touches = contacts(time, force, pause)
@@ -50,7 +50,7 @@ _CAUSES = {
 
 
 def energy_error(energies: list[Energies], impact: Impact) -> float:
-    """Largest imbalance of energy over the initial kinetic energy; NaN where it is not finite."""
+    """Return the largest energy imbalance over the initial kinetic energy; NaN if not finite."""
     first = 0.5 * impact.sphere.total_mass * impact.velocity**2
     balances = np.array([entry.balance for entry in energies] or [np.nan])
     error = float(np.max(np.abs(balances - first)) / first)
@@ -72,7 +72,7 @@ def _of_contact(time: Floats, force: Floats, touches: Floats) -> dict[str, float
 
 
 def _impulse(time: Floats, force: Floats) -> float:
-    """N s: each force acts from the middle of the step before to that of the step after."""
+    """Return the impulse in N s: each force acts from mid-step to mid-step."""
     middles = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])
     return float(np.sum(force * np.diff(middles)))
 
@@ -90,7 +90,7 @@ def _of_deflection(time: Floats, axis: Floats) -> dict[str, float]:
 def _of_rebound(
     touches: Floats, time: Floats, velocity: Floats, axis: Floats, impact: Impact
 ) -> dict[str, float]:
-    """Once the sphere moves upwards and away from the beam."""
+    """Return the responses of the rebound, once the sphere moves upwards and away from the beam."""
     missing = {"rebound_velocity": np.nan, "restitution": np.nan}
     if len(touches) == 0 or np.isnan(touches[-1, 1]) or velocity[-1] >= 0.0:
         return missing
@@ -101,7 +101,7 @@ def _of_rebound(
 
 
 def _left(touches: Floats, time: Floats, dent: Floats) -> float:
-    """Mean of the surfaces' dents in m since the last contact: vibrations cancel."""
+    """Return the mean of the surfaces' dents in m since the last contact: vibrations cancel."""
     if len(touches) == 0 or np.isnan(touches[-1, 1]):
         return float(np.nan)
     return float(np.mean(dent[time > touches[-1, 1]]))
@@ -127,7 +127,7 @@ def contacts(time: Floats, force: Floats, pause: float) -> Floats:
 
 
 def _end(time: Floats, force: Floats, last: int) -> float:
-    """Where the force after step `last` reaches zero, within the step."""
+    """Return when the force after step `last` reaches zero, within the step."""
     step = float(time[last] - time[last - 1]) if last else 0.0
     fall = float(force[last - 1] - force[last]) if last else 0.0
     share = float(force[last]) / fall if fall > 0.0 else 1.0
@@ -135,7 +135,7 @@ def _end(time: Floats, force: Floats, last: int) -> float:
 
 
 def peak(time: Floats, values: Floats) -> tuple[float, float]:
-    """Time and size of the largest value, on the parabola through it and its neighbours."""
+    """Return time and size of the largest value, on the parabola through it and its neighbours."""
     at = int(np.argmax(values))
     if at in (0, values.size - 1):
         return float(time[at]), float(values[at])
@@ -152,7 +152,7 @@ PLASTIC_ZONE_STRAIN = 1e-5
 
 
 def fields(groups: list[Group], count: int) -> dict[str, Floats]:
-    """Of each element, (count,): means over its integration points, and the largest PEEQ.
+    """Return fields per element, (count,): means over its integration points, and the largest PEEQ.
 
     equivalent_plastic_strain, largest_equivalent_plastic_strain, plastic_strain (along the beam):
     1. von_mises_stress: Pa.
@@ -169,14 +169,14 @@ def fields(groups: list[Group], count: int) -> dict[str, Floats]:
 
 
 def _mises(group: Group) -> Floats:
-    """Von Mises stress in Pa, mean over the integration points."""
+    """Return the von Mises stress in Pa, mean over the integration points."""
     s = np.stack([group.points(STRESS + row) for row in range(6)])
     squares = np.sum(s[:3] ** 2, axis=0) + 2.0 * np.sum(s[3:] ** 2, axis=0)
     return np.asarray(np.sqrt(1.5 * squares).mean(axis=0))
 
 
 def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, float]:
-    """Answers about the beam's PEEQ, by the names of dataset.RESPONSES.
+    """Return the responses of the beam's PEEQ by name.
 
     strain: each element's largest. And sphere_plastic_strain, and one_point_plastic_strain: where
     bending is not integrated over an element.
@@ -195,7 +195,7 @@ def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, f
 
 
 def _length(along: Floats) -> float:
-    """Length in m of whole beam that elements with these x of their nodes (e, 8) take up."""
+    """Return the length in m of whole beam that elements occupy. along: x of nodes, (e, 8)."""
     cuts = np.unique(np.round(np.stack([along.min(axis=1), along.max(axis=1)], axis=1), 12), axis=0)
     return float(2.0 * np.sum(cuts[:, 1] - cuts[:, 0]))
 
@@ -205,7 +205,7 @@ LIMIT = 0.002
 
 
 def surface_reach(run: xr.Dataset, limit: float = LIMIT) -> float:
-    """Distance in m from the centre of the impact, along the beam, to where PEEQ falls to `limit`.
+    """Return the distance in m along the beam from the impact's centre to where PEEQ is `limit`.
 
     run: as solve gives it. On the struck surface at mid-width, in the shape before the impact: the
     outermost place where the line through the means of the top elements comes down to the limit; 0

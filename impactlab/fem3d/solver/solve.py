@@ -54,15 +54,15 @@ def solve_on(
     """Solve one impact on `mesh`; contact law and model of the beam in `impact` play no part.
 
     duration: simulated time in s. samples: length of `time`, equally spaced. threads: the answers
-    are the same to the last bit for any number. progress: called a hundred times a run with the
+    are the same to the last bit for any number. progress: called a hundred times per run with the
     simulated time (s) and the share done.
 
-    Returns a Dataset with the histories and responses of impactlab.variables that a 3-D model has
-    (`status` says why one is NaN), energies on `checkpoint`, plastic strains and von Mises stress
-    on `element`, displacements on `node`, and the mesh as coordinates. A run interrupted by
-    Ctrl-C, or stopped because it diverged, its elements were squeezed flat, or the contact left the
-    patch of matched nodes, gives what it has computed until then, and the attribute `stopped` says
-    why; `patch_needed` is the patch to take, in m.
+    Returns a Dataset with the histories and responses of impactlab.variables that a 3-D FE model
+    has (`status` says why one is NaN), energies on `checkpoint`, plastic strains and von Mises
+    stress on `element`, displacements on `node`, and the mesh as coordinates. A run that was
+    interrupted by Ctrl-C, diverged, or stopped because elements were squeezed flat or the contact
+    left the patch of matched nodes, returns what it has computed until then, and the attribute
+    `stopped` gives the reason; `patch_needed` is the patch to take, in m.
 
     Raises ValueError when a number is not valid or the duration below a time step.
     """
@@ -114,11 +114,11 @@ _ENERGIES = (
     *("kinetic_energy", "strain_work", "plastic_work"),
     *("hourglass_work", "contact_loss", "gravity_work"),
 )
-"""In the order of stepping.history.Energies."""
+"""In the order of stepping.march.Energies."""
 
 
 def to_dataset(system: System, impact: Impact, history: History, samples: int) -> xr.Dataset:
-    """All that a run answers, as described in solve."""
+    """Return all answers of a run, as described in solve_on."""
     mesh = system.mesh
     own = fields(system.groups, len(mesh.elements))
     answers, status = responses(history, impact, _pause(mesh, impact))
@@ -143,7 +143,7 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
 
 
 def _pause(mesh: Mesh, impact: Impact) -> float:
-    """Seconds in which a wave crosses the patch twice there and back."""
+    """Return the time in s in which a wave crosses the patch twice there and back."""
     steel = impact.beam.material
     return 4.0 * mesh.patch / float(np.sqrt(steel.youngs_modulus / steel.density))
 
@@ -168,7 +168,7 @@ def _energies(energies: list[Energies]) -> dict[str, Any]:
 
 
 def _coordinates(mesh: Mesh, impact: Impact, history: History, samples: int) -> dict[str, Any]:
-    """What was solved, the times, and the mesh."""
+    """Return the parameters, the times, and the mesh."""
     last = history.moments[-1].time
     return _given(impact) | {
         "time": np.linspace(0.0, last, samples),
@@ -188,14 +188,14 @@ def _coordinates(mesh: Mesh, impact: Impact, history: History, samples: int) -> 
 
 
 def _given(impact: Impact) -> dict[str, Any]:
-    """The impact's parameters but for those of the beam models alone."""
+    """Return the impact's parameters, without those of the beam models alone."""
     values = flatten(impact, Discretisation()) | {"sphere_mass": impact.sphere.total_mass}
     mine = [name for name in values if PARAMETERS[name].path[0] == "impact"]
     return {name: values[name] for name in mine if name not in _BEAM_MODELS_ONLY}
 
 
 def _named(dataset: xr.Dataset) -> xr.Dataset:
-    """With attributes on everything."""
+    """Return the dataset with attributes on all variables."""
     dataset = described(dataset)
     for name, (units, long_name) in _OWN.items():
         if name in dataset.variables:

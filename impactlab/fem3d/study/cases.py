@@ -37,7 +37,7 @@ _BEAM_MODELS_ONLY = (
     *("contact", "shear_coefficient"),
     *("nodes", "points", "rule", "scheme", "courant"),
 )
-"""Fields that the 3-D model does not know."""
+"""Fields that the 3-D FE model does not know."""
 
 
 def table(
@@ -48,10 +48,10 @@ def table(
     varied: Mapping[str, Any],
     first_run: int = 0,
 ) -> Array:
-    """One record a run, each run checked; arguments as those of simulate.case_table.
+    """Return one record per run, each run checked; arguments as those of simulate.case_table.
 
     Raises ValueError naming the run and its field when the model refuses a value, or a run of the
-    3-D model has neither element_size nor elements_per_radius.
+    3-D FE model has neither element_size nor elements_per_radius.
     """
     models = np.asarray(varied.get("beam_model", [impact.beam_model]))
     plain = dict(varied)
@@ -75,7 +75,7 @@ def table(
 def _sizes(
     discretisation: Discretisation, varied: Mapping[str, Any], cases: Array, solid: Array
 ) -> Array:
-    """Of the elements of each run of the 3-D model, in m."""
+    """Return the element size in m of each run of the 3-D FE model."""
 
     def given(name: str) -> Array | None:
         values = varied.get(name, [getattr(discretisation, name)])
@@ -91,12 +91,12 @@ def _sizes(
 
 
 def is_solid(cases: Array) -> Array:
-    """Which are of the 3-D model, (cases,)."""
+    """Return which cases are of the 3-D FE model, (cases,)."""
     return np.asarray(cases["beam_model"] == SOLID_MODEL)
 
 
 def kernel_cases(cases: Array) -> Array:
-    """The cases of the models of the beam as the kernels take them."""
+    """Return the cases of the beam models as the kernels take them."""
     beams = cases[~is_solid(cases)]
     found = np.zeros(beams.size, dtype=CASE)
     for name in CASE.names or ():
@@ -105,7 +105,7 @@ def kernel_cases(cases: Array) -> Array:
 
 
 def impact_of(case: Any) -> Impact:
-    """The impact of a record of the 3-D model."""
+    """Return the impact of a record of the 3-D FE model."""
     values = {name: case[name].item() for name in _IMPACT}
     return with_values(paper_impact(), Discretisation(), values | {"beam_model": SOLID})[0]
 
@@ -122,7 +122,7 @@ _LONG = 3600.0
 
 
 def work(cases: Array) -> Array:
-    """Estimated time of each run, in node-steps; of a run that is listed again, nothing."""
+    """Return the estimated time of each run in node-steps; 0 for a run that is listed again."""
     found = np.zeros(cases.size)
     solid = is_solid(cases)
     found[~solid] = cost.work(kernel_cases(cases))
@@ -135,7 +135,7 @@ def work(cases: Array) -> Array:
 
 
 def memory(cases: Array) -> Array:
-    """Estimated bytes that each run takes."""
+    """Return the estimated memory of each run in bytes."""
     found = np.zeros(cases.size)
     solid = is_solid(cases)
     found[~solid] = cost.memory(kernel_cases(cases))
@@ -144,7 +144,7 @@ def memory(cases: Array) -> Array:
 
 
 def of_solid(case: Any) -> Cost:
-    """Elements, steps, seconds and bytes of one 3-D run; nothing where no mesh fits.
+    """Return elements, steps, seconds and bytes of one 3-D run; zeros where no mesh fits.
 
     Of one that is long or large, what it takes at the least: its mesh may not fit memory.
     """

@@ -1,4 +1,4 @@
-"""The beam models beside the 3-D witness as tables: a response each, model by model."""
+"""Report sections: the beam models beside the 3-D FE model, one table per response."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ _LEAD = (
 _NOTHING = 1e-8
 """Uncertainty over the value that is round-off's."""
 _PARTS = (
-    "The answer of the paper's beam is turned into that of the solid one effect after the other: "
-    "(1 + shear)(1 + elasticity)(1 + law) = 1 + all."
+    "The answer of the paper's beam is turned into that of the 3-D FE model one effect after the "
+    "other: (1 + shear)(1 + elasticity)(1 + law) = 1 + all."
 )
 
 
 def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
-    """What a study with 3-D runs shows; none where there are none beside others."""
+    """Return the sections of a study with 3-D runs beside others, else none."""
     found = []
     if differences.differ(runs):
-        tables = [_table(runs, analysis, name) for name in differences.asked(runs)]
+        tables = [_table(runs, analysis, name) for name in differences.compared_responses(runs)]
         title = "Model by model"
         found.append(Section("witness", title, _LEAD, tables=tables, figures=["witness"]))
     if differences.separable(runs):
@@ -39,7 +39,7 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
 
 
 def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
-    """A row a velocity, a column a model, the witness first."""
+    """Return one row per velocity and one column per model, the 3-D FE model first."""
     models = differences.models(runs)
     values = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
     unit = display(values)
@@ -67,12 +67,12 @@ def _cell(
         text = f"{text} ± {bound}"
     gap = float(differences.difference(side, against).value[at])
     shown = alike and side is not against and np.isfinite(gap)
-    detail = f"{_signed(gap)} against the solid" if shown else ""
+    detail = f"{_signed(gap)} against the 3-D FE model" if shown else ""
     return Cell(text, "number", detail)
 
 
 def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
-    """A row an effect, a column a response."""
+    """Return one row per effect and one column per response."""
     found = {name: differences.effects(runs, analysis, name) for name in differences.NAMES}
     rows = [
         [Cell(labels.sentence(text)), *(_share(found[name][key]) for name in differences.NAMES)]

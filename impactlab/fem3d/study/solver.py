@@ -34,7 +34,7 @@ _STEPS = 10_001
 
 
 def solve_one(case: Any, samples: int) -> dict[str, Any]:
-    """Responses, `status`, `remarks` and histories (samples,) of a record of SOLID_CASE by name.
+    """Return responses, `status`, `remarks` and histories (samples,) of a record by name.
 
     A patch that the contact outgrows is enlarged until there is no room for more. What the 3-D
     model does not know is NaN; so is all of a run that stopped before its time, and `status` says
@@ -71,7 +71,7 @@ def _solved(impact: Impact, size: float, duration: float) -> xr.Dataset:
 
 
 def _histories(run: xr.Dataset, duration: float, samples: int) -> dict[str, Any]:
-    """On the times of the study, of which the last may lie within a step of the run's end."""
+    """Return histories on the study's times; the last may lie within a step of the run's end."""
     if not samples:
         return {}
     times = np.linspace(0.0, duration, samples)
@@ -85,21 +85,21 @@ def _histories(run: xr.Dataset, duration: float, samples: int) -> dict[str, Any]
 Array = np.ndarray[Any, Any]
 
 VERSION = hashlib.sha256(f"{SOURCES_HASH} {SOLID_HASH}".encode()).hexdigest()
-"""Of the kernels and of the 3-D model."""
+"""Of the kernels and of the 3-D FE model."""
 
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:
-    """As of the models of the beam, and what the 3-D model alone tells."""
+    """Return the columns of the beam models, and those of the 3-D FE model alone."""
     return (*impact.columns(design), *WITNESS)
 
 
 def failures(design: xr.Dataset) -> int:
-    """As of the models of the beam."""
+    """Return the failure bits of the beam models."""
     return impact.failures(design)
 
 
 def cases(design: xr.Dataset, runs: Array) -> Array:
-    """The table of fem3d.study.cases of these runs.
+    """Return the table of fem3d.study.cases of these runs.
 
     Raises ValueError naming the run when the model refuses a value.
     """
@@ -109,17 +109,17 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
 
 
 def cost(cases: Array) -> Array:
-    """Node-steps of the paper's beam, to which seconds of the 3-D model are made equal."""
+    """Return the cost in node-steps of the paper's beam, converted from seconds for 3-D runs."""
     return work(cases)
 
 
 def values(cases: Array, form: OutputSpec) -> int:
-    """As of the models of the beam."""
+    """Return the number of values of the beam models."""
     return impact.values(cases, form)
 
 
 def solve(cases: Array, form: OutputSpec) -> Columns:
-    """The kernels' answers and those of the 3-D model, in the order of the cases."""
+    """Return the answers of the kernels and of the 3-D FE model, in the order of the cases."""
     solid = is_solid(cases)
     found = solve_cases(kernel_cases(cases), samples=form.samples).columns()
     columns = {name: _spread(values, ~solid) for name, values in found.items()}
@@ -131,14 +131,14 @@ def solve(cases: Array, form: OutputSpec) -> Columns:
 
 
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
-    """The answers of a design's runs, in its order, under its labels and with provenance."""
+    """Return the answers of a design's runs, in its order, with labels and provenance."""
     dims, shape = run_shape(design)
     own = {name: (dims, answers[name].reshape(shape)) for name in WITNESS}
     return described(impact.labelled(design, answers).assign(own))
 
 
 def _spread(values: Array, where: Array) -> Array:
-    """Rows of (cases, ...): those given where `where` holds, else NaN (0 of whole numbers)."""
+    """Return rows of (cases, ...): those given where `where` holds, else NaN (0 for integers)."""
     missing = np.nan if values.dtype.kind == "f" else 0
     rows = np.full((where.size, *values.shape[1:]), missing, dtype=values.dtype)
     rows[where] = values

@@ -62,7 +62,7 @@ def full_forces(
     forces: Array,
     s: Array,
 ) -> None:
-    """As one_point_forces."""
+    """Do the same as one_point_forces, with eight points."""
     for block in range(blocks[0], blocks[1]):
         gather(s, nodes[block], x, v)
         held = state[block]
@@ -81,7 +81,7 @@ def full_forces(
 
 @inlined
 def _begin(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None:
-    """Modes of the motion into `s`; the mean stress, its work, and its forces."""
+    """Store the modes of the motion in `s`; update the mean stress, its work and its forces."""
     c, w = shape(s, X, lane), shape(s, V, lane)
     _store(s, _C, lane, c)
     _store(s, _W, lane, w)
@@ -110,7 +110,7 @@ def _begin(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None:
 def _point(
     s: Array, state: Array, row: int, lane: int, at: Vector, dt: float, metal: Metal
 ) -> None:
-    """An integration point's deviator, its work, and its share of the modes' forces."""
+    """Update an integration point's deviator and its work; add its share to the modes' forces."""
     r, v = _slopes(_load(s, _C, lane), at), _slopes(_load(s, _W, lane), at)
     C1, C2, C3 = cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1])
     size = dot(r[0], C1)
@@ -131,7 +131,7 @@ def _point(
 
 @inlined
 def _slopes(c: Shape, at: Vector) -> Tensor:
-    """Derivatives by xi, eta and zeta, at a point."""
+    """Return derivatives by xi, eta and zeta, at a point."""
     xi, eta, zeta = at
     c1, c2, c3, g1, g2, g3, g4 = c
     return (
@@ -143,7 +143,7 @@ def _slopes(c: Shape, at: Vector) -> Tensor:
 
 @inlined
 def _velocity_gradient(v: Tensor, C: Tensor, share: float) -> Tensor:
-    """dv_i/dx_j by rows, from derivatives of v by xi, eta, zeta and the cofactors of dx/dxi."""
+    """Return dv_i/dx_j by rows, from dv/dxi and the cofactors of dx/dxi."""
     return (
         times(share, combine(C, (v[0][0], v[1][0], v[2][0]))),
         times(share, combine(C, (v[0][1], v[1][1], v[2][1]))),
@@ -153,7 +153,7 @@ def _velocity_gradient(v: Tensor, C: Tensor, share: float) -> Tensor:
 
 @inlined
 def _add(s: Array, lane: int, at: Vector, t1: Vector, t2: Vector, t3: Vector) -> None:
-    """Forces that work on derivatives by xi, eta and zeta, added to the modes'."""
+    """Add forces that work on derivatives by xi, eta and zeta to those of the modes."""
     xi, eta, zeta = at
     f1, f2, f3, f4, f5, f6, f7 = _load(s, _T, lane)
     forces = (
@@ -170,7 +170,7 @@ def _add(s: Array, lane: int, at: Vector, t1: Vector, t2: Vector, t3: Vector) ->
 
 @inlined
 def _load(s: Array, row: int, lane: int) -> Shape:
-    """Seven vectors of rows row, row + 1, ..."""
+    """Return seven vectors, of rows row, row + 1, ..."""
     at = row * W + lane
     return (
         _vector(s, at),

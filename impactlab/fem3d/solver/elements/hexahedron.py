@@ -36,7 +36,7 @@ SCRATCH = 48 + 24 + 63
 
 @inlined
 def gather(s: Array, nodes: Array, x: Array, v: Array) -> None:
-    """Positions and velocities of a block's nodes (nodes: (8 W,)) into its lanes."""
+    """Copy positions and velocities of a block's nodes (nodes: (8 W,)) into its lanes."""
     for corner in range(8):
         for lane in range(W):
             node = nodes[corner * W + lane]
@@ -47,7 +47,7 @@ def gather(s: Array, nodes: Array, x: Array, v: Array) -> None:
 
 @inlined
 def scatter(s: Array, rows: Array, forces: Array) -> None:
-    """A block's nodal forces, added to its rows (8 W,) of forces (., 3)."""
+    """Add a block's nodal forces to its rows (8 W,) of forces (., 3)."""
     for corner in range(8):
         for lane in range(W):
             row = rows[corner * W + lane]
@@ -61,43 +61,43 @@ Tensor = tuple[Vector, Vector, Vector]
 
 @inlined
 def cross(a: Vector, b: Vector) -> Vector:
-    """Vector product."""
+    """Return the vector product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @inlined
 def dot(a: Vector, b: Vector) -> float:
-    """Scalar product."""
+    """Return the scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @inlined
 def add(a: Vector, b: Vector) -> Vector:
-    """Sum."""
+    """Return the sum."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 @inlined
 def times(factor: float, a: Vector) -> Vector:
-    """Product with a number."""
+    """Return the product with a number."""
     return (factor * a[0], factor * a[1], factor * a[2])
 
 
 @inlined
 def plus(a: Vector, factor: float, b: Vector) -> Vector:
-    """a + factor b."""
+    """Return a + factor b."""
     return (a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2])
 
 
 @inlined
 def apply(S: Tensor, a: Vector) -> Vector:
-    """S a, S by rows."""
+    """Return S a, S by rows."""
     return (dot(S[0], a), dot(S[1], a), dot(S[2], a))
 
 
 @inlined
 def combine(e: Tensor, q: Vector) -> Vector:
-    """q_1 e_1 + q_2 e_2 + q_3 e_3."""
+    """Return q_1 e_1 + q_2 e_2 + q_3 e_3."""
     return plus(plus(times(q[0], e[0]), q[1], e[1]), q[2], e[2])
 
 
@@ -107,7 +107,7 @@ Shape = tuple[Vector, Vector, Vector, Vector, Vector, Vector, Vector]
 
 @inlined
 def modes(s: Array, row: int, lane: int) -> Modes:
-    """c_1, c_2, c_3, g_1, g_2, g_3, g_4 of the values in rows row, row + 3, ... row + 21."""
+    """Return c_1, c_2, c_3, g_1, g_2, g_3, g_4 of the values in rows row, row + 3, ... row + 21."""
     at = row * W + lane
     a0, a1, a2, a3 = s[at], s[at + 3 * W], s[at + 6 * W], s[at + 9 * W]
     a4, a5, a6, a7 = s[at + 12 * W], s[at + 15 * W], s[at + 18 * W], s[at + 21 * W]
@@ -126,7 +126,7 @@ def modes(s: Array, row: int, lane: int) -> Modes:
 
 @inlined
 def shape(s: Array, row: int, lane: int) -> Shape:
-    """The modes of a vector's three components, whose rows alternate from `row` on."""
+    """Return the modes of a vector's three components, whose rows alternate from `row` on."""
     x, y, z = modes(s, row, lane), modes(s, row + 1, lane), modes(s, row + 2, lane)
     return (
         (x[0], y[0], z[0]),
@@ -141,7 +141,7 @@ def shape(s: Array, row: int, lane: int) -> Shape:
 
 @inlined
 def put(s: Array, row: int, lane: int, F: Modes) -> None:
-    """Nodal values from factors of the modes (an eighth included), into rows row, row + 3, ..."""
+    """Store nodal values of the modes' factors (an eighth included) in rows row, row + 3, ..."""
     at = row * W + lane
     low, high = F[1] - F[3], F[1] + F[3]  # of eta, where zeta is -1 and 1
     one, two = -low - F[2], low - F[2]
@@ -159,7 +159,7 @@ NONE: Vector = (0.0, 0.0, 0.0)
 
 @inlined
 def nodal(s: Array, lane: int, f: Shape) -> None:
-    """Nodal forces (N) of the modes' forces f, an eighth included, into the rows F of `s`."""
+    """Store the nodal forces (N) of the modes' forces f, an eighth included, in rows F of `s`."""
     f1, f2, f3, f4, f5, f6, f7 = f
     put(s, F, lane, (f1[0], f2[0], f3[0], f4[0], f5[0], f6[0], f7[0]))
     put(s, F + 1, lane, (f1[1], f2[1], f3[1], f4[1], f5[1], f6[1], f7[1]))
@@ -171,7 +171,7 @@ Gradient = tuple[Vector, Vector, Vector, Vector, Vector, Vector]
 
 @inlined
 def gradient(c: Shape) -> Gradient:
-    """B_1 to B_6 in m2."""
+    """Return B_1 to B_6 in m2."""
     third = 1.0 / 3.0
     return (
         times(8.0, plus(cross(c[1], c[2]), third, cross(c[5], c[4]))),
@@ -185,14 +185,14 @@ def gradient(c: Shape) -> Gradient:
 
 @inlined
 def volume(c: Shape, B: Gradient) -> float:
-    """Of the element, in m3."""
+    """Return the volume of the element in m3."""
     low = c[0][0] * B[0][0] + c[1][0] * B[1][0] + c[2][0] * B[2][0]
     return low + c[3][0] * B[3][0] + c[4][0] * B[4][0] + c[5][0] * B[5][0]
 
 
 @inlined
 def mean_gradient(w: Shape, B: Gradient, V: float) -> Tensor:
-    """The mean of dv_i/dx_j over the element in 1/s, by rows."""
+    """Return the mean of dv_i/dx_j over the element in 1/s, by rows."""
     share = 1.0 / V
     w1, w2, w3, h1, h2, h3, _ = w
     return (
@@ -210,7 +210,7 @@ def _row(w: Vector, h: Vector, B: Gradient) -> Vector:
 
 @inlined
 def midway(L: Tensor, dt: float) -> Tensor:
-    """dv/dx at the middle of a step, from that at its end: L (I - dt L/2)^-1, to second order.
+    """Return dv/dx at mid-step from that at its end: L (I - dt L/2)^-1, to second order.
 
     With it, a rigid rotation strains nothing (T. J. R. Hughes and J. Winget, 1980).
     """

@@ -95,7 +95,7 @@ def _element(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None
 def _stress(
     state: Array, lane: int, L: Tensor, size: float, dt: float, metal: Metal
 ) -> tuple[Six, float]:
-    """Deviator and mean of the stress (Pa) at the step's end; energies are counted."""
+    """Return deviator and mean of the stress (Pa) at the step's end; count energies."""
     S, work, dissipated = advance(state, 0, lane, L, dt, metal)
     dilation = dt * (L[0][0] + L[1][1] + L[2][2])
     before = state[MEAN * W + lane]
@@ -108,7 +108,7 @@ def _stress(
 
 @inlined
 def _answer(c: Shape, B: Gradient, S: Six, mean: float, Q: Four, share: float) -> Shape:
-    """The modes' forces (N), an eighth included; share: 1/volume."""
+    """Return the modes' forces (N), an eighth included; share: 1/volume."""
     Q1, Q2, Q3, Q4 = Q
     g = (c[3], c[4], c[5], c[6])
     T = (
@@ -129,7 +129,7 @@ def _answer(c: Shape, B: Gradient, S: Six, mean: float, Q: Four, share: float) -
 
 @inlined
 def _row(stress: Vector, g: Four, Q: tuple[float, float, float, float], share: float) -> Vector:
-    """A row of the stress, less what the hourglass forces take up of the mean gradient."""
+    """Return a row of the stress, minus the hourglass forces' part in the mean gradient."""
     taken = combine((g[0], g[1], g[2]), (Q[0], Q[1], Q[2]))
     return plus(stress, -share, plus(taken, Q[3], g[3]))
 
@@ -146,7 +146,7 @@ def hourglass(
     dt: float,
     metal: Metal,
 ) -> tuple[Four, float]:
-    """The four hourglass forces (N) at a step's end, and their work (J) in it.
+    """Return the four hourglass forces (N) at a step's end, and their work (J) in it.
 
     L: dv/dx at the step's end. row: the first in `state` of the forces, which are updated.
     """
@@ -165,7 +165,7 @@ def hourglass(
 
 @inlined
 def _frame(c: Shape) -> Tensor:
-    """Unit vectors: along c_1, in the plane of c_1 and c_2, across it."""
+    """Return unit vectors: along c_1, in the plane of c_1 and c_2, across it."""
     along = times(1.0 / math.sqrt(dot(c[0], c[0])), c[0])
     across = cross(c[0], c[1])
     across = times(1.0 / math.sqrt(dot(across, across)), across)
@@ -174,13 +174,13 @@ def _frame(c: Shape) -> Tensor:
 
 @inlined
 def _rate(e: Tensor, g: Vector, h: Vector, L: Tensor) -> Vector:
-    """h - L g in the frame, in m/s."""
+    """Return h - L g in the frame, in m/s."""
     return apply(e, plus(h, -1.0, apply(L, g)))
 
 
 @inlined
 def _stiffness(q: Four, half: Vector, V: float, metal: Metal) -> Four:
-    """Forces that answer hourglass motions q: the means over the brick of stress times strain."""
+    """Return the forces against hourglass motions q: brick means of stress times strain."""
     q1, q2, q3, q4 = q
     E, nu, G = metal[0], metal[1], metal[2]
     i1, i2, i3 = 1.0 / half[0], 1.0 / half[1], 1.0 / half[2]
@@ -201,13 +201,13 @@ def _stiffness(q: Four, half: Vector, V: float, metal: Metal) -> Four:
 
 @inlined
 def _pair(plate: float, nu: float, one: float, other: float) -> tuple[float, float]:
-    """Stresses of two normal strains that vary alike, free of stress in the third direction."""
+    """Return stresses of two normal strains that vary alike, the third direction free of stress."""
     return plate * (one + nu * other), plate * (other + nu * one)
 
 
 @inlined
 def _load(state: Array, row: int, lane: int, rise: Vector, q: Vector) -> tuple[Vector, float]:
-    """Three forces after their rise, kept; and the power of their mean in the step."""
+    """Raise three forces and store them; return them and the power of their mean in the step."""
     at = row * W + lane
     before = (state[at], state[at + W], state[at + 2 * W])
     after = plus(before, 1.0, rise)

@@ -26,7 +26,7 @@ _MARGIN = 1.25
 
 
 def checked_size(impact: Impact, element_size: float) -> float:
-    """An element size in m. Raises ValueError where no mesh could ever have it."""
+    """Return an element size in m. Raises ValueError where no mesh could ever have it."""
     size = positive("mesh", "element_size", element_size)
     if size < (finest := _FINEST * impact.sphere.radius):
         raise ValueError(
@@ -37,7 +37,7 @@ def checked_size(impact: Impact, element_size: float) -> float:
 
 
 def contact_radius(impact: Impact) -> float:
-    """Largest contact radius in m to expect: of an elastic and of a plastic half-space.
+    """Return the largest contact radius in m to expect, of an elastic and a plastic half-space.
 
     Hertz: a = sqrt(R delta_m). Plastic: F = pi a^2 p with a^2 = 2 R delta takes up m v^2/2 at
     a^4 = 2 R m v^2/(pi p), p = 2.8 of the softer body's yield stress. A beam gives way and stays
@@ -53,7 +53,7 @@ def contact_radius(impact: Impact) -> float:
 
 
 def patch_size(impact: Impact, element_size: float) -> float:
-    """Half the side of the square of matched nodes in m: a whole number of elements, at least 3.
+    """Return half the side of the square of matched nodes in m: whole elements, at least 3.
 
     Its margin is cut where the bodies end, down to the contact radius to expect.
     """
@@ -65,13 +65,13 @@ def patch_size(impact: Impact, element_size: float) -> float:
 
 
 def largest_patch(impact: Impact) -> float:
-    """What beam and sphere have room for, in m."""
+    """Return the largest patch in m that fits on beam and sphere."""
     beam = impact.beam
     return min(0.9 * beam.width / 2.0, 0.45 * impact.sphere.radius, beam.span / 4.0)
 
 
 def checked_patch(impact: Impact, element_size: float, patch: float | None) -> float:
-    """The patch in m, rounded up to whole elements (None: estimated).
+    """Return the patch in m, rounded up to whole elements (None: estimated).
 
     Raises ValueError where it is not positive, or does not fit on beam and sphere.
     """
@@ -88,7 +88,7 @@ def checked_patch(impact: Impact, element_size: float, patch: float | None) -> f
 
 
 def bending_yields(impact: Impact) -> bool:
-    """Whether the beam may yield in bending: an infinite beam whose middle moves at `velocity`.
+    """Return whether an infinite beam would yield in bending if its middle moved at `velocity`.
 
     M = v sqrt(rho A EI) there, the yield moment at v = sigma_y/sqrt(3 rho E).
     """
@@ -116,7 +116,7 @@ class Cost:
 
 
 def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
-    """The cost of `duration` (s) on `mesh`, from its smallest elements and measured times."""
+    """Return the cost of `duration` (s) on `mesh`, from its smallest elements and measurements."""
     steps = int(np.ceil(duration / time_step(mesh, impact)))
     full = int(mesh.full.sum())
     one_point = len(mesh.elements) - full
@@ -128,7 +128,7 @@ def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
 def least_cost(
     impact: Impact, *, element_size: float, duration: float, patch: float | None = None
 ) -> Cost:
-    """What a mesh costs at the least, known without making it; arguments as those of quarter_mesh.
+    """Return the least cost of a mesh without making it; arguments as those of quarter_mesh.
 
     A cube of elements on either side of the contact, and the beam in the largest that there are:
     its transitions, which are left out, may be more. Raises ValueError as quarter_mesh.
@@ -147,7 +147,7 @@ def least_cost(
 
 
 def time_step(mesh: Mesh, impact: Impact) -> float:
-    """About the largest stable step in s: the time a pressure wave takes over the shortest edge."""
+    """Return about the largest stable step in s: that of a pressure wave over the shortest edge."""
     points = mesh.nodes[mesh.elements]
     shortest = np.full(len(points), np.inf)
     for one, other in ((0, 1), (0, 3), (0, 4), (6, 2), (6, 5), (6, 7)):
@@ -162,7 +162,7 @@ def time_step(mesh: Mesh, impact: Impact) -> float:
 
 
 def _metals(impact: Impact) -> tuple[tuple[int, Material, float], tuple[int, Material, float]]:
-    """Each body's material and density in kg/m3: the sphere's is that of the mass it is given."""
+    """Return each body's material and density in kg/m3; the sphere's follows from its mass."""
     beam, sphere = impact.beam.material, impact.sphere
     density = sphere.total_mass / (4.0 / 3.0 * math.pi * sphere.radius**3)
     return (BEAM, beam, beam.density), (SPHERE, sphere.material, density)

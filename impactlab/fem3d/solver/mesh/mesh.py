@@ -69,17 +69,17 @@ class Mesh:
 
     @property
     def pole(self) -> int:
-        """The sphere's node at the origin."""
+        """Return the sphere's node at the origin."""
         return int(self.pairs[np.argmin(self.gaps), 0])
 
     @property
     def top_node(self) -> int:
-        """The beam's node at the origin."""
+        """Return the beam's node at the origin."""
         return int(self.pairs[np.argmin(self.gaps), 1])
 
 
 def corner_volumes(nodes: Floats, elements: Integers) -> Floats:
-    """The Jacobian's determinant at each corner of each element, (e, 8), in m3: 0 where flat."""
+    """Return the Jacobian determinant at each corner, (e, 8), in m3: 0 where flat."""
     points = nodes[elements]
     result = np.empty(elements.shape)
     for corner, place in enumerate(CORNERS):
@@ -93,7 +93,7 @@ def corner_volumes(nodes: Floats, elements: Integers) -> Floats:
 
 
 def nodal_masses(mesh: Mesh, impact: Impact) -> Floats:
-    """Mass of each node in kg, (n,).
+    """Return the lumped mass of each node in kg, (n,): an eighth of each of its elements.
 
     The sphere's density is scaled so that all four quarters weigh what the impact says.
     """
@@ -111,7 +111,7 @@ def nodal_masses(mesh: Mesh, impact: Impact) -> Floats:
 
 
 def element_volumes(mesh: Mesh) -> Floats:
-    """Volume of each element in m3, (e,): Gauss's rule of two points a side is exact."""
+    """Return each element's volume in m3, (e,): Gauss's rule of two points per side is exact."""
     points, total = mesh.nodes[mesh.elements], np.zeros(len(mesh.elements))
     for place in CORNERS / np.sqrt(3.0):
         one = 1.0 + CORNERS * place
@@ -121,12 +121,12 @@ def element_volumes(mesh: Mesh) -> Floats:
 
 
 def uniform(size: float, length: float) -> int:
-    """Number of intervals of at most `size` in `length` (both in m), at least 1."""
+    """Return the number of intervals of at most `size` in `length` (both in m), at least 1."""
     return max(math.ceil(length / size * (1.0 - 1e-9)), 1)
 
 
 def graded(size: float, fine: float, length: float, ratio: float, largest: float) -> Floats:
-    """Coordinates in m, from 0 to `length`: intervals of `size` up to `fine`, then growing.
+    """Return coordinates in m, from 0 to `length`: intervals of `size` up to `fine`, then growing.
 
     ratio: at most, of neighbouring intervals beyond `fine`, until they reach `largest`; it is
     lowered so that the last point falls on `length`. `fine` must be a multiple of `size`, or reach
@@ -141,7 +141,7 @@ def graded(size: float, fine: float, length: float, ratio: float, largest: float
 
 
 def _grown(size: float, rest: float, ratio: float, largest: float) -> Floats:
-    """Ends of intervals that fill `rest` (m), none much smaller than `size`."""
+    """Return the ends of intervals that fill `rest` (m), none much smaller than `size`."""
     count = 1
     while _intervals(size, count, ratio, largest).sum() < rest:
         count += 1
@@ -158,7 +158,7 @@ def _intervals(size: float, count: int, ratio: float, largest: float) -> Floats:
 
 
 def brick(x: Floats, y: Floats, z: Floats) -> tuple[Floats, Integers]:
-    """Nodes (n, 3) in m and elements (e, 8) of a brick cut at ascending x, y and z.
+    """Return nodes (n, 3) in m and elements (e, 8) of a brick cut at ascending x, y and z.
 
     Nodes are numbered with z fastest, x slowest: (i ny + j) nz + k.
     """
@@ -168,7 +168,7 @@ def brick(x: Floats, y: Floats, z: Floats) -> tuple[Floats, Integers]:
 
 
 def cells(number: Integers) -> Integers:
-    """The hexahedra, (e, 8) in VTK's order, of a lattice of node numbers (i, j, k)."""
+    """Return the hexahedra, (e, 8) in VTK's order, of a lattice of node numbers (i, j, k)."""
     low, high = slice(None, -1), slice(1, None)
     ring = ((low, low), (high, low), (high, high), (low, high))
     corners = [number[(*place, level)] for level in (low, high) for place in ring]

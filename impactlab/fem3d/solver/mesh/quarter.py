@@ -29,7 +29,7 @@ def quarter_mesh(
     ratio: float = 1.3,
     coarsest: float | None = None,
 ) -> Mesh:
-    """The quarter model of `impact`.
+    """Return the mesh of the quarter model of `impact`.
 
     element_size: of the elements about the contact, in m. patch: half the side of the square in
     which nodes of sphere and beam are matched, in m, rounded up to whole elements (None: estimated
@@ -54,7 +54,7 @@ def quarter_mesh(
 def _cuts(
     beam: Beam, size: float, half: float, depth: float, ratio: float, largest: float
 ) -> tuple[Floats, Floats, Floats]:
-    """Where the beam is cut along x, y and z (ascending); z holds its axis.
+    """Return the cuts of the beam along x, y and z (ascending); z holds its axis.
 
     A last layer above the axis would be thin where little is left for it: then all are alike.
     """
@@ -106,12 +106,12 @@ def _joined(
 
 
 def _plane(nodes: Floats, axis: int, size: float) -> Integers:
-    """Nodes on the plane of symmetry across `axis`."""
+    """Return the nodes on the plane of symmetry across `axis`."""
     return np.flatnonzero(np.abs(nodes[:, axis]) < 1e-6 * size).astype(np.int32)
 
 
 def _full(impact: Impact, centres: Floats, body: Integers, half: float) -> NDArray[np.bool_]:
-    """Elements to integrate fully: about the contact, and all of the beam's middle if it yields."""
+    """Return which elements to integrate fully: near the contact, and mid-beam if it yields."""
     near = np.all(np.abs(centres) < 1.5 * half, axis=1)
     bent = (body == BEAM) & (centres[:, 0] < _BENT * impact.beam.depth)
     return np.asarray(near | bent if bending_yields(impact) else near)

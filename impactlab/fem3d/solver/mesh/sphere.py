@@ -39,7 +39,7 @@ class Sphere:
 def quarter_sphere(
     radius: float, size: float, patch: float, depth: float, ratio: float, largest: float
 ) -> Sphere:
-    """The quarter x >= 0, y >= 0 of a sphere that touches z = 0 from above (lengths in m).
+    """Return the quarter x >= 0, y >= 0 of a sphere that touches z = 0 from above (lengths in m).
 
     size: of the elements from the pole to x, y = patch and to `depth` into the sphere; beyond, they
     grow by `ratio` up to `largest`.
@@ -63,7 +63,7 @@ def quarter_sphere(
 
 
 def _lattice(sides: int, height: int) -> Integers:
-    """All places (i, j, k) of the core, (n, 3)."""
+    """Return all places (i, j, k) of the core, (n, 3)."""
     i, k = np.arange(sides + 1), np.arange(-height, height + 1)
     return np.stack(np.meshgrid(i, i, k, indexing="ij"), axis=-1).reshape(-1, 3).astype(np.int32)
 
@@ -74,7 +74,7 @@ def _on_border(lattice: Integers, sides: int, height: int) -> NDArray[np.bool_]:
 
 
 def _core(place: Floats) -> Floats:
-    """A rounded box, over the radius, from places in -1 to 1: a cube blended with a ball."""
+    """Return a rounded box over the radius, from places in -1 to 1: a cube blended with a ball."""
     squares = place**2
     one, two = np.roll(squares, -1, axis=1), np.roll(squares, -2, axis=1)
     ball = place * np.sqrt(1.0 - one / 2.0 - two / 2.0 + one * two / 3.0)
@@ -82,7 +82,7 @@ def _core(place: Floats) -> Floats:
 
 
 def _surface(lattice: Integers, lines: Floats, patch: int, height: int) -> Floats:
-    """Points of the unit sphere for border places: even rays through a cube, but for the patch.
+    """Return points of the unit sphere for border places: even rays through a cube but the patch.
 
     There, and smoothly less beyond, x and y are those of the lines.
     """
@@ -99,13 +99,13 @@ def _surface(lattice: Integers, lines: Floats, patch: int, height: int) -> Float
 
 
 def _away(i: Integers, j: Integers, patch: int, sides: int) -> Floats:
-    """0 in the patch, rising smoothly to 1 at the lower surface's edges."""
+    """Return 0 in the patch, rising smoothly to 1 at the lower surface's edges."""
     t = np.clip((np.maximum(i, j) - patch) / (sides - patch), 0.0, 1.0)
     return np.asarray(t**2 * (3.0 - 2.0 * t))
 
 
 def _along(lattice: Integers, layers: Floats, patch: int, sides: int, height: int) -> Floats:
-    """Share of the way out for each layer and border place, (layers, places): fine at the pole."""
+    """Return the share of the way out, (layers, border places): fine at the pole."""
     i, j, k = lattice.T
     blend = np.where(k == -height, _away(i, j, patch, sides), 1.0)
     even = np.linspace(0.0, 1.0, layers.size)
@@ -115,7 +115,7 @@ def _along(lattice: Integers, layers: Floats, patch: int, sides: int, height: in
 def _elements(
     number: Integers, border: NDArray[np.bool_], layers: int
 ) -> tuple[Integers, Integers]:
-    """The core's cells and the shells'; and the numbers of the lower surface's nodes."""
+    """Return the cells of core and shells, and the node numbers of the lower surface."""
     shell = np.full((layers + 1, number.size), -1, dtype=np.int32)
     shell[0] = number.ravel()
     count = int(border.sum())
@@ -132,6 +132,6 @@ def _elements(
 
 
 def _height(points: Floats, radius: float) -> Floats:
-    """z in m of the lower surface above its pole, without loss of digits."""
+    """Return z in m of the lower surface above its pole, without loss of digits."""
     squares = points[..., 0] ** 2 + points[..., 1] ** 2
     return np.asarray(squares / (radius + np.sqrt(radius**2 - squares)))

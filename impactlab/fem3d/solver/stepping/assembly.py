@@ -41,22 +41,22 @@ class Group:
 
     @property
     def blocks(self) -> int:
-        """Number of blocks."""
+        """Return the number of blocks."""
         return len(self.nodes)
 
     def row(self, row: int) -> Array:
-        """One row of `state`, by element: (g,)."""
+        """Return one row of `state`, by element: (g,)."""
         values = self.state.reshape(self.blocks, self.kind.ROWS, W)[:, row]
         return values.reshape(-1)[: self.elements.size]
 
     def points(self, row: int) -> Array:
-        """One row of every integration point, (points, g)."""
+        """Return one row of every integration point, (points, g)."""
         starts = POINT_ROWS * np.arange(self.kind.POINTS)
         return np.stack([self.row(start + row) for start in starts])
 
 
 def make_groups(mesh: Mesh, impact: Impact) -> list[Group]:
-    """The groups at rest, those without elements left out."""
+    """Return the groups at rest, without empty ones."""
     metals = {BEAM: metal(impact.beam.material), SPHERE: metal(impact.sphere.material)}
     return [
         _group(mesh.elements, np.flatnonzero(chosen), whole, metals[body])
@@ -82,7 +82,7 @@ def _group(elements: Array, numbers: Array, whole: bool, steel: Metal) -> Group:
 
 
 def metal(material: Material) -> Metal:
-    """E, nu, G, K, sigma_y, H_i, H_k."""
+    """Return E, nu, G, K, sigma_y, H_i, H_k."""
     E, nu = material.youngs_modulus, material.poissons_ratio
     return (
         E,
@@ -114,12 +114,12 @@ class ForceAssembly:
 
 
 def blocks_of(group: Group, first: int, end: int) -> tuple[int, int]:
-    """The blocks of a group's pieces from the first to before the one named by `end`."""
+    """Return the blocks of a group's pieces from `first` to before `end`."""
     return group.blocks * first // MOST_THREADS, group.blocks * end // MOST_THREADS
 
 
 def force_assembly(groups: Sequence[Group], nodes: int) -> ForceAssembly:
-    """Rows for the elements of all groups, on that many nodes."""
+    """Return the rows of force for the elements of all groups, on that many nodes."""
     of_groups, owners = [], []
     count = 0
     for group in groups:

@@ -50,13 +50,13 @@ class Energies(NamedTuple):
 
     @property
     def balance(self) -> float:
-        """What stays the same."""
+        """Return the energy that stays constant."""
         return self.kinetic + self.work + self.hourglass + self.contact - self.gravity
 
 
 @dataclass
 class History:
-    """moments: one a step. energies: one a checkpoint. stopped: why before its time, else "".
+    """moments: one per step. energies: one per checkpoint. stopped: why before its time, else "".
 
     offset: largest distance by which matched nodes that touched had slid, over the element size.
     patch_needed: of matched nodes in m, where the contact outgrew its own; else 0.
@@ -69,7 +69,7 @@ class History:
     patch_needed: float = 0.0
 
     def table(self) -> Floats:
-        """The moments, (7, steps)."""
+        """Return the moments, (7, steps)."""
         return np.array(self.moments).T
 
 
@@ -90,7 +90,7 @@ class PatchTooSmallError(ValueError):
     """Sphere and beam touch where their nodes are not matched. needed: the patch to take, in m."""
 
     def __init__(self, message: str, needed: float) -> None:
-        """With what a person is told."""
+        """Take the message, and the patch needed in m."""
         super().__init__(message)
         self.needed = needed
 
@@ -99,7 +99,7 @@ class March:
     """A system on its way. history: what it has left so far."""
 
     def __init__(self, system: System, impact: Impact) -> None:
-        """At first touch."""
+        """Start at first touch."""
         self.system, self.impact, self.history = system, impact, History()
         self._step = SAFETY * critical_step(system)
         self._volumes = np.empty(system.mesh.elements.shape)
@@ -128,7 +128,7 @@ class March:
         return self.history
 
     def _to(self, duration: float, progress: Progress | None) -> None:
-        """Checkpoint by checkpoint."""
+        """March from checkpoint to checkpoint."""
         for checkpoint in range(1, CHECKPOINTS + 1):
             self._advance(duration * checkpoint / CHECKPOINTS)
             if self.history.stopped:
@@ -137,7 +137,7 @@ class March:
                 progress(self._time, checkpoint / CHECKPOINTS)
 
     def _advance(self, end: float) -> None:
-        """Steps until `end` (s), then a checkpoint."""
+        """Take steps until `end` (s), then a checkpoint."""
         steps = math.ceil((end - self._time) / self._dt)
         if steps <= 0:
             return
@@ -151,7 +151,7 @@ class March:
         self.history.stopped = self._wrong()
 
     def _take(self) -> None:
-        """One step, from positions at its beginning to those at its end."""
+        """Take one step, from positions at its beginning to those at its end."""
         system, mesh = self.system, self.system.mesh
         at = (mesh.pole, mesh.axis_node, mesh.top_node)
         pole, axis, top = mesh.nodes[at, 2] - system.x[at, 2]
@@ -170,7 +170,7 @@ class March:
         self._velocity_dt = self._dt
 
     def _works(self) -> Floats:
-        """Sums over the elements: work, dissipated, against hourglassing (J)."""
+        """Return sums over the elements: work, dissipated, against hourglassing (J)."""
         return np.sum(
             [
                 [group.row(row).sum() for row in (kind.WORK, kind.DISSIPATED, kind.HOURGLASS_WORK)]
@@ -181,7 +181,7 @@ class March:
         )
 
     def _energies(self, before: Floats, worked: Floats) -> Energies:
-        """At the last step's beginning; kinetic by the velocities half a step before and after."""
+        """Return energies at the start of the last step; kinetic by velocities around it."""
         moment, system = self.history.moments[-1], self.system
         kinetic = 0.5 * float(np.sum(system.mass[:, None] * before * system.v))
         gravity = self.impact.sphere.total_mass * self.impact.gravity * moment.sphere
@@ -191,14 +191,14 @@ class March:
         )
 
     def _offset(self) -> float:
-        """Largest distance across z of nodes that touch, over the size of their elements."""
+        """Return the largest distance across z of nodes that touch, over the element size."""
         mesh = self.system.mesh
         apart = self.system.x[mesh.pairs[:, 0]] - self.system.x[mesh.pairs[:, 1]]
         touching = apart[apart[:, 2] <= 0.0, :2]
         return float(np.max(np.hypot(*touching.T), initial=0.0)) / mesh.element_size
 
     def _wrong(self) -> str:
-        """Why to stop here, or "". Steps are shortened with the elements."""
+        """Return a reason to stop here, or ""; shorten the steps with the elements."""
         system = self.system
         if not math.isfinite(self.history.energies[-1].balance):
             return f"diverged before {self._time:.4g} s"
@@ -223,14 +223,14 @@ class March:
         return ""
 
     def _outgrown(self) -> PatchTooSmallError:
-        """Work up to a contact radius grows with its fourth power at the least (a plastic one)."""
+        """Return the error; for the patch needed, work grows with radius**4 at least (plastic)."""
         mesh, first = self.system.mesh, self.impact.velocity**2
         left = min(self._velocity, 0.999 * first**0.5) ** 2
         needed = 1.1 * mesh.patch * (first / (first - left)) ** 0.25
-        told = (
+        message = (
             f"at {self._time:.4g} s the contact has grown beyond the matched patch of "
             f"{1e3 * mesh.patch:.4g} mm: take patch = {needed:.4g} m or more"
         )
         if needed > (room := largest_patch(self.impact)):
-            told += f"; beam and sphere have room for {room:.4g} m"
-        return PatchTooSmallError(told, needed)
+            message += f"; beam and sphere have room for {room:.4g} m"
+        return PatchTooSmallError(message, needed)

@@ -1,4 +1,4 @@
-"""What bounds the time step: the largest eigenvalue at rest, and the elements' shapes later on."""
+"""Bounds of the time step: the largest eigenvalue at rest, and the elements' shapes later on."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _TINY = 1e-12
 
 
 def critical_step(system: System) -> float:
-    """2/omega of the fastest mode in s, by Lanczos, of a system that is not yet strained.
+    """Return 2/omega of the fastest mode in s, by Lanczos, of a system that is not yet strained.
 
     The elements' own forces are what the eigenvalue is taken of, so no estimate stands between.
     """
@@ -39,7 +39,7 @@ def critical_step(system: System) -> float:
 
 
 def _gathered(system: System) -> Floats:
-    """The elements' forces by node, (n, 3) in N, which are taken away."""
+    """Return the elements' forces by node, (n, 3) in N, and clear them."""
     rows = system.assembly
     forces = np.asarray(np.add.reduceat(system.forces[rows.slots], rows.starts[:-1], axis=0))
     system.forces[:] = 0.0
@@ -54,7 +54,7 @@ _NEIGHBOURS = np.array(
 
 @compiled
 def corner_volumes(elements: Array, x: Array, volumes: Array) -> float:
-    """Triple products of the edges at each corner, into volumes (e, 8), in m3; below 0: inverted.
+    """Store triple products of the edges at each corner in volumes (e, 8), in m3; inverted: < 0.
 
     elements: (e, 8). x: (n, 3) in m. Returns the shortest edge in m.
     """

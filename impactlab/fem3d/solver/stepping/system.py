@@ -29,7 +29,7 @@ class ThreadPool:
     """
 
     def __init__(self, threads: int) -> None:
-        """With that many threads, at least 1."""
+        """Start that many threads, at least 1."""
         self.threads = threads
         self._pool = ThreadPoolExecutor(max(threads - 1, 1))
 
@@ -47,7 +47,7 @@ class ThreadPool:
             other.result()
 
     def share(self, part: int, count: int) -> tuple[int, int]:
-        """The first and the one past the last of `count` numbers that are this part's."""
+        """Return the first and the one past the last of `count` numbers that are this part's."""
         return count * part // self.threads, count * (part + 1) // self.threads
 
 
@@ -95,7 +95,7 @@ class System:
     """
 
     def __init__(self, mesh: Mesh, impact: Impact, pool: ThreadPool) -> None:
-        """At first touch: the sphere moving at the impact's velocity, the beam at rest."""
+        """Start at first touch: the sphere moves at the impact's velocity, the beam is at rest."""
         self.mesh, self.pool = mesh, pool
         self.x, self.v = mesh.nodes.copy(), np.zeros_like(mesh.nodes)
         self.groups = make_groups(mesh, impact)
@@ -112,7 +112,7 @@ class System:
         self._scratch = [np.zeros(SCRATCH * W) for _ in range(pool.threads)]
 
     def strain(self, dt: float) -> None:
-        """The elements take up a motion of dt (s) with v, which has led to x."""
+        """Strain the elements by a motion of dt (s) with v, which has led to x."""
 
         def work(part: int) -> None:
             pieces = self.pool.share(part, MOST_THREADS)
@@ -133,7 +133,7 @@ class System:
         self.pool.run(work)
 
     def move(self, velocity_dt: float, dt: float) -> None:
-        """The nodes take up the elements' forces for velocity_dt (s) and move on by dt; contact."""
+        """Apply the elements' forces for velocity_dt (s), move the nodes by dt, and close gaps."""
 
         def work(part: int) -> None:
             integrate(

@@ -35,7 +35,7 @@ def test_the_figure_has_values_above_and_differences_below(study):
     figure = FIGURES["witness"].plot(*study)
     force, _, below, _ = figure.axes
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["3-D solid", "Euler-Bernoulli", "Timoshenko"]
+    assert labels == ["3-D FE model", "Euler-Bernoulli", "Timoshenko"]
     assert np.asarray(force.lines[0].get_ydata()) == pytest.approx(10.1 * SPEEDS)
     drawn = [np.asarray(marks.lines[0].get_ydata()) for marks in below.containers]
     assert drawn == [pytest.approx([5.0] * 3), pytest.approx([-2.0] * 3)]
@@ -81,10 +81,10 @@ def test_it_needs_the_solid_beside_others_at_three_velocities(study):
 def test_the_table_says_value_uncertainty_and_difference(study):
     (section,) = sections(*study)
     table = section.tables[0]
-    assert table.head == ["Impact velocity", "3-D solid", "Euler-Bernoulli", "Timoshenko"]
+    assert table.head == ["Impact velocity", "3-D FE model", "Euler-Bernoulli", "Timoshenko"]
     assert table.rows[1][1].text == "10.1 ± 1.2 %"
-    assert table.rows[1][2].detail == "+5 % against the solid"
-    assert table.rows[1][3].detail == "−2 % against the solid"
+    assert table.rows[1][2].detail == "+5 % against the 3-D FE model"
+    assert table.rows[1][3].detail == "−2 % against the 3-D FE model"
 
 
 def test_what_is_not_the_same_quantity_is_not_compared(study):
