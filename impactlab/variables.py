@@ -17,7 +17,7 @@ import numpy as np
 
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import remarks, status
-from impactlab.solver.contact.about import ABOUT
+from impactlab.solver.contact import CONTACT_LAWS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -270,7 +270,7 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
 
 def contact_attributes(laws: Iterable[str]) -> dict[str, str]:
     """Attributes of `contact` on these laws, a line each: source, range, flaws and doubts."""
-    found = [(law, ABOUT[law]) for law in laws]
+    found = [(law, CONTACT_LAWS[law]) for law in laws]
     texts = {
         "source": [(law, about.source) for law, about in found],
         "holds_for": [(law, about.holds) for law, about in found],

@@ -13,8 +13,7 @@ import xarray as xr
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
 from impactlab.report.indices import numerical_warnings
-from impactlab.solver.contact import LAWS
-from impactlab.solver.contact.about import ABOUT
+from impactlab.solver.contact import CONTACT_LAWS, LAWS
 from impactlab.variables import MARKS, REMARKS
 
 _JUDGED = {
@@ -70,7 +69,8 @@ def _outside(runs: xr.Dataset) -> Iterator[str]:
         if number := int((beyond & (runs["contact"] == law)).sum()):
             yield (
                 f"{number} of {count(runs)} runs went beyond the range of the contact law “{law}”: "
-                f"it holds for {ABOUT[law].holds}. Their responses are kept, but extrapolated."
+                f"it holds for {CONTACT_LAWS[law].holds}. "
+                "Their responses are kept, but extrapolated."
             )
 
 
@@ -163,7 +163,7 @@ def _few_lobatto_points(runs: xr.Dataset) -> bool:
 
 def _about(law: str) -> str:
     """Return the flaws of a contact law and what about it is unconfirmed."""
-    about = ABOUT[law]
+    about = CONTACT_LAWS[law]
     parts = [f"Contact law “{law}” ({about.title}).", about.flaws]
     if "energy" in about.flaws:
         parts.append("This is the law, not the solver; the energy balance accounts for it.")
@@ -188,7 +188,7 @@ NOTES = (
     *(
         Note(lambda runs, law=law: _holds(runs, "contact", law), _about(law))  # type: ignore[misc]
         for law in LAWS
-        if ABOUT[law].flaws or ABOUT[law].unconfirmed
+        if CONTACT_LAWS[law].flaws or CONTACT_LAWS[law].unconfirmed
     ),
     Note(
         lambda runs: "peak_plastic_strain" in runs,

@@ -10,7 +10,6 @@ import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.simulate import simulate
-from impactlab.solver.contact import LAWS
 from impactlab.types import Floats
 from impactlab.verification.cases import rigid_backed
 from impactlab.verification.finding import (
@@ -24,7 +23,7 @@ from impactlab.verification.finding import (
     worst,
 )
 from impactlab.verification.solutions import hertz
-from impactlab.verification.solutions.contact_laws import LawOnHalfSpace, law_on_half_space
+from impactlab.verification.solutions.contact_laws import LAWS, LawOnHalfSpace, law_on_half_space
 from impactlab.verification.solutions.stronge import StrongeImpact, stronge_impact
 
 # With so small a Courant number the contact alone determines the time step.

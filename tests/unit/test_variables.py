@@ -15,7 +15,7 @@ import xarray as xr
 import impactlab as il
 from impactlab import variables as dataset
 from impactlab.model.parameters import PARAMETERS
-from impactlab.solver.contact.about import ABOUT
+from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.variables import (
     COORDINATES,
     FAILED,
@@ -125,9 +125,9 @@ def test_failures_and_marks_are_told_apart():
 def test_contact_says_where_its_laws_come_from_and_what_is_in_doubt():
     attrs = contact_attributes(["hertz", "mjg"])
     assert attrs["source"].splitlines() == [
-        f"{law}: {ABOUT[law].source}" for law in ("hertz", "mjg")
+        f"{law}: {CONTACT_LAWS[law].source}" for law in ("hertz", "mjg")
     ]
-    assert attrs["unconfirmed"] == f"mjg: {ABOUT['mjg'].unconfirmed}"
+    assert attrs["unconfirmed"] == f"mjg: {CONTACT_LAWS['mjg'].unconfirmed}"
     assert "flaws" not in contact_attributes(["hertz"])
     many = il.simulate_many(
         il.paper_impact(),

@@ -1,7 +1,7 @@
 """Brake's unloading, on the loading of the modified Jackson-Green law.
 
 Source: Brake 2015 (Int. J. Solids and Structures 62, 104), as in public code, which joins it to
-the loading of mjg.py (about.py). With F_H the force of Hertz at delta_m:
+the loading of mjg.py (see the registry). With F_H the force of Hertz at delta_m:
     delta_r = delta_m (1 - F_m/F_H)
     F = F_m ((delta - delta_r)/(delta_m - delta_r))^1.5
 The softer the contact beside Hertz's, the deeper the dent.

@@ -6,7 +6,7 @@ Every law is two functions of this form. In: indentation delta (m), effective mo
 effective radius R (m), the softer body's yield stress S_y (Pa) and Poisson's ratio nu.
 `curve` gives (F, K, delta_r, n), the loading force (N) at delta, and the curve on which the contact
 unloads from there, K (d - delta_r)^n. `limit` gives the indentation (m) up to which the law holds;
-why, and what of the law is not confirmed, is in about.py, which also names the law.
+why, and what of the law is not confirmed, is in the registry (__init__.py).
 """
 
 from __future__ import annotations

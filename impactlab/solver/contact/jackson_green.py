@@ -1,7 +1,7 @@
 """Jackson and Green's elastic-plastic contact, fitted to finite elements, without hardening.
 
 Sources: Jackson and Green 2005 (J. Tribology 127, 343) for loading; Jackson, Chusoipin and Green
-2005 (J. Tribology 127, 484) for unloading; constants as in public code (about.py).
+2005 (J. Tribology 127, 484) for unloading; constants as in public code (see the registry).
     C = 1.295 exp(0.736 nu), delta_c = (pi C S_y/(2 E))^2 R, y = delta/delta_c
     y <= 1.9   Hertz
     beyond     F/F_c = exp(-y^(5/12)/4) y^1.5 + (4 H/(C S_y)) (1 - exp(-y^(5/9)/25)) y,

@@ -1,8 +1,8 @@
 """Kogut and Etsion's contact, fitted to finite elements; unloading: Etsion, Kligerman and Kadin.
 
 Sources: Kogut and Etsion 2002 (J. Applied Mechanics 69, 657), constants as in public code;
-Etsion, Kligerman and Kadin 2005 (Int. J. Solids and Structures 42, 3716), constants remembered
-(about.py). H = 2.8 S_y, K = 0.454 + 0.41 nu, delta_c = (pi K H/(2 E))^2 R, y = delta/delta_c:
+Etsion, Kligerman and Kadin 2005 (Int. J. Solids and Structures 42, 3716), constants remembered.
+H = 2.8 S_y, K = 0.454 + 0.41 nu, delta_c = (pi K H/(2 E))^2 R, y = delta/delta_c:
     y <= 1     Hertz
     1 to 6     F/F_c = 1.03 y^1.425
     6 to 110   F/F_c = 1.40 y^1.263

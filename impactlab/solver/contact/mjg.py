@@ -2,7 +2,7 @@
 
 Sources: Ghaednia, Brake, Berryhill and Jackson 2019 (J. Tribology 141), eqs. 5, 6, 23, 24 and 27 to
 29 without hardening, for loading; Jackson, Chusoipin and Green 2005 for unloading; constants as in
-public code (about.py). As jackson_green.py, but for
+public code (see the registry). As jackson_green.py, but for
     H/S_y = 2.84 - 0.92 (1 - cos(pi a/R))
 The earlier form (Ghaednia, Marghitu and Jackson 2015: 0.17 for 1/4, 1/78 for 1/25), as remembered,
 drops by 10.7 % at y = 1.9; it could not be confirmed and is not used.

@@ -7,8 +7,7 @@ from typing import Any
 import xarray as xr
 
 from impactlab.report.cautions import NOTES, cautions, notes
-from impactlab.solver.contact import LAWS
-from impactlab.solver.contact.about import ABOUT
+from impactlab.solver.contact import CONTACT_LAWS, LAWS
 
 Study = Any
 
@@ -75,12 +74,12 @@ def test_notes_on_the_contact_law(velocity_study: Study) -> None:
 
 def test_notes_say_what_of_a_law_is_not_confirmed(laws_study: Study) -> None:
     runs, _ = laws_study
-    doubted = [law for law in LAWS if ABOUT[law].unconfirmed]
+    doubted = [law for law in LAWS if CONTACT_LAWS[law].unconfirmed]
     assert len(doubted) == 6
     for law in doubted:
         said = [text for text in notes(runs.sel(contact=[law])) if f"“{law}”" in text]
         assert len(said) == 1
-        assert f"Not confirmed: {ABOUT[law].unconfirmed}." in said[0]
+        assert f"Not confirmed: {CONTACT_LAWS[law].unconfirmed}." in said[0]
     assert not _said(notes(runs.sel(contact=["hertz", "stronge"])), "Not confirmed")
 
 
