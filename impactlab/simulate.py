@@ -19,8 +19,8 @@ from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.leapfrog import run_all
+from impactlab.solver.outputs import blank
 from impactlab.solver.quadrature import rule_points
-from impactlab.solver.responses import RESPONSE
 from impactlab.solver.types import CASE, REAL, WHOLE
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
 
@@ -48,7 +48,7 @@ Columns = dict[str, np.ndarray[Any, Any]]
 class Answers:
     """What the kernels gave for R runs.
 
-    responses: record array (R,) of solver.responses.RESPONSE. histories: name -> (R, samples).
+    responses: record array (R,) of solver.outputs.RESPONSE. histories: name -> (R, samples).
     profiles: name -> (R, nodes, points), or (R, nodes) for the deflection. Both may be empty.
     """
 
@@ -165,7 +165,7 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
         raise ValueError("profiles need the same nodes, points and rule in every run")
     nodes, points = (int(cases[0].nodes), int(cases[0].points)) if profiles else (-1, 0)
     half, fibres, runs = nodes // 2 + 1, points // 2, cases.size
-    responses = np.zeros(runs, dtype=RESPONSE)
+    responses = blank(runs)
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
     deflection = np.full((runs, half), np.nan)
     strains = np.full((2, runs, half, fibres), np.nan)

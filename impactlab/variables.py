@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from impactlab.model.parameters import PARAMETERS
-from impactlab.solver import remarks, status
+from impactlab.solver import outputs
 from impactlab.solver.contact import CONTACT_LAWS
 
 if TYPE_CHECKING:
@@ -25,29 +25,29 @@ if TYPE_CHECKING:
 _STOPPED = 256
 """Beside the kernels' bits: the 3-D model alone has it."""
 FAILURES: dict[str, tuple[int, str]] = {
-    "diverged": (status.DIVERGED, "the run diverged; every response is missing"),
+    "diverged": (outputs.DIVERGED, "the run diverged; every response is missing"),
     "first_contact_unfinished": (
-        status.FIRST_CONTACT_UNFINISHED,
+        outputs.FIRST_CONTACT_UNFINISHED,
         "the duration ends before the first contact does",
     ),
     "in_contact_at_end": (
-        status.IN_CONTACT_AT_END,
+        outputs.IN_CONTACT_AT_END,
         "the duration ends while sphere and beam are in contact",
     ),
     "sphere_not_leaving": (
-        status.SPHERE_NOT_LEAVING,
+        outputs.SPHERE_NOT_LEAVING,
         "the duration ends before the sphere moves upwards and away from the beam",
     ),
     "deflection_still_growing": (
-        status.DEFLECTION_STILL_GROWING,
+        outputs.DEFLECTION_STILL_GROWING,
         "the largest deflection falls on the end of the duration",
     ),
     "indentation_still_growing": (
-        status.INDENTATION_STILL_GROWING,
+        outputs.INDENTATION_STILL_GROWING,
         "the largest indentation falls on the end of the duration",
     ),
     "energy_out_of_balance": (
-        status.ENERGY_OUT_OF_BALANCE,
+        outputs.ENERGY_OUT_OF_BALANCE,
         "energy is out of balance by more than 5 %: take more nodes or a smaller courant",
     ),
     "stopped": (
@@ -59,7 +59,7 @@ FAILURES: dict[str, tuple[int, str]] = {
 """Reasons for a missing response, by name: (bit in `status`, in words)."""
 MARKS: dict[str, tuple[int, str]] = {
     "outside_contact_law": (
-        status.OUTSIDE_CONTACT_LAW,
+        outputs.OUTSIDE_CONTACT_LAW,
         "the largest indentation is beyond the range of the contact law (which `contact` states): "
         "the responses are there, but extrapolated",
     ),
@@ -71,13 +71,13 @@ FAILED = sum(bit for bit, _ in FAILURES.values())
 """The bits of a run that failed."""
 _MARKED = sum(bit for bit, _ in MARKS.values())
 
-REMARKS: dict[str, tuple[int, str]] = {
+WARNINGS: dict[str, tuple[int, str]] = {
     "contact_created_energy": (
-        remarks.CONTACT_CREATED_ENERGY,
+        outputs.CONTACT_CREATED_ENERGY,
         "the contact law created energy: the contact dissipation is below zero",
     ),
     "contact_left_a_bulge": (
-        remarks.CONTACT_LEFT_A_BULGE,
+        outputs.CONTACT_LEFT_A_BULGE,
         "the contact law left a bulge: the permanent indentation is below zero",
     ),
 }
@@ -85,7 +85,7 @@ REMARKS: dict[str, tuple[int, str]] = {
 
 FLAGS: dict[str, tuple[str, dict[str, tuple[int, str]]]] = {
     "status": ("why responses are missing or to be taken with care (0: none is)", STATUS_FLAGS),
-    "remarks": ("what to know of the responses that are there (0: nothing)", REMARKS),
+    "remarks": ("what to know of the responses that are there (0: nothing)", WARNINGS),
 }
 """The variables made of bits: (long_name, flags)."""
 
@@ -106,74 +106,9 @@ class Variable:
     comment: str | None = None
 
 
-def _response(
-    name: str, units: str, long_name: str, missing: str | None = None, comment: str | None = None
-) -> Variable:
-    return Variable(name, (), units, long_name, missing, comment)
-
-
 RESPONSES: dict[str, Variable] = {
-    entry.name: entry
-    for entry in (
-        _response("peak_force", "N", "largest contact force", "indentation_still_growing"),
-        _response(
-            "time_of_peak_force",
-            "s",
-            "time of the largest contact force",
-            "indentation_still_growing",
-        ),
-        _response(
-            "contact_duration", "s", "duration of the first contact", "first_contact_unfinished"
-        ),
-        _response("number_of_contacts", "1", "contacts begun within the duration"),
-        _response("total_contact_time", "s", "time in contact, all contacts", "in_contact_at_end"),
-        _response("maximum_indentation", "m", "largest indentation", "indentation_still_growing"),
-        _response(
-            "permanent_indentation",
-            "m",
-            "indentation left after the last contact",
-            "in_contact_at_end",
-            "below zero where the contact law itself leaves a bulge, as Stronge's does for largest "
-            "indentations of 1 to 1.998 times that of first yield; `remarks` says so, too",
-        ),
-        _response(
-            "maximum_deflection", "m", "largest mid-span deflection", "deflection_still_growing"
-        ),
-        _response(
-            "impulse", "N s", "impulse of the contact force, all contacts", "in_contact_at_end"
-        ),
-        _response(
-            "rebound_velocity",
-            "m s-1",
-            "sphere's velocity away from the beam when the last contact ends",
-            "sphere_not_leaving",
-        ),
-        _response(
-            "restitution",
-            "1",
-            "coefficient of restitution (rebound over impact velocity)",
-            "sphere_not_leaving",
-        ),
-        _response("peak_plastic_strain", "1", "largest equivalent plastic strain (PEEQ)"),
-        _response(
-            "remote_plastic_strain",
-            "1",
-            "largest PEEQ farther than one beam depth from the impact",
-        ),
-        _response(
-            "plastic_zone_length", "m", "length of beam with a PEEQ above 1e-5 in the section"
-        ),
-        _response(
-            "contact_dissipation",
-            "J",
-            "energy dissipated in the contact",
-            "in_contact_at_end",
-            "below zero where the contact law itself creates energy, as Stronge's does for largest "
-            "indentations of 1 to 2.673 times that of first yield; `remarks` says so, too",
-        ),
-        _response("plastic_dissipation", "J", "energy dissipated in the fibres"),
-        _response("energy_error", "1", "largest energy imbalance over the initial kinetic energy"),
-    )
+    entry.name: Variable(entry.name, (), entry.units, entry.long_name, entry.missing, entry.comment)
+    for entry in outputs.RESPONSES
 }
 """The scalar answers of a run, by name."""
 
@@ -283,7 +218,7 @@ def contact_attributes(laws: Iterable[str]) -> dict[str, str]:
 
 def status_bits(responses: Iterable[str]) -> int:
     """The status bits that take these responses away: the whole run's, and each one's own."""
-    bits = status.DIVERGED | status.ENERGY_OUT_OF_BALANCE | _STOPPED
+    bits = outputs.DIVERGED | outputs.ENERGY_OUT_OF_BALANCE | _STOPPED
     for name in responses:
         if reason := RESPONSES[name].missing:
             bits |= STATUS_FLAGS[reason][0]
@@ -305,9 +240,9 @@ def marks(bits: int) -> list[str]:
     return [words for bit, words in MARKS.values() if bits & bit]
 
 
-def remarked(bits: int) -> list[str]:
+def warnings_in(bits: int) -> list[str]:
     """The flags of `remarks` in words, for a person."""
-    return [words for bit, words in REMARKS.values() if bits & bit]
+    return [words for bit, words in WARNINGS.values() if bits & bit]
 
 
 _PACKAGES = (

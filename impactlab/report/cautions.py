@@ -14,7 +14,7 @@ from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
 from impactlab.report.indices import numerical_warnings
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
-from impactlab.variables import MARKS, REMARKS
+from impactlab.variables import MARKS, WARNINGS
 
 _JUDGED = {
     "nodes_summary": "Not converged in nodes somewhere in the grid",
@@ -133,7 +133,7 @@ def _values(runs: xr.Dataset) -> Iterator[str]:
 def _remarks(runs: xr.Dataset) -> Iterator[str]:
     if "remarks" not in runs:
         return
-    for bit, text in REMARKS.values():
+    for bit, text in WARNINGS.values():
         if number := int(((runs["remarks"] & bit) != 0).sum()):
             yield f"In {number} of {count(runs)} runs {text}."
 

@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Column, Table
 
 from impactlab.study.quantities import amount, time
-from impactlab.variables import RESPONSES, marks, reasons, remarked
+from impactlab.variables import RESPONSES, marks, reasons, warnings_in
 from impactlab.verification.finding import Outcome, gravest_first
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _AXES = ("nodes", "points", "courant")
 def print_responses(run: Any) -> None:
     """Print the scalar responses of one run with their units, and why responses are missing.
 
-    run: a dataset of simulate, or one record of solver.responses.RESPONSE.
+    run: a dataset of simulate, or one record of solver.outputs.RESPONSE.
     """
     table = Table("response", "value", "unit", "meaning")
     for name, entry in RESPONSES.items():
@@ -41,7 +41,7 @@ def print_responses(run: Any) -> None:
     console.print(table)
     for reason in reasons(run["status"].item()):
         console.print(f"missing because {reason}; a longer duration may help", markup=False)
-    for note in (*marks(run["status"].item()), *remarked(run["remarks"].item())):
+    for note in (*marks(run["status"].item()), *warnings_in(run["remarks"].item())):
         console.print(f"note: {note}", markup=False)
 
 

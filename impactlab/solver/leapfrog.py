@@ -36,6 +36,7 @@ from impactlab.solver.fibre_plasticity import (
 )
 from impactlab.solver.jit import allocating, compiled
 from impactlab.solver.lumped import mid_span
+from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.solver.section import Section, make_section
 from impactlab.solver.stability import (
     critical_time_step,
@@ -43,7 +44,6 @@ from impactlab.solver.stability import (
     semi_implicit_time_step,
     timoshenko_time_step,
 )
-from impactlab.solver.status import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.solver.timoshenko import shear_stiffness
 from impactlab.solver.types import Array, Record
 
@@ -152,15 +152,15 @@ def _answer(
     contact: Record,
     events: Record,
 ) -> None:
-    """All responses, or none and why, at the end of a run that has not diverged."""
+    """Fill in all responses, or why there are none, after a run that has not diverged."""
     _, dissipated = plastic_energy(plastic_state, section, grid)
-    responses.clear(answer, 0)
+    answer.energy_error = events.energy_error
+    if events.energy_error > WORST_ENERGY_ERROR:
+        answer.status = ENERGY_OUT_OF_BALANCE
+        return
     responses.read_contact(answer, events, contact, pair)
     responses.read_rebound(answer, case, events)
     responses.read_beam(answer, case, events, plastic_state.peeq, grid, dissipated)
-    if events.energy_error > WORST_ENERGY_ERROR:
-        responses.clear(answer, ENERGY_OUT_OF_BALANCE)
-    answer.energy_error = events.energy_error
 
 
 @allocating
@@ -176,12 +176,12 @@ def run(
 ) -> None:
     """Solve one case.
 
-    case: a CASE record. answer: a RESPONSE record, filled. contact, events: zeros, of CONTACT and
-    EVENTS, for the run to work in. samples: shape (5, S), filled with
-    force, mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
-    intervals from 0 to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq
-    (n + 1, P // 2): filled with the half beam's final state; length 0 for none. A run that
-    diverges leaves NaN and its status.
+    case: a CASE record. answer: a blank RESPONSE record, filled. contact, events: zeros, of CONTACT
+    and EVENTS, for the run to work in. samples: shape (5, S), filled with force, mid-span
+    deflection, mid-span curvature, sphere displacement and indentation at S equal intervals from 0
+    to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq (n + 1, P // 2):
+    filled with the half beam's final state; length 0 for none. A run that diverges leaves NaN and
+    its status.
     """
     pair, section = make_pair(case), make_section(case)
     grid, steps = discretise(case, pair, section)
@@ -201,7 +201,7 @@ def run(
         steps,
     )
     if now < 0:
-        responses.clear(answer, DIVERGED)
+        answer.status = DIVERGED
         samples[:] = np.nan
         return
     _answer(answer, case, pair, section, grid, plastic_state, contact, events)

@@ -1,6 +1,7 @@
-"""The scalar answers of a run, read off what was watched and off the final state.
+"""The responses of a run, from the events of its march and its final state.
 
-Units and meanings: impactlab.variables.RESPONSES, which has the same names.
+Names, units and meanings: outputs.py. Each function fills the responses that the run can give into
+a blank record, and says in its bits why others are missing.
 """
 
 from __future__ import annotations
@@ -11,8 +12,9 @@ from impactlab.solver.beam import Grid
 from impactlab.solver.contact.history import Pair, energies
 from impactlab.solver.contact.switch import limit
 from impactlab.solver.jit import compiled
-from impactlab.solver.remarks import CONTACT_CREATED_ENERGY, CONTACT_LEFT_A_BULGE
-from impactlab.solver.status import (
+from impactlab.solver.outputs import (
+    CONTACT_CREATED_ENERGY,
+    CONTACT_LEFT_A_BULGE,
     DEFLECTION_STILL_GROWING,
     FIRST_CONTACT_UNFINISHED,
     IN_CONTACT_AT_END,
@@ -22,59 +24,10 @@ from impactlab.solver.status import (
 )
 from impactlab.solver.types import Array, Record
 
-ANSWERS = (
-    "peak_force",
-    "time_of_peak_force",
-    "contact_duration",
-    "number_of_contacts",
-    "total_contact_time",
-    "maximum_indentation",
-    "permanent_indentation",
-    "maximum_deflection",
-    "impulse",
-    "rebound_velocity",
-    "restitution",
-    "peak_plastic_strain",
-    "remote_plastic_strain",
-    "plastic_zone_length",
-    "contact_dissipation",
-    "plastic_dissipation",
-    "energy_error",
-)
-_BITS = ("status", "remarks")
-RESPONSE = np.dtype(
-    (np.record, [(name, np.int64) for name in _BITS] + [(name, float) for name in ANSWERS])
-)
-"""Record type of the answers; made of the bits of status.py and remarks.py, and of numbers."""
-
 PLASTIC_ZONE_STRAIN = 1e-5
 """PEEQ from which on a section counts as plastic."""
 _ROUNDING = 1e-9
 """Share of the loading work below which the contact has created no energy."""
-
-
-@compiled
-def clear(answer: Record, status: int) -> None:
-    """No answers, and the reason."""
-    answer.status = status
-    answer.remarks = 0
-    answer.peak_force = np.nan
-    answer.time_of_peak_force = np.nan
-    answer.contact_duration = np.nan
-    answer.number_of_contacts = np.nan
-    answer.total_contact_time = np.nan
-    answer.maximum_indentation = np.nan
-    answer.permanent_indentation = np.nan
-    answer.maximum_deflection = np.nan
-    answer.impulse = np.nan
-    answer.rebound_velocity = np.nan
-    answer.restitution = np.nan
-    answer.peak_plastic_strain = np.nan
-    answer.remote_plastic_strain = np.nan
-    answer.plastic_zone_length = np.nan
-    answer.contact_dissipation = np.nan
-    answer.plastic_dissipation = np.nan
-    answer.energy_error = np.nan
 
 
 @compiled

@@ -19,7 +19,7 @@ from impactlab.solver.contact.history import make_pair
 from impactlab.solver.leapfrog import discretise
 from impactlab.solver.section import make_section
 from impactlab.types import Floats
-from impactlab.variables import REMARKS
+from impactlab.variables import WARNINGS
 from impactlab.verification.finding import (
     Check,
     Comparison,
@@ -226,7 +226,7 @@ def _plastic(found: Audit) -> float:
 
 def _says(found: Audit) -> bool:
     """Whether the run says that its contact law created energy."""
-    return bool(found.run["remarks"].item() & REMARKS["contact_created_energy"][0])
+    return bool(found.run["remarks"].item() & WARNINGS["contact_created_energy"][0])
 
 
 def _never_negative(name: str, audits: list[Audit]) -> Comparison:

@@ -23,7 +23,7 @@ from rich.table import Table
 import impactlab as il
 from impactlab.simulate import case_table
 from impactlab.solver.leapfrog import run_all
-from impactlab.solver.responses import RESPONSE
+from impactlab.solver.outputs import blank
 from impactlab.study.execute import solve_batch
 from impactlab.study.solvers import impact
 from impactlab.study.store import OutputSpec, run_keys
@@ -55,7 +55,7 @@ class Line:
 def kernels(duration: float) -> Callable[[], object]:
     """The sum of the kernels: all that a batch has to compute."""
     cases = case_table(IMPACT, GRID, duration=duration, varied=VARIED)
-    answers = np.zeros(RUNS, dtype=RESPONSE)
+    answers = blank(RUNS)
     nothing = np.zeros((RUNS, 0)), np.zeros((RUNS, 0, 0)), np.zeros((RUNS, 0, 0))
     samples = np.zeros((RUNS, 5, 0))
     return lambda: run_all(cases, answers, samples, *nothing)

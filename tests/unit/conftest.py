@@ -20,7 +20,7 @@ from made_runs import (
 )
 
 from impactlab.solver.contact import LAWS
-from impactlab.solver.status import OUTSIDE_CONTACT_LAW
+from impactlab.solver.outputs import OUTSIDE_CONTACT_LAW
 from impactlab.variables import RESPONSES, described
 from impactlab.verification.finding import (
     Comparison,

@@ -23,9 +23,9 @@ from impactlab.variables import (
     HISTORIES,
     MARKS,
     PROFILES,
-    REMARKS,
     RESPONSES,
     STATUS_FLAGS,
+    WARNINGS,
     attributes,
     contact_attributes,
     described,
@@ -66,7 +66,7 @@ def test_responses_name_the_flags_that_make_them_missing():
         assert named <= set(STATUS_FLAGS)
 
 
-@pytest.mark.parametrize(("name", "flags"), [("status", STATUS_FLAGS), ("remarks", REMARKS)])
+@pytest.mark.parametrize(("name", "flags"), [("status", STATUS_FLAGS), ("remarks", WARNINGS)])
 def test_bits_are_cf_flags(name, flags):
     attrs = attributes(name)
     assert attrs["flag_meanings"].split() == list(flags)

@@ -10,7 +10,7 @@ import xarray as xr
 
 from impactlab.paper.statements import STATEMENTS, contact, convergence, judge_all, plasticity
 from impactlab.paper.statements.statement import Verdict
-from impactlab.solver import status
+from impactlab.solver import outputs
 
 Build = Callable[..., xr.Dataset]
 HOLDS, READING, FAILS, UNKNOWN = Verdict
@@ -183,7 +183,7 @@ def test_one_inaccurate_response_is_enough_to_fail(fig06: Any) -> None:
 def test_a_failed_run_is_reported_and_not_judged(fig08: Any) -> None:
     data = fig08()
     where = {"velocity": 5.0, "beam_model": "euler_bernoulli", "nodes": 601}
-    data["fig08"]["status"].loc[where] = status.DIVERGED
+    data["fig08"]["status"].loc[where] = outputs.DIVERGED
     (found,) = contact.DURATION_FALLS.judge(data)
     assert found.verdict == UNKNOWN
     assert "at 5 m/s 1 of 3 runs lack it: the run diverged" in found.why

@@ -16,9 +16,9 @@ from impactlab.variables import (
     FLAGS,
     HISTORIES,
     PROFILES,
-    REMARKS,
     RESPONSES,
     STATUS_FLAGS,
+    WARNINGS,
 )
 
 IMPACT = il.paper_impact(15.0)
@@ -48,7 +48,7 @@ def test_every_variable_has_units_and_a_long_name(run):
         assert run[name].attrs["long_name"], name
     assert run.status.attrs["long_name"]
     assert run.status.attrs["flag_meanings"].split() == list(STATUS_FLAGS)
-    assert run.remarks.attrs["flag_meanings"].split() == list(REMARKS)
+    assert run.remarks.attrs["flag_meanings"].split() == list(WARNINGS)
     assert run.status.attrs["flag_masks"].tolist() == list(BITS.values())
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import impactlab as il
 from impactlab.model.parameters import with_values
-from impactlab.variables import FAILURES, FLAGS, REMARKS, RESPONSES, STATUS_FLAGS, remarked
+from impactlab.variables import FAILURES, FLAGS, RESPONSES, STATUS_FLAGS, WARNINGS, warnings_in
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
@@ -20,12 +20,12 @@ BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
 def test_a_run_in_which_the_contact_law_creates_energy_says_so():
     """Stronge's law at 20 and at 990 mm/s: within and above 2.673 times the yield indentation."""
     run = il.simulate(il.paper_impact(0.02), GRID, duration=4e-3)
-    assert run.remarks.item() & REMARKS["contact_created_energy"][0]
+    assert run.remarks.item() & WARNINGS["contact_created_energy"][0]
     assert run.contact_dissipation < 0
     assert "creates energy" in run.contact_dissipation.attrs["comment"]
-    assert "created energy" in remarked(run.remarks.item())[0]
+    assert "created energy" in warnings_in(run.remarks.item())[0]
     assert il.simulate(il.paper_impact(0.99), GRID, duration=4e-3).remarks == 0
-    assert remarked(0) == []
+    assert warnings_in(0) == []
 
 
 WHOLE_RUN = {"diverged", "energy_out_of_balance", "stopped"}

@@ -8,12 +8,12 @@ import pytest
 
 import impactlab as il
 from impactlab.simulate import case_table, solve
-from impactlab.solver import status
+from impactlab.solver import outputs
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.leapfrog import WORST_ENERGY_ERROR, discretise
-from impactlab.solver.responses import ANSWERS
 from impactlab.solver.section import make_section
 from impactlab.solver.stability import critical_time_step
+from impactlab.variables import RESPONSES
 
 GRID = il.Discretisation(nodes=21, points=5)
 
@@ -65,7 +65,7 @@ def test_a_run_of_one_step_is_free_flight():
     assert steps_of(cases[0])[1] == 1
     answers = solve(cases, samples=2)
     assert answers.histories["sphere_displacement"][0, 1] == pytest.approx(10.0 * 1e-12, rel=1e-9)
-    assert answers.responses[0].status & status.INDENTATION_STILL_GROWING
+    assert answers.responses[0].status & outputs.INDENTATION_STILL_GROWING
 
 
 @pytest.mark.parametrize("courant", [1.1, 1.5, 5.0])
@@ -74,8 +74,8 @@ def test_a_run_that_diverges_gives_no_number_anywhere(courant):
     cases["courant"], cases["beam_yield_stress"] = courant, 200e9  # stays elastic
     answers = solve(cases, samples=50, profiles=True)
     (response,) = answers.responses
-    assert response.status == status.DIVERGED
-    assert np.isnan([response[name] for name in ANSWERS]).all()
+    assert response.status == outputs.DIVERGED
+    assert np.isnan([response[name] for name in RESPONSES]).all()
     for values in (answers.histories | answers.profiles).values():
         assert np.isnan(values).all()
 
@@ -87,23 +87,23 @@ def test_a_run_that_overflows_between_two_audits_has_diverged():
     cases["courant"] = 1e28
     assert 8 < steps_of(cases[0])[1] < 64
     (response,) = solve(cases).responses
-    assert response.status == status.DIVERGED
-    assert np.isnan([response[name] for name in ANSWERS]).all()
+    assert response.status == outputs.DIVERGED
+    assert np.isnan([response[name] for name in RESPONSES]).all()
 
 
 def test_a_run_out_of_balance_gives_its_energy_error_and_no_other_answer():
     """A contact that lasts a few steps: stable, but not accurate."""
     cases = table(contact=["hertz"], nodes=[5], courant=[0.9], sphere_mass=[0.05])
     (response,) = solve(cases).responses
-    assert response.status == status.ENERGY_OUT_OF_BALANCE
+    assert response.status == outputs.ENERGY_OUT_OF_BALANCE
     assert WORST_ENERGY_ERROR < response.energy_error < 1
-    assert [name for name in ANSWERS if not np.isnan(response[name])] == ["energy_error"]
+    assert [name for name in RESPONSES if not np.isnan(response[name])] == ["energy_error"]
 
 
 def test_a_failed_run_leaves_the_next_one_alone():
     good, bad = table(), table()
     bad["courant"] = 50.0
     responses = solve(np.concatenate([good, bad, good])).responses
-    assert responses["status"][1] == status.DIVERGED
+    assert responses["status"][1] == outputs.DIVERGED
     assert responses[0].tobytes() == responses[2].tobytes() == solve(good).responses.tobytes()
     assert np.isfinite(responses["peak_force"][0])

@@ -5,21 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.solver import remarks, status
+from impactlab.solver import outputs
 from impactlab.solver.beam import make_grid
 from impactlab.solver.contact.history import CONTACT, load, make_pair
 from impactlab.solver.event_tracker import EVENTS
+from impactlab.solver.outputs import RESPONSE, blank
 from impactlab.solver.responses import (
-    ANSWERS,
     PLASTIC_ZONE_STRAIN,
-    RESPONSE,
-    clear,
     read_beam,
     read_contact,
     read_rebound,
     share_above,
 )
-from impactlab.variables import RESPONSES
+from impactlab.variables import RESPONSES, STATUS_FLAGS
 
 DX = 0.01
 GRID = make_grid(20, DX, 1e-6, 13.0, 2e4)
@@ -33,9 +31,7 @@ def case(make_case):
 
 @pytest.fixture
 def answer():
-    record = np.zeros(1, RESPONSE)[0]
-    clear(record, 0)
-    return record
+    return blank(1)[0]
 
 
 @pytest.fixture
@@ -69,18 +65,14 @@ def peeq():
 
 
 def test_answers_are_the_responses_of_the_dataset():
-    assert list(RESPONSES) == list(ANSWERS)
-    assert RESPONSE.names == ("status", "remarks", *ANSWERS)
+    assert RESPONSE.names == ("status", "remarks", *RESPONSES)
 
 
-def test_clear_leaves_no_number_but_the_reason(answer):
-    for name in ANSWERS:
-        answer[name] = 1.0
-    answer.status, answer.remarks = status.IN_CONTACT_AT_END, 1
-    clear(answer, status.DIVERGED)
-    assert answer.remarks == 0
-    assert answer.status == status.DIVERGED
-    assert np.isnan([answer[name] for name in ANSWERS]).all()
+def test_blank_records_have_no_number_and_no_bit():
+    records = blank(2)
+    assert (records["status"] == 0).all()
+    assert (records["remarks"] == 0).all()
+    assert np.isnan([records[name] for name in RESPONSES]).all()
 
 
 def test_a_run_that_ended_well_gives_every_answer(answer, case, events, contact, peeq):
@@ -99,7 +91,7 @@ def test_a_run_that_ended_well_gives_every_answer(answer, case, events, contact,
     assert answer.maximum_deflection == 2e-4
     assert answer.plastic_dissipation == 0.7
     # the last one, energy_error, is the time loop's own
-    assert [name for name in ANSWERS if np.isnan(answer[name])] == ["energy_error"]
+    assert [name for name in RESPONSES if np.isnan(answer[name])] == ["energy_error"]
 
 
 @pytest.mark.parametrize(
@@ -123,8 +115,8 @@ def test_flaws_of_the_contact_law_are_marked(
     contact = np.zeros(1, CONTACT)[0]
     load(contact, pair, times * yield_indentation)
     read_contact(answer, events, contact, pair)
-    assert bool(answer.remarks & remarks.CONTACT_CREATED_ENERGY) == creates
-    assert bool(answer.remarks & remarks.CONTACT_LEFT_A_BULGE) == bulges
+    assert bool(answer.remarks & outputs.CONTACT_CREATED_ENERGY) == creates
+    assert bool(answer.remarks & outputs.CONTACT_LEFT_A_BULGE) == bulges
     assert (answer.permanent_indentation < 0) == bulges
     assert (answer.contact_dissipation < -1e-4 * contact.work) == creates
 
@@ -139,10 +131,10 @@ def test_no_remark_on_an_answer_that_is_missing(answer, make_case, events):
 
 
 UNFINISHED = {
-    "in contact": ({"touching": 1}, status.IN_CONTACT_AT_END | status.SPHERE_NOT_LEAVING),
-    "first contact": ({"t_first_end": np.nan}, status.FIRST_CONTACT_UNFINISHED),
-    "loading": ({"delta": 1e-4}, status.INDENTATION_STILL_GROWING),
-    "bending": ({"w": 3e-4}, status.DEFLECTION_STILL_GROWING),
+    "in contact": ({"touching": 1}, outputs.IN_CONTACT_AT_END | outputs.SPHERE_NOT_LEAVING),
+    "first contact": ({"t_first_end": np.nan}, outputs.FIRST_CONTACT_UNFINISHED),
+    "loading": ({"delta": 1e-4}, outputs.INDENTATION_STILL_GROWING),
+    "bending": ({"w": 3e-4}, outputs.DEFLECTION_STILL_GROWING),
 }
 
 
@@ -154,13 +146,13 @@ def test_what_is_missing_is_what_the_status_explains(
         events[name] = value
     read_everything(answer, case, events, contact, peeq)
     assert answer.status == bits
-    flags = {bit: name.lower() for name, bit in vars(status).items() if name.isupper()}
+    flags = {bit: name for name, (bit, _) in STATUS_FLAGS.items()}
     expected = {
         name
         for name, entry in RESPONSES.items()
         if any(entry.missing == flags[b] for b in split(bits))
     }
-    missing = {name for name in ANSWERS if np.isnan(answer[name])} - {"energy_error"}
+    missing = {name for name in RESPONSES if np.isnan(answer[name])} - {"energy_error"}
     assert missing == expected
 
 
@@ -179,7 +171,7 @@ def test_the_rebound_is_over_once_the_sphere_moves_up_and_away(
     events.v_s, events.v_mid = v_s, v_mid
     read_rebound(answer, case, events)
     assert np.isfinite(answer.rebound_velocity) == leaves
-    assert answer.status == (0 if leaves else status.SPHERE_NOT_LEAVING)
+    assert answer.status == (0 if leaves else outputs.SPHERE_NOT_LEAVING)
 
 
 def test_strains_of_the_beam(answer, case, events, peeq):

@@ -1,0 +1,115 @@
+"""What a run gives: its responses, and the bits that say what to know of them.
+
+A new response takes an entry in RESPONSES, and a line in responses.py that computes it. This file
+stays free of numba, so that responses can be listed without compiling anything.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from impactlab.solver.types import Array
+
+# The bits of `status` (in words: impactlab.variables.STATUS_FLAGS). All but the last say why an
+# answer is missing; the last leaves every answer, and marks them.
+DIVERGED = 1
+FIRST_CONTACT_UNFINISHED = 2
+IN_CONTACT_AT_END = 4
+SPHERE_NOT_LEAVING = 8
+DEFLECTION_STILL_GROWING = 16
+INDENTATION_STILL_GROWING = 32
+ENERGY_OUT_OF_BALANCE = 64
+OUTSIDE_CONTACT_LAW = 128
+
+# The bits of `remarks`: warnings on answers that are there (impactlab.variables.WARNINGS).
+CONTACT_CREATED_ENERGY = 1
+CONTACT_LEFT_A_BULGE = 2
+
+
+@dataclass(frozen=True)
+class Response:
+    """A scalar answer of a run: its name, unit (UDUNITS) and meaning.
+
+    missing: the status flag that explains why it is NaN (besides those of the whole run).
+    comment: what a reader of the number has to know.
+    """
+
+    name: str
+    units: str
+    long_name: str
+    missing: str | None = None
+    comment: str | None = None
+
+
+RESPONSES = (
+    Response("peak_force", "N", "largest contact force", "indentation_still_growing"),
+    Response(
+        "time_of_peak_force",
+        "s",
+        "time of the largest contact force",
+        "indentation_still_growing",
+    ),
+    Response("contact_duration", "s", "duration of the first contact", "first_contact_unfinished"),
+    Response("number_of_contacts", "1", "contacts begun within the duration"),
+    Response("total_contact_time", "s", "time in contact, all contacts", "in_contact_at_end"),
+    Response("maximum_indentation", "m", "largest indentation", "indentation_still_growing"),
+    Response(
+        "permanent_indentation",
+        "m",
+        "indentation left after the last contact",
+        "in_contact_at_end",
+        "below zero where the contact law itself leaves a bulge, as Stronge's does for largest "
+        "indentations of 1 to 1.998 times that of first yield; `remarks` says so, too",
+    ),
+    Response("maximum_deflection", "m", "largest mid-span deflection", "deflection_still_growing"),
+    Response("impulse", "N s", "impulse of the contact force, all contacts", "in_contact_at_end"),
+    Response(
+        "rebound_velocity",
+        "m s-1",
+        "sphere's velocity away from the beam when the last contact ends",
+        "sphere_not_leaving",
+    ),
+    Response(
+        "restitution",
+        "1",
+        "coefficient of restitution (rebound over impact velocity)",
+        "sphere_not_leaving",
+    ),
+    Response("peak_plastic_strain", "1", "largest equivalent plastic strain (PEEQ)"),
+    Response(
+        "remote_plastic_strain",
+        "1",
+        "largest PEEQ farther than one beam depth from the impact",
+    ),
+    Response("plastic_zone_length", "m", "length of beam with a PEEQ above 1e-5 in the section"),
+    Response(
+        "contact_dissipation",
+        "J",
+        "energy dissipated in the contact",
+        "in_contact_at_end",
+        "below zero where the contact law itself creates energy, as Stronge's does for largest "
+        "indentations of 1 to 2.673 times that of first yield; `remarks` says so, too",
+    ),
+    Response("plastic_dissipation", "J", "energy dissipated in the fibres"),
+    Response("energy_error", "1", "largest energy imbalance over the initial kinetic energy"),
+)
+"""Every response, in the order of datasets and reports."""
+
+RESPONSE = np.dtype(
+    (
+        np.record,
+        [(name, np.int64) for name in ("status", "remarks")]
+        + [(response.name, float) for response in RESPONSES],
+    )
+)
+"""Record type of the answers: the bits of status and warnings, and the responses."""
+
+
+def blank(runs: int) -> Array:
+    """Return the RESPONSE records of as many runs, every response missing and no bit set."""
+    records = np.zeros(runs, RESPONSE)
+    for response in RESPONSES:
+        records[response.name] = np.nan
+    return records

@@ -1,0 +1,24 @@
+"""The bits that runs give, and their names."""
+
+from __future__ import annotations
+
+import pytest
+
+from impactlab.solver import outputs
+from impactlab.variables import STATUS_FLAGS, WARNINGS
+
+STOPPED = 256
+"""Of the 3-D model, which has no kernel."""
+
+
+@pytest.mark.parametrize("flags", [STATUS_FLAGS, WARNINGS])
+def test_every_bit_has_one_name_and_no_two_share_a_bit(flags):
+    bits = {name: bit for name, (bit, _) in flags.items()}
+    kernels = {name: getattr(outputs, name.upper(), STOPPED) for name in flags}
+    assert kernels == bits
+    assert sorted(bits.values()) == [2**power for power in range(len(bits))]
+
+
+def test_no_bit_of_the_kernels_is_without_a_name():
+    bits = {name for name, value in vars(outputs).items() if name.isupper() and type(value) is int}
+    assert bits == {name.upper() for name in (*STATUS_FLAGS, *WARNINGS)} - {"STOPPED"}
