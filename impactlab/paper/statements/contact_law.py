@@ -50,7 +50,7 @@ def _judge_radius(case: str, exponent: float) -> Judgement:
     number = Number("largest jump of the force over F_m", worst, "1")
     stands = abs(worst) <= EQUAL
     why = (
-        "Loading and unloading meet, which they do with this form alone."
+        "Loading and unloading forces agree, with this form alone."
         if stands
         else "The force would jump where unloading begins."
     )
@@ -151,11 +151,11 @@ def _judge_restitution(data: Data) -> Iterator[Judgement]:
 
 RESTITUTION = Statement(
     "restitution",
-    text="Unloading with force continuity (Eqs. 15 to 17) returns a part of the energy.",
+    text="Unloading with force continuity (Eqs. 15 to 17) returns part of the energy.",
     test=(
         "The coefficient of restitution of the contact alone is at most 1 for every "
         "1 < δ_m/δ_y < 300."
     ),
     judge=_judge_restitution,
-    holds="above 1 over a range of small δ_m/δ_y: the law itself creates energy there",
+    holds="the coefficient is above 1 for small δ_m/δ_y: the law itself creates energy there",
 )

@@ -71,7 +71,7 @@ TIME_STEP = Statement(
     ),
     judge=_judge_time_step,
     holds=(
-        "dt ≤ (dx²/2) √(ρA/(EI)q), (EI)q the stiffness that the integration rule really has; with "
+        "dt ≤ (dx²/2) √(ρA/(EI)q), (EI)q the stiffness that the integration rule gives; with "
         "the contact ω² ≤ 16 (EI)q/(ρA dx⁴) + k (1/(ρA dx) + 1/m)"
     ),
 )
@@ -96,7 +96,7 @@ BEAM_MASS = Statement(
     text="The beam has a mass of 10.929 kg (Table 2).",
     test="ρ B H L, of the paper's density and sizes, agrees with the printed mass within 0.5 %.",
     judge=_judge_beam_mass,
-    holds="10.148 kg; 840 mm of the beam would have 10.929 kg",
+    holds="10.148 kg; a beam of 840 mm would have 10.929 kg",
 )
 
 
@@ -119,7 +119,7 @@ def _judge_few_points(data: Data) -> Iterator[Judgement]:
 
 FEW_POINTS = Statement(
     "few_points",
-    text="Two integration points give the section (“P = 2 suffices”).",
+    text="Two integration points represent the section (“P = 2 suffices”).",
     test=(
         "The rule's elastic stiffness B Σ E w z² and its full plastic moment B Σ σ_y w |z| agree "
         "within 5 % with E B H³/12 and σ_y B H²/4."
@@ -150,5 +150,5 @@ SUB_IMPACTS = Statement(
     test="The runs of figure 5 have one contact each.",
     judge=_judge_sub_impacts,
     studies=(CONTACTS_STUDY,),
-    holds="an impact holds several sub-impacts: say which contact is meant (here: the first)",
+    holds="an impact has several sub-impacts: state which contact is meant (here the first)",
 )

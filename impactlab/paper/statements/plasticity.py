@@ -119,7 +119,10 @@ def _judge_below_limit(data: Data) -> Iterator[Judgement]:
 BELOW_LIMIT_AT_10 = Statement(
     "below_limit_at_10",
     text="At 10 m/s the plastic strain along the beam stays below 0.2 %.",
-    test="PEEQ + U < 0.2 %; it does not hold where PEEQ − U > 0.2 %, and is open in between.",
+    test=(
+        "PEEQ + U < 0.2 %; it does not hold where PEEQ − U > 0.2 %, and cannot be judged in "
+        "between."
+    ),
     judge=_judge_below_limit,
     studies=(LATE, EARLY),
 )
@@ -137,7 +140,7 @@ ABOVE_LIMIT_AT_15 = Statement(
     text="At 15 and 20 m/s the plastic strain is above 0.2 % away from the impact, too.",
     test=(
         "PEEQ − U > 0.2 % farther than one beam depth from mid-span; it does not hold where "
-        "PEEQ + U < 0.2 %, and is open in between."
+        "PEEQ + U < 0.2 %, and cannot be judged in between."
     ),
     judge=_judge_above_limit,
     studies=(LATE, EARLY),

@@ -164,9 +164,9 @@ DISPLACEMENT_OF_WITNESS = Statement(
     ),
     test=(
         "d = max over time of |w(beam) − w(3-D)|, over the largest |w(3-D)|, on the finest grids; "
-        "U: three times the same between each model's own two finest grids. They "
-        "“agree” with d + U ≤ 10 %, and have “deviations” with d − U > 0. The paper gives no "
-        "number: 10 % is ours."
+        "U: three times the same between the two finest grids of each model. The models “agree” "
+        "where d + U ≤ 10 %, with “deviations” where d − U > 0. The paper gives no number: 10 % is "
+        "ours."
     ),
     judge=_judge_displacements,
     studies=(FIRST_CONTACT, MESHES),

@@ -19,6 +19,11 @@ AXES = {
     "nodes": [151, 301, 601],
     "element_size": [1e-3, 0.75e-3, 0.5e-3],
 }
+BEAM_AND_SOLID = (
+    three_d.FORCE_OF_WITNESS,
+    three_d.DURATION_OF_WITNESS,
+    three_d.DISPLACEMENT_OF_WITNESS,
+)
 
 
 @pytest.fixture
@@ -80,11 +85,7 @@ def test_element_counts_per_radius_replace_element_sizes(witness: Any) -> None:
     runs = data["witness"].rename(element_size="elements_per_radius")
     sizes = runs["elements_per_radius"].values
     counted = {"witness": runs.assign_coords(elements_per_radius=2e-3 / sizes)}
-    for statement in (
-        three_d.FORCE_OF_WITNESS,
-        three_d.DURATION_OF_WITNESS,
-        three_d.DISPLACEMENT_OF_WITNESS,
-    ):
+    for statement in BEAM_AND_SOLID:
         for one, other in zip(statement.judge(data), statement.judge(counted), strict=True):
             assert one.verdict == other.verdict
             for mine, its in zip(one.numbers, other.numbers, strict=True):
@@ -119,11 +120,7 @@ def test_the_plastic_zone(witness: Any) -> None:
 
 
 def test_a_missing_study_or_run_is_reported(witness: Any) -> None:
-    for statement in (
-        three_d.FORCE_OF_WITNESS,
-        three_d.DURATION_OF_WITNESS,
-        three_d.DISPLACEMENT_OF_WITNESS,
-    ):
+    for statement in BEAM_AND_SOLID:
         assert {*verdicts(statement.judge({}))} == {UNKNOWN}
     data = witness()
     data["witness"]["peak_force"].loc[{"velocity": 5.0, "beam_model": "solid"}] = np.nan
