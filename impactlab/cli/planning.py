@@ -36,11 +36,11 @@ def allowed(
 
 def _found(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy:
     """The study, with the discretisation that trials have found for it, where they have."""
-    from impactlab.study.adaptive.recommendation import fits, resolved
+    from impactlab.study.adaptive.recommendation import apply_recommendation, fits
     from impactlab.study.netcdf import read_netcdf
     from impactlab.study.schema.study import FunctionStudy
 
     if isinstance(study, FunctionStudy) or study.auto is None or not evidence.exists():
         return study
     found = read_netcdf(evidence)
-    return resolved(study, found) if fits(found, study) else study
+    return apply_recommendation(study, found) if fits(found, study) else study

@@ -25,7 +25,7 @@ def settled(study: Study | FunctionStudy, evidence: Path, engine: Engine) -> Stu
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
     from impactlab.report.console import print_recommendation
-    from impactlab.study.adaptive.recommendation import recommend, resolved
+    from impactlab.study.adaptive.recommendation import apply_recommendation, recommend
     from impactlab.study.netcdf import write_netcdf
 
     found = _kept(study, evidence)
@@ -34,7 +34,7 @@ def settled(study: Study | FunctionStudy, evidence: Path, engine: Engine) -> Stu
         found = recommend(study, evidence.with_name(TRIALS), engine)
         write_netcdf(found, evidence)
     print_recommendation(found)
-    return resolved(study, found)
+    return apply_recommendation(study, found)
 
 
 def settled_before(study: Study | FunctionStudy, evidence: Path) -> Study | FunctionStudy | None:
@@ -43,10 +43,10 @@ def settled_before(study: Study | FunctionStudy, evidence: Path) -> Study | Func
 
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
-    from impactlab.study.adaptive.recommendation import resolved
+    from impactlab.study.adaptive.recommendation import apply_recommendation
 
     found = _kept(study, evidence)
-    return None if found is None else resolved(study, found)
+    return None if found is None else apply_recommendation(study, found)
 
 
 def _kept(study: Study, evidence: Path) -> xr.Dataset | None:

@@ -1,1 +1,1 @@
-"""Decisions made from answers: what to solve next, and when it is enough."""
+"""Decisions from answers: the runs to solve next, and when they are enough."""

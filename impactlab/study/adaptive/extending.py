@@ -1,7 +1,6 @@
 """A Sobol sample that is doubled until its intervals are narrow enough.
 
-The sample is nested: the runs of N base samples are the first ones of 2 N, so that none is solved
-in vain.
+The sample is nested: the runs of N base samples are the first ones of 2 N, so none is wasted.
 """
 
 from __future__ import annotations
@@ -21,35 +20,36 @@ Step = Callable[[xr.Dataset], xr.Dataset]
 
 
 def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
-    """The runs of the smallest sample whose intervals are as narrow as asked.
+    """Return the runs of the smallest sample whose intervals are as narrow as requested.
 
-    design: of a Sobol study with `until`. solve: makes the runs of a design; analyse: makes
+    design: of a Sobol study with `until`. solve: returns the runs of a design; analyse: returns
     first_order_interval, total_order_interval (response, parameter) and sensitivity_verdict
     (response) of runs.
 
-    Returns runs with the attributes until_reached (1: the intervals are as asked), until_reason
-    (why it stopped, in words), until_widest (the widest half-width) and of what it is,
-    until_widest_index, until_widest_response and until_widest_parameter, and until_left_out:
-    which responses had no say, and why, a line each. Raises ValueError when this version of
-    impactlab draws other runs than the design has.
+    Attributes of the runs are until_reached (1: the intervals are narrow enough), until_reason (why
+    it stopped, in words), until_widest (the largest half-width) and its index, response and
+    parameter, until_widest_index, until_widest_response and until_widest_parameter, and
+    until_left_out: one line per response without indices, with the reason. Raises ValueError when
+    this version of impactlab draws other runs than the design has.
     """
     while True:
         runs = solve(design)
-        found = widest(analyse(runs.assign_attrs(analyses="sensitivity")), _asked(design))
-        reason = _enough(design, found)
+        analysis = analyse(runs.assign_attrs(analyses="sensitivity"))
+        found = largest_interval(analysis, _requested(design))
+        reason = _reason_to_stop(design, found)
         log.info("%d runs: %s", runs.sizes["run"], reason or f"{found}: twice as many")
         if reason:
-            return runs.assign_attrs(_said(design, found, reason))
+            return runs.assign_attrs(_attributes(design, found, reason))
         design = doubled(design)
 
 
-def _asked(design: xr.Dataset) -> list[str]:
+def _requested(design: xr.Dataset) -> list[str]:
     names = design.attrs.get("until_responses", design.attrs["responses"])
     return [str(name) for name in np.atleast_1d(names)]
 
 
-def _enough(design: xr.Dataset, found: Widest) -> str:
-    """Why not to go on; "" where the sample is to be doubled."""
+def _reason_to_stop(design: xr.Dataset, found: LargestInterval) -> str:
+    """Return why to stop; "" where the sample is to be doubled."""
     interval, most = float(design.attrs["until_interval"]), int(design.attrs["until_runs"])
     if not found.response:
         return "no response has indices that more runs could narrow"
@@ -60,7 +60,7 @@ def _enough(design: xr.Dataset, found: Widest) -> str:
     return ""
 
 
-def _said(design: xr.Dataset, found: Widest, reason: str) -> dict[str, Any]:
+def _attributes(design: xr.Dataset, found: LargestInterval, reason: str) -> dict[str, Any]:
     return {
         "until_reached": int(found.half_width <= float(design.attrs["until_interval"])),
         "until_reason": reason,
@@ -76,10 +76,10 @@ _INDICES = ("first_order", "total_order")
 
 
 @dataclass(frozen=True)
-class Widest:
-    """Half-width of the widest interval, and of which index it is.
+class LargestInterval:
+    """The half-width of the largest interval, and its index, response and parameter.
 
-    NaN and empty names where no response has indices. left_out: the responses without, each with
+    They are NaN and empty where no response has indices. left_out: the responses without, each with
     the reason.
     """
 
@@ -90,7 +90,7 @@ class Widest:
     left_out: tuple[str, ...]
 
     def __str__(self) -> str:
-        """In words."""
+        """Return the interval in words."""
         if not self.response:
             return "no interval"
         return (
@@ -99,22 +99,22 @@ class Widest:
         )
 
 
-def widest(analysis: xr.Dataset, responses: Sequence[str]) -> Widest:
-    """Of the first and total-order indices of these responses.
+def largest_interval(analysis: xr.Dataset, responses: Sequence[str]) -> LargestInterval:
+    """Return the largest interval of the first and total-order indices of these responses.
 
-    analysis: <index>_interval on (response, parameter), without any number for a response that
-    is given no index, and sensitivity_verdict (response), which says why.
+    analysis: <index>_interval on (response, parameter), NaN for a response without indices, and
+    sensitivity_verdict (response) with the reason.
     """
-    asked = analysis.sel(response=list(responses))
-    found = asked[[f"{name}_interval" for name in _INDICES]].to_array("index")
+    requested = analysis.sel(response=list(responses))
+    found = requested[[f"{name}_interval" for name in _INDICES]].to_array("index")
     found = found.transpose("index", "response", "parameter")
     without = np.isnan(found.values).all(axis=(0, 2))
-    left_out = tuple(_reason(asked, name) for name in np.array(responses)[without])
+    left_out = tuple(_verdict(requested, name) for name in np.array(responses)[without])
     if without.all():
-        return Widest(np.nan, "", "", "", left_out)
+        return LargestInterval(np.nan, "", "", "", left_out)
     given = found.isel(response=~without).fillna(np.inf)
     index, response, parameter = np.unravel_index(given.values.argmax(), given.shape)
-    return Widest(
+    return LargestInterval(
         float(given.values[index, response, parameter]),
         _INDICES[index],
         str(given["response"].values[response]),
@@ -123,8 +123,8 @@ def widest(analysis: xr.Dataset, responses: Sequence[str]) -> Widest:
     )
 
 
-def _reason(analysis: xr.Dataset, response: str) -> str:
-    """The response with its verdict's description ("name: words") from the flags."""
+def _verdict(analysis: xr.Dataset, response: str) -> str:
+    """Return the response with its verdict's description ("name: words") from the flags."""
     verdicts = analysis["sensitivity_verdict"]
     lines = str(verdicts.attrs["flag_descriptions"]).splitlines()
     described = dict(zip(np.atleast_1d(verdicts.attrs["flag_values"]), lines, strict=True))

@@ -17,26 +17,30 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.simulate import case_table
 from impactlab.study.schema.study import Study
 
+Array = NDArray[np.float64]
+AXES = ("nodes", "points", "courant")
+FLOOR = 0.1
+"""Uncertainties are relative to the value, or to this share of the largest over the cases."""
 _COARSEST, _FINEST = 50, 800
-"""Spans between nodes: the finer the last rung, the less has to be added for what lies beyond."""
+"""Elements over the span: the finer the last level, the smaller the error that remains."""
 _POINTS = (3, 5, 7, 9, 13, 17, 25)
 _COURANTS = (0.9, 0.45, 0.225)
 
 
 @dataclass(frozen=True)
-class Ladders:
-    """Rungs of each axis, rising in cost."""
+class Levels:
+    """Refinement levels of each axis, in order of rising cost."""
 
     nodes: tuple[int, ...]
     points: tuple[int, ...]
     courant: tuple[float, ...]
 
 
-def ladders(own: Discretisation) -> Ladders:
-    """The rungs to try for a study of this discretisation.
+def refinement_levels(own: Discretisation) -> Levels:
+    """Return the levels to try for a study of this discretisation.
 
-    Spacings fall by half, with one about half-way between. The study's own, a half and a quarter
-    of it are among them, if need be beyond the finest: its error is told from finer ones.
+    Spacings are halved, with one level about half-way between. The study's own spacing, half of it
+    and a quarter are levels, too, even beyond the finest: finer levels show its error.
     """
     spans = {(own.nodes - 1) * factor for factor in (1, 2, 4)}
     at = _COARSEST
@@ -44,29 +48,24 @@ def ladders(own: Discretisation) -> Ladders:
         spans |= {at, 3 * at // 4 * 2}
         at *= 2
     most = max(_FINEST, 4 * (own.nodes - 1))
-    return Ladders(
+    return Levels(
         tuple(sorted(each + 1 for each in spans if each <= most)),
         tuple(sorted({*_POINTS, own.points})),
         tuple(sorted({own.courant / factor for factor in (1, 2, 4)} | {*_COURANTS}, reverse=True)),
     )
 
 
-Array = NDArray[np.float64]
-
-AXES = ("nodes", "points", "courant")
-
-
 def uncertainty(values: xr.DataArray, axis: str) -> xr.DataArray:
-    """Of the value on every rung, in its unit, infinite where nothing can be said.
+    """Return the uncertainty of the value on every level, in its unit, infinite where unknown.
 
-    values: on (response, case, axis), the rungs rising in cost. Points and time step are judged
-    by the differences to the costliest rung: once fibres yield, the error falls by no power of the
-    points; and what the time step changes at fixed nodes is too little (some 1e-6) and too
+    values: on (response, case, axis), the levels in order of rising cost. Points and time step are
+    judged by the differences to the costliest level: once fibres yield, the error is no power of
+    the points; and changes with the time step at fixed nodes are too small (about 1e-6) and too
     irregular for one.
     """
     finest_first = values.isel({axis: slice(None, None, -1)})
-    rungs = finest_first[axis].values.astype(float)
-    judge = partial(_by_spacing, nodes=rungs) if axis == "nodes" else points.numerical_uncertainty
+    levels = finest_first[axis].values.astype(float)
+    judge = partial(_by_spacing, nodes=levels) if axis == "nodes" else points.numerical_uncertainty
     found: xr.DataArray = xr.apply_ufunc(
         judge, finest_first, input_core_dims=[[axis]], output_core_dims=[[axis]], vectorize=True
     )
@@ -77,28 +76,27 @@ def _by_spacing(values: Array, nodes: Array) -> Array:
     return numerical_uncertainty(values, 1.0 / (nodes - 1.0)).amounts
 
 
-FLOOR = 0.1
-"""Uncertainties are relative to the value, or to this share of the largest over the cases."""
 _POINT_COST = 0.05
-"""What a further integration point adds to the cost of a run, relative to its node-steps, where
-fibres yield; measured on the paper's beam at 15 and 20 m/s (tests/benchmarks/kernel.py)."""
+"""Cost of one more integration point, relative to the node-steps of a run where fibres yield;
+measured on the paper's beam at 15 and 20 m/s (tests/benchmarks/kernel.py)."""
 
 
-def candidates(found: xr.Dataset, study: Study, tolerance: float) -> dict[str, xr.DataArray]:
-    """The combinations of the rungs of `found`, the cheapest first.
+def grid_options(found: xr.Dataset, study: Study, tolerance: float) -> dict[str, xr.DataArray]:
+    """Return all combinations of the levels of `found`, the cheapest first.
 
-    Returns on (candidate): candidate_nodes, candidate_points, candidate_courant and candidate_cost,
-    relative to the study's own discretisation; candidate_uncertainty (response, candidate),
-    relative, the worst over the cases; reached (response), whether one meets the tolerance.
+    Variables on (candidate): candidate_nodes, candidate_points, candidate_courant and
+    candidate_cost, relative to the study's own discretisation; candidate_uncertainty (response,
+    candidate), relative, the worst over the cases; reached (response), whether one meets the
+    tolerance.
     """
-    rungs = np.array(list(product(*(found[axis].values for axis in AXES))), dtype=float)
+    levels = np.array(list(product(*(found[axis].values for axis in AXES))), dtype=float)
     own = study.discretisation
-    price = np.array([_cost(study, *rung) for rung in rungs.tolist()])
+    price = np.array([_cost(study, *level) for level in levels.tolist()])
     price /= _cost(study, own.nodes, own.points, own.courant)
     order = np.argsort(price, kind="stable")
     columns = {
         axis: xr.DataArray(column, dims="candidate")
-        for axis, column in zip(AXES, rungs[order].T, strict=True)
+        for axis, column in zip(AXES, levels[order].T, strict=True)
     }
     parts = [_worst(found, axis).sel({axis: columns[axis]}).drop_vars(axis) for axis in AXES]
     worst = (parts[0] + parts[1] + parts[2]).transpose("response", "candidate")
@@ -110,7 +108,10 @@ def candidates(found: xr.Dataset, study: Study, tolerance: float) -> dict[str, x
 
 
 def cheapest(found: xr.Dataset, tolerance: float) -> int:
-    """The first candidate that is good enough wherever one is; -1 where none is for anything."""
+    """Return the first option that is fine enough for all requested responses that any is for.
+
+    Returns -1 where no option is fine enough for any response.
+    """
     wanted = found["asked"] & found["reached"]
     if not bool(wanted.any()):
         return -1
@@ -120,7 +121,7 @@ def cheapest(found: xr.Dataset, tolerance: float) -> int:
 
 
 def relative(amount: xr.DataArray, value: xr.DataArray) -> xr.DataArray:
-    """Amounts over values, these at least FLOOR of the largest; nothing over nothing is nothing."""
+    """Return amounts over values, these at least FLOOR of the largest; 0 over 0 is 0."""
     size = abs(value)
     floor = FLOOR * size.max("case")
     scale = size.where(size > floor, floor)

@@ -23,6 +23,7 @@ from impactlab.analysis.convergence.axis import without_limit
 from impactlab.analysis.responses import usable
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten
+from impactlab.study.adaptive.levels import AXES
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.sampling.grid import Grid
@@ -30,47 +31,51 @@ from impactlab.study.schema.study import Study
 from impactlab.variables import described
 
 Cases = Mapping[str, Sequence[Value]]
+_ALL = 4
+"""Most numbers of which all corners are taken."""
+_TAIL = 0.005
+"""Probability of either tail of a distribution without end, whose quantiles are its extremes."""
 
 
 class Answered(NamedTuple):
     """Responses of all cases along an axis of the discretisation.
 
     values: on (response, case, axis), NaN where a run failed, in SI units; without_limit: on
-    (response, case), where the model itself has none along this axis.
+    (response, case), True where the model itself does not converge along this axis.
     """
 
     values: xr.DataArray
     without_limit: xr.DataArray
 
 
-class Trials:
-    """Solves the corner cases of a study with other discretisations; what is solved is kept."""
+class PilotRuns:
+    """The corner cases of a study, solved with other discretisations; solved runs are kept."""
 
     def __init__(self, study: Study, cases: Cases, folder: Path, engine: Engine) -> None:
-        """cases: values by parameter, one a case; folder: for the shards."""
+        """Take the cases, one value per case and parameter, and the folder for the shards."""
         self._study, self._cases, self._folder, self._engine = study, cases, folder, engine
 
-    def along(self, axis: str, rungs: Sequence[float], at: Discretisation) -> Answered:
-        """The answers with these values of nodes, points or courant.
+    def along(self, axis: str, levels: Sequence[float], at: Discretisation) -> Answered:
+        """Return the answers with these values of nodes, points or courant.
 
-        rungs: the values; the other two are those of `at`. Raises OSError when the disk is full or
+        levels: the values; the other two are those of `at`. Raises OSError when the disk is full or
         no scheduler answers.
         """
-        runs = execute(self._design(axis, rungs, at), self._folder, self._engine)
+        runs = execute(self._design(axis, levels, at), self._folder, self._engine)
         values = usable(runs).transpose("response", "case", axis)
         without = without_limit(runs, values, axis, axis)
         labels = [name for name in values.coords if name not in values.dims]
         others = [name for name in labels if values[name].dims != ("response",)]
         return Answered(values.drop_vars(others), without.drop_vars(others, errors="ignore"))
 
-    def _design(self, axis: str, rungs: Sequence[float], at: Discretisation) -> xr.Dataset:
+    def _design(self, axis: str, levels: Sequence[float], at: Discretisation) -> xr.Dataset:
         study = replace(self._study, discretisation=at)
         scalars = flatten(study.impact, study.discretisation) | {"duration": study.duration}
         count = len(next(iter(self._cases.values()), [None]))
         varied: dict[str, Any] = {
             name: ("case", np.array(values)) for name, values in self._cases.items()
         }
-        varied |= {"case": np.arange(count), axis: (axis, np.array(rungs))}
+        varied |= {"case": np.arange(count), axis: (axis, np.array(levels))}
         attrs = {
             "study": study.name,
             "varied": [*self._cases, axis],
@@ -83,20 +88,13 @@ class Trials:
         return described(xr.Dataset(coords=scalars_kept | varied, attrs=attrs))
 
 
-_ALL = 4
-"""Up to so many numbers all corners are taken."""
-_TAIL = 0.005
-"""Where a distribution has no end, its extremes are the quantiles of this and of its complement."""
-NUMERICS = ("nodes", "points", "courant")
-"""What the discretisation is sought in: not varied between cases."""
-
-
 def corner_cases(study: Study) -> dict[str, list[Value]]:
-    """Values by parameter, one a case: numbers at their extremes and in the middle, each word.
+    """Return one value per parameter and case: numbers at extremes and middle, and all words.
 
-    Where only the discretisation is varied, the study's own impact is the one case.
+    Nodes, points and courant are not varied. Where nothing else is, the study's own impact is the
+    one case.
     """
-    ends = {name: values for name, values in _extremes(study).items() if name not in NUMERICS}
+    ends = {name: values for name, values in _extremes(study).items() if name not in AXES}
     words = {name: values for name, values in ends.items() if isinstance(values[0], str)}
     numbers = {name: values for name, values in ends.items() if name not in words}
     signs = corners(len(numbers))
@@ -115,7 +113,7 @@ def corner_cases(study: Study) -> dict[str, list[Value]]:
 
 
 def corners(count: int) -> NDArray[np.int64]:
-    """Signs (cases, count) of the corners of a cube, or of some, and the middle (zeros) last."""
+    """Return the signs (cases, count) of all or some corners of a cube; the middle (0) is last."""
     middle = np.zeros((1, count), dtype=np.int64)
     if count == 0:
         return middle
@@ -128,20 +126,20 @@ def corners(count: int) -> NDArray[np.int64]:
 
 
 def _extremes(study: Study) -> Mapping[str, Sequence[Any]]:
-    """(least, middle, greatest) of each number, all words of the others."""
+    """Return (least, middle, greatest) of each number, and all words of the others."""
     sampling = study.sampling
     if isinstance(sampling, Grid):
-        return {name: _of_values(values) for name, values in sampling.parameters.items()}
-    chances = np.array([_TAIL, 0.5, 1.0 - _TAIL])
+        return {name: _listed(values) for name, values in sampling.parameters.items()}
+    probabilities = np.array([_TAIL, 0.5, 1.0 - _TAIL])
     found = {}
     for name, given in sampling.varied.items():
-        low, middle, high = given.quantile(chances).tolist()
+        low, middle, high = given.quantile(probabilities).tolist()
         ends = given.bounds()
         found[name] = (ends.get("low", low), middle, ends.get("high", high))
     return found
 
 
-def _of_values(values: Sequence[Any]) -> Sequence[Any]:
+def _listed(values: Sequence[Any]) -> Sequence[Any]:
     if isinstance(values[0], str):
         return values
     ordered = sorted(values)

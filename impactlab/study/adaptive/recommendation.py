@@ -20,14 +20,14 @@ from impactlab.model.parameters import with_values
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.adaptive.levels import (
     AXES,
-    Ladders,
-    candidates,
+    Levels,
     cheapest,
-    ladders,
+    grid_options,
+    refinement_levels,
     relative,
     uncertainty,
 )
-from impactlab.study.adaptive.pilot_runs import Trials, corner_cases
+from impactlab.study.adaptive.pilot_runs import PilotRuns, corner_cases
 from impactlab.study.engine import Engine
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.schema.model import Auto
@@ -37,19 +37,19 @@ from impactlab.variables import provenance
 
 
 def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
-    """Try discretisations on the corner cases: which is fine enough for these responses?
+    """Return the recommended discretisation and its evidence, from pilot runs on corner cases.
 
-    folder: for the shards of the trials. wishes: tolerance, and the responses that it is asked
-    of; without it the study's own, or else 1 % of all.
+    folder: for the shards of the pilot runs. wishes: tolerance, and the responses that have to meet
+    it; by default the study's own, or else 1 % for all.
 
-    Returns, for each axis (nodes, points, courant), <axis>_value and <axis>_uncertainty on
-    (response, case, axis) in the unit of the response, infinite where nothing can be said; what
-    adaptive.candidates tells of every combination of rungs; `asked` (response); `recommended`, the
-    cheapest candidate that meets the tolerance for every asked response that any candidate meets
-    it for, -1 where there is none; check_difference (response, case), from the recommended
-    candidate to the last rung of all axes at once, an independent check of the sum.
-    grid_uncertainty (response, case) and grid_relative (response) are of the study's grid, the
-    recommended one where its own is to be found; attributes grid_nodes, grid_points and
+    For each axis (nodes, points, courant), <axis>_value and <axis>_uncertainty are on (response,
+    case, axis) in the unit of the response, infinite where unknown. All combinations of levels are
+    as `levels.grid_options` returns them. `asked` (response) is True for requested responses;
+    `recommended` is the cheapest candidate that meets the tolerance for every requested response
+    for which any candidate does, -1 where there is none. check_difference (response, case) lies
+    between the recommended candidate and the last level of all axes at once: an independent check
+    of the sum. grid_uncertainty (response, case) and grid_relative (response) belong to the study's
+    grid, the recommended one where it is to be found; attributes grid_nodes, grid_points and
     grid_courant name it. Raises OSError when the disk is full, no scheduler answers, or another
     process works in `folder`.
     """
@@ -57,10 +57,10 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
     impact, grid = with_values(study.impact, study.discretisation, study.sampling.fixed)
     study = replace(study, impact=impact, discretisation=grid)
     cases = corner_cases(study)
-    trials = Trials(study, cases, folder, engine)
-    asked = wishes.responses or study.responses
-    with locked(folder):  # over all trials
-        found = _tried(study, trials, ladders(study.discretisation), wishes.tolerance, asked)
+    pilots = PilotRuns(study, cases, folder, engine)
+    levels, responses = refinement_levels(grid), wishes.responses or study.responses
+    with locked(folder):  # over all pilot runs
+        found = _evidence(study, pilots, levels, wishes.tolerance, responses)
     labels = {name: ("case", np.array(values)) for name, values in cases.items()}
     attrs: dict[str, Any] = {
         "study": study.name,
@@ -68,14 +68,14 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
         "kernels_sha256": SOURCES_HASH,
         "tolerance": wishes.tolerance,
     }
-    chosen = recommended(found, grid) if study.auto else grid
-    found = found.assign(_of_the_study(found, chosen))
+    chosen = recommended_grid(found, grid) if study.auto else grid
+    found = found.assign(_grid_uncertainty(found, chosen))
     attrs |= {f"grid_{axis}": getattr(chosen, axis) for axis in AXES if chosen}
     return found.assign_coords(labels).assign_attrs(attrs | provenance())
 
 
-def recommended(found: xr.Dataset, base: Discretisation) -> Discretisation | None:
-    """The base with nodes, points and courant of the recommended candidate; None: there is none."""
+def recommended_grid(found: xr.Dataset, base: Discretisation) -> Discretisation | None:
+    """Return the base with nodes, points and courant of the recommended candidate, or None."""
     at = int(found["recommended"])
     if at < 0:
         return None
@@ -83,8 +83,8 @@ def recommended(found: xr.Dataset, base: Discretisation) -> Discretisation | Non
     return replace(base, nodes=int(nodes), points=int(points), courant=courant)
 
 
-def _of_the_study(found: xr.Dataset, grid: Discretisation | None) -> dict[str, xr.DataArray]:
-    """The numerical uncertainty of a grid on the ladders; nothing where there is no grid."""
+def _grid_uncertainty(found: xr.Dataset, grid: Discretisation | None) -> dict[str, xr.DataArray]:
+    """Return the numerical uncertainty of a grid on the levels; nothing without a grid."""
     if grid is None:
         return {}
     parts = [
@@ -95,76 +95,78 @@ def _of_the_study(found: xr.Dataset, grid: Discretisation | None) -> dict[str, x
     return {"grid_uncertainty": amount, "grid_relative": relative(amount, last).max("case")}
 
 
-def _tried(
-    study: Study, trials: Trials, rungs: Ladders, tolerance: float, responses: Collection[str]
+def _evidence(
+    study: Study, pilots: PilotRuns, levels: Levels, tolerance: float, responses: Collection[str]
 ) -> xr.Dataset:
     own = study.discretisation
-    found = xr.Dataset(_axis(trials, "nodes", rungs.nodes, own))
+    found = xr.Dataset(_axis(pilots, "nodes", levels.nodes, own))
     asked = found["response"].isin(list(responses))
-    middle = replace(own, nodes=_enough(found, asked, tolerance))
-    found = found.assign(_axis(trials, "points", rungs.points, middle))
-    found = found.assign(_axis(trials, "courant", rungs.courant, middle)).assign(asked=asked)
-    found = found.assign(candidates(found, study, tolerance))
+    middle = replace(own, nodes=_fewest_nodes(found, asked, tolerance))
+    found = found.assign(_axis(pilots, "points", levels.points, middle))
+    found = found.assign(_axis(pilots, "courant", levels.courant, middle)).assign(asked=asked)
+    found = found.assign(grid_options(found, study, tolerance))
     found = found.assign(recommended=cheapest(found, tolerance))
-    return found.assign(check_difference=_check(found, trials, rungs, own))
+    return found.assign(check_difference=_check(found, pilots, levels, own))
 
 
 def _axis(
-    trials: Trials, axis: str, rungs: tuple[float, ...], at: Discretisation
+    pilots: PilotRuns, axis: str, levels: tuple[float, ...], at: Discretisation
 ) -> dict[str, xr.DataArray]:
-    values, without_limit = trials.along(axis, rungs, at)
+    values, without_limit = pilots.along(axis, levels, at)
     amounts = uncertainty(values, axis).where(~without_limit, np.inf)
     return {f"{axis}_value": values, f"{axis}_uncertainty": amounts}
 
 
-def _enough(found: xr.Dataset, asked: xr.DataArray, tolerance: float) -> int:
-    """The fewest nodes that do for all asked responses that any number of nodes does for."""
+def _fewest_nodes(found: xr.Dataset, asked: xr.DataArray, tolerance: float) -> int:
+    """Return the fewest nodes that suffice for all requested responses for which any do."""
     worst = relative(found["nodes_uncertainty"], found["nodes_value"].isel(nodes=-1)).max("case")
     meets = worst <= tolerance
     enough = (meets | ~meets.any("nodes") | ~asked).all("response")
     return int(found["nodes"].values[np.argmax(enough.values)])
 
 
-def _check(found: xr.Dataset, trials: Trials, rungs: Ladders, own: Discretisation) -> xr.DataArray:
-    """How far the recommended candidate lies from the last rungs, NaN where there is none."""
-    chosen = recommended(found, own)
-    last = replace(own, points=rungs.points[-1], courant=rungs.courant[-1])
+def _check(
+    found: xr.Dataset, pilots: PilotRuns, levels: Levels, own: Discretisation
+) -> xr.DataArray:
+    """Return the distance from the recommended candidate to the last levels, or NaN without one."""
+    chosen = recommended_grid(found, own)
+    last = replace(own, points=levels.points[-1], courant=levels.courant[-1])
     if chosen is None:
         return xr.full_like(found["nodes_value"].isel(nodes=0, drop=True), np.nan)
-    ours = trials.along("nodes", (chosen.nodes,), chosen).values
-    theirs = trials.along("nodes", rungs.nodes[-1:], last).values
+    ours = pilots.along("nodes", (chosen.nodes,), chosen).values
+    theirs = pilots.along("nodes", levels.nodes[-1:], last).values
     return abs(ours.isel(nodes=0, drop=True) - theirs.isel(nodes=0, drop=True))
 
 
 def fits(found: xr.Dataset, study: Study) -> bool:
-    """Whether trials were made for this very study, by these kernels."""
+    """Return True if a recommendation was made for this very study, by these kernels."""
     same = found.attrs.get("study_sha256") == study.sha256
     return same and found.attrs.get("kernels_sha256") == SOURCES_HASH
 
 
-def resolved(study: Study, found: xr.Dataset) -> Study:
-    """The study with the discretisation that its trials recommend (see `recommend`).
+def apply_recommendation(study: Study, found: xr.Dataset) -> Study:
+    """Return the study with its recommended discretisation (see `recommend`).
 
-    Raises StudyError where no discretisation meets the tolerance for an asked response, naming
-    what comes nearest; ValueError where the study asks for none.
+    Raises StudyError where no discretisation meets the tolerance for a requested response, naming
+    the nearest; ValueError where the study's discretisation is not `auto`.
     """
     auto = study.auto
     if auto is None:
-        raise ValueError(f"{study.path}: its discretisation is stated: there is none to find")
+        raise ValueError(f"{study.path}: its discretisation is given, so there is none to find")
     if missed := _unreached(found):
-        most, told = int(found["nodes"].max()), ", ".join(missed)
+        most, listed = int(found["nodes"].max()), ", ".join(missed)
         reason = (
-            f"no discretisation up to {most} nodes meets {100 * auto.tolerance:g} % for {told}: "
+            f"no discretisation up to {most} nodes meets {100 * auto.tolerance:g} % for {listed}: "
             "raise tolerance, or list other responses under discretisation.auto.responses"
         )
         raise StudyError(Problem(str(study.path), "discretisation.auto", reason))
-    grid = recommended(found, study.discretisation)
-    assert grid is not None  # something is asked, and all of it is reached
+    grid = recommended_grid(found, study.discretisation)
+    assert grid is not None  # some response is requested, and all are reached
     return replace(study, discretisation=grid, auto=None)
 
 
 def _unreached(found: xr.Dataset) -> list[str]:
-    """The asked responses that no candidate is good enough for, with the least uncertainty."""
+    """Return the requested responses that no candidate resolves, with the least uncertainty."""
     missed = found["response"].values[(found["asked"] & ~found["reached"]).values]
     least = found["candidate_uncertainty"].min("candidate")
     return [f"{name} ({_percent(least.sel(response=name).item())})" for name in missed]

@@ -1,4 +1,4 @@
-"""The first base samples of a Sobol sample once more, on other grids."""
+"""The first base samples of a Sobol sample, solved again on other grids."""
 
 from __future__ import annotations
 
@@ -13,23 +13,22 @@ from impactlab.study.solvers import solver_of
 MOST, FEWEST, SHARE = 64, 16, 8
 """Base samples that are solved again: at most, at least, and as a share (1/SHARE) of all."""
 COARSEST = 25
-"""Nodes from which on a coarser grid still resembles the beam."""
+"""Fewest nodes of a coarser grid that still resembles the beam."""
 Solve = Callable[[xr.Dataset], xr.Dataset]
 
 
 def refined(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr.Dataset:
-    """The first base samples on the grid of the runs and on others, everything else the same.
+    """Return the first base samples on the grid of the runs and on others, all else unchanged.
 
-    runs: a Sobol sample of impacts, as in runs.nc. solve: makes the runs of a design; it is given
-    the grid of the runs, too. count: base samples to
-    solve again; None: see `base_samples`.
+    runs: a Sobol sample of impacts, as in runs.nc. solve: returns the runs of a design, which
+    includes the grid of the runs. count: base samples to solve again; None: see `base_samples`.
 
-    Returns runs on (run, grid), SI units, with the attributes of a Sobol sample of so many
+    The result is on (run, grid), in SI units, with the attributes of a Sobol sample of so many
     base_samples without second order. `grid` is "used"; "finer", with half the spacing (and at the
     same courant a smaller time step); "more_points" over the depth, nearly twice as many; and
     "coarser", with about twice the spacing, where that leaves COARSEST nodes; nodes and points
-    (grid) tell each. Raises ValueError where the runs are no such sample, OSError when the disk is
-    full or no scheduler answers.
+    (grid) describe each. Raises ValueError where the runs are no such sample, OSError when the disk
+    is full or no scheduler answers.
     """
     _check(runs)
     names = [str(name) for name in np.atleast_1d(runs.attrs["varied"])]
@@ -46,7 +45,7 @@ def refined(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr.Data
 
 
 def base_samples(whole: int) -> int:
-    """How many of a sample's base samples are solved again: a small part of the work, but enough.
+    """Return the number of base samples that are solved again, out of those of a sample.
 
     The half-width of the changes falls with the square root of the number.
     """
@@ -54,7 +53,7 @@ def base_samples(whole: int) -> int:
 
 
 def _grids(nodes: int, points: int) -> dict[str, tuple[int, int]]:
-    """Nodes and points of each grid, by name."""
+    """Return nodes and points of each grid, by name."""
     grids = {
         "used": (nodes, points),
         "finer": (2 * nodes - 1, points),
@@ -65,9 +64,9 @@ def _grids(nodes: int, points: int) -> dict[str, tuple[int, int]]:
 
 
 def _first(runs: xr.Dataset, count: int | None) -> xr.Dataset:
-    """The runs of the first base samples: those at A, at A with a column of B each, and at B.
+    """Return the runs of the first base samples: at A, at A with one column of B each, and at B.
 
-    What else the second order takes, B with columns of A, comes between the last two.
+    The other runs of the second order, B with columns of A, are stored between the last two.
     """
     whole = int(runs.attrs["base_samples"])
     step, second = runs.sizes["run"] // whole, int(runs.attrs["second_order"])
@@ -75,8 +74,8 @@ def _first(runs: xr.Dataset, count: int | None) -> xr.Dataset:
     wanted = [*range(factors + 1), step - 1]
     count = min(whole, count or base_samples(whole))
     places = np.add.outer(step * np.arange(count), wanted).ravel()
-    said: dict[str, Any] = {"base_samples": count, "second_order": 0}
-    return runs.isel(run=places).assign_attrs(said)
+    attrs: dict[str, Any] = {"base_samples": count, "second_order": 0}
+    return runs.isel(run=places).assign_attrs(attrs)
 
 
 def _check(runs: xr.Dataset) -> None:
@@ -87,4 +86,4 @@ def _check(runs: xr.Dataset) -> None:
             "refined"
         )
     if solver_of(runs) != "impact":
-        raise ValueError(f"study {name!r}: its runs are no impacts: there is no grid to refine")
+        raise ValueError(f"study {name!r}: its runs are not impacts, so they have no grid")

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.analyse import analyse
-from impactlab.study.adaptive.extending import extended, widest
+from impactlab.study.adaptive.extending import extended, largest_interval
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 
@@ -156,7 +156,7 @@ def analysis():
 
 
 def test_the_widest_is_named(analysis):
-    found = widest(analysis, ["force", "still", "time"])
+    found = largest_interval(analysis, ["force", "still", "time"])
     assert found.half_width == 0.5
     assert (found.index, found.response, found.parameter) == ("first_order", "force", "a")
     assert found.left_out == ("still (constant: does not vary)",)
@@ -166,18 +166,18 @@ def test_the_widest_is_named(analysis):
 
 
 def test_only_what_is_asked_counts(analysis):
-    found = widest(analysis, ["time"])
+    found = largest_interval(analysis, ["time"])
     assert (found.half_width, found.index, found.parameter) == (0.4, "first_order", "b")
     assert found.left_out == ()
 
 
 def test_total_order_counts_too(analysis):
     analysis["first_order_interval"] *= 0
-    assert widest(analysis, ["time", "force"]).index == "total_order"
+    assert largest_interval(analysis, ["time", "force"]).index == "total_order"
 
 
 def test_without_any_index_there_is_none(analysis):
-    found = widest(analysis, ["still"])
+    found = largest_interval(analysis, ["still"])
     assert math.isnan(found.half_width)
     assert (found.index, found.response, found.parameter) == ("", "", "")
     assert found.left_out == ("still (constant: does not vary)",)
@@ -185,5 +185,5 @@ def test_without_any_index_there_is_none(analysis):
 
 def test_a_gap_among_numbers_is_not_narrow(analysis):
     analysis["total_order_interval"][2, 1] = np.nan
-    found = widest(analysis, ["force", "time"])
+    found = largest_interval(analysis, ["force", "time"])
     assert (found.half_width, found.response, found.parameter) == (math.inf, "time", "b")

@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 
 from impactlab.study.adaptive import recommendation
-from impactlab.study.adaptive.recommendation import fits, recommend, recommended, resolved
+from impactlab.study.adaptive.recommendation import (
+    apply_recommendation,
+    fits,
+    recommend,
+    recommended_grid,
+)
 from impactlab.study.engine import Engine
 from impactlab.study.errors import StudyError
 from impactlab.study.sampling.design import design
@@ -54,12 +59,12 @@ def test_nobody_gets_between_two_trials(study, tmp_path, monkeypatch):
     def looking(*_):
         raise OSError(holder(tmp_path / "trials"))
 
-    monkeypatch.setattr(recommendation, "_tried", looking)
+    monkeypatch.setattr(recommendation, "_evidence", looking)
     with pytest.raises(OSError, match=f"process {os.getpid()} on "):
         recommend(study(PLASTIC), tmp_path / "trials", Engine())
 
 
-def test_every_rungs_uncertainty_holds_the_exact_solution(found):
+def test_every_levels_uncertainty_holds_the_exact_solution(found):
     trials, study = found
     for case, velocity in enumerate(trials["velocity"].values):
         exact = modal.solve(replace(study.impact, velocity=float(velocity)), 3e-4)
@@ -71,7 +76,7 @@ def test_every_rungs_uncertainty_holds_the_exact_solution(found):
 
 def test_the_cheapest_that_is_good_enough(found):
     trials, study = found
-    grid = recommended(trials, study.discretisation)
+    grid = recommended_grid(trials, study.discretisation)
     best = int(trials["recommended"])
     enough = (trials["candidate_uncertainty"] <= 0.01).all("response").values
     assert enough[best]
@@ -98,12 +103,12 @@ def test_auto_becomes_what_was_recommended(study, tmp_path):
     with pytest.raises(StudyError, match="find it before the runs are drawn"):
         design(declared)
     trials = recommend(declared, tmp_path / "trials", Engine(workers=2))
-    settled = resolved(declared, trials)
+    resolved = apply_recommendation(declared, trials)
     assert fits(trials, declared)
     assert not fits(trials, replace(declared, text="another"))
-    assert settled.discretisation == recommended(trials, declared.discretisation)
-    assert settled.discretisation.rule == "legendre"
-    runs = design(settled)
+    assert resolved.discretisation == recommended_grid(trials, declared.discretisation)
+    assert resolved.discretisation.rule == "legendre"
+    runs = design(resolved)
     assert runs["nodes"].item() == trials.attrs["grid_nodes"]
     assert (trials["grid_relative"] <= 0.01).all()
 
@@ -112,7 +117,7 @@ def test_what_cannot_be_reached_is_named(study, tmp_path):
     declared = study(PLASTIC)
     trials = recommend(declared, tmp_path / "trials", Engine(workers=2))
     with pytest.raises(StudyError) as caught:
-        resolved(declared, trials)
+        apply_recommendation(declared, trials)
     (problem,) = caught.value.args
     assert problem.key == "discretisation.auto"
     assert "meets 10 % for peak_plastic_strain" in problem.reason
