@@ -1,4 +1,4 @@
-"""The one door to the kernels: one impact with its histories, or many for their responses."""
+"""The only entry to the kernels: one impact with its histories, or many for their responses."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ Columns = dict[str, np.ndarray[Any, Any]]
 
 @dataclass(frozen=True)
 class Answers:
-    """What the kernels gave for R runs.
+    """The kernels' results of R runs.
 
     responses: record array (R,) of solver.outputs.RESPONSE. histories: name -> (R, samples).
     profiles: name -> (R, nodes, points), or (R, nodes) for the deflection. Both may be empty.
@@ -57,7 +57,7 @@ class Answers:
     profiles: dict[str, np.ndarray[Any, Any]]
 
     def columns(self) -> Columns:
-        """Every response, history and profile by name, each of shape (R, ...)."""
+        """Return every response, history and profile by name, each of shape (R, ...)."""
         names = self.responses.dtype.names or ()
         responses = {name: self.responses[name].copy() for name in names}
         return responses | self.histories | self.profiles
@@ -103,7 +103,7 @@ def simulate_many(
 ) -> xr.Dataset:
     """Solve many impacts for their responses, on one thread.
 
-    varied: parameter name (see impactlab.model.parameters.PARAMETERS) -> one value a run, all of
+    varied: parameter name (see impactlab.model.parameters.PARAMETERS) -> one value per run, all of
     the same length. Returns a Dataset of every response, `status` and `remarks` on `run`, the
     varied parameters as coordinates.
 
@@ -131,7 +131,7 @@ def case_table(
     varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]] | None = None,
     first_run: int = 0,
 ) -> np.ndarray[Any, Any]:
-    """The kernels' table of cases, one record (solver.types.CASE) a run; each run is checked.
+    """Return the kernels' table of cases, one record (solver.types.CASE) per run; check each run.
 
     first_run: the number that messages give the first one.
 
@@ -141,10 +141,10 @@ def case_table(
     varied = varied or {}
     for name, values in varied.items():
         if isinstance(values, str) or np.ndim(values) != 1:
-            raise ValueError(f"varied: {name} = {values!r}: must be a list with one value a run")
+            raise ValueError(f"varied: {name} = {values!r}: must be a list with one value per run")
     lengths = {len(values) for values in varied.values()}
     if len(lengths) > 1:
-        raise ValueError(f"varied: every parameter needs one value a run, got lengths {lengths}")
+        raise ValueError(f"varied: every parameter needs one value per run, got lengths {lengths}")
     try:
         columns = {name: column(values) for name, values in varied.items()}
         many = with_values(impact, discretisation, columns)
@@ -182,7 +182,7 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
 def answer_variables(
     answers: Mapping[str, Any], responses: tuple[str, ...], dims: tuple[str, ...]
 ) -> dict[str, tuple[tuple[str, ...], Any]]:
-    """The answers as data variables on `dims` (for one run: none), the asked responses only.
+    """Return the answers as data variables on `dims` (for one run: none), only these responses.
 
     answers: arrays of numpy or dask, by name.
 
@@ -201,12 +201,12 @@ def answer_variables(
 
 
 def sample_coordinates(duration: float, samples: int) -> dict[str, Any]:
-    """The `time` coordinate of histories with this many samples."""
+    """Return the `time` coordinate of histories with this many samples."""
     return {"time": np.linspace(0.0, duration, samples)}
 
 
 def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[str, Any]:
-    """The `x` and `z` coordinates (m) of fields along the beam."""
+    """Return the `x` and `z` coordinates (m) of fields along the beam."""
     beam = impact.beam
     points = rule_points(discretisation.rule, discretisation.points)
     return {
@@ -216,7 +216,7 @@ def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[
 
 
 def _plain(value: Any) -> Value:
-    """numpy scalars as the Python values that the model checks."""
+    """Return NumPy scalars as the Python values that the model checks."""
     plain: Value = value.item() if isinstance(value, np.generic) else value
     return plain
 
@@ -227,7 +227,7 @@ def _one_by_one(
     varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]],
     first_run: int,
 ) -> Iterator[tuple[Impact, Discretisation]]:
-    """The impact of every run. Raises ValueError naming the first one that the model refuses."""
+    """Yield the impact of every run. Raises ValueError naming the first one the model refuses."""
     for run, row in enumerate(zip(*varied.values(), strict=True), first_run):
         values = dict(zip(varied, map(_plain, row), strict=True))
         try:
@@ -239,7 +239,7 @@ def _one_by_one(
 def _table(
     impact: Impact, discretisation: Discretisation, duration: float, runs: int
 ) -> np.ndarray[Any, Any]:
-    """The records of as many runs as the columns in the impact are long, or one for all."""
+    """Return the records of as many runs as the impact's columns are long, or one for all."""
     if anywhere(np.equal(impact.beam_model, SOLID)):
         raise ValueError(
             f"Impact.beam_model = {SOLID!r}: is no model of the kernels: use `impactlab witness`, "
@@ -256,7 +256,7 @@ def _table(
 
 
 def _compatible(cases: np.ndarray[Any, Any], first_run: int) -> np.ndarray[Any, Any]:
-    """The cases, none of which asks for a scheme that its model of the beam does not have."""
+    """Return the cases unless one asks for a scheme that its beam model does not have."""
     leapfrog_only = cases["beam_model"] > BEAM_MODELS.index("elastic")
     wrong = np.flatnonzero(leapfrog_only & (cases["scheme"] != SCHEMES.index("leapfrog")))
     if wrong.size:
@@ -274,7 +274,7 @@ def _whole_beam(
     peeq: np.ndarray[Any, Any],
     points: int,
 ) -> dict[str, np.ndarray[Any, Any]]:
-    """Half beams with half depths, outermost fibre first, mirrored to whole ones."""
+    """Return whole beams from half beams with half depths, outermost fibre first."""
     return {
         "equivalent_plastic_strain": _mirror(_depth(peeq, 1.0, points)),
         "plastic_strain": _mirror(_depth(plastic_strain, -1.0, points)),
@@ -287,7 +287,7 @@ def _mirror(half: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:
-    """From fibres z > 0, outermost first, to all fibres in ascending z."""
+    """Return all fibres in ascending z, from those of z > 0, outermost first."""
     axis = np.abs(0.0 * lower[:, :, : points % 2])  # NaN where a run diverged, as all else
     upper = sign * lower + 0.0  # no -0.0
     return np.concatenate([upper, axis, lower[:, :, ::-1]], axis=2)

@@ -64,9 +64,9 @@ MARKS: dict[str, tuple[int, str]] = {
         "the responses are there, but extrapolated",
     ),
 }
-"""What else `status` says, by name: bits that leave every response as it is."""
+"""Further flags of `status`, by name: bits that leave every response as it is."""
 STATUS_FLAGS = FAILURES | MARKS
-"""All that `status` can say."""
+"""All flags of `status`."""
 FAILED = sum(bit for bit, _ in FAILURES.values())
 """The bits of a run that failed."""
 _MARKED = sum(bit for bit, _ in MARKS.values())
@@ -81,7 +81,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "the contact law left a bulge: the permanent indentation is below zero",
     ),
 }
-"""What to know of responses that are there, by name: (bit in `remarks`, in words)."""
+"""Warnings on responses that are there, by name: (bit in `remarks`, in words)."""
 
 FLAGS: dict[str, tuple[str, dict[str, tuple[int, str]]]] = {
     "status": ("why responses are missing or to be taken with care (0: none is)", STATUS_FLAGS),
@@ -174,7 +174,7 @@ VARIABLES = RESPONSES | WITNESS | HISTORIES | PROFILES | COORDINATES
 
 
 def attributes(name: str) -> dict[str, Any]:
-    """CF attributes of a variable, a parameter or a name of FLAGS. Raises KeyError if unknown."""
+    """Return CF attributes of a variable, parameter or flag. Raises KeyError if unknown."""
     if name in FLAGS:
         long_name, flags = FLAGS[name]
         return {
@@ -192,7 +192,7 @@ def attributes(name: str) -> dict[str, Any]:
 
 
 def described(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset with the attributes of the table on every variable that the table knows."""
+    """Return the dataset with the table's attributes on every variable that the table knows."""
     known = VARIABLES | PARAMETERS | FLAGS
     for name, variable in dataset.variables.items():
         if name in known:
@@ -204,7 +204,7 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def contact_attributes(laws: Iterable[str]) -> dict[str, str]:
-    """Attributes of `contact` on these laws, a line each: source, range, flaws and doubts."""
+    """Return the attributes of `contact`: source, range, flaws and doubts, one line per law."""
     found = [(law, CONTACT_LAWS[law]) for law in laws]
     texts = {
         "source": [(law, about.source) for law, about in found],
@@ -217,7 +217,7 @@ def contact_attributes(laws: Iterable[str]) -> dict[str, str]:
 
 
 def status_bits(responses: Iterable[str]) -> int:
-    """The status bits that take these responses away: the whole run's, and each one's own."""
+    """Return the status bits that take these responses away: the whole run's and each one's own."""
     bits = outputs.DIVERGED | outputs.ENERGY_OUT_OF_BALANCE | _STOPPED
     for name in responses:
         if reason := RESPONSES[name].missing:
@@ -226,22 +226,22 @@ def status_bits(responses: Iterable[str]) -> int:
 
 
 def kept_bits(responses: Iterable[str]) -> int:
-    """The status bits that matter to who asks for these responses: status_bits and the marks."""
+    """Return the status bits that matter to these responses: status_bits and the marks."""
     return status_bits(responses) | _MARKED
 
 
 def reasons(bits: int) -> list[str]:
-    """The failures of a status in words, for a person."""
+    """Return the failures of a status in words."""
     return [words for bit, words in FAILURES.values() if bits & bit]
 
 
 def marks(bits: int) -> list[str]:
-    """The marks of a status in words, for a person."""
+    """Return the marks of a status in words."""
     return [words for bit, words in MARKS.values() if bits & bit]
 
 
 def warnings_in(bits: int) -> list[str]:
-    """The flags of `remarks` in words, for a person."""
+    """Return the flags of `remarks` in words."""
     return [words for bit, words in WARNINGS.values() if bits & bit]
 
 
@@ -251,7 +251,7 @@ _PACKAGES = (
 
 
 def provenance() -> dict[str, str]:
-    """Where numbers come from: versions, source revision, time and class of processor."""
+    """Return where numbers come from: versions, source revision, time and class of processor."""
     return {
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "versions": _versions(),
@@ -272,7 +272,7 @@ def _versions() -> str:
 
 @cache
 def _revision(here: Path) -> str:
-    """The commit of the source tree, marked when it has changes; "release" outside a checkout."""
+    """Return the source tree's commit, marked if it has changes; "release" outside a checkout."""
     command = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
     if not (here.parent / ".git").exists():
         return f"release {version('impactlab')}"

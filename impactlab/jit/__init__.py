@@ -1,4 +1,4 @@
-"""How numbers are made fast: functions compiled by numba and kept on disk."""
+"""Functions compiled by numba and kept on disk."""
 
 import os
 

@@ -171,7 +171,7 @@ def _read(path: Path) -> bytes | None:
 
 
 def _write(path: Path, payload: bytes) -> None:
-    """Put checksum and payload into a file, all of it or nothing."""
+    """Write checksum and payload into a file, all of it or nothing."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.{uuid4().hex}")
     try:

@@ -1,1 +1,1 @@
-"""What is struck, by what, how fast, and how finely it is cut: frozen, SI, checked when made."""
+"""The model of an impact and its discretisation: frozen, self-checking dataclasses in SI units."""

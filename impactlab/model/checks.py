@@ -15,7 +15,7 @@ _MOST = 2**31 - 1
 
 
 def number(owner: str, field: str, value: Any) -> float:
-    """`value` as a finite float. Raises ValueError naming `owner.field` otherwise."""
+    """Return `value` as a finite float. Raises ValueError naming `owner.field` otherwise."""
     if isinstance(value, Column):
         sound = value.dtype.kind == "f" and bool(np.isfinite(value).all())
     else:
@@ -27,21 +27,21 @@ def number(owner: str, field: str, value: Any) -> float:
 
 
 def positive(owner: str, field: str, value: Any) -> float:
-    """`value` as a finite float above zero, or a ValueError naming the field."""
+    """Return `value` as a finite float above zero, or raise ValueError naming the field."""
     if anywhere((result := number(owner, field, value)) <= 0):
         raise ValueError(f"{owner}.{field} = {value!r}: must be above zero")
     return result
 
 
 def not_negative(owner: str, field: str, value: Any) -> float:
-    """`value` as a finite float of zero or more, or a ValueError naming the field."""
+    """Return `value` as a finite float of zero or more, or raise ValueError naming the field."""
     if anywhere((result := number(owner, field, value)) < 0):
         raise ValueError(f"{owner}.{field} = {value!r}: must not be negative")
     return result
 
 
 def integer(owner: str, field: str, value: Any, least: int) -> int:
-    """`value` as an int of at least `least`, or a ValueError naming the field."""
+    """Return `value` as an int of at least `least`, or raise ValueError naming the field."""
     if isinstance(value, Column):
         whole = value.dtype.kind == "f" and bool(np.all(value == np.floor(value)))
         whole = whole and bool(np.all(value >= least))
@@ -57,7 +57,7 @@ def integer(owner: str, field: str, value: Any, least: int) -> int:
 
 
 def one_of(owner: str, field: str, value: Any, choices: tuple[str, ...]) -> str:
-    """`value` if it is among `choices`, or a ValueError naming the field and the choices."""
+    """Return `value` if it is among `choices`, or raise ValueError naming field and choices."""
     if isinstance(value, Column):
         among = set(value.tolist()) <= set(choices)
     else:  # other arrays have no truth
@@ -68,7 +68,7 @@ def one_of(owner: str, field: str, value: Any, choices: tuple[str, ...]) -> str:
 
 
 def instance(owner: str, field: str, value: Any, kind: type) -> None:
-    """Raises ValueError naming the field when `value` is not a `kind`."""
+    """Raise ValueError naming the field when `value` is not a `kind`."""
     if not isinstance(value, kind):
         raise ValueError(f"{owner}.{field} = {value!r}: must be a {kind.__name__}")
 
@@ -81,6 +81,6 @@ def _finite(value: Any) -> bool:
 
 
 def _shown(value: Any) -> str:
-    """The value as it is written; Python refuses to write out numbers of thousands of digits."""
+    """Return the value as text; Python refuses to write out numbers of thousands of digits."""
     huge = isinstance(value, int) and value.bit_length() > 1024
     return f"a number of {value.bit_length()} bits" if huge else repr(value)

@@ -17,7 +17,7 @@ class Column(np.ndarray[Any, Any]):
 
 
 def column(values: Iterable[Any]) -> Column:
-    """The values as a column. Raises ValueError unless they are all numbers, or all words."""
+    """Return the values as a column. Raises ValueError unless all are numbers, or all are words."""
     if not isinstance(values, np.ndarray) or values.dtype.kind == "O":
         values = list(values)
         if any(isinstance(value, bool | np.bool_) for value in values):
@@ -29,5 +29,5 @@ def column(values: Iterable[Any]) -> Column:
 
 
 def anywhere(condition: Any) -> bool:
-    """Whether a comparison holds: for a number, or for any one of a column."""
+    """Return whether a comparison holds, for a number or for any value of a column."""
     return bool(condition.any()) if isinstance(condition, np.ndarray) else bool(condition)

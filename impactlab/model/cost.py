@@ -1,4 +1,4 @@
-"""What a run costs before it is made."""
+"""The cost of a run, estimated before it is made."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 from impactlab.solver import BEAM_MODELS, SCHEMES
 
 A_SECOND = 3e8
-"""Node-steps of a core; half of it or twice is possible."""
+"""Node-steps per second of one core; half of it or twice is possible."""
 
 
 def node_steps(cases: Any) -> Any:
-    """Estimated cost of a run, or of each: half the nodes times the time steps.
+    """Return the estimated cost of a run, or of each: half the nodes times the time steps.
 
     cases: a record of solver.types.CASE, or an array of them. Their largest step is that of bending
     for the paper's beam by leapfrog; half a bar wave's for the semi-implicit scheme and, roughly,
@@ -29,16 +29,16 @@ def node_steps(cases: Any) -> Any:
 
 
 _RATES = (1.0, 1.0, 3.0, 4.0, 4.0)
-"""What a node costs a step in times the paper's, by model of the beam."""
+"""Cost of a node per step over the paper's, by beam model."""
 _FILTERED = 5.0
 _BESIDES = 20.0
-"""What a step costs beside its nodes, in nodes."""
+"""Cost of a step beside its nodes, in nodes."""
 _LUMPED = 1000.0
 """Steps of a lumped model in the largest one."""
 
 
 def work(cases: Any) -> Any:
-    """Estimated time of a run, or of each, in node-steps of the paper's beam; some 3e8 a second.
+    """Return the estimated time of a run, or of each, in node-steps of the paper's beam.
 
     As `node_steps`, with what a light sphere or a stiff contact asks of the time step (Hertz's
     stiffness at the indentation that takes all of the sphere's energy) and what models of the beam
@@ -55,7 +55,7 @@ def work(cases: Any) -> Any:
 
 
 def _contact_step(cases: Any, lumped: Any) -> Any:
-    """In s: that of the sphere, and of the beam's middle node if it is one, on Hertz's spring."""
+    """Return the step in s of sphere, and beam's middle node if any, on Hertz's spring."""
     compliance = sum(
         (1.0 - cases[f"{body}_poissons_ratio"] ** 2) / cases[f"{body}_youngs_modulus"]
         for body in ("sphere", "beam")
@@ -70,5 +70,5 @@ def _contact_step(cases: Any, lumped: Any) -> Any:
 
 
 def memory(cases: Any) -> Any:
-    """Estimated bytes that the march of a run, or of each, takes: a half beam and its fibres."""
+    """Return the estimated bytes that the march of a run, or of each, takes."""
     return cases["nodes"] * (80.0 + 4.0 * cases["points"])

@@ -1,4 +1,4 @@
-"""How the beam is cut into nodes, fibres and time steps."""
+"""The discretisation: nodes, fibres and time steps."""
 
 from __future__ import annotations
 

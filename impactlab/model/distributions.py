@@ -30,7 +30,7 @@ def _normal(mean: float, standard_deviation: float) -> Any:
 
 
 def _truncated_normal(mean: float, standard_deviation: float, low: float, high: float) -> Any:
-    """Mean and deviation are those before the cut; scipy counts the cuts in deviations."""
+    """Return it by mean and deviation before the cut; scipy counts the cuts in deviations."""
     cuts = [(at - mean) / standard_deviation for at in (low, high)]
     return scipy.stats.truncnorm(*cuts, mean, standard_deviation)
 
@@ -56,12 +56,12 @@ _FORMS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
 
 
 def is_distributed(attributes: Arguments) -> bool:
-    """Whether these attributes hold a distribution."""
+    """Return whether these attributes hold a distribution."""
     return attributes.get("distribution") in _FORMS
 
 
 def arguments(attributes: Arguments) -> dict[str, Any]:
-    """The name and the arguments of a distribution, without any other attribute.
+    """Return the name and the arguments of a distribution, without any other attribute.
 
     Raises ValueError when the name is unknown or an argument is missing.
     """
@@ -75,7 +75,7 @@ def arguments(attributes: Arguments) -> dict[str, Any]:
 
 
 def quantile(attributes: Arguments, probability: ArrayLike) -> Values:
-    """The values (same shape) below which a draw lies with these probabilities in [0, 1].
+    """Return the values (same shape) below which a draw lies with these probabilities in [0, 1].
 
     Never beyond `low` and `high`, which rounding may pass by a digit. Raises ValueError as
     `arguments`.
@@ -86,7 +86,7 @@ def quantile(attributes: Arguments, probability: ArrayLike) -> Values:
 
 
 def cumulative(attributes: Arguments, values: ArrayLike) -> Values:
-    """The probabilities (same shape) that a draw lies below these values: undoes `quantile`.
+    """Return the probabilities (same shape) that a draw lies below these values: undo `quantile`.
 
     Raises ValueError as `arguments`.
     """

@@ -9,7 +9,7 @@ from impactlab.model.sphere import Sphere
 
 
 def paper_impact(velocity: float = 0.99, contact: str = "stronge") -> Impact:
-    """The impact of the paper's Tables 2 and 3: Gr 15 sphere, Q345 beam; velocity in m/s.
+    """Return the impact of the paper's Tables 2 and 3: Gr 15 sphere, Q345 beam; velocity in m/s.
 
     Masses follow from density and volume: the sphere's 1.4009 kg agrees with the printed 1.4 kg,
     the beam's 10.148 kg does not with the printed 10.929 kg (that would be 840 mm of beam).

@@ -101,11 +101,11 @@ PARAMETERS: dict[str, Parameter] = {
     )
 }
 ELEMENTS = ("element_size", "elements_per_radius")
-"""What tells the elements of the 3-D model, which takes one of them."""
+"""The parameters of the 3-D model's elements, which takes one of them."""
 
 
 def flatten(impact: Impact, discretisation: Discretisation) -> dict[str, Value]:
-    """Every parameter's value by name; what is None (a mass, a size of elements) is left out."""
+    """Return every parameter's value by name, without those that are None (mass, element size)."""
     roots = {"impact": impact, "discretisation": discretisation}
     values = {name: _get(roots, entry.path) for name, entry in PARAMETERS.items()}
     return {name: value for name, value in values.items() if value is not None}
@@ -114,7 +114,7 @@ def flatten(impact: Impact, discretisation: Discretisation) -> dict[str, Value]:
 def with_values(
     impact: Impact, discretisation: Discretisation, values: Mapping[str, Value | Column]
 ) -> tuple[Impact, Discretisation]:
-    """The base with the named parameters replaced, checked anew; columns are many at once.
+    """Return the base with the named parameters replaced, checked anew; a column is many runs.
 
     Raises ValueError for an unknown name, or where the model classes refuse a value.
     """
@@ -140,7 +140,7 @@ def _get(roots: Mapping[str, Any], path: tuple[str, ...]) -> Any:
 
 
 def _replaced(node: Any, changes: Mapping[str, Any]) -> Any:
-    """`node` with nested changes, its checks run on all of them at once."""
+    """Return `node` with nested changes, its checks run on all of them at once."""
     fields = {
         key: _replaced(getattr(node, key), change) if isinstance(change, dict) else change
         for key, change in changes.items()

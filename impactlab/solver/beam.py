@@ -57,21 +57,21 @@ _NOTHING = 1e-100
 
 @compiled
 def make_grid(n: int, dx: float, dt: float, mu: float, EI: float) -> Grid:
-    """A grid with n spacings in the half beam, and what follows from it."""
+    """Return a grid with n spacings in the half beam, and what follows from it."""
     factor = dt**2 / (mu * dx**2)
     return Grid(n + 1, dx, dt, mu, 1.0 / dx**2, factor, factor * EI / dx**2, dt**2 / (mu * dx))
 
 
 @allocating
 def make_beam(grid: Grid) -> Beam:
-    """A beam at rest, nowhere yielded."""
+    """Return a beam at rest that has yielded nowhere."""
     size = grid.mid + 3
     return Beam(np.zeros((2, size)), np.zeros(size), np.zeros(size), np.zeros(size))
 
 
 @compiled
 def reach(w: Array, now: int, first: int) -> int:
-    """Where the wave from mid-span begins, one step after it began at `first`."""
+    """Return where the wave from mid-span begins, one step after it began at `first`."""
     moved = abs(w[now, first]) > _NOTHING or abs(w[now, first + 1]) > _NOTHING
     return max(first - 2, 2) if moved else first
 
@@ -83,7 +83,7 @@ def reach(w: Array, now: int, first: int) -> int:
 def move_virgin(
     w: Array, now: int, u: Array, first: int, stop: int, grid: Grid, kappa_y: float
 ) -> float:
-    """One leapfrog step of the nodes from `first` to before `stop`, where nothing has yielded yet.
+    """Move the nodes from `first` to before `stop`, where nothing has yielded yet, by one step.
 
     Returns the number of sections that are now beyond the yield curvature kappa_y (1/m).
     """
@@ -107,7 +107,7 @@ def move(
     first: int,
     grid: Grid,
 ) -> float:
-    """One leapfrog step from `first` to mid-span, as if none yielded further and without a force.
+    """Move the nodes from `first` to mid-span by one step, without yielding further or a force.
 
     Returns the number of sections that are now outside their elastic interval (1/m).
     """

@@ -1,4 +1,4 @@
-"""The models of the beam and schemes in time beside the paper's: which one a case asks for.
+"""The beam models and time schemes beside the paper's: which one a case asks for.
 
 The paper's beam by leapfrog is written out in leapfrog.py, where it can be fastest.
 """
@@ -32,7 +32,7 @@ SEMI_IMPLICIT = SCHEMES.index("semi_implicit")
 
 
 class ModelState(NamedTuple):
-    """What the models and schemes beside the paper's need; empty where a case does not ask."""
+    """The state of models and schemes beside the paper's; empty where a case needs none."""
 
     filter: Filter
     shear: Shear
@@ -41,13 +41,13 @@ class ModelState(NamedTuple):
 
 @compiled
 def is_explicit(case: Record) -> bool:
-    """Whether a case is of the paper's beam (yielding or not) and scheme."""
+    """Return whether a case is of the paper's beam (yielding or not) and scheme."""
     return case.beam_model <= ELASTIC and case.scheme != SEMI_IMPLICIT
 
 
 @allocating
 def make_model_state(case: Record, section: Section, grid: Grid) -> ModelState:
-    """At rest."""
+    """Return the state of a beam at rest."""
     filtered = case.beam_model <= ELASTIC and case.scheme == SEMI_IMPLICIT
     return ModelState(
         make_filter(grid, section.stiffness) if filtered else no_filter(),
@@ -67,7 +67,7 @@ def model_step(
     now: int,
     F: float,
 ) -> None:
-    """One step of the beam under the contact force F (N)."""
+    """Move the beam by one step under the contact force F (N)."""
     if model == TIMOSHENKO:
         shear_step(beam, model_state.shear, plastic_state, section, grid, now, F)
     elif model <= ELASTIC:
@@ -88,7 +88,7 @@ def beam_energy(
     F: float,
     u_mid: float,
 ) -> float:
-    """All energy of the beam in J, stored and dissipated: after a step, at its beginning.
+    """Return all energy of the beam in J, stored and dissipated: after a step, at its beginning.
 
     u_mid (m): u at mid-span before that step.
     """

@@ -13,7 +13,7 @@ from impactlab.solver.types import ONE, TWO, Array
 
 @compiled
 def kinetic_energy(beam: Beam, grid: Grid, now: int, u_mid: float) -> float:
-    """Kinetic energy in J, from the product of the velocities half a step before and after.
+    """Return the kinetic energy in J, from the product of velocities half a step before and after.
 
     With the elastic energy it is what leapfrog conserves exactly in a linear beam. u_mid (m): u at
     mid-span before.
@@ -36,7 +36,7 @@ def _kinetic_sum(w: Array, now: int, u: Array, plastic: Array, grid: Grid, u_mid
 def bending_energy(
     beam: Beam, plastic_state: PlasticState, section: Section, grid: Grid, now: int
 ) -> float:
-    """What the sections store in J over what their plastic strains store at zero curvature.
+    """Return the energy stored in J above what plastic strains store at zero curvature.
 
     Within the elastic interval, EI kappa^2/2 - M_0 kappa per length.
     """
@@ -47,7 +47,7 @@ def bending_energy(
 def plastic_energy(
     plastic_state: PlasticState, section: Section, grid: Grid
 ) -> tuple[float, float]:
-    """(stored at zero curvature, dissipated) energy in J, of fibres that are up to date."""
+    """Return (stored at zero curvature, dissipated) energy in J, of fibres that are up to date."""
     stored, dissipated = 0.0, 0.0
     for i in range(2, grid.mid + 1):
         if plastic_state.peeq[i, 0] > 0.0:  # the outermost fibre yields first
@@ -74,7 +74,7 @@ def _bending_sum(w: Array, now: int, M_0: Array, EI: float, grid: Grid) -> float
 def plastic_energies(
     section: Section, plastic_strain: Array, peeq: Array, i: int
 ) -> tuple[float, float]:
-    """(stored at zero curvature, dissipated) energy per length of section i, J/m."""
+    """Return (stored at zero curvature, dissipated) energy per length of section i, J/m."""
     stored, dissipated, moduli = 0.0, 0.0, section.moduli
     for j in range(section.z.size):
         stored += section.area[j] * stored_energy(plastic_strain[i, j], moduli.E, moduli.H_k)

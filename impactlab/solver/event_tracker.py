@@ -1,4 +1,4 @@
-"""What is watched at every step: peaks and contact events, taken between the steps."""
+"""The event tracker: peaks and contact events, interpolated between the steps."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ energy_error: largest imbalance over the initial energy."""
 
 @compiled
 def start(events: Record) -> None:
-    """First touch: the sphere rests on the beam at t = 0."""
+    """Set the first touch: the sphere rests on the beam at t = 0."""
     events.contacts = 1.0
     events.touching = 1.0
     events.t_first_end = np.nan
@@ -54,7 +54,7 @@ def start(events: Record) -> None:
 
 @compiled
 def vertex(before: float, here: float, after: float) -> tuple[float, float]:
-    """(offset in steps from `here`, value) of the extremum of the parabola through three points."""
+    """Return (offset in steps from `here`, value) of the extremum of a parabola by 3 points."""
     bend = before - 2.0 * here + after
     if bend == 0.0:
         return 0.0, here
@@ -64,7 +64,7 @@ def vertex(before: float, here: float, after: float) -> tuple[float, float]:
 
 @compiled
 def passed_peak(events: Record, delta: float, delta_m: float) -> bool:
-    """Whether the largest indentation so far lies between the last two steps and this one."""
+    """Return whether the largest indentation lies between the last two steps and this one."""
     return events.delta == delta_m and delta < events.delta and events.delta >= events.delta_before
 
 
@@ -114,7 +114,7 @@ def update_deflection(events: Record, w: float) -> None:
 
 @compiled
 def shift(events: Record, delta: float, w: float, F: float, dt: float) -> None:
-    """This step becomes the last one."""
+    """Make this step the last one."""
     events.impulse += 0.5 * dt * (events.F + F)
     events.delta_before, events.delta = events.delta, delta
     events.w_before, events.w = events.w, w

@@ -20,7 +20,7 @@ from impactlab.solver.types import ONE, TWO, Array, Index
 
 
 class PlasticState(NamedTuple):
-    """What each section remembers; indices as in beam.py.
+    """The memory of each section; indices as in beam.py.
 
     M_0 (N m) and kappa_min, kappa_max (1/m): the elastic interval, (n + 4,); without limits in a
     section on its tangent. on_tangent: the number of these, then which they are, (n + 5,).
@@ -40,7 +40,7 @@ class PlasticState(NamedTuple):
 
 @allocating
 def make_plastic_state(grid: Grid, section: Section) -> PlasticState:
-    """Sections never yielded."""
+    """Return the state of sections that have never yielded."""
     size, fibres = grid.mid + 3, section.z.size
     return PlasticState(
         np.zeros(size),
@@ -55,7 +55,7 @@ def make_plastic_state(grid: Grid, section: Section) -> PlasticState:
 
 @compiled
 def curvature(w: Array, now: int, psi: Array, grid: Grid, i: Index) -> float:
-    """kappa in 1/m: w_xx, or psi_x where there is a rotation of its own (timoshenko.py)."""
+    """Return kappa in 1/m: w_xx, or psi_x of a beam with its own rotation (timoshenko.py)."""
     if psi.size > 0:
         return (psi[i] - psi[i - ONE]) / grid.dx
     return (w[now, i - ONE] - 2.0 * w[now, i] + w[now, i + ONE]) * grid.per_dx2

@@ -49,7 +49,7 @@ from impactlab.solver.types import Array, Record
 
 _AUDITS = 500
 _LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
-"""Energy is audited 500 times a run, but no more often than every 16 steps nor less than 64."""
+"""Energy is audited 500 times per run, but at most every 16 steps and at least every 64."""
 
 WORST_ENERGY_ERROR = 0.05
 """Imbalance over the initial kinetic energy beyond which a run gives no other answer."""
@@ -57,7 +57,7 @@ WORST_ENERGY_ERROR = 0.05
 
 @compiled
 def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
-    """Nodes and time steps of a case: (grid, number of steps)."""
+    """Return (grid, number of time steps) of a case."""
     dx = case.beam_span / (case.nodes - 1)
     dt = case.courant * _largest_time_step(case, pair, section.stiffness, dx)
     steps = math.ceil(case.duration / dt)
@@ -67,7 +67,7 @@ def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
 
 @compiled
 def _largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
-    """In s, of the case's model of the beam and scheme."""
+    """Return the largest step in s, of the case's beam model and scheme."""
     if case.beam_model == TIMOSHENKO:
         return timoshenko_time_step(case, pair, EI, shear_stiffness(case), dx)
     if case.beam_model == SPRING_MASS:
@@ -115,7 +115,7 @@ def _imbalance(
     F: float,
     u_mid: float,
 ) -> float:
-    """Energy missing or in excess, over the initial kinetic energy.
+    """Return the energy missing or in excess, over the initial kinetic energy.
 
     sphere: its displacement (m), velocity before and after the step (m/s), indentation (m).
     """
@@ -133,7 +133,7 @@ def _imbalance(
 def _contact_force(
     contact: Record, events: Record, pair: Pair, delta: float, t: float, dt: float
 ) -> float:
-    """Contact force (N) at the step of time t; a peak just passed is taken between the steps."""
+    """Return the contact force (N) at time t; a peak just passed is taken between the steps."""
     if event_tracker.passed_peak(events, delta, contact.delta_m):
         offset, peak = event_tracker.vertex(events.delta_before, events.delta, delta)
         contact_history.load(contact, pair, peak)
@@ -226,7 +226,7 @@ def march(
     samples: Array,
     steps: int,
 ) -> int:
-    """From first touch to the end of the duration; which row of beam.w is the last, or -1.
+    """March from first touch to the end; return which row of beam.w is the last, or -1.
 
     -1: it diverged. contact and events are kept up to date.
     """

@@ -29,7 +29,7 @@ class Lumped(NamedTuple):
 
 @allocating
 def make_lumped(case: Record, rigid: bool, EI: float, grid: Grid) -> Lumped:
-    """The model of a case's beam; EI: the section's (N m2)."""
+    """Return the model of a case's beam; EI: the section's (N m2)."""
     if rigid:
         return Lumped(0.0, 0.0, np.zeros(grid.mid + 3))
     mass, stiffness = mid_span(case, EI)
@@ -38,14 +38,14 @@ def make_lumped(case: Record, rigid: bool, EI: float, grid: Grid) -> Lumped:
 
 @compiled
 def mid_span(case: Record, EI: float) -> tuple[float, float]:
-    """(generalised mass in kg, static stiffness in N/m) of the mid-span."""
+    """Return (generalised mass in kg, static stiffness in N/m) of the mid-span."""
     beam = case.beam_density * case.beam_width * case.beam_depth * case.beam_span
     return 17.0 / 35.0 * beam, 48.0 * EI / case.beam_span**3
 
 
 @allocating
 def _static_shape(grid: Grid) -> Array:
-    """Of the finite differences, whose curvature grows in proportion from support to mid-span."""
+    """Return the static shape by finite differences: curvature linear in the distance."""
     mid = grid.mid
     drop = np.zeros(mid + 3)  # below mid-span, in curvatures there times dx^2
     drop[mid - 1] = 0.5
@@ -59,7 +59,7 @@ def _static_shape(grid: Grid) -> Array:
 
 @compiled
 def lumped_step(beam: Beam, lumped: Lumped, grid: Grid, now: int, F: float) -> None:
-    """One step under the contact force F (N)."""
+    """Move the beam by one step under the contact force F (N)."""
     mid = grid.mid
     if lumped.mass > 0.0:
         beam.du[mid] = grid.dt**2 / lumped.mass * (F - lumped.stiffness * beam.w[now, mid])
@@ -73,7 +73,7 @@ def lumped_step(beam: Beam, lumped: Lumped, grid: Grid, now: int, F: float) -> N
 
 @compiled
 def lumped_energy(beam: Beam, lumped: Lumped, grid: Grid, now: int) -> float:
-    """Kinetic (see energy.py) and elastic energy in J, after a step, at its beginning."""
+    """Return kinetic (see energy.py) and elastic energy in J, after a step, at its beginning."""
     u, w = beam.u[grid.mid], beam.w[now, grid.mid]
     moving = lumped.mass * u * (u - beam.du[grid.mid]) / grid.dt**2
     return 0.5 * (moving + lumped.stiffness * w * w)

@@ -1,4 +1,4 @@
-"""What a run gives: its responses, and the bits that say what to know of them.
+"""The results of a run: its responses, and the bits that explain or qualify them.
 
 A new response takes an entry in RESPONSES, and a line in responses.py that computes it. This file
 stays free of numba, so that responses can be listed without compiling anything.

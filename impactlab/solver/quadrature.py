@@ -20,7 +20,7 @@ _NEWTON_STEPS = 100
 
 @compiled
 def legendre_pair(degree: int, x: float) -> tuple[float, float]:
-    """(P_n(x), P_{n-1}(x)), n = degree >= 1, by the three-term recurrence."""
+    """Return (P_n(x), P_{n-1}(x)), n = degree >= 1, by the three-term recurrence."""
     previous, current = 1.0, x
     for k in range(2, degree + 1):
         previous, current = current, ((2 * k - 1) * x * current - (k - 1) * previous) / k
@@ -29,7 +29,7 @@ def legendre_pair(degree: int, x: float) -> tuple[float, float]:
 
 @compiled
 def _legendre_point(x: float, points: int) -> tuple[float, float]:
-    """A root of P_n near x, n = points, and its weight 2 (1 - x^2)/(n P_{n-1})^2."""
+    """Return a root of P_n near x, n = points, and its weight 2 (1 - x^2)/(n P_{n-1})^2."""
     for _ in range(_NEWTON_STEPS):
         value, lower = legendre_pair(points, x)
         step = value * (x * x - 1.0) / (points * (x * value - lower))
@@ -42,7 +42,7 @@ def _legendre_point(x: float, points: int) -> tuple[float, float]:
 
 @compiled
 def _lobatto_point(x: float, points: int) -> tuple[float, float]:
-    """A root of (1 - x^2) P'_n near x, n = points - 1, and its weight 2/(n (n + 1) P_n^2)."""
+    """Return a root of (1 - x^2) P'_n near x and its weight 2/(n (n + 1) P_n^2), n = points - 1."""
     n = points - 1
     for _ in range(_NEWTON_STEPS):
         value, lower = legendre_pair(n, x)
@@ -72,7 +72,7 @@ def upper_half(rule: int, points: int, positions: Array, weights: Array) -> None
 
 
 def rule_points(rule: str, points: int) -> np.ndarray:
-    """Positions in [-1, 1], ascending, shape (points,): where a rule's fibres lie."""
+    """Return the positions of a rule's fibres in [-1, 1], ascending, shape (points,)."""
     half = np.empty((2, points // 2))
     upper_half(RULES.index(rule), points, half[0], half[1])
     middle = np.zeros(points % 2)

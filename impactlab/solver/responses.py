@@ -32,7 +32,7 @@ _ROUNDING = 1e-9
 
 @compiled
 def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) -> None:
-    """Force, indentation and contact times; marked where the contact law does not hold."""
+    """Fill in force, indentation and contact times; flag those beyond the contact law's range."""
     if contact.delta_m > limit(pair.law, pair.E, pair.R, pair.S_y, pair.nu):
         answer.status |= OUTSIDE_CONTACT_LAW
     if events.delta == contact.delta_m:
@@ -60,7 +60,7 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
 
 @compiled
 def read_rebound(answer: Record, case: Record, events: Record) -> None:
-    """Rebound, once the sphere moves upwards and away from the beam."""
+    """Fill in the rebound, once the sphere moves upwards and away from the beam."""
     if events.touching == 1.0 or events.v_s >= 0.0 or events.v_s >= events.v_mid:
         answer.status |= SPHERE_NOT_LEAVING
     else:
@@ -72,7 +72,7 @@ def read_rebound(answer: Record, case: Record, events: Record) -> None:
 def read_beam(
     answer: Record, case: Record, events: Record, peeq: Array, grid: Grid, dissipated: float
 ) -> None:
-    """Deflection and plastic strain; peeq: of the half beam, see PlasticState."""
+    """Fill in deflection and plastic strain; peeq: of the half beam, see PlasticState."""
     if events.w > events.w_max:
         answer.status |= DEFLECTION_STILL_GROWING
     else:
@@ -96,7 +96,7 @@ def read_beam(
 
 @compiled
 def share_above(left: float, right: float, threshold: float) -> float:
-    """Share of a cell in which the line from `left` to `right` lies above the threshold."""
+    """Return the share of a cell where the line from `left` to `right` is above the threshold."""
     high, low = max(left, right), min(left, right)
     if low >= threshold:
         return 1.0

@@ -59,7 +59,7 @@ class Section(NamedTuple):
 
 @allocating
 def make_section(case: Record) -> Section:
-    """The section of a case."""
+    """Return the section of a case."""
     half = case.points // 2
     z, area = np.empty(half), np.empty(half)
     upper_half(case.rule, case.points, z, area)
@@ -87,7 +87,7 @@ def make_section(case: Record) -> Section:
 def return_mapping(
     strain: float, plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
 ) -> tuple[float, float]:
-    """(plastic_strain, peeq) after the fibre has been taken to `strain`."""
+    """Return (plastic_strain, peeq) after the fibre has been taken to `strain`."""
     relative = E * (strain - plastic_strain) - H_k * plastic_strain
     excess = abs(relative) - (S_y + H_i * peeq)
     if excess > 0.0:
@@ -101,7 +101,7 @@ def return_mapping(
 def elastic_range(
     plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
 ) -> tuple[float, float]:
-    """(least, largest) strain that the fibre can take without yielding."""
+    """Return the (least, largest) strain that the fibre can take without yielding."""
     centre = plastic_strain * (1.0 + H_k / E)
     radius = (S_y + H_i * peeq) / E
     return centre - radius, centre + radius
@@ -109,13 +109,13 @@ def elastic_range(
 
 @compiled
 def stored_energy(plastic_strain: float, E: float, H_k: float) -> float:
-    """Energy density (J/m3) at zero total strain: residual stress and back stress."""
+    """Return the energy density (J/m3) at zero total strain: residual stress and back stress."""
     return 0.5 * (E + H_k) * plastic_strain * plastic_strain
 
 
 @compiled
 def dissipated_energy(peeq: float, S_y: float, H_i: float) -> float:
-    """Energy density (J/m3) dissipated: the integral of S_y + H_i peeq over peeq."""
+    """Return the energy density (J/m3) dissipated: the integral of S_y + H_i peeq over peeq."""
     return (S_y + 0.5 * H_i * peeq) * peeq
 
 
@@ -146,7 +146,7 @@ def bend(
 def tangent(
     section: Section, kappa: float, direction: float, plastic_strain: Array, peeq: Array, i: int
 ) -> tuple[float, float]:
-    """(growth of M_0 with kappa in N m2, curvature in 1/m at which a further fibre yields).
+    """Return (growth of M_0 with kappa in N m2, curvature in 1/m at which a further fibre yields).
 
     Of section i, which `bend` has taken to kappa, when it is bent on towards greater (direction 1)
     or smaller (-1) curvature.

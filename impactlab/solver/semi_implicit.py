@@ -55,7 +55,7 @@ class Filter(NamedTuple):
 
 @allocating
 def make_filter(grid: Grid, EI: float) -> Filter:
-    """The factors, for a half beam of at least 8 spacings."""
+    """Return the factors, for a half beam of at least 8 spacings."""
     alpha2 = BETA * grid.dt**2 * EI / (grid.mu * grid.dx**4)
     first = 1 + grid.mid % 2  # makes the rows even in number; that of the support is zero
     length = (grid.mid - first - 1) // 2
@@ -76,7 +76,7 @@ def make_filter(grid: Grid, EI: float) -> Filter:
 
 @allocating
 def no_filter() -> Filter:
-    """What stands in its place in an explicit run: no rows."""
+    """Return the filter of an explicit run, which has no rows."""
     none = np.zeros((0, 2))
     return Filter(
         0.0, 0, 0, none, none, none, none[:, 0].copy(), none[:, 0].copy(), (0.0, 0.0, 0.0)
@@ -85,7 +85,7 @@ def no_filter() -> Filter:
 
 @allocating
 def _factorise(alpha2: float, first: int, length: int) -> tuple[Array, Array, Array]:
-    """L D L^T of both chains: (below, beyond, inverse), see Filter."""
+    """Return L D L^T of both chains: (below, beyond, inverse), see Filter."""
     below, beyond = np.zeros((length + 2, 2)), np.zeros((length + 2, 2))
     inverse, pivot = np.zeros((length + 2, 2)), np.zeros((length, 2))
     for side in range(2):
@@ -105,7 +105,7 @@ def _factorise(alpha2: float, first: int, length: int) -> tuple[Array, Array, Ar
 
 @compiled
 def _row(alpha2: float, k: int, from_support: bool, filled: bool) -> tuple[float, float, float]:
-    """(A[k, k], A[k, k - 1], A[k, k - 2]) of row k of a chain.
+    """Return (A[k, k], A[k, k - 1], A[k, k - 2]) of row k of a chain.
 
     At the support w is odd; at mid-span it is even, and the row halved to keep A symmetric.
     filled: the first row from the support is the support itself, which nothing is tied to.
@@ -207,7 +207,7 @@ def filtered_step(
     now: int,
     F: float,
 ) -> None:
-    """One step of the beam under the contact force F (N)."""
+    """Move the beam by one step under the contact force F (N)."""
     w, u, du, plastic = beam.w, beam.u, beam.du, beam.plastic
     if plastic_state.on_tangent[0] > 0 and follow_tangents(
         w,
@@ -231,7 +231,7 @@ def filtered_step(
 
 @compiled
 def filtered_kinetic_energy(beam: Beam, grid: Grid, filter: Filter, now: int, F: float) -> float:
-    """Kinetic energy in J, from rho A dx/2 v_before^T (I + beta dt^2 K) v_after.
+    """Return the kinetic energy in J: rho A dx/2 v_before^T (I + beta dt^2 K) v_after.
 
     With the elastic energy the scheme conserves it exactly in a linear beam.
     """

@@ -20,7 +20,7 @@ _LARGEST_SHARE = 0.01
 
 @compiled
 def _stiffness(pair: Pair, delta: float) -> float:
-    """Largest tangent stiffness (N/m) of loading and of unloading at delta.
+    """Return the largest tangent stiffness (N/m) of loading and of unloading at delta.
 
     A jump of the force at the limit of a regime is no stiffness: it falls into the difference
     to one side alone. Where unloading begins with a jump, up to a step is made under the wrong
@@ -40,7 +40,7 @@ def _stiffness(pair: Pair, delta: float) -> float:
 
 @compiled
 def stiffest_contact(case: Record, pair: Pair) -> float:
-    """k_c in N/m, over all indentations that the sphere's energy can drive.
+    """Return k_c in N/m, over all indentations that the sphere's energy can drive.
 
     The indentation is raised until loading has taken all of that energy: no impact on a beam,
     which takes a part of it, goes deeper.
@@ -58,7 +58,7 @@ def stiffest_contact(case: Record, pair: Pair) -> float:
 
 @compiled
 def critical_time_step(case: Record, pair: Pair, bending_stiffness: float, dx: float) -> float:
-    """Largest stable time step (s) for node spacing dx (m) and the rule's stiffness (N m2)."""
+    """Return the largest stable time step (s) for node spacing dx (m) and the rule's EI (N m2)."""
     mu = case.beam_density * case.beam_width * case.beam_depth
     k_c = stiffest_contact(case, pair)
     omega_squared = 16.0 * bending_stiffness / (mu * dx**4)
@@ -70,7 +70,7 @@ def critical_time_step(case: Record, pair: Pair, bending_stiffness: float, dx: f
 def timoshenko_time_step(
     case: Record, pair: Pair, bending_stiffness: float, shear_stiffness: float, dx: float
 ) -> float:
-    """Largest stable time step (s) of the Timoshenko beam; shear_stiffness: k G A in N.
+    """Return the largest stable time step (s) of the Timoshenko beam; shear_stiffness: k G A in N.
 
     omega^2 <= 4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) and the contact's.
     """
@@ -87,7 +87,7 @@ _LUMPED_STEPS = 1000.0
 
 @compiled
 def lumped_time_step(case: Record, pair: Pair, mass: float, stiffness: float) -> float:
-    """Largest time step (s) of the spring-mass model and, with mass = 0, of the rigid beam.
+    """Return the largest time step (s) of the spring-mass model or, with mass = 0, the rigid beam.
 
     A thousandth of the critical one, for accuracy: no wave asks for small steps here.
     """
@@ -100,7 +100,7 @@ def lumped_time_step(case: Record, pair: Pair, mass: float, stiffness: float) ->
 
 @compiled
 def semi_implicit_time_step(case: Record, pair: Pair, dx: float) -> float:
-    """Largest time step (s) of the semi-implicit scheme for node spacing dx (m).
+    """Return the largest time step (s) of the semi-implicit scheme for node spacing dx (m).
 
     Half of what a bar wave takes over a spacing, for accuracy; and the contact spring between the
     bare masses of node and sphere, for stability: the filter makes the node's mass larger.

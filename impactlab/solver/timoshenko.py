@@ -25,7 +25,7 @@ from impactlab.solver.types import ONE, Array, Record
 
 
 class Shear(NamedTuple):
-    """What a Timoshenko beam has besides Beam; all arrays (n + 4,), or empty for other models.
+    """The state of a Timoshenko beam besides Beam; all arrays (n + 4,), or empty for other models.
 
     stiffness = k G A (N); inertia = rho I (kg m). psi: rotation, spin = dt psi_t its increment,
     d_spin the last change of that (rad), Q (N): half-way from node i to i + 1 at index i. M (N m):
@@ -43,14 +43,14 @@ class Shear(NamedTuple):
 
 @compiled
 def shear_stiffness(case: Record) -> float:
-    """k G A in N."""
+    """Return k G A in N."""
     G = 0.5 * case.beam_youngs_modulus / (1.0 + case.beam_poissons_ratio)
     return case.shear_coefficient * G * (case.beam_width * case.beam_depth)
 
 
 @allocating
 def make_shear(case: Record, size: int) -> Shear:
-    """At rest; size: n + 4, or 0."""
+    """Return the state at rest; size: n + 4, or 0."""
     area = case.beam_width * case.beam_depth
     return Shear(
         shear_stiffness(case),
@@ -73,7 +73,7 @@ def shear_step(
     now: int,
     F: float,
 ) -> None:
-    """One step under the contact force F (N)."""
+    """Move the beam by one step under the contact force F (N)."""
     psi, M, mid = shear.psi, shear.M, grid.mid
     if plastic_state.on_tangent[0] > 0 and follow_tangents(
         beam.w,
@@ -121,7 +121,7 @@ def _moments(
     per_dx: float,
     mid: int,
 ) -> float:
-    """Moments at the nodes; how many sections are outside their elastic interval."""
+    """Set the moments at the nodes; return how many sections are outside their elastic interval."""
     outside = 0.0
     for i in range(np.uint64(2), np.uint64(mid + 1)):
         kappa = (psi[i] - psi[i - ONE]) * per_dx
@@ -145,7 +145,7 @@ def _rotate(
     per_dx: float,
     mid: int,
 ) -> None:
-    """Shear force half-way between the nodes, and the rotation's step; turn = dt^2/(rho I)."""
+    """Set the shear force half-way between nodes and move the rotation; turn = dt^2/(rho I)."""
     for i in range(np.uint64(1), np.uint64(mid)):
         Q[i] = kGA * ((w[now, i + ONE] - w[now, i]) * per_dx - psi[i])
         d_spin[i] = turn * (Q[i] - (M[i + ONE] - M[i]) * per_dx)
@@ -157,7 +157,7 @@ def _rotate(
 def _shift(
     w: Array, now: int, u: Array, du: Array, Q: Array, push: float, F: float, mid: int
 ) -> None:
-    """The deflection's step; push = dt^2/(rho A dx)."""
+    """Move the deflection by one step; push = dt^2/(rho A dx)."""
     after = 1 - now
     for i in range(np.uint64(2), np.uint64(mid)):
         du[i] = push * (Q[i] - Q[i - ONE])
@@ -170,7 +170,7 @@ def _shift(
 
 @vectorised
 def shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) -> float:
-    """Energy in J of the whole beam after a step, at its beginning, but for the plastic strains'.
+    """Return the beam's energy in J after a step, at its beginning, without plastic strains'.
 
     Kinetic as in energy.py, of deflection and rotation; elastic of bending (see there) and shear.
     """

@@ -1,4 +1,4 @@
-"""The types of what kernels take and give, and the record of a case."""
+"""The types of the kernels' arguments and results, and the record of a case."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from impactlab.solver.jit import compiled
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
-    """Force and unloading curve (see contact/hertz.py for the form)."""
+    """Return force and unloading curve (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_c = critical_indentation(E, R, S_y, nu)
     F = loading(delta, delta_c, E, R, S_y, nu)
@@ -32,5 +32,5 @@ def curve(
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """That of the loading; unloading has none."""
+    """Return the limit of the loading in m; unloading has none."""
     return loading_limit(E, R, S_y, nu)

@@ -20,12 +20,12 @@ from impactlab.solver.jit import compiled
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
-    """Force and unloading curve of Hertz contact."""
+    """Return force and unloading curve of Hertz contact."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     return K * delta * math.sqrt(delta), K, 0.0, 1.5
 
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Where a = sqrt(R delta) reaches R."""
+    """Return the indentation (m) at which a = sqrt(R delta) reaches R."""
     return R

@@ -51,7 +51,7 @@ _GAUSS = (
 
 @compiled
 def make_pair(case: Record) -> Pair:
-    """Sphere against flat beam: 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b, R* = R_s."""
+    """Return sphere against flat beam: 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b, R* = R_s."""
     compliance = (1.0 - case.sphere_poissons_ratio**2) / case.sphere_youngs_modulus + (
         1.0 - case.beam_poissons_ratio**2
     ) / case.beam_youngs_modulus
@@ -72,7 +72,7 @@ def load(contact: Record, pair: Pair, delta: float) -> None:
 
 @compiled
 def force(contact: Record, pair: Pair, delta: float) -> float:
-    """Contact force (N) at indentation delta (m); loads further where delta exceeds delta_m."""
+    """Return the contact force (N) at delta (m); load further where delta exceeds delta_m."""
     if delta > contact.delta_m:
         load(contact, pair, delta)
         return contact.F_m
@@ -86,7 +86,7 @@ def force(contact: Record, pair: Pair, delta: float) -> float:
 
 @compiled
 def loading_work(pair: Pair, start: float, stop: float) -> float:
-    """Integral of the loading force over [start, stop], J.
+    """Return the integral of the loading force over [start, stop], J.
 
     Gauss-Legendre with 4 points on panels of the square root of (delta - start), in which
     delta^1.5 is smooth at zero; the panels keep a regime limit of a law from costing accuracy.
@@ -103,7 +103,7 @@ def loading_work(pair: Pair, start: float, stop: float) -> float:
 
 @compiled
 def energies(contact: Record, pair: Pair, delta: float) -> tuple[float, float]:
-    """(stored, dissipated) energy of the contact at delta, J.
+    """Return (stored, dissipated) energy of the contact at delta, J.
 
     Dissipated is what loading took less what the unloading curve would give back; negative
     where a law creates energy.

@@ -31,45 +31,45 @@ LARGEST_INDENTATION = 6.9 * (1.0 - LARGEST_RESIDUAL / 1.02) ** (-1.0 / 0.54) - 5
 
 @compiled
 def critical_indentation(E: float, R: float, S_y: float, nu: float) -> float:
-    """delta_c in m, at which the first point yields."""
+    """Return delta_c in m, at which the first point yields."""
     return (0.5 * math.pi * _strength(nu) * S_y / E) ** 2 * R
 
 
 @compiled
 def _strength(nu: float) -> float:
-    """C: the largest Hertz pressure at first yield over S_y."""
+    """Return C, the largest Hertz pressure at first yield over S_y."""
     return 1.295 * math.exp(0.736 * nu)
 
 
 @compiled
 def _widening(E: float, S_y: float) -> float:
-    """B: how the contact circle grows beyond Hertz's."""
+    """Return B, the exponent by which the contact circle grows beyond Hertz's."""
     return 0.14 * math.exp(23.0 * S_y / E)
 
 
 @compiled
 def contact_radius(delta: float, delta_c: float, E: float, R: float, S_y: float) -> float:
-    """a/R beyond the onset."""
+    """Return a/R beyond the onset."""
     y = delta / (ONSET * delta_c)
     return math.sqrt(delta / R) * y ** (0.5 * _widening(E, S_y))
 
 
 @compiled
 def indentation_at(radius: float, E: float, R: float, S_y: float, nu: float) -> float:
-    """Where a/R reaches `radius`, in m."""
+    """Return the indentation (m) at which a/R reaches `radius`."""
     B, onset = _widening(E, S_y), ONSET * critical_indentation(E, R, S_y, nu)
     return (radius * radius * R * onset**B) ** (1.0 / (1.0 + B))
 
 
 @compiled
 def unloading_limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Where the fit of the residual indentation ends, in m."""
+    """Return the indentation (m) at which the fit of the residual indentation ends."""
     return LARGEST_INDENTATION * critical_indentation(E, R, S_y, nu)
 
 
 @compiled
 def force_ratio(y: float, hardness: float, nu: float) -> float:
-    """F/F_c beyond the onset; hardness: H/S_y."""
+    """Return F/F_c beyond the onset; hardness: H/S_y."""
     elastic = math.exp(-0.25 * y ** (5.0 / 12.0)) * y * math.sqrt(y)
     plastic = 4.0 * hardness / _strength(nu) * (1.0 - math.exp(-(y ** (5.0 / 9.0)) / 25.0)) * y
     return elastic + plastic
@@ -77,7 +77,7 @@ def force_ratio(y: float, hardness: float, nu: float) -> float:
 
 @compiled
 def residual(y: float) -> float:
-    """delta_r/delta_m after y_m = y."""
+    """Return delta_r/delta_m after y_m = y."""
     return min(1.02 * (1.0 - ((y + 5.9) / 6.9) ** (-0.54)), LARGEST_RESIDUAL) if y > 1.0 else 0.0
 
 
@@ -85,7 +85,7 @@ def residual(y: float) -> float:
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
-    """Force and unloading curve of Jackson and Green (see contact/hertz.py for the form)."""
+    """Return force and unloading curve of Jackson and Green (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_c = critical_indentation(E, R, S_y, nu)
     y = delta / delta_c
@@ -102,5 +102,5 @@ def curve(
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Where a/R reaches 0.41, or the fit of the residual indentation ends."""
+    """Return where (m) a/R reaches 0.41, or the fit of the residual indentation ends."""
     return min(indentation_at(LARGEST_RADIUS, E, R, S_y, nu), unloading_limit(E, R, S_y, nu))

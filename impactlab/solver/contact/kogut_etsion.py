@@ -32,7 +32,7 @@ def _critical_indentation(E: float, R: float, S_y: float, nu: float) -> float:
 
 @compiled
 def _force_ratio(y: float) -> float:
-    """F/F_c within the fits."""
+    """Return F/F_c within the fits."""
     return 1.03 * y**1.425 if y <= ELASTIC_PLASTIC else 1.40 * y**1.263
 
 
@@ -40,7 +40,7 @@ def _force_ratio(y: float) -> float:
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
-    """Force and unloading curve of the law (see contact/hertz.py for the form)."""
+    """Return force and unloading curve of the law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_c = _critical_indentation(E, R, S_y, nu)
     y = delta / delta_c
@@ -57,5 +57,5 @@ def curve(
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Where the fits end."""
+    """Return the indentation (m) at which the fits end."""
     return FULLY_PLASTIC * _critical_indentation(E, R, S_y, nu)

@@ -26,7 +26,7 @@ from impactlab.solver.jit import compiled
 
 @compiled
 def loading(delta: float, delta_c: float, E: float, R: float, S_y: float, nu: float) -> float:
-    """Force in N."""
+    """Return the force in N."""
     K, y = 4.0 / 3.0 * E * math.sqrt(R), delta / delta_c
     if y <= ONSET:
         return K * delta * math.sqrt(delta)
@@ -37,7 +37,7 @@ def loading(delta: float, delta_c: float, E: float, R: float, S_y: float, nu: fl
 
 @compiled
 def loading_limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Where a/R reaches 1, in m: from there on the hardness would rise."""
+    """Return the indentation (m) at which a/R reaches 1, beyond which the hardness would rise."""
     return indentation_at(1.0, E, R, S_y, nu)
 
 
@@ -45,7 +45,7 @@ def loading_limit(E: float, R: float, S_y: float, nu: float) -> float:
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
-    """Force and unloading curve of the modified law (see contact/hertz.py for the form)."""
+    """Return force and unloading curve of the modified law (see contact/hertz.py for the form)."""
     delta_c = critical_indentation(E, R, S_y, nu)
     F = loading(delta, delta_c, E, R, S_y, nu)
     if delta <= delta_c:
@@ -56,5 +56,5 @@ def curve(
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Where the hardness would rise again, or the fit of the residual indentation ends."""
+    """Return where (m) the hardness would rise again, or the fit of the residual ends."""
     return min(loading_limit(E, R, S_y, nu), unloading_limit(E, R, S_y, nu))

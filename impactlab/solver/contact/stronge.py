@@ -26,13 +26,13 @@ U_PLASTIC = math.exp(3.0 * (MEAN_PRESSURE - THETA))
 
 @compiled
 def yield_indentation(E: float, R: float, S_y: float) -> float:
-    """delta_y, m."""
+    """Return delta_y in m."""
     return (0.75 * math.pi * THETA * S_y / E) ** 2 * R
 
 
 @compiled
 def force_ratio(u: float) -> float:
-    """F/F_y beyond yield."""
+    """Return F/F_y beyond yield."""
     return u * (1.0 + math.log(u) / (3.0 * THETA)) if u <= U_PLASTIC else MEAN_PRESSURE * u / THETA
 
 
@@ -40,7 +40,7 @@ def force_ratio(u: float) -> float:
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
-    """Force and unloading curve of Stronge's law (see contact/hertz.py for the form)."""
+    """Return force and unloading curve of Stronge's law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_y = yield_indentation(E, R, S_y)
     if delta <= delta_y:
@@ -53,5 +53,5 @@ def curve(
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Where a = sqrt(R (2 delta - delta_y)) reaches R."""
+    """Return the indentation (m) at which a = sqrt(R (2 delta - delta_y)) reaches R."""
     return 0.5 * (R + yield_indentation(E, R, S_y))

@@ -22,7 +22,7 @@ from impactlab.solver.jit import compiled
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
-    """Force and unloading curve of Stronge's law (see contact/hertz.py for the form)."""
+    """Return force and unloading curve of Stronge's law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_y = yield_indentation(E, R, S_y)
     if delta <= delta_y:

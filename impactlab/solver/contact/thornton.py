@@ -22,7 +22,7 @@ LIMITING_PRESSURE = 1.6
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
-    """Force and unloading curve of Thornton's law (see contact/hertz.py for the form)."""
+    """Return force and unloading curve of Thornton's law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     pressure = math.pi * LIMITING_PRESSURE * S_y
     delta_y = 0.25 * R * (pressure / E) ** 2
@@ -37,5 +37,5 @@ def curve(
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Where a = sqrt(R delta) reaches R."""
+    """Return the indentation (m) at which a = sqrt(R delta) reaches R."""
     return R

@@ -32,7 +32,7 @@ def test_a_wrong_run_is_named_with_its_field():
     refused({"weight": [1.0]}, r"^run 0: unknown parameter 'weight': choose from velocity")
     filtered = {"scheme": ["leapfrog", "semi_implicit", "semi_implicit"], "nodes": [5, 17, 15]}
     refused(filtered, r"^run 2: Discretisation\.nodes = 15: must be at least 17 with the")
-    refused({"velocity": [1.0, 2.0], "nodes": [11]}, r"one value a run.*\{1, 2\}")
+    refused({"velocity": [1.0, 2.0], "nodes": [11]}, r"one value per run.*\{1, 2\}")
 
 
 RUNS = 40
