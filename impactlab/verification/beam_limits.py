@@ -24,6 +24,7 @@ from impactlab.verification.finding import (
     absolute,
     curve,
     relative,
+    rms_error,
 )
 from impactlab.verification.solutions import modal
 from impactlab.verification.solutions.infinite_beam import (
@@ -160,10 +161,9 @@ def _profile_under_force(struck: Struck, x: Floats) -> Floats:
 
 
 def _long_error(struck: Struck) -> float:
-    """Root mean square of the deflection's error over its largest value."""
+    """Return the root mean square of the deflection's error over its largest value."""
     expected = deflection_under_force(struck.beam, struck.time, struck.force)
-    gap: Floats = struck.run.midspan_deflection.values - expected
-    return float(np.sqrt(np.mean(gap**2)) / np.max(expected))
+    return rms_error(struck.run.midspan_deflection.values, expected)
 
 
 def _long_histories(struck: Struck) -> Panel:
@@ -272,9 +272,8 @@ def _order(name: str, runs: dict[int, xr.Dataset], bare: xr.Dataset) -> Comparis
 
 
 def _size(name: str, ours: xr.Dataset, bare: xr.Dataset) -> float:
-    """Root mean square of a history's change over its largest value."""
-    gap: Floats = (ours[name] - bare[name]).values
-    return float(np.sqrt(np.mean(gap**2)) / np.max(np.abs(bare[name].values)))
+    """Return the root mean square of a history's change over its largest value."""
+    return rms_error(ours[name].values, bare[name].values)
 
 
 def _shear_histories(impact: Impact, ours: xr.Dataset, bare: xr.Dataset) -> Panel:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import xarray as xr
 
@@ -17,6 +17,15 @@ from impactlab.simulate import case_table, simulate
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.leapfrog import discretise
 from impactlab.solver.section import make_section
+
+
+@dataclass(frozen=True)
+class Case:
+    """An impact at several velocities (m/s), each over `duration` (s)."""
+
+    impact: Impact
+    velocities: tuple[float, ...]
+    duration: float
 
 
 def with_beam_material(impact: Impact, **changes: float) -> Impact:

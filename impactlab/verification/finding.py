@@ -81,6 +81,12 @@ def curve(
     return Comparison(quantity, where, units, *values, error, tolerance, "of the largest value")
 
 
+def rms_error(ours: Floats, independent: Floats) -> float:
+    """Return the root mean square of the difference over the largest independent value."""
+    gap = ours - independent
+    return float(np.sqrt(np.mean(gap**2)) / np.max(np.abs(independent)))
+
+
 def worst(entries: Sequence[Comparison]) -> Comparison:
     """Return the comparison nearest to failing, to shorten a table; a NaN comes first."""
     entry = max(entries, key=lambda entry: entry.ratio)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -12,7 +12,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
 from impactlab.simulate import simulate
-from impactlab.verification.cases import elastic
+from impactlab.verification.cases import Case, elastic
 from impactlab.verification.finding import (
     Check,
     Comparison,
@@ -38,15 +38,6 @@ SPRING_MASS_TOLERANCE = 2e-6
 COURANTS = (1.0, 0.5)
 _SPRING_MASS_GRID = Discretisation(nodes=101, points=3)
 _SAMPLES = 401
-
-
-@dataclass(frozen=True)
-class Case:
-    """An impact to be tried at several velocities (m/s), each over `duration` (s)."""
-
-    impact: Impact
-    velocities: tuple[float, ...]
-    duration: float
 
 
 def _slender() -> Impact:

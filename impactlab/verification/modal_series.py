@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -12,8 +12,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
 from impactlab.simulate import simulate
-from impactlab.types import Floats
-from impactlab.verification.cases import aluminium_impact, elastic, timoshenko_impact
+from impactlab.verification.cases import Case, aluminium_impact, elastic, timoshenko_impact
 from impactlab.verification.finding import (
     Check,
     Comparison,
@@ -23,6 +22,7 @@ from impactlab.verification.finding import (
     absolute,
     curve,
     relative,
+    rms_error,
     worst,
 )
 from impactlab.verification.solutions import hertz, modal
@@ -45,15 +45,6 @@ NODES = (51, 101, 201, 401, 801)
 MIDDLE, FINEST = 201, 801
 ORDER, ORDER_TOLERANCE = 2.0, 0.2
 _SAMPLES = 401
-
-
-@dataclass(frozen=True)
-class Case:
-    """An impact to be tried at several velocities (m/s), each over `duration` (s)."""
-
-    impact: Impact
-    velocities: tuple[float, ...]
-    duration: float
 
 
 def compare(cases: Mapping[str, Case], solve: Solve) -> list[Comparison]:
@@ -122,10 +113,8 @@ def _order(
 
 
 def error(name: str, series: ModalSolution, ours: xr.Dataset) -> float:
-    """Root mean square of a history's error over its largest value."""
-    expected = series.at(name, ours.time.values)
-    gap: Floats = ours[name].values - expected
-    return float(np.sqrt(np.mean(gap**2)) / np.max(np.abs(expected)))
+    """Return the root mean square of a history's error over its largest value."""
+    return rms_error(ours[name].values, series.at(name, ours.time.values))
 
 
 def panels(

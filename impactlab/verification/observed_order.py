@@ -14,14 +14,21 @@ from scipy.interpolate import CubicSpline
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.paper import paper_impact
-from impactlab.types import Floats
 from impactlab.verification.cases import (
     critical_time_step,
     elastic,
     simulate_in_steps,
     with_beam_material,
 )
-from impactlab.verification.finding import Check, Comparison, Curve, Finding, Panel, absolute
+from impactlab.verification.finding import (
+    Check,
+    Comparison,
+    Curve,
+    Finding,
+    Panel,
+    absolute,
+    rms_error,
+)
 
 ORDER, TOLERANCE = 2.0, 0.2
 NODES = (101, 201, 401, 801)
@@ -55,8 +62,7 @@ def end_of_hertz_contact(run: xr.Dataset) -> float:
 
 def _distance(name: str) -> Callable[[xr.Dataset, xr.Dataset], float]:
     def distance(one: xr.Dataset, other: xr.Dataset) -> float:
-        gap: Floats = one[name].values - other[name].values
-        return float(np.sqrt(np.mean(gap**2)) / np.max(np.abs(other[name].values)))
+        return rms_error(one[name].values, other[name].values)
 
     return distance
 

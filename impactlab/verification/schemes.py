@@ -31,6 +31,7 @@ from impactlab.verification.finding import (
     absolute,
     curve,
     relative,
+    rms_error,
     worst,
 )
 from impactlab.verification.solutions.modal import ModalSolution, solve
@@ -191,8 +192,7 @@ def _yielding_panel() -> Panel:
     force = fine.contact_force.values
 
     def errors(run: xr.Dataset) -> dict[str, float]:
-        gap = run.contact_force.values - force
-        apart = float(np.sqrt(np.mean(gap**2)) / np.max(force))
+        apart = rms_error(run.contact_force.values, force)
         peak = abs(float(run.peak_force / fine.peak_force) - 1.0)
         return {"history of contact force": apart, "peak force": peak}
 

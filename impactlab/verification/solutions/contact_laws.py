@@ -288,13 +288,3 @@ def law_on_half_space(impact: Impact) -> LawOnHalfSpace:
         softer.yield_stress,
         softer.poissons_ratio,
     )
-
-
-def thornton_restitution(velocity_ratio: float) -> float:
-    """e of Thornton's law in closed form (Thornton 1997); velocity over that of first yield."""
-    if velocity_ratio <= 1.0:
-        return 1.0
-    slow = 1.0 / velocity_ratio
-    cut = 1.0 - slow**2 / 6.0
-    rest = slow / (slow + 2.0 * math.sqrt(1.2 - 0.2 * slow**2))
-    return math.sqrt(1.2 * math.sqrt(3.0) * cut) * math.sqrt(math.sqrt(rest))

@@ -55,11 +55,6 @@ class StrongeImpact:
         stiffness = hertz.stiffness(self.effective_modulus, self.effective_radius)
         return stiffness * math.pow(self.yield_indentation, 1.5)
 
-    def yield_velocity(self, mass: float) -> float:
-        """Velocity in m/s below which a sphere of `mass` (kg) stays elastic."""
-        work = 0.4 * self.yield_force * self.yield_indentation
-        return math.sqrt(2.0 * work / positive("StrongeImpact", "mass", mass))
-
     def loading_force(self, indentation: float) -> float:
         """Force in N at a monotonically reached `indentation` (m, zero or more)."""
         x = not_negative("StrongeImpact", "indentation", indentation) / self.yield_indentation

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.linalg import eigh
 
 from impactlab.model.paper import paper_impact
 from impactlab.verification.solutions.beam_modes import odd_modes, timoshenko_odd_modes
 from impactlab.verification.solutions.shear import (
-    early_deflection,
     shear_stiffness,
     static_deflection,
 )
@@ -161,6 +161,25 @@ def test_without_shear_and_rotation_the_modes_are_euler_and_bernoullis(beam):
     assert plain.frequencies[0] > timoshenko_odd_modes(beam, 1).frequencies[0]
 
 
+def early_deflection(beam, load, time):
+    """Deflection in m under a `load` F (N) that set on suddenly, a short `time` t (s) ago.
+
+    w = F (t/(2 sqrt(a rho A)) + t^3/(24 EI p (p + b)^2)) + O(t^5): first the load meets the
+    impedance of two shear waves, then sections begin to turn. p, b: slownesses (s/m) of the shear
+    wave, sqrt(rho/(k G)), and of the bar wave, sqrt(rho/E).
+    From the Laplace and Fourier transform of the infinite beam,
+    W = F/s * 1/(X - a^2 q^2/(Y + a)), X = rho A s^2 + a q^2, Y = rho I s^2 + EI q^2, for large s
+    F/s (1/X + a^2 q^2/(X^2 Y) + ...), integrated over q/(2 pi).
+    """
+    force, t = load, time
+    a = shear_stiffness(beam)
+    shear = np.sqrt(beam.mass_per_length / a)
+    bar = np.sqrt(beam.material.density / beam.material.youngs_modulus)
+    first = t / (2.0 * np.sqrt(a * beam.mass_per_length))
+    third = t**3 / (24.0 * beam.bending_stiffness * shear * (shear + bar) ** 2)
+    return force * (first + third)
+
+
 def step_response(beam, times, count):
     """Deflection over a suddenly applied load in m/N, shape (time,)."""
     modes = timoshenko_odd_modes(beam, count)
@@ -191,3 +210,18 @@ def test_static_deflection_is_the_whole_series():
 def test_number_of_timoshenko_modes_is_checked():
     with pytest.raises(ValueError, match="count"):
         timoshenko_odd_modes(BEAM, 0)
+
+
+def test_cubic_term_of_the_early_deflection():
+    """Its coefficient over 6, by quadrature of a^2 x^2/((mu + a x^2)^2 (J + EI x^2))/(2 pi)."""
+    a, mu, EI = shear_stiffness(BEAM), BEAM.mass_per_length, BEAM.bending_stiffness
+    inertia, scale = mu * BEAM.depth**2 / 12, np.sqrt(mu / a)
+
+    def integrand(y):
+        x = scale * y
+        return a**2 * x**2 / ((mu + a * x**2) ** 2 * (inertia + EI * x**2)) * scale
+
+    integral, _ = quad(integrand, -np.inf, np.inf)
+    t = 1e-6
+    cubic = early_deflection(BEAM, 1.0, t) - t / (2 * np.sqrt(a * mu))
+    assert cubic == pytest.approx(integral / (2 * np.pi) * t**3 / 6, rel=1e-6)
