@@ -24,7 +24,7 @@ _BOUND = "2 e sqrt(S) + e^2 of an index S, with e^2 the numerical_share"
 
 
 class NumericalFrom(Verdict):
-    """What the numerical uncertainty of a response's indices rests on."""
+    """The basis of the numerical uncertainty of a response's indices."""
 
     MEASURED = 0, True, "the change of the indices themselves on finer grids"
     BOUND = 1, True, "a cautious bound from the error of the response in corner cases"
@@ -38,7 +38,7 @@ def numerical(
     refinement: xr.Dataset | None = None,
     fit: Fit = fit,
 ) -> xr.Dataset:
-    """The numerical uncertainty of each response, and of its indices; no unit.
+    """Return the numerical uncertainty of each response, and of its indices; no unit.
 
     runs: a sample; analysis: its indices; resolution, refinement: see adaptive.recommending and
     adaptive.refining, of the same study; fit: see `sensitivity.analysis`.
@@ -97,7 +97,7 @@ def _of_responses(runs: xr.Dataset, resolution: xr.Dataset) -> dict[str, xr.Data
 
 
 def _changed(runs: xr.Dataset, refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
-    """What sensitivity.refinement gives, described."""
+    """Return the described variables of sensitivity.refinement."""
     _same_values(runs, refinement)
     found = refining.uncertainty(refinement, fit)
     used = f"on the first {refinement.attrs['base_samples']} base samples"
@@ -117,7 +117,7 @@ def _bound(index: xr.DataArray, share: xr.DataArray) -> xr.DataArray:
 
 
 def _within(amount: xr.DataArray, index: xr.DataArray) -> xr.DataArray:
-    """No more than keeps the index between 0 and 1; NaN where there is no index."""
+    """Limit the amount to what keeps the index between 0 and 1; NaN without an index."""
     most = (1.0 - index).where(index < 0.5, index)
     return amount.where(amount < most, most).where(index.notnull()).transpose(*index.dims)
 

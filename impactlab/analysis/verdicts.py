@@ -24,7 +24,7 @@ class Verdict(IntEnum):
     meaning: str
 
     def __new__(cls, value: int, sound: bool, meaning: str) -> Self:
-        """A member from its flag value, soundness and meaning."""
+        """Make a member from its flag value, soundness and meaning."""
         member = int.__new__(cls, value)
         member._value_ = value
         member.sound = sound
@@ -33,12 +33,12 @@ class Verdict(IntEnum):
 
 
 def names(kind: type[Verdict]) -> list[str]:
-    """The flags' names as datasets spell them."""
+    """Return the flags' names as datasets spell them."""
     return [member.name.lower() for member in kind]
 
 
 def flagged(codes: xr.DataArray, kind: type[Verdict], long_name: str) -> xr.DataArray:
-    """Codes as an int8 variable with CF flag attributes.
+    """Return codes as an int8 variable with CF flag attributes.
 
     Beside flag_values and flag_meanings: sound_flags (names that need no warning) and
     flag_descriptions (a line a flag, in words).
@@ -57,7 +57,7 @@ def flagged(codes: xr.DataArray, kind: type[Verdict], long_name: str) -> xr.Data
 def verdict_variables(
     codes: xr.DataArray, kind: type[Verdict], axis: str, words: str
 ) -> dict[str, xr.DataArray]:
-    """The variables that hold a verdict on (response, *dims): each, the worst, and how many.
+    """Return the variables that hold a verdict on (response, *dims): each, the worst, and counts.
 
     Returns <axis>_verdict, <axis>_summary on (response) and <axis>_tally on
     (response, <axis>_outcome): at how many points of the rest of the grid each verdict holds.

@@ -45,7 +45,7 @@ the contact is not short."""
 
 
 def long_impact() -> Impact:
-    """A steel sphere of 5 mm radius at 5 m/s on the paper's beam, four times as long."""
+    """Return a steel sphere of 5 mm radius at 5 m/s on the paper's beam, four times as long."""
     impact = elastic(paper_impact(5.0))
     return replace(
         impact,
@@ -79,7 +79,7 @@ class Struck:
 
 
 def check_infinite_beam() -> Finding:
-    """The histories under the solver's own force; deflections as if all of it struck at once.
+    """Compare histories under the solver's force, and deflections under one impulse.
 
     The convolution is exact, whatever the force. An impulse at the force's centroid leaves out the
     second moment of the force: 1/8 of its variance over the square of the time since.
@@ -107,7 +107,7 @@ def _strike(impact: Impact, nodes: int) -> Struck:
 
 
 def _convolved(runs: Mapping[int, Struck]) -> list[Comparison]:
-    """Histories at mid-span and the profile, under the force as it was; and the order."""
+    """Compare histories at mid-span and the shape under the force itself, and the order."""
     struck = runs[FINEST]
     args = (struck.beam, struck.time, struck.force)
     w, kappa = struck.run.midspan_deflection.values, struck.run.midspan_curvature.values
@@ -130,7 +130,7 @@ def _convolved(runs: Mapping[int, Struck]) -> list[Comparison]:
 
 
 def _at_once(struck: Struck) -> list[Comparison]:
-    """Deflection and deflected shape at the end, as if the impulse struck at the centroid."""
+    """Compare deflection and shape at the end, with the impulse at the force's centroid."""
     since = IMPULSE_DURATION - struck.centroid
     x, profile = _profile(struck)
     ours = struck.run.midspan_deflection[-1].item()
@@ -144,14 +144,14 @@ def _at_once(struck: Struck) -> list[Comparison]:
 
 
 def _profile(struck: Struck) -> tuple[Floats, Floats]:
-    """Distances from mid-span (m) and deflections (m) near mid-span at the end."""
+    """Return the distances from mid-span (m) and deflections (m) near mid-span at the end."""
     x = struck.run.x.values - 0.5 * struck.beam.span
     near = np.abs(x) < NEAR
     return x[near], struck.run.deflection.values[near]
 
 
 def _profile_under_force(struck: Struck, x: Floats) -> Floats:
-    """Response to an impulse at each time, times the force then, by the trapezoidal rule."""
+    """Convolve the response to an impulse with the force, by the trapezoidal rule."""
     pushed = struck.force > 0.0
     time, force = struck.time[pushed], struck.force[pushed, np.newaxis]
     since = IMPULSE_DURATION - time[:, np.newaxis]
@@ -226,7 +226,7 @@ _SAMPLES = 401
 
 
 def check_slender_limit() -> Finding:
-    """What shear and rotary inertia change: as in the series, and how it falls.
+    """Compare the change by shear and rotary inertia with the series, and its order.
 
     All beams of the family are one to bending (see slimmer), so that the difference of the two
     models has no other cause.
@@ -251,7 +251,7 @@ SLENDER_LIMIT = Check(
 
 
 def _run(impact: Impact, model: str) -> xr.Dataset:
-    """The solver's histories with that model of the beam."""
+    """Solve the impact with that model of the beam."""
     modelled = replace(impact, beam_model=model)
     return simulate(modelled, _GRID, duration=SHEAR_DURATION, samples=_SAMPLES)
 

@@ -29,13 +29,13 @@ class Case:
 
 
 def with_beam_material(impact: Impact, **changes: float) -> Impact:
-    """`impact` on a beam of another material, its fields as in Material."""
+    """Return `impact` on a beam of another material, its fields as in Material."""
     material = replace(impact.beam.material, **changes)
     return replace(impact, beam=replace(impact.beam, material=material))
 
 
 def elastic(impact: Impact) -> Impact:
-    """`impact` on a beam that never yields, under Hertz contact.
+    """Return `impact` on a beam that never yields, under Hertz contact.
 
     The yield stress is raised to a tenth of Young's modulus: a strain of 0.1 is out of reach.
     """
@@ -45,13 +45,13 @@ def elastic(impact: Impact) -> Impact:
 
 
 def rigid_backed(velocity: float, contact: str) -> Impact:
-    """The paper's sphere on a beam of enormous mass (E* as it is), without gravity."""
+    """Return the paper's sphere on a beam of enormous mass (E* as it is), without gravity."""
     impact = paper_impact(velocity, contact)
     return replace(with_beam_material(impact, density=7.8e9), gravity=0.0)
 
 
 def aluminium_impact() -> Impact:
-    """A steel sphere on a slender beam of aluminium, 400 x 30 x 12 mm."""
+    """Return a steel sphere on a slender beam of aluminium, 400 x 30 x 12 mm."""
     aluminium = Material(
         density=2700.0, youngs_modulus=70e9, poissons_ratio=0.33, yield_stress=250e6
     )
@@ -63,7 +63,7 @@ def aluminium_impact() -> Impact:
 
 
 def slimmer(impact: Impact, times: float) -> Impact:
-    """The same bending and contact, with depth/span so many `times` smaller.
+    """Return an impact of the same bending and contact, with depth/span `times` smaller.
 
     rho A, EI and E* stay: Young's modulus grows with the square of `times`, width makes up for
     depth, and the sphere yields what the beam's surface no longer does. To Euler and Bernoulli all
@@ -85,7 +85,7 @@ _KGF_PER_CM2 = 98066.5
 
 
 def timoshenko_impact(velocity: float = 0.01) -> Impact:
-    """A 10 mm-radius steel sphere on a 10 x 10 x 153.5 mm steel beam; velocity in m/s.
+    """Return a 10 mm-radius steel sphere on a 10 x 10 x 153.5 mm steel beam; velocity in m/s.
 
     S. Timoshenko, Zur Frage nach der Wirkung eines Stosses auf einen Balken, Z. Math. Phys. 62
     (1913) 198: E = 2.2e6 kgf/cm2, density 7.96 g/cm3, nu = 0.3, quoted at second hand. Without
@@ -113,7 +113,7 @@ _STRIKER_RADIUS = 3.5
 
 
 def slow_impact(beam: Beam, mass: float, velocity: float, softness: float) -> Impact:
-    """A striker of `mass` (kg) at `velocity` (m/s) on `beam`, without gravity.
+    """Return a striker of `mass` (kg) at `velocity` (m/s) on `beam`, without gravity.
 
     Its Hertz contact gives 20 kN at an indentation of `softness` (m), and F ~ delta^1.5 starts
     without a jump in the rate of loading, so that the beam follows without swinging.
@@ -132,12 +132,12 @@ def slow_impact(beam: Beam, mass: float, velocity: float, softness: float) -> Im
 
 
 def critical_time_step(impact: Impact, grid: Discretisation) -> float:
-    """The scheme's largest time step in s, from the number of steps that a second would take."""
+    """Return the scheme's largest time step in s, from the number of steps in a second."""
     return 1.0 / _number_of_steps(impact, replace(grid, courant=1.0), 1.0)
 
 
 def node_steps(impact: Impact, grid: Discretisation, duration: float) -> int:
-    """What a run costs, but for what a node costs a step: nodes of the half beam, times steps."""
+    """Return the cost of a run in nodes of the half beam times time steps."""
     return grid.nodes // 2 * _number_of_steps(impact, grid, duration)
 
 
@@ -150,7 +150,7 @@ def _number_of_steps(impact: Impact, grid: Discretisation, duration: float) -> i
 def simulate_in_steps(
     impact: Impact, grid: Discretisation, *, duration: float, steps: int, samples: int
 ) -> xr.Dataset:
-    """simulate() in that many steps, whatever the grid's Courant number says.
+    """Simulate in that many steps, whatever the grid's Courant number.
 
     Raises ValueError where so few steps are unstable.
     """

@@ -78,7 +78,7 @@ def audit(impact: Impact, grid: Discretisation, duration: float) -> Audit:
 
 
 def _final_velocities(run: xr.Dataset) -> tuple[float, float]:
-    """The sphere's, in m/s, half a step before the end and half a step after it."""
+    """Return the sphere's velocity in m/s half a step before the end and half a step after."""
     fallen, time = run["sphere_displacement"].values, run["time"].values
     dt = time[-1] - time[-2]
     earlier = float((fallen[-1] - fallen[-2]) / dt)
@@ -87,7 +87,7 @@ def _final_velocities(run: xr.Dataset) -> tuple[float, float]:
 
 
 def _time_step(impact: Impact, grid: Discretisation) -> float:
-    """The solver's, in s, for durations of many steps; a hair less.
+    """Return the solver's time step in s for durations of many steps, slightly reduced.
 
     In single precision, so that durations are exact multiples of it: runs that end a step apart
     then take the very same steps, and their difference is free of rounding.
@@ -98,7 +98,7 @@ def _time_step(impact: Impact, grid: Discretisation) -> float:
 
 
 def _kinetic_energy(impact: Impact, grid: Discretisation, run: xr.Dataset, dt: float) -> float:
-    """Of the beam at the end, in J."""
+    """Return the kinetic energy of the beam at the end, in J."""
     end, here = run["duration"].item(), run["deflection"].values
     before, after = (
         simulate(impact, grid, duration=end + shift, samples=2)["deflection"].values
@@ -109,7 +109,7 @@ def _kinetic_energy(impact: Impact, grid: Discretisation, run: xr.Dataset, dt: f
 
 
 def _strain_energies(impact: Impact, grid: Discretisation, run: xr.Dataset) -> tuple[float, float]:
-    """(dissipated, stored) in J, fibre by fibre."""
+    """Return the (dissipated, stored) energy in J, fibre by fibre."""
     beam, material = impact.beam, impact.beam.material
     _, weights = quadrature.rule(grid.rule, grid.points)
     area = 0.5 * beam.depth * beam.width * weights
@@ -140,7 +140,7 @@ Case = tuple[Impact, Audit]
 
 
 def check_balances() -> Finding:
-    """The worst of all cases, each quantity by itself."""
+    """Compare each quantity at the worst of all cases."""
     random = np.random.default_rng(_SEED)
     cases = [_solved(random) for _ in range(_CASES)]
     audits = [found for _, found in cases]
@@ -170,7 +170,7 @@ BALANCES = Check(
 
 
 def drawn(random: np.random.Generator) -> dict[str, Value]:
-    """Values of a case: half of them soft, so that the beam yields; slow ones graze the yield."""
+    """Draw the values of a case: half of them soft, so that the beam yields."""
     soft = bool(random.random() < 0.5)
 
     def modulus() -> float:
@@ -215,7 +215,7 @@ def _worst(quantity: str, errors: list[float], tolerance: float) -> Comparison:
 
 
 def _contact(found: Audit) -> float:
-    """Dissipation told less the loop's area; none where the contact has not ended."""
+    """Return the stored dissipation less the loop's area; zero if the contact has not ended."""
     told = found.run["contact_dissipation"].item()
     return 0.0 if math.isnan(told) else float(told - found.contact) / found.brought
 
@@ -225,7 +225,7 @@ def _plastic(found: Audit) -> float:
 
 
 def _says(found: Audit) -> bool:
-    """Whether the run says that its contact law created energy."""
+    """Return whether the run is marked: its contact law created energy."""
     return bool(found.run["remarks"].item() & WARNINGS["contact_created_energy"][0])
 
 
@@ -240,7 +240,7 @@ _IN_CLOSED_FORM = ("hertz", "stronge")
 
 
 def _created(cases: list[Case]) -> list[Comparison]:
-    """The runs that say so are those in which Stronge's loop gives back more than it took."""
+    """Compare the marked runs with those in which Stronge's loop gives back more than it took."""
     ended = [
         case
         for case in cases
@@ -282,7 +282,7 @@ def _excess_panel(audits: list[Audit]) -> Panel:
 
 
 def _loop_panel(cases: list[Case]) -> Panel:
-    """Dissipation over the work of loading, where the law creates energy and beyond."""
+    """Draw the dissipation over the work of loading, where the law creates energy and beyond."""
     points = []
     for impact, found in cases:
         law, told = stronge_impact(impact), found.run["contact_dissipation"].item()

@@ -41,7 +41,7 @@ _SAMPLES = 401
 
 
 def _slender() -> Impact:
-    """A heavy sphere on a slender beam: it touches more than once."""
+    """Return a heavy sphere on a slender beam, which it touches more than once."""
     impact = paper_impact()
     return replace(impact, beam=replace(impact.beam, depth=0.008, width=0.02))
 
@@ -53,7 +53,7 @@ CASES = {
 
 
 def check_spring_mass() -> Finding:
-    """Histories, responses, the curvature of the static shape, and the order in the time step."""
+    """Compare histories, responses, the curvature, and the order in the time step."""
     found: list[Comparison] = []
     for beam, case in CASES.items():
         table = [_compare(beam, case, velocity) for velocity in case.velocities]
@@ -71,7 +71,7 @@ SPRING_MASS = Check(
 
 
 def _run_spring_mass(impact: Impact, duration: float, courant: float = 0.5) -> xr.Dataset:
-    """The solver's spring-mass model over `duration` (s)."""
+    """Solve the spring-mass model over `duration` (s)."""
     model, grid = (
         replace(impact, beam_model="spring_mass"),
         replace(_SPRING_MASS_GRID, courant=courant),
@@ -99,7 +99,7 @@ def _history(name: str, where: str, ours: xr.Dataset, exact: LumpedSolution) -> 
 
 
 def _curvature(impact: Impact, where: str, ours: xr.Dataset, exact: LumpedSolution) -> Comparison:
-    """-12 w/L^2; the static shape of the finite differences has (1 - 2/(nodes - 1)^2) of it."""
+    """Compare with -12 w/L^2, of which the finite differences have (1 - 2/(nodes - 1)^2)."""
     w = exact.at("midspan_deflection", ours.time.values)
     expected = lumped.midspan_curvature(impact.beam, 1.0) * w
     label, tolerance = "history of mid-span curvature", 2.5 / (_SPRING_MASS_GRID.nodes - 1) ** 2
@@ -140,13 +140,13 @@ def _order() -> Comparison:
 
 
 def _error(ours: xr.Dataset, exact: LumpedSolution) -> float:
-    """Root mean square of the indentation's error, in m."""
+    """Return the root mean square of the indentation's error, in m."""
     gap = ours.indentation.values - exact.at("indentation", ours.time.values)
     return float(np.sqrt(np.mean(gap**2)))
 
 
 def _panel() -> Panel:
-    """What the model leaves out, too: its mass resists all at once, the beam's by and by."""
+    """Draw the model, its integral, and the elastic beam, whose mass resists only gradually."""
     case = CASES["the paper's beam"]
     ours, time = (
         _run_spring_mass(case.impact, case.duration),
@@ -176,7 +176,7 @@ _RIGID_GRID = Discretisation(nodes=11, points=3)
 
 
 def check_rigid_beam() -> Finding:
-    """Hertz's and Stronge's impact at four velocities, and a slow one under gravity."""
+    """Compare Hertz's and Stronge's impact at four velocities, and a slow one under gravity."""
     hertzian = [_against_hertz(velocity) for velocity in VELOCITIES]
     plastic = [_against_stronge(velocity) for velocity in VELOCITIES]
     found = [
@@ -196,7 +196,7 @@ RIGID_BEAM = Check(
 
 
 def _run_rigid_beam(impact: Impact, samples: int = 2) -> tuple[xr.Dataset, float]:
-    """The solver on a rigid beam, and the time (s) until the sphere has left."""
+    """Solve on a rigid beam; return the run and the time (s) until the sphere has left."""
     args = hertz.arguments(impact)
     duration = 2.0 * hertz.contact_duration(*args)
     model = replace(impact, beam_model="rigid")

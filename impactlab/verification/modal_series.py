@@ -48,7 +48,7 @@ _SAMPLES = 401
 
 
 def compare(cases: Mapping[str, Case], solve: Solve) -> list[Comparison]:
-    """Histories at 201 nodes, at 801 nodes, and the order in which their errors fall.
+    """Compare histories at 201 nodes, at 801 nodes, and the order in which their errors fall.
 
     Of each, the velocity that comes out worst is told. The order is that of the root mean square
     over time. The largest error of the curvature falls as dx^2 log(1/dx): the kink that first touch
@@ -63,7 +63,7 @@ def compare(cases: Mapping[str, Case], solve: Solve) -> list[Comparison]:
 
 
 def _compare(beam: str, case: Case, velocity: float, solve: Solve) -> list[Comparison]:
-    """One impact: histories and responses at 201 nodes, histories at 801, and their orders."""
+    """Compare one impact: histories and responses at 201 nodes, histories at 801, orders."""
     impact = replace(case.impact, velocity=velocity)
     series = solve(impact, case.duration)
     runs = {nodes: run(impact, nodes, case.duration) for nodes in NODES}
@@ -77,7 +77,7 @@ def _compare(beam: str, case: Case, velocity: float, solve: Solve) -> list[Compa
 
 
 def run(impact: Impact, nodes: int, duration: float) -> xr.Dataset:
-    """The solver's histories with that many nodes."""
+    """Solve the impact with that many nodes."""
     grid = Discretisation(nodes=nodes, points=3)  # 3 points are exact while elastic
     return simulate(impact, grid, duration=duration, samples=_SAMPLES)
 
@@ -124,7 +124,7 @@ def panels(
     solve: Solve,
     rivals: Mapping[str, ModalSolution] | None = None,
 ) -> list[Panel]:
-    """Histories of one impact over `duration` (s), and how errors fall; rivals: further curves."""
+    """Draw histories over `duration` (s), and how their errors fall; rivals: more curves."""
     series = solve(impact, duration)
     runs = {nodes: run(impact, nodes, duration) for nodes in NODES}
     both = [
@@ -166,7 +166,7 @@ BERNOULLI_CASES = {
 
 
 def check_modal_series() -> Finding:
-    """Histories at 201 nodes, at 801 nodes, and the order in which their errors fall."""
+    """Compare histories at 201 nodes, at 801 nodes, and the order in which their errors fall."""
     case, velocity = BERNOULLI_CASES["the paper's beam"], 0.99
     impact = replace(case.impact, velocity=velocity)
     title = f"the paper's beam, {velocity:g} m/s"
@@ -187,7 +187,7 @@ def _sheared(impact: Impact) -> Impact:
 
 
 def _stubby() -> Impact:
-    """The paper's sphere on a fourth of its span: shear is 6 % of the static deflection."""
+    """Return the paper's sphere on a fourth of its span: shear is 6 % of the static deflection."""
     impact = paper_impact()
     return replace(impact, beam=replace(impact.beam, span=0.25 * impact.beam.span))
 
@@ -201,13 +201,13 @@ TIMOSHENKO_CASES = {
 
 
 def solve_sheared(impact: Impact, duration: float) -> ModalSolution:
-    """The series with a step half as large as its default: stubby beams converge fast."""
+    """Solve the series with half its default step: stubby beams converge fast."""
     step = hertz.contact_duration(*hertz.arguments(impact)) / 2000.0
     return modal.solve_timoshenko(impact, duration, step=step)
 
 
 def check_timoshenko_beam() -> Finding:
-    """Histories at 201 nodes, at 801 nodes, and the order in which their errors fall."""
+    """Compare histories at 201 nodes, at 801 nodes, and the order in which their errors fall."""
     case, velocity = TIMOSHENKO_CASES["the paper's beam"], 0.99
     impact = replace(case.impact, velocity=velocity)
     title = f"the paper's beam with shear and rotary inertia, {velocity:g} m/s"

@@ -51,7 +51,7 @@ class Case:
 
 
 def end_of_hertz_contact(run: xr.Dataset) -> float:
-    """When the indentation is zero again, in s, by a cubic spline.
+    """Return the time in s at which the indentation is zero again, by a cubic spline.
 
     The response contact_duration interpolates linearly within the step: of second order, too, but
     with a factor that depends on where in the step the contact ends.
@@ -87,7 +87,7 @@ _LOADING = tuple(ANSWERS)[:4]
 
 
 def hardening(velocity: float) -> Impact:
-    """The paper's case at a velocity (m/s) at which the beam yields; it hardens with 20 GPa."""
+    """Return the paper's case at `velocity` (m/s), on a beam that hardens with 20 GPa."""
     return with_beam_material(paper_impact(velocity), isotropic_hardening_modulus=20e9)
 
 
@@ -112,7 +112,7 @@ CASES_IN_SPACE = {
 
 
 def check_observed_order() -> Finding:
-    """Order in which the differences between successive runs fall.
+    """Compare the orders in which the differences between successive runs fall with theory.
 
     The peak plastic strain is left out in space, too: it need not converge.
     """
@@ -139,7 +139,7 @@ OBSERVED_ORDER = Check(
 
 
 def in_time(case: Case) -> list[xr.Dataset]:
-    """Runs with 101 nodes and ever shorter steps, sampled at the longest ones."""
+    """Solve with 101 nodes and successively shorter steps, sampled at the longest ones."""
     grid = Discretisation(nodes=101, points=case.points)
     longest = 0.8 * critical_time_step(case.impact, grid)
     least = math.ceil(case.duration / longest)
@@ -152,7 +152,7 @@ def in_time(case: Case) -> list[xr.Dataset]:
 
 
 def in_space(case: Case) -> list[xr.Dataset]:
-    """Runs with ever more nodes, all with the steps that the finest grid takes."""
+    """Solve with successively more nodes, all with the time steps of the finest grid."""
     grids = [Discretisation(nodes=nodes, points=case.points) for nodes in NODES]
     largest = grids[-1].courant * critical_time_step(case.impact, grids[-1])
     # a multiple of the intervals between samples, so that each sample falls on a step
@@ -164,7 +164,7 @@ def in_space(case: Case) -> list[xr.Dataset]:
 
 
 def _order(name: str, where: str, runs: Sequence[xr.Dataset], doublings: int) -> Comparison:
-    """From the first to the last difference, over so many doublings."""
+    """Compare the order from the first to the last difference, over so many doublings."""
     apart = _apart(name, runs)
     observed = float(np.log2(apart[0] / apart[-1])) / doublings
     return absolute(name, where, "1", observed, ORDER, TOLERANCE)

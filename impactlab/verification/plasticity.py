@@ -30,7 +30,7 @@ _TURN = 6.0
 
 
 def check_moment_curvature() -> Finding:
-    """Two loops of each hardening: every rule against its own fibres, a fine one against M."""
+    """Compare two loops of each hardening: rules with their fibres, a fine one with M."""
     path = _path()
     comparisons, curves = [], []
     for name, moduli in _HARDENING.items():
@@ -54,7 +54,7 @@ MOMENT_CURVATURE = Check(
 
 
 def moments(beam: Beam, rule: str, points: int, curvatures: Floats) -> Floats:
-    """Moments (N m, sign of the curvature) of the solver's section along a path (1/m)."""
+    """Return the moments (N m) of the solver's section along a path of curvatures (1/m)."""
     impact = replace(paper_impact(), beam=beam)
     grid = Discretisation(rule=rule, points=points)
     cut = section.make_section(case_table(impact, grid, duration=1.0)[0])
@@ -67,14 +67,14 @@ def moments(beam: Beam, rule: str, points: int, curvatures: Floats) -> Floats:
 
 
 def _path() -> Floats:
-    """Out, back through zero to the other side, and out again, in 240 steps."""
+    """Return the curvatures out, back through zero to the other side, and out, in 240 steps."""
     out = np.linspace(0.0, _TURN, 41)[1:]
     back = np.linspace(_TURN, -_TURN, 101)[1:]
     return np.concatenate([out, back, back[::-1]])
 
 
 def _rules(name: str, beam: Beam, kappa: Floats) -> Comparison:
-    """All rules at once: the worst one counts."""
+    """Compare the worst of all rules with its own fibres."""
     ours, expected = [], []
     for rule in RULES:
         for points in _POINTS:
@@ -90,7 +90,7 @@ def _exact(name: str, beam: Beam, kappa: Floats, ours: Floats) -> Comparison:
 
 
 def _exact_moments(beam: Beam, kappa: Floats) -> Floats:
-    """Masing's closed form; with isotropic hardening, which he does not cover, 2000 fibres."""
+    """Return Masing's closed form or, for isotropic hardening, the moments of 2000 fibres."""
     if beam.material.isotropic_hardening_modulus:
         return bending.path_moments(beam, kappa, *quadrature.rule("legendre", 2000))
     farthest = int(np.argmax(kappa))
@@ -115,7 +115,7 @@ _YIELD_STRESS = 20e6
 
 
 def check_rigid_plastic_mode() -> Finding:
-    """What is left and how long it takes, where the mode holds; how it is approached."""
+    """Compare permanent deflection and duration with the mode, and the approach to it."""
     comparisons: list[Comparison] = []
     for mass in _MASSES:
         comparisons += _far(mass)
@@ -137,7 +137,7 @@ RIGID_PLASTIC_MODE = Check(
 
 
 def soft_impact(mass_ratio: float, energy_ratio: float) -> Impact:
-    """The paper's beam of soft material, struck elastically and without gravity."""
+    """Return the paper's beam of soft material, struck elastically and without gravity."""
     paper = paper_impact(1.0, "hertz")
     soft = replace(paper.beam.material, yield_stress=_YIELD_STRESS)
     beam = replace(paper.beam, material=soft)
@@ -148,14 +148,14 @@ def soft_impact(mass_ratio: float, energy_ratio: float) -> Impact:
 
 
 def _struck(mass_ratio: float, energy_ratio: float) -> xr.Dataset:
-    """The run, to somewhat after the beam has stopped."""
+    """Solve until somewhat after the beam has stopped."""
     impact = soft_impact(mass_ratio, energy_ratio)
     duration = 1.3 * collapse.mode_duration(impact) + 5e-3
     return simulate(impact, _MODE_GRID, duration=duration, samples=4001)
 
 
 def _far(mass_ratio: float) -> list[Comparison]:
-    """Against the mode alone, at the largest energy ratio."""
+    """Compare with the mode alone, at the largest energy ratio."""
     ratio = max(_RATIOS)
     impact, run = soft_impact(mass_ratio, ratio), _struck(mass_ratio, ratio)
     where = f"energy ratio {ratio:g}, mass ratio {mass_ratio:g}; mode"
@@ -168,7 +168,7 @@ def _far(mass_ratio: float) -> list[Comparison]:
 
 
 def _permanent_deflection(run: xr.Dataset) -> float:
-    """Deflection (m) that the plastic strains leave when nothing swings any more.
+    """Return the deflection (m) that the plastic strains leave when all vibration has ended.
 
     Unit-load theorem: the integral of the plastic curvature times half the distance from the
     nearer support.
@@ -181,7 +181,7 @@ def _permanent_deflection(run: xr.Dataset) -> float:
 
 
 def _mode_panel(permanents: list[float]) -> Panel:
-    """Relative distance from the mode's final deflection."""
+    """Draw the relative distance from the mode's final deflection."""
     impacts = [soft_impact(_HEAVY, ratio) for ratio in _RATIOS]
     final = np.array([collapse.mode_deflection(impact) for impact in impacts])
     expected = np.array([collapse.elastic_plastic_deflection(impact) for impact in impacts])

@@ -64,7 +64,7 @@ _NAMES = {scheme: scheme.replace("_", "-") for scheme in SCHEMES}
 
 
 def check_schemes() -> Finding:
-    """Errors at the nodes that the tolerances are for, energy of drawn cases, errors by cost."""
+    """Compare both schemes at fixed nodes, the energy of random cases, and errors by cost."""
     found = [*_elastic(), *_yielding(), stable(drawn(DRAWN, SEED))]
     return Finding(found, [_elastic_panel(), _yielding_panel()])
 
@@ -85,7 +85,7 @@ def _run(
 
 
 def _elastic() -> list[Comparison]:
-    """Histories of each beam at its second velocity; the beam that comes out worst is told."""
+    """Compare the histories of each beam at its second velocity; keep the worst beam."""
     table = []
     for beam, case in modal_series.BERNOULLI_CASES.items():
         impact = replace(case.impact, velocity=case.velocities[1])
@@ -116,7 +116,7 @@ def _histories(
 
 
 def _yielding() -> list[Comparison]:
-    """Responses of the paper's perfectly plastic beam."""
+    """Compare the responses of the paper's perfectly plastic beam."""
     found: list[Comparison] = []
     for velocity in VELOCITIES:
         fine = _run(paper_impact(velocity), "leapfrog", FINE, DURATION, samples=2)
@@ -130,7 +130,7 @@ def _yielding() -> list[Comparison]:
 
 
 def drawn(number: int, seed: int) -> dict[str, Any]:
-    """Parameters of so many random cases, a column each: rules, laws, sizes and hardening."""
+    """Draw the parameters of random cases, one array each: rules, laws, sizes and hardening."""
     random = np.random.default_rng(seed)
     hardening = np.array([0.0, 2e9, 20e9])
     return {
@@ -151,7 +151,7 @@ def drawn(number: int, seed: int) -> dict[str, Any]:
 
 
 def stable(varied: dict[str, Any]) -> Comparison:
-    """The semi-implicit case whose energy is most out of balance; a diverged one has none."""
+    """Compare the worst energy balance of the semi-implicit scheme; a diverged run has none."""
     grid = Discretisation(scheme="semi_implicit")
     runs = simulate_many(paper_impact(), grid, duration=DRAWN_DURATION, varied=varied)
     return worst(
@@ -202,7 +202,7 @@ def _yielding_panel() -> Panel:
 def _panel(
     title: str, impact: Impact, duration: float, errors: Callable[[xr.Dataset], dict[str, float]]
 ) -> Panel:
-    """Errors of both schemes against what they cost, from 51 to 801 nodes."""
+    """Draw the errors of both schemes against their cost, from 51 to 801 nodes."""
     curves = []
     for scheme in SCHEMES:
         grids = [Discretisation(nodes=nodes, scheme=scheme) for nodes in NODES]

@@ -29,7 +29,7 @@ _DEFLECTION_DURATION = 1.2
 
 
 def check_static_deflection() -> Finding:
-    """Deflection and curvature at mid-span against the load, over 1.2 s: 130 periods.
+    """Compare deflection and curvature at mid-span with the load, over 1.2 s: 130 periods.
 
     And of a stubby Timoshenko beam over 0.1 s: 160 of its periods.
     """
@@ -47,7 +47,7 @@ STATIC_DEFLECTION = Check(
 
 
 def stiffness_ratio(rule: str, points: int) -> float:
-    """The rule's second moment of area over the exact one: sum(w xi^2)/(2/3)."""
+    """Return the rule's second moment of area over the exact one: sum(w xi^2)/(2/3)."""
     positions, weights = quadrature.rule(rule, points)
     return float(1.5 * np.sum(weights * positions**2))
 
@@ -84,7 +84,7 @@ def _compare(rule: str, points: int) -> tuple[list[Comparison], Panel]:
 
 
 def _sheared() -> list[Comparison]:
-    """A fourth of the paper's span, where shear adds 6.3 % to the deflection."""
+    """Compare a fourth of the paper's span, where shear adds 6.3 % to the deflection."""
     paper = paper_impact().beam
     beam = replace(paper, span=0.25 * paper.span)
     impact = slow_impact(beam, mass=8e4, velocity=0.24, softness=50e-3)
@@ -109,7 +109,7 @@ _COLLAPSE_DURATION = 1.0
 
 
 def check_static_collapse() -> Finding:
-    """Load against deflection, plateau and what is left; the plateau of coarse rules."""
+    """Compare load against deflection, plateau, permanent deflection; plateaus of coarse rules."""
     perfect = _beam(0.0)
     run = _run_collapse(perfect, "layers", 40)
     hardening = _beam(5e9)
@@ -145,7 +145,7 @@ def _run_collapse(beam: Beam, rule: str, points: int) -> xr.Dataset:
 
 
 def _on_loading(run: xr.Dataset) -> tuple[Floats, Floats]:
-    """(deflection, force) at mid-span until the deflection is largest."""
+    """Return (deflection, force) at mid-span until the deflection is largest."""
     deflection, force = run["midspan_deflection"].values, run["contact_force"].values
     until = int(np.argmax(deflection)) + 1
     return deflection[:until], force[:until]
@@ -163,13 +163,13 @@ def _loading(run: xr.Dataset, beam: Beam, where: str, tolerance: float) -> Compa
 
 
 def _plateau(run: xr.Dataset) -> float:
-    """Mean load in N once the hinge has formed: what still swings averages out."""
+    """Return the mean load in N once the hinge has formed, which averages out vibrations."""
     deflection, force = _on_loading(run)
     return float(force[deflection > _HINGE].mean())
 
 
 def _coarse(beam: Beam, points: int) -> Comparison:
-    """The plastic moment of a coarse rule is not that of the section."""
+    """Compare the plateau with the plastic moment of the coarse rule, not of the section."""
     positions, weights = quadrature.rule("lobatto", points)
     far = 1e3 * bending.yield_curvature(beam)
     own = 4.0 / beam.span * float(bending.rule_moment(beam, far, positions, weights))
@@ -179,7 +179,7 @@ def _coarse(beam: Beam, points: int) -> Comparison:
 
 
 def _permanent(run: xr.Dataset, beam: Beam) -> Comparison:
-    """The striker leaves as slowly as it came, and the beam springs back elastically."""
+    """Compare the deflection left: the striker leaves slowly, the beam springs back elastically."""
     limit = bending.collapse_load(beam)
     left = float(run["midspan_deflection"].max()) - bending.static_deflection(beam, limit)
     ours = float(run["midspan_deflection"][-400:].mean())

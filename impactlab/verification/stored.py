@@ -55,7 +55,7 @@ _CURVES: Kinds = {
 
 
 def packed(outcomes: Sequence[Outcome]) -> xr.Dataset:
-    """A dataset of all outcomes, without attributes of its own."""
+    """Return a dataset of all outcomes, without global attributes."""
     panels = [(outcome, panel) for outcome in outcomes for panel in outcome.finding.panels]
     curves = [(at, curve) for at, (_, panel) in enumerate(panels) for curve in panel.curves]
     checks = _table("name", _CHECKS, [_check_row(outcome) for outcome in outcomes])
@@ -70,7 +70,7 @@ def packed(outcomes: Sequence[Outcome]) -> xr.Dataset:
 
 
 def unpacked(dataset: xr.Dataset) -> list[Outcome]:
-    """The outcomes that a dataset of `packed` holds, in its order."""
+    """Return the outcomes that a dataset of `packed` holds, in its order."""
     return [_outcome(dataset, row) for row in _read(dataset, _CHECKS)]
 
 
@@ -81,7 +81,7 @@ _AXES: dict[str, dict[str, str]] = {
 
 
 def _table(dim: str, kinds: Kinds, rows: list[Row]) -> Row:
-    """Variables on `dim`, a column each; the types hold without rows, too."""
+    """Return variables on `dim`, one per column, with the right types even without rows."""
     return {
         name: (dim, np.array([row[name] for row in rows], dtype=kind), {"long_name": words})
         for name, (kind, words) in kinds.items()
@@ -116,7 +116,7 @@ def _joined(curves: list[tuple[int, Curve]], axis: str) -> np.ndarray[Any, Any]:
 
 
 def _read(dataset: xr.Dataset, kinds: Kinds) -> list[Row]:
-    """The rows of a table as plain Python values."""
+    """Return the rows of a table as plain Python values."""
     columns = [dataset[name].values.astype(kind).tolist() for name, (kind, _) in kinds.items()]
     return [dict(zip(kinds, row, strict=True)) for row in zip(*columns, strict=True)]
 

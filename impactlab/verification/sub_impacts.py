@@ -39,7 +39,7 @@ class Contact(NamedTuple):
 
 
 def timoshenko_spheres() -> dict[str, tuple[Impact, float]]:
-    """Timoshenko's two spheres at 10 mm/s, and how long (s) each is to be followed.
+    """Return Timoshenko's two spheres at 10 mm/s, and how long (s) each is to be followed.
 
     The larger one touches three times. His numbers are at second hand: see timoshenko_impact.
     """
@@ -56,7 +56,7 @@ def timoshenko_spheres() -> dict[str, tuple[Impact, float]]:
 
 
 def check_sub_impacts() -> Finding:
-    """Number of contacts; begin, end and peak force of each; time in contact."""
+    """Compare number, times and peak force of the contacts, and the time in contact."""
     found: list[Comparison] = []
     panels: list[Panel] = []
     for where, (impact, duration) in timoshenko_spheres().items():
@@ -95,7 +95,7 @@ def _compare(where: str, ours: xr.Dataset, series: ModalSolution) -> list[Compar
 
 
 def contacts(time: Floats, indentation: Floats, force: Floats) -> list[Contact]:
-    """The contacts in histories (s, m, N) of shape (time,), taken between the samples.
+    """Find the contacts in histories (s, m, N) of shape (time,), between the samples.
 
     The last one must have ended.
     """

@@ -59,14 +59,14 @@ class Scale:
     time: float
 
     def factor(self, units: str) -> float:
-        """Factor on a quantity in `units` (UDUNITS, as in impactlab.variables)."""
+        """Return the factor on a quantity in `units` (UDUNITS, as in impactlab.variables)."""
         powers = np.zeros(3)
         for name, power in re.findall(r"([A-Za-z]+)(-?\d*)", units):
             powers += np.array(_DIMENSIONS[name]) * int(power or 1)
         return float(np.prod(np.array([self.mass, self.length, self.time]) ** powers))
 
     def impact(self, impact: Impact) -> Impact:
-        """`impact` with each of its parameters scaled."""
+        """Return `impact` with each of its parameters scaled."""
         values = {
             name: value * self.factor(PARAMETERS[name].units)
             for name, value in flatten(impact, _SCALED_GRID).items()
@@ -76,12 +76,12 @@ class Scale:
 
 
 def same_speed(size: float) -> Scale:
-    """Lengths by `size`, materials and velocity as they are: times by size, forces by size^2."""
+    """Scale lengths and times by `size`, hence forces by size^2; materials and velocity stay."""
     return Scale(size**3, size, size)
 
 
 def other_material(stiffness: float, density: float) -> Scale:
-    """Pressures by `stiffness`, densities by `density`: velocities by the root of their ratio."""
+    """Scale pressures by `stiffness`, densities by `density`, velocities by the ratio's root."""
     return Scale(density, 1.0, math.sqrt(density / stiffness))
 
 
@@ -95,7 +95,7 @@ SCALES = {
 
 
 def yielding(contact: str) -> Impact:
-    """The paper's case at 15 m/s, with both kinds of hardening: sub-impacts on a yielding beam.
+    """Return the paper's case at 15 m/s with both kinds of hardening: sub-impacts while yielding.
 
     With gravity, which scales as every acceleration does.
     """
@@ -107,7 +107,7 @@ def yielding(contact: str) -> Impact:
 
 
 def check_similarity() -> Finding:
-    """Every response, history and profile of the scaled impact, against those of the impact.
+    """Compare every response, history and profile of the scaled impact with the original.
 
     Dimensional analysis is all that is independent here; a constant with a unit, hidden in the
     code, would break it.
@@ -136,7 +136,7 @@ def _scaled(impact: Impact, scale: Scale) -> xr.Dataset:
 
 
 def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> list[Comparison]:
-    """The worst of the responses, and the worst of the curves."""
+    """Compare the worst of the responses, and the worst of the curves."""
     responses = [_response(name, where, run, scaled, scale) for name in RESPONSES]
     curves = [
         curve(
@@ -155,7 +155,7 @@ def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> l
 def _response(
     name: str, where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale
 ) -> Comparison:
-    """A response, by the difference over its yardstick; missing in both is the same."""
+    """Compare a response by the difference over its scale; missing in both runs is no error."""
     entry = RESPONSES[name]
     expected, ours = run[name].item(), scaled[name].item() / scale.factor(entry.units)
     error = (ours - expected) / _yardsticks(run).get(name, abs(expected) or 1.0)
@@ -168,7 +168,7 @@ def _response(
 
 
 def _yardsticks(run: xr.Dataset) -> Mapping[str, float]:
-    """What answers that are small differences of large ones are measured by."""
+    """Return the scales of answers that are small differences of large ones."""
     energy = float(0.5 * run.sphere_mass * run.velocity**2)
     return {
         "contact_dissipation": energy,
@@ -221,7 +221,7 @@ class March:
     steps: int
 
     def step(self, state: State) -> float:
-        """One step on; returns the force (N) at its beginning."""
+        """Advance by one step; return the force (N) at its beginning."""
         contact = np.zeros(1, CONTACT)  # Hertz contact has no memory
         contact[0].n = 1.5
         newtons = float(force(contact[0], self.pair, state.w_s - state.w[self.grid.mid]))
@@ -235,11 +235,11 @@ class March:
         return newtons
 
     def run(self, state: State) -> Floats:
-        """All the steps; the force (N) at the beginning of each, shape (steps,)."""
+        """Advance by all steps; return the force (N) at the beginning of each, shape (steps,)."""
         return np.array([self.step(state) for _ in range(self.steps)])
 
     def turn(self, state: State) -> None:
-        """Turn all velocities round, where the bodies now are."""
+        """Reverse all velocities at the present positions."""
         self.step(state)  # for the velocities half a step later
         state.beam.u[:] *= -1.0
         state.u_s *= -1.0
@@ -248,7 +248,7 @@ class March:
 
 
 def prepare(impact: Impact, grid: Discretisation, duration: float) -> tuple[March, State]:
-    """The march that simulate() makes, and its state at first touch."""
+    """Return the march that simulate() makes, and its state at first touch."""
     case = case_table(impact, grid, duration=duration)[0]
     pair, section = make_pair(case), make_section(case)
     cut, steps = discretise(case, pair, section)
@@ -257,7 +257,7 @@ def prepare(impact: Impact, grid: Discretisation, duration: float) -> tuple[Marc
 
 
 def check_time_reversal() -> Finding:
-    """There, turned round, back: the same forces in reverse, and the sphere as it came.
+    """Compare forces there and, after all velocities are reversed, back; and the final state.
 
     The march uses the kernels' beam and contact, and is shown to be that of simulate().
     """
@@ -299,7 +299,7 @@ TIME_REVERSAL = Check(
 
 
 def _returned(where: str, state: State, sphere: float, largest: float) -> list[Comparison]:
-    """Against the start; sphere: u_s there (m), largest: the deflection when it turned (m)."""
+    """Compare with the start; sphere: u_s there (m), largest: deflection at the turn (m)."""
     velocity = state.u_s / sphere
     beam = float(np.max(np.abs(state.beam.u))) / sphere
     return [

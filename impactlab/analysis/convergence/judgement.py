@@ -32,7 +32,7 @@ from impactlab.types import Floats
 
 
 class How(Verdict):
-    """What an uncertainty rests on, the best first; sound where it is more than a precaution."""
+    """The basis of an uncertainty, the best first; sound where it is more than a precaution."""
 
     ROUND_OFF = 0, True, "all grids agree to 1e-9"
     GCI = 1, True, "grid convergence index, three grids of credible order"
@@ -56,7 +56,7 @@ class Uncertainty(NamedTuple):
 
 
 def numerical_uncertainty(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Uncertainty:
-    """How far the value of each grid may lie from the limit at zero spacing.
+    """Return how far the value of each grid may lie from the limit at zero spacing.
 
     values: in any unit, NaN where a run is missing; spacings: in any unit; both (grids,), finest
     first. A missing grid is left out and is infinitely uncertain, as are all where nothing bounds
@@ -103,7 +103,7 @@ def _of_three_or_more(f: Floats, h: Floats) -> Uncertainty:
 
 
 def _slows_down(finest: Estimate, fitted: Fit | None) -> bool:
-    """Whether the three finest grids, or else all of four or more, show an order above 0.5."""
+    """Return whether the three finest grids, or all of four or more, show an order above 0.5."""
     least = CREDIBLE_ORDERS[0]
     seen = finest.behaviour is Behaviour.MONOTONE and finest.order >= least
     return seen or (fitted is not None and fitted.free_order >= least)
@@ -123,7 +123,7 @@ VANISHING = 0.1
 
 
 class AxisVerdict(Verdict):
-    """What refinement shows for one response at one point of the rest of the grid."""
+    """The effect of refinement on one response at one point of the rest of the grid."""
 
     AT_ROUND_OFF = 0, True, "the three finest grids agree to 1e-9: nothing left to converge"
     CONVERGED_SECOND_ORDER = (
@@ -166,7 +166,7 @@ class Judgement(NamedTuple):
 
 
 def judge(values: Floats, spacings: Floats) -> Judgement:
-    """All that three or more grids show of one response.
+    """Judge one response on three or more grids.
 
     values: in any unit, spacings: in any unit, both (grids,) and finest first. Order, Richardson
     value, GCI and its asymptotic ratio are those of the three finest; the safety factor is 1.25
@@ -198,12 +198,12 @@ def judge(values: Floats, spacings: Floats) -> Judgement:
 
 
 def relative(amount: float, value: float) -> float:
-    """amount/|value|, infinite where only the value is zero."""
+    """Return amount/|value|, infinite where only the value is zero."""
     return float(amount / abs(value)) if value else float(np.inf * amount if amount else 0.0)
 
 
 def _fit(values: Floats, spacings: Floats) -> Fit | None:
-    """The fit over all grids; None for fewer than four, a missing one, or equal values."""
+    """Return the fit over all grids; None for fewer than four, a missing one, or equal values."""
     if values.size < least_squares.FEWEST or not np.isfinite(values).all():
         return None
     if np.ptp(values) <= ROUND_OFF * np.max(abs(values)):

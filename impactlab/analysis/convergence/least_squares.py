@@ -57,7 +57,7 @@ class Fit:
 
 
 def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
-    """The expansion of least standard deviation among those that the fitted order leaves open.
+    """Fit the expansion of least standard deviation among those that the fitted order allows.
 
     values: f in any unit, spacings: h in any unit, both (grids,), four or more, all finite, in any
     order. The order is fitted with weights 1/h and without. Where one of the two is within
@@ -82,7 +82,7 @@ def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
 
 
 def uncertainty(found: Fit, values: npt.ArrayLike) -> Floats:
-    """Half-width of the interval about each value that holds the limit in about 95 % of cases.
+    """Return the half-width about each value that holds the limit in about 95 % of cases.
 
     F eps + sigma + |residual| with F = 1.25 where the fitted order is reliable (0.5 to 2.1) and
     the fit good (sigma < delta), F = 3 without a reliable order; 3 sigma/delta (eps + sigma +
@@ -109,7 +109,7 @@ def _fit(
     expansion: Expansion = Expansion.FREE,
     free_order: float | None = None,
 ) -> Fit:
-    """f0 + sum a h^power with weights of sum 1; a free order costs a degree of freedom, too."""
+    """Fit f0 + sum a h^power, weights of sum 1; a free order costs a degree of freedom, too."""
     terms = np.column_stack([h**power for power in powers])
     coefficients, residuals = _solved(f, terms, weights)
     parameters = 1 + len(powers) + (expansion is Expansion.FREE)
@@ -125,7 +125,7 @@ def _fit(
 
 
 def _solved(f: Floats, terms: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """Coefficients of 1 and the terms, (1 + terms,), and residuals f - fit, (grids,)."""
+    """Return the coefficients of 1 and the terms, (1 + terms,), and residuals f - fit, (grids,)."""
     design = np.column_stack([np.ones_like(f), terms])
     root = np.sqrt(weights)
     coefficients = np.linalg.lstsq(design * root[:, None], f * root, rcond=None)[0]
@@ -133,7 +133,7 @@ def _solved(f: Floats, terms: Floats, weights: Floats) -> tuple[Floats, Floats]:
 
 
 def _free_order(f: Floats, h: Floats, weights: Floats) -> float:
-    """The power of least weighted residual, looked for around the best of a few dozen."""
+    """Return the power of least weighted residual, looked for around the best of a few dozen."""
 
     def misfit(orders: npt.ArrayLike) -> Floats:
         return _misfits(f, h, weights, np.atleast_1d(orders))
@@ -147,7 +147,7 @@ def _free_order(f: Floats, h: Floats, weights: Floats) -> float:
 
 
 def _misfits(f: Floats, h: Floats, weights: Floats, orders: Floats) -> Floats:
-    """Weighted sum of squared residuals at the best f0 and a for each order, (orders,).
+    """Return the weighted sum of squared residuals at the best f0 and a for each order, (orders,).
 
     The curve is (h^p - 1)/p: with a constant the same as h^p, and ln h at p = 0.
     """

@@ -38,7 +38,7 @@ _ATTRS = {
 
 
 class PointsVerdict(Verdict):
-    """What more integration points change in one response at one point of the grid."""
+    """The effect of more integration points on one response at one point of the grid."""
 
     AT_ROUND_OFF = 0, True, "no number of points changes the value by more than 1e-9"
     CONVERGED = 1, True, "the most points and the next fewer agree within 1 %"
@@ -47,12 +47,12 @@ class PointsVerdict(Verdict):
 
 
 def applies(runs: xr.Dataset) -> bool:
-    """Whether the runs are a grid with two or more values of `points`."""
+    """Return whether the runs are a grid with two or more values of `points`."""
     return runs.sizes.get("points", 0) >= 2
 
 
 def analysis(runs: xr.Dataset) -> xr.Dataset:
-    """Points convergence of every response at every point of the rest of the grid.
+    """Judge the points convergence of every response at every point of the rest of the grid.
 
     Returns points_error on (response, *grid dims): |value - reference|/|reference|, NaN where
     either is missing, infinite where only the reference is zero. On (response, *other dims):
@@ -79,7 +79,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 
 
 def numerical_uncertainty(values: npt.ArrayLike) -> Floats:
-    """How far the value of each number of points may lie from the limit of many points.
+    """Return how far the value of each number of points may lie from the limit of many points.
 
     values: in any unit, NaN where a run is missing, (numbers,), most points first. SAFETY times the
     larger of its own difference to the most points and that of the next fewer; infinite for a
@@ -93,7 +93,7 @@ def numerical_uncertainty(values: npt.ArrayLike) -> Floats:
 
 
 def relative_error(values: xr.DataArray) -> xr.DataArray:
-    """|value - reference|/|reference| along `points`, rising; the reference is the last."""
+    """Return |value - reference|/|reference| along `points`, rising; the reference is the last."""
     reference = values.isel(points=-1, drop=True)
     difference = abs(values - reference)
     relative = difference / abs(reference).where(reference != 0)
@@ -102,7 +102,7 @@ def relative_error(values: xr.DataArray) -> xr.DataArray:
 
 
 def points_needed(error: xr.DataArray) -> xr.DataArray:
-    """Fewest points from which on the error stays within 1 %, NaN where none below the most do.
+    """Return the fewest points from which on the error stays within 1 %; NaN if only the most do.
 
     error: on `points`, rising. A missing run ends the stretch: it is not within anything.
     """
@@ -117,7 +117,7 @@ def points_needed(error: xr.DataArray) -> xr.DataArray:
 
 
 def _verdict(error: xr.DataArray) -> xr.DataArray:
-    """PointsVerdict on every point of the rest of the grid; error: on `points`, rising."""
+    """Return the PointsVerdict on the rest of the grid; error: on `points`, rising."""
     fewer = error.isel(points=slice(None, -1))
     nearest = fewer.isel(points=-1, drop=True)
     codes = xr.full_like(nearest, PointsVerdict.NOT_CONVERGED, np.int8)

@@ -31,7 +31,7 @@ SAFETY_CREDIBLE, SAFETY_DOUBTFUL = 1.25, 3.0
 
 
 class Behaviour(Verdict):
-    """How three values change as the grid is refined."""
+    """The change of three values as the grid is refined."""
 
     MONOTONE = 0, True, "the differences shrink and keep their sign: a positive order"
     OSCILLATORY = 1, True, "the differences shrink and change their sign"
@@ -45,7 +45,7 @@ class Behaviour(Verdict):
 
 @dataclass(frozen=True)
 class Estimate:
-    """What three grids show; in the unit of the values. NaN where it is not defined.
+    """The evidence of three grids, in the unit of the values; NaN where undefined.
 
     values: f1, f2, f3; ratios: r21, r32. order: p, negative when divergent. extrapolated:
     Richardson's value at h = 0, monotone convergence only: the limit of an alternating sequence
@@ -60,13 +60,13 @@ class Estimate:
 
     @property
     def credible(self) -> bool:
-        """Whether convergence is monotone, with an order to build an error estimate on."""
+        """True if convergence is monotone, with an order to build an error estimate on."""
         least, most = CREDIBLE_ORDERS
         return self.behaviour is Behaviour.MONOTONE and least <= self.order <= most
 
     @property
     def asymptotic(self) -> bool:
-        """Whether the credible order is that of the scheme, give or take ASYMPTOTIC_BAND."""
+        """True if the credible order is that of the scheme within ASYMPTOTIC_BAND."""
         return self.credible and abs(self.order - FORMAL_ORDER) <= ASYMPTOTIC_BAND
 
     @property
@@ -84,7 +84,7 @@ class Estimate:
         return coarse / (r21**p * fine) if 0 < fine < math.inf else math.nan
 
     def uncertainty(self, safety: float) -> float:
-        """GCI of the finest grid times |f1|; NaN unless the sequence converges.
+        """Return GCI of the finest grid times |f1|; NaN unless the sequence converges.
 
         An order above the formal one does not narrow it.
         """
@@ -93,7 +93,7 @@ class Estimate:
         return safety * _error(*self.values[:2], self.ratios[0], self._order_used)
 
     def gci(self, safety: float) -> float:
-        """Relative GCI of the finest grid; infinite where the finest value is zero."""
+        """Return the relative GCI of the finest grid; infinite where the finest value is zero."""
         return _relative(self.uncertainty(safety), self.values[0])
 
     @property
@@ -104,12 +104,12 @@ class Estimate:
 def grid_convergence_index(
     fine: float, coarse: float, ratio: float, order: float, safety: float = SAFETY_CREDIBLE
 ) -> float:
-    """GCI = safety |fine - coarse|/(|fine| (ratio^order - 1)), no unit (Celik et al., step 5)."""
+    """Return safety |fine - coarse|/(|fine| (ratio^order - 1)), no unit (Celik et al., step 5)."""
     return _relative(safety * _error(fine, coarse, ratio, order), fine)
 
 
 def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
-    """Behaviour, order and Richardson value of three grids, finest first.
+    """Return the behaviour, order and Richardson value of three grids, finest first.
 
     values: f1, f2, f3 in any unit; spacings: h1 < h2 < h3 in any unit, for only ratios count.
     Raises ValueError unless there are three of each and the spacings rise.
@@ -127,13 +127,13 @@ def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
 
 
 def safety(triples: Sequence[Estimate]) -> float:
-    """1.25 where every three successive grids show a credible order, and 3 otherwise."""
+    """Return 1.25 where every three successive grids show a credible order, and 3 otherwise."""
     credible = all(triple.credible for triple in triples)
     return SAFETY_CREDIBLE if credible else SAFETY_DOUBTFUL
 
 
 def observed_order(change: float, r21: float, r32: float) -> float:
-    """The fixed point p of Celik et al., step 3: p ln r21 = ln|e32/e21| + q(p).
+    """Return the fixed point p of Celik et al., step 3: p ln r21 = ln|e32/e21| + q(p).
 
     change: e32/e21, not zero; r21, r32 > 1. q(p) = ln((r21^p - s)/(r32^p - s)).
     Two departures: Celik's absolute value is left out, since it gives a divergent sequence the
@@ -152,7 +152,7 @@ def observed_order(change: float, r21: float, r32: float) -> float:
 
 
 def _size_of_change(p: float, a: float, b: float, sign: float) -> float:
-    """|e32/e21| at order p: (r32^p - s)/(1 - s r21^-p), which tends to b/a at p = 0, s = 1.
+    """Return |e32/e21| at order p: (r32^p - s)/(1 - s r21^-p), which tends to b/a at p = 0, s = 1.
 
     a = ln r21, b = ln r32. Celik's equation in a form that does not overflow.
     """
@@ -162,7 +162,7 @@ def _size_of_change(p: float, a: float, b: float, sign: float) -> float:
 
 
 def _without_order(f1: float, f2: float, f3: float) -> Behaviour | None:
-    """The behaviour of values that define no order, None for all others."""
+    """Return the behaviour of values that define no order, None for all others."""
     if not all(math.isfinite(value) for value in (f1, f2, f3)):
         return Behaviour.UNDETERMINED
     smallest = ROUND_OFF * max(abs(f1), abs(f2), abs(f3))
@@ -193,7 +193,7 @@ def _ratios(spacings: npt.ArrayLike) -> tuple[float, float]:
 
 
 def _error(fine: float, coarse: float, ratio: float, order: float) -> float:
-    """Richardson's estimate of the error of the fine value, in its unit."""
+    """Return Richardson's estimate of the error of the fine value, in its unit."""
     return abs(fine - coarse) / math.expm1(order * math.log(ratio))
 
 

@@ -60,12 +60,12 @@ class BeamModes:
         return float(whole - self.curvatures @ self.flexibilities)
 
     def shapes(self, x: Floats) -> Floats:
-        """Mode shapes, 1 at mid-span, at `x` (m from a support, shape (x,)): shape (modes, x)."""
+        """Return the mode shapes, 1 at mid-span, at `x` (m, shape (x,)): shape (modes, x)."""
         signs = np.sign(np.sin(0.5 * self.beam.span * self.wave_numbers))
         return np.asarray(signs[:, np.newaxis] * np.sin(np.outer(self.wave_numbers, x)))
 
     def residual_shape(self, x: Floats) -> Floats:
-        """Deflection per load of the modes left out at `x` (m, shape (x,)), in m/N."""
+        """Return the deflection per load of the modes left out at `x` (m, shape (x,)), in m/N."""
         near = np.minimum(x, self.beam.span - x)
         cubic = near * (3.0 * self.beam.span**2 - 4.0 * near**2)
         bending = cubic / (48.0 * self.beam.bending_stiffness)
@@ -74,7 +74,7 @@ class BeamModes:
 
 
 def odd_modes(beam: Beam, count: int) -> BeamModes:
-    """The first `count` odd modes of the Euler-Bernoulli beam: n = 1, 3, 5, ...
+    """Return the first `count` odd modes of the Euler-Bernoulli beam: n = 1, 3, 5, ...
 
     Raises ValueError when count is not a whole number of at least 1.
     """
@@ -86,7 +86,7 @@ def odd_modes(beam: Beam, count: int) -> BeamModes:
 
 
 def odd_wave_numbers(beam: Beam, count: int) -> Floats:
-    """n pi/L in 1/m for the first `count` odd n, shape (count,).
+    """Return n pi/L in 1/m for the first `count` odd n, shape (count,).
 
     Raises ValueError when count is not a whole number of at least 1.
     """
@@ -95,7 +95,7 @@ def odd_wave_numbers(beam: Beam, count: int) -> Floats:
 
 
 def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
-    """Both spectra of the first `count` odd n: first the lower frequencies, then the higher ones.
+    """Return both spectra of the first `count` odd n: the lower frequencies, then the higher.
 
     Mode masses: 1/m = 2/(rho A L) times W's share in the mode, the square of W's entry in the unit
     eigenvector of (sqrt(rho A) W, sqrt(rho I) Psi); the shares of one n add up to 1. Curvatures:
@@ -118,7 +118,7 @@ def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
 
 
 def _two_oscillators(beam: Beam, q: Floats, a: float) -> tuple[Floats, Floats]:
-    """omega^2 (1/s2) and W's share in each of the two spectra, shape (2, n).
+    """Return omega^2 (1/s2) and W's share in each of the two spectra, shape (2, n).
 
     Eigenvalues and vectors of ((r, -c), (-c, p)), r and p the squares of each oscillator's own
     frequency, where p > r; lower root and smaller share without taking differences.

@@ -26,27 +26,27 @@ from impactlab.types import Floats
 
 
 def yield_curvature(beam: Beam) -> float:
-    """kappa_y = 2 sigma_y/(E H) in 1/m: the outermost fibre yields."""
+    """Return kappa_y = 2 sigma_y/(E H) in 1/m: the outermost fibre yields."""
     return 2.0 * beam.material.yield_stress / (beam.material.youngs_modulus * beam.depth)
 
 
 def yield_moment(beam: Beam) -> float:
-    """M_y = sigma_y B H^2/6 in N m."""
+    """Return M_y = sigma_y B H^2/6 in N m."""
     return beam.material.yield_stress * beam.width * beam.depth**2 / 6.0
 
 
 def plastic_moment(beam: Beam) -> float:
-    """M_p = sigma_y B H^2/4 in N m: every fibre yields, without hardening."""
+    """Return M_p = sigma_y B H^2/4 in N m: every fibre yields, without hardening."""
     return beam.material.yield_stress * beam.width * beam.depth**2 / 4.0
 
 
 def collapse_load(beam: Beam) -> float:
-    """Static load at mid-span in N under which the beam collapses: 4 M_p/L, without hardening."""
+    """Return the mid-span load in N under which the beam collapses, 4 M_p/L; no hardening."""
     return 4.0 * plastic_moment(beam) / beam.span
 
 
 def static_deflection(beam: Beam, load: float) -> float:
-    """Elastic mid-span deflection in m under a `load` (N) there: P L^3/(48 EI).
+    """Return the elastic mid-span deflection in m under a `load` (N) there: P L^3/(48 EI).
 
     Raises ValueError when the load is negative or not finite.
     """
@@ -54,7 +54,7 @@ def static_deflection(beam: Beam, load: float) -> float:
 
 
 def moment(beam: Beam, curvature: ArrayLike) -> Floats:
-    """Moment in N m at each `curvature` (1/m, any shape), by closed form.
+    """Return the moment in N m at each `curvature` (1/m, any shape), by closed form.
 
     Without hardening M_p (1 - (kappa_y/kappa)^2/3) beyond yield. A hardening fibre is an elastic
     one and a perfectly plastic one side by side, and so is the section.
@@ -73,7 +73,7 @@ def moment(beam: Beam, curvature: ArrayLike) -> Floats:
 def rule_moment(
     beam: Beam, curvature: ArrayLike, positions: ArrayLike, weights: ArrayLike
 ) -> Floats:
-    """Moment in N m at each `curvature` (1/m, any shape) that an integration rule gives.
+    """Return the moment in N m at each `curvature` (1/m, any shape) that an integration rule gives.
 
     positions, weights: the rule's points on [-1, 1] over the depth, shape (points,); the weights
     of a consistent rule add up to 2.
@@ -92,7 +92,7 @@ def rule_moment(
 
 
 def fibre_stress(material: Material, strain: ArrayLike) -> Floats:
-    """Stress in Pa at each monotonically reached `strain` (any shape).
+    """Return the stress in Pa at each monotonically reached `strain` (any shape).
 
     Raises ValueError when a strain is not finite.
     """
@@ -103,7 +103,7 @@ def fibre_stress(material: Material, strain: ArrayLike) -> Floats:
 
 
 def _elastic_share(material: Material) -> float:
-    """Tangent modulus beyond yield over Young's modulus: h/(E + h)."""
+    """Return the tangent modulus beyond yield over Young's modulus: h/(E + h)."""
     hardening = material.isotropic_hardening_modulus + material.kinematic_hardening_modulus
     return hardening / (material.youngs_modulus + hardening)
 
@@ -116,7 +116,7 @@ def _finite(name: str, values: ArrayLike) -> Floats:
 
 
 def path_stresses(material: Material, strains: ArrayLike) -> Floats:
-    """Stress in Pa along a path of strains, shape (steps, ...), from the virgin fibre at zero.
+    """Return the stress in Pa along a path of strains, shape (steps, ...), from the virgin fibre.
 
     Between two steps the strain goes straight. With one kind of hardening, or none.
 
@@ -133,7 +133,7 @@ def path_stresses(material: Material, strains: ArrayLike) -> Floats:
 def path_moments(
     beam: Beam, curvatures: ArrayLike, positions: ArrayLike, weights: ArrayLike
 ) -> Floats:
-    """Moment in N m along a path of curvatures (1/m, shape (steps,)) that a rule gives.
+    """Return the moment in N m along a path of curvatures (1/m, shape (steps,)) that a rule gives.
 
     positions, weights: the rule's on [-1, 1], shape (points,). Sign of the curvature.
 
@@ -146,7 +146,7 @@ def path_moments(
 
 
 def moment_after_turn(beam: Beam, turn: float, curvature: ArrayLike) -> Floats:
-    """Moment in N m at each `curvature` (1/m), bent to `turn` at first and then straight back.
+    """Return the moment in N m at each `curvature` (1/m), bent to `turn`, then straight back.
 
     Masing's rule: M = M_t - 2 f((kappa_t - kappa)/2) of the first loading M = f(kappa), as far as
     -kappa_t. For no hardening, and for kinematic hardening.

@@ -30,7 +30,7 @@ _FAR = 1e6
 
 
 def midspan_deflection(beam: Beam, load: float) -> float:
-    """Mid-span deflection in m under a `load` (N) there that has only grown.
+    """Return the mid-span deflection in m under a `load` (N) there that has only grown.
 
     w = integral of kappa x dx over half the span; with M = P x/2 and by parts
     w = 2/P^2 (kappa_m M_m^2 - integral of M^2 over kappa from 0 to kappa_m), m: at mid-span.
@@ -45,7 +45,7 @@ def midspan_deflection(beam: Beam, load: float) -> float:
 
 
 def load_at(beam: Beam, deflection: float) -> float:
-    """Load in N that gives a mid-span `deflection` (m) on the first loading.
+    """Return the load in N that gives a mid-span `deflection` (m) on the first loading.
 
     Without hardening it ends at the collapse load, which deflections of 20/9 times that of first
     yield and more share.
@@ -65,7 +65,7 @@ def load_at(beam: Beam, deflection: float) -> float:
 
 
 def missing_work(beam: Beam) -> float:
-    """Work in J that collapse takes less than the collapse load would have done all the way.
+    """Return the work in J by which collapse falls short of the collapse load all the way.
 
     The integral of P_c - P over the deflection, that is of the deflection over P; without
     hardening.
@@ -82,7 +82,7 @@ def _hinge(beam: Beam) -> float:
 
 
 def _squares(beam: Beam, start: float, stop: float) -> float:
-    """Integral of M^2 over the curvature, which may grow by orders: in its logarithm."""
+    """Return the integral of M^2 over the curvature, which may grow by orders: in its logarithm."""
 
     def integrand(logarithm: float) -> float:
         kappa = math.exp(logarithm)
@@ -93,7 +93,7 @@ def _squares(beam: Beam, start: float, stop: float) -> float:
 
 
 def _curvature(beam: Beam, moment: float) -> float:
-    """The curvature (1/m) at which the section carries `moment` (N m)."""
+    """Return the curvature (1/m) at which the section carries `moment` (N m)."""
     if moment <= bending.yield_moment(beam):
         return moment / beam.bending_stiffness
     first, far = bending.yield_curvature(beam), _hinge(beam)
@@ -103,39 +103,39 @@ def _curvature(beam: Beam, moment: float) -> float:
 
 
 def mode_mass(impact: Impact) -> float:
-    """m + mu L/3 in kg: the striker and the triangle's share of the beam."""
+    """Return m + mu L/3 in kg: the striker and the triangle's share of the beam."""
     return impact.sphere.total_mass + impact.beam.mass_per_length * impact.beam.span / 3.0
 
 
 def mode_velocity(impact: Impact) -> float:
-    """v_1 = m v_0/(m + mu L/3) in m/s: at mid-span once the mode has formed."""
+    """Return v_1 = m v_0/(m + mu L/3) in m/s: at mid-span once the mode has formed."""
     return impact.sphere.total_mass * impact.velocity / mode_mass(impact)
 
 
 def mode_energy(impact: Impact) -> float:
-    """(m + mu L/3) v_1^2/2 in J: what the striking leaves for the hinge."""
+    """Return (m + mu L/3) v_1^2/2 in J: the energy left to the hinge after the striking."""
     return 0.5 * mode_mass(impact) * mode_velocity(impact) ** 2
 
 
 def mode_deflection(impact: Impact) -> float:
-    """w_f in m: the hinge takes all of the mode's energy, 4 M_p/L w_f. Gravity is left out."""
+    """Return w_f in m: the hinge takes all of the mode's energy, 4 M_p/L w_f, without gravity."""
     return mode_energy(impact) / bending.collapse_load(impact.beam)
 
 
 def mode_duration(impact: Impact) -> float:
-    """Time in s until the beam stands still: v_1 (m + mu L/3)/(4 M_p/L)."""
+    """Return the time in s until the beam stands still: v_1 (m + mu L/3)/(4 M_p/L)."""
     return mode_velocity(impact) * mode_mass(impact) / bending.collapse_load(impact.beam)
 
 
 def energy_ratio(impact: Impact) -> float:
-    """Kinetic energy of the striker over what the beam stores elastically at 4 M_p/L."""
+    """Return the kinetic energy of the striker over what the beam stores elastically at 4 M_p/L."""
     load = bending.collapse_load(impact.beam)
     stored = 0.5 * load * bending.static_deflection(impact.beam, load)
     return 0.5 * impact.sphere.total_mass * impact.velocity**2 / stored
 
 
 def elastic_plastic_deflection(impact: Impact) -> float:
-    """Permanent deflection in m when the mode's energy follows the static load-deflection curve.
+    """Return the permanent deflection in m if the mode's energy follows the static curve.
 
     w_f and what that curve's rise adds, less the elastic spring back from 4 M_p/L: a beam whose
     striker is so slow that inertia forces are those of the mode alone. Holds above its collapse.

@@ -25,12 +25,12 @@ from impactlab.verification.solutions import hertz as hertz_forms
 
 
 def hertz(d: float, E: float, R: float, S: float, nu: float) -> float:
-    """F = (4/3) E sqrt(R) d^1.5."""
+    """Return F = (4/3) E sqrt(R) d^1.5."""
     return 4.0 / 3.0 * E * math.sqrt(R * d) * d
 
 
 def stronge(d: float, E: float, R: float, S: float, nu: float) -> float:
-    """Mean pressure p over a^2 = R (2 d - d_y): 1.1 S + S ln(u)/3, at most 2.8 S."""
+    """Return pi a^2 p, a^2 = R (2 d - d_y): p = 1.1 S + S ln(u)/3, at most 2.8 S."""
     d_y = R * (0.825 * math.pi * S / E) ** 2
     if d <= d_y:
         return hertz(d, E, R, S, nu)
@@ -40,7 +40,7 @@ def stronge(d: float, E: float, R: float, S: float, nu: float) -> float:
 
 
 def jackson_green(d: float, E: float, R: float, S: float, nu: float) -> float:
-    """Jackson and Green 2005."""
+    """Return the force of Jackson and Green 2005."""
     C = 1.295 * math.exp(0.736 * nu)
     d_c = R * (math.pi * C * S / (2.0 * E)) ** 2
     if d <= 1.9 * d_c:
@@ -51,7 +51,7 @@ def jackson_green(d: float, E: float, R: float, S: float, nu: float) -> float:
 
 
 def mjg(d: float, E: float, R: float, S: float, nu: float) -> float:
-    """Ghaednia, Brake, Berryhill and Jackson 2019, without hardening."""
+    """Return the force of Ghaednia, Brake, Berryhill and Jackson 2019, without hardening."""
     C = 1.295 * math.exp(0.736 * nu)
     d_c = R * (math.pi * C * S / (2.0 * E)) ** 2
     if d <= 1.9 * d_c:
@@ -69,7 +69,7 @@ def _fitted(y: float, factor: float, C: float, E: float, R: float, S: float) -> 
 
 
 def thornton(d: float, E: float, R: float, S: float, nu: float) -> float:
-    """Thornton 1997, limiting pressure 1.6 S."""
+    """Return the force of Thornton 1997 with the limiting pressure 1.6 S."""
     p_y = 1.6 * S
     d_y = R * (math.pi * p_y / (2.0 * E)) ** 2
     if d <= d_y:
@@ -79,7 +79,7 @@ def thornton(d: float, E: float, R: float, S: float, nu: float) -> float:
 
 
 def kogut_etsion(d: float, E: float, R: float, S: float, nu: float) -> float:
-    """Kogut and Etsion 2002; F_c = (2/3) pi K H R d_c."""
+    """Return the force of Kogut and Etsion 2002; F_c = (2/3) pi K H R d_c."""
     K, H = 0.454 + 0.41 * nu, 2.8 * S
     d_c = R * (math.pi * K * H / (2.0 * E)) ** 2
     y, F_c = d / d_c, 2.0 / 3.0 * math.pi * K * H * R * d_c
@@ -98,14 +98,14 @@ def kogut_etsion(d: float, E: float, R: float, S: float, nu: float) -> float:
 def elastic_unloading(
     d: float, F: float, E: float, R: float, S: float, nu: float
 ) -> tuple[float, float, float]:
-    """The way back of Hertz's law."""
+    """Return the unloading of Hertz's law."""
     return F, 0.0, 1.5
 
 
 def wang_unloading(
     d: float, F: float, E: float, R: float, S: float, nu: float
 ) -> tuple[float, float, float]:
-    """The paper's Eqs. 15 to 17: R_e = sqrt(3 F/(4 E)) (R/d_y)^(3/4)."""
+    """Return the paper's Eqs. 15 to 17: R_e = sqrt(3 F/(4 E)) (R/d_y)^(3/4)."""
     d_y = R * (0.825 * math.pi * S / E) ** 2
     if d <= d_y:
         return F, 0.0, 1.5
@@ -116,7 +116,7 @@ def wang_unloading(
 def stronge_unloading(
     d: float, F: float, E: float, R: float, S: float, nu: float
 ) -> tuple[float, float, float]:
-    """Stronge 2000: recovers d_y sqrt(2 d/d_y - 1), from the force F_y (2 d/d_y - 1) on."""
+    """Recover d_y sqrt(2 d/d_y - 1) from the force F_y (2 d/d_y - 1) on (Stronge 2000)."""
     d_y = R * (0.825 * math.pi * S / E) ** 2
     if d <= d_y:
         return F, 0.0, 1.5
@@ -127,7 +127,7 @@ def stronge_unloading(
 def jackson_unloading(
     d: float, F: float, E: float, R: float, S: float, nu: float
 ) -> tuple[float, float, float]:
-    """Jackson, Chusoipin and Green 2005; at least 1 % is recovered."""
+    """Return Jackson, Chusoipin and Green 2005; at least 1 % is recovered."""
     d_c = R * (math.pi * 1.295 * math.exp(0.736 * nu) * S / (2.0 * E)) ** 2
     if d <= d_c:
         return F, 0.0, 1.5
@@ -138,7 +138,7 @@ def jackson_unloading(
 def thornton_unloading(
     d: float, F: float, E: float, R: float, S: float, nu: float
 ) -> tuple[float, float, float]:
-    """Thornton 1997: Hertz's curve on R_p = (4 E/(3 F)) ((2 F + F_y)/(2 pi p_y))^1.5."""
+    """Follow Hertz on R_p = (4 E/(3 F)) ((2 F + F_y)/(2 pi p_y))^1.5 (Thornton 1997)."""
     p_y = 1.6 * S
     F_y = (R / E) ** 2 * (math.pi * p_y) ** 3 / 6.0
     if d <= (math.pi * p_y / (2.0 * E)) ** 2 * R:
@@ -151,7 +151,7 @@ def thornton_unloading(
 def etsion_unloading(
     d: float, F: float, E: float, R: float, S: float, nu: float
 ) -> tuple[float, float, float]:
-    """Etsion, Kligerman and Kadin 2005."""
+    """Return Etsion, Kligerman and Kadin 2005."""
     y = d / (R * (1.4 * math.pi * (0.454 + 0.41 * nu) * S / E) ** 2)
     if y <= 1.0:
         return F, 0.0, 1.5
@@ -161,7 +161,7 @@ def etsion_unloading(
 def brake_unloading(
     d: float, F: float, E: float, R: float, S: float, nu: float
 ) -> tuple[float, float, float]:
-    """Brake 2015; elastic until the loading leaves Hertz's."""
+    """Return Brake 2015, elastic until the loading leaves Hertz's."""
     onset = 1.9 * R * (math.pi * 1.295 * math.exp(0.736 * nu) * S / (2.0 * E)) ** 2
     if d <= onset:
         return F, 0.0, 1.5
@@ -185,7 +185,7 @@ LAWS: dict[str, tuple[Loading, Unloading]] = {
 
 
 def joints(E: float, R: float, S: float, nu: float) -> list[float]:
-    """Indentations (m) at which some law changes its form, ascending."""
+    """Return the indentations (m) at which some law changes its form, ascending."""
     stronge_y = R * (0.825 * math.pi * S / E) ** 2
     jackson_c = R * (math.pi * 1.295 * math.exp(0.736 * nu) * S / (2.0 * E)) ** 2
     thornton_y = R * (0.8 * math.pi * S / E) ** 2
@@ -230,30 +230,30 @@ class LawOnHalfSpace:
         )
 
     def loading_force(self, indentation: float) -> float:
-        """F in N at a monotonically reached indentation (m)."""
+        """Return F in N at a monotonically reached indentation (m)."""
         return LAWS[self.law][0](indentation, *self.pair)
 
     def unloading(self, indentation: float) -> tuple[float, float, float]:
-        """(force at the start in N, residual indentation in m, exponent) after `indentation`."""
+        """Return (initial force in N, residual indentation in m, exponent) after `indentation`."""
         return LAWS[self.law][1](indentation, self.loading_force(indentation), *self.pair)
 
     def residual_indentation(self, indentation: float) -> float:
-        """What is left of `indentation`, in m."""
+        """Return the residual of `indentation`, in m."""
         return self.unloading(indentation)[1]
 
     def loading_work(self, indentation: float) -> float:
-        """Integral of the force up to `indentation`, in J: adaptive quadrature between joints."""
+        """Integrate the force up to `indentation`, in J: adaptive quadrature between joints."""
         inner = [d for d in joints(*self.pair) if d < indentation]
         ends = [0.0, *inner, indentation]
         return sum(_quadrature(self, *piece) for piece in pairwise(ends))
 
     def released_work(self, indentation: float) -> float:
-        """Integral of the unloading curve, in J: a power law."""
+        """Return the integral of the unloading curve, in J: a power law."""
         force, end, exponent = self.unloading(indentation)
         return force * (indentation - end) / (exponent + 1.0)
 
     def maximum_indentation(self, velocity: float, mass: float) -> float:
-        """Where the loading work is the energy of `mass` (kg) at `velocity` (m/s), in m."""
+        """Find where the loading work is the energy of `mass` (kg) at `velocity` (m/s), in m."""
         speed = positive("LawOnHalfSpace", "velocity", velocity)
         energy = 0.5 * positive("LawOnHalfSpace", "mass", mass) * speed**2
         high = hertz_forms.maximum_indentation(mass, speed, *self.pair[:2])
@@ -267,7 +267,7 @@ class LawOnHalfSpace:
         )
 
     def restitution(self, velocity: float, mass: float) -> float:
-        """sqrt(released/put in) of `mass` (kg) at `velocity` (m/s)."""
+        """Return sqrt(released/put in) of `mass` (kg) at `velocity` (m/s)."""
         deepest = self.maximum_indentation(velocity, mass)
         return math.sqrt(self.released_work(deepest) / self.loading_work(deepest))
 
@@ -278,7 +278,7 @@ def _quadrature(law: LawOnHalfSpace, start: float, stop: float) -> float:
 
 
 def law_on_half_space(impact: Impact) -> LawOnHalfSpace:
-    """The law and the bodies of `impact` as if the beam were a half-space."""
+    """Return the law and the bodies of `impact` as if the beam were a half-space."""
     sphere, beam = impact.sphere.material, impact.beam.material
     softer = beam if beam.yield_stress <= sphere.yield_stress else sphere
     return LawOnHalfSpace(

@@ -18,18 +18,18 @@ from impactlab.types import Floats
 
 
 def bar_wave_step(beam: Beam, nodes: int) -> float:
-    """dx/sqrt(E/rho) in s: what a bar wave takes over a spacing (the paper's rule)."""
+    """Return dx/sqrt(E/rho) in s: a bar wave's time over one spacing (the paper's rule)."""
     speed = math.sqrt(beam.material.youngs_modulus / beam.material.density)
     return beam.span / (nodes - 1) / speed
 
 
 def bending_step(beam: Beam, nodes: int) -> float:
-    """(dx^2/2) sqrt(mu/EI) in s: 2/omega, from which on bending is unstable."""
+    """Return (dx^2/2) sqrt(mu/EI) in s: 2/omega, from which on bending is unstable."""
     return 2.0 / highest_frequency(beam, nodes)
 
 
 def highest_frequency(beam: Beam, nodes: int) -> float:
-    """omega = (4/dx^2) sqrt(EI/mu) in 1/s, of the mode that changes sign at every node.
+    """Return omega = (4/dx^2) sqrt(EI/mu) in 1/s, of the mode that changes sign at every node.
 
     An upper bound that the grid reaches but for a factor of 1 - (pi/(2 nodes))^2.
     """
@@ -38,13 +38,13 @@ def highest_frequency(beam: Beam, nodes: int) -> float:
 
 
 def growth(frequency: float, dt: float) -> float:
-    """|lambda|, the larger root of lambda^2 - (2 - (omega dt)^2) lambda + 1 = 0; 1 if stable."""
+    """Return |lambda|, the larger root of lambda^2 - (2 - (omega dt)^2) lambda + 1 = 0."""
     half = 0.5 * (frequency * dt) ** 2 - 1.0
     return 1.0 if half <= 1.0 else half + math.sqrt(half**2 - 1.0)
 
 
 def march(beam: Beam, nodes: int, dt: float, steps: int) -> Floats:
-    """Largest |w| in m after each of `steps` steps of dt, from 1 m/s at mid-span: (steps,).
+    """Return the largest |w| in m after each of `steps` steps of dt, from 1 m/s at mid-span.
 
     Steps after an overflow hold infinity.
     """

@@ -19,7 +19,7 @@ from impactlab.types import Floats
 
 
 def deflection_under_impulse(beam: Beam, impulse: float, time: ArrayLike) -> Floats:
-    """w(0, t) = J sqrt(t)/(mu sqrt(2 pi k)) in m.
+    """Return w(0, t) = J sqrt(t)/(mu sqrt(2 pi k)) in m.
 
     The deflection where an `impulse` J (N s) struck at t = 0, at each `time` (s, any shape).
 
@@ -29,7 +29,7 @@ def deflection_under_impulse(beam: Beam, impulse: float, time: ArrayLike) -> Flo
 
 
 def profile_under_impulse(beam: Beam, impulse: float, time: ArrayLike, x: ArrayLike) -> Floats:
-    """w(x, t) in m at each distance `x` (m) from where an `impulse` J (N s) struck.
+    """Return w(x, t) in m at each distance `x` (m) from where an `impulse` J (N s) struck.
 
     w(x, t) = w(0, t) (cos(a^2) + sin(a^2) - sqrt(2 pi) a (C - S)), a = |x|/(2 sqrt(k t)), with
     Fresnel's integrals C and S at a sqrt(2/pi): w_xx of the Fourier integral, integrated twice.
@@ -47,7 +47,7 @@ def profile_under_impulse(beam: Beam, impulse: float, time: ArrayLike, x: ArrayL
 
 
 def deflection_under_force(beam: Beam, time: ArrayLike, force: ArrayLike) -> Floats:
-    """w(0, t) in m at each `time` (s, shape (n,), ascending), under a `force` (N, shape (n,)).
+    """Return w(0, t) in m at each `time` (s, shape (n,), ascending) under a `force` (N, (n,)).
 
     The response to an impulse convolved with the force, exactly so for a force that begins at zero
     and is linear between the times: every kink begins a ramp, and a ramp of s (N/s) leaves
@@ -60,7 +60,7 @@ def deflection_under_force(beam: Beam, time: ArrayLike, force: ArrayLike) -> Flo
 
 
 def curvature_under_force(beam: Beam, time: ArrayLike, force: ArrayLike) -> Floats:
-    """w_xx(0, t) = -w_t(0, t)/k in 1/m; arguments and errors as in deflection_under_force."""
+    """Return w_xx(0, t) = -w_t(0, t)/k in 1/m; see deflection_under_force."""
     return -_scale(beam, 2.0 / 3.0) / _wave_constant(beam) * _ramps(time, force, 1.5)
 
 
@@ -70,7 +70,7 @@ def _wave_constant(beam: Beam) -> float:
 
 
 def _scale(beam: Beam, impulse: float) -> float:
-    """J/(mu sqrt(2 pi k)), in m s^-0.5 for J in N s."""
+    """Return J/(mu sqrt(2 pi k)), in m s^-0.5 for J in N s."""
     root = math.sqrt(2.0 * math.pi * _wave_constant(beam))
     return number("infinite_beam", "impulse", impulse) / (beam.mass_per_length * root)
 

@@ -42,7 +42,7 @@ _STEPS = 50
 
 @dataclass(frozen=True)
 class Oscillator:
-    """What the sphere strikes: mass in kg (infinite: it does not move), stiffness K in N/m."""
+    """The struck body: mass in kg (infinite: it does not move), stiffness K in N/m."""
 
     mass: float
     stiffness: float
@@ -69,7 +69,7 @@ class LumpedSolution:
         return float(self.contacts[0, 1])
 
     def at(self, history: str, time: ArrayLike) -> Floats:
-        """The named history at `time` (s, shape (n,)), in SI units, shape (n,).
+        """Return the named history at `time` (s, shape (n,)), in SI units, shape (n,).
 
         Names: contact_force, midspan_deflection, indentation, sphere_displacement,
         sphere_velocity, midspan_velocity.
@@ -93,7 +93,7 @@ _HISTORIES: dict[str, Callable[[Floats, float], Floats]] = {
 
 
 def solve(impact: Impact, struck: Oscillator, duration: float) -> LumpedSolution:
-    """The impact of the sphere on `struck` over `duration` (s); the beam gives E* alone.
+    """Solve the impact of the sphere on `struck` over `duration` (s); the beam gives E* alone.
 
     Raises ValueError when the contact is not "hertz", the mass or the duration is not positive, or
     the stiffness is negative or not finite.
@@ -117,7 +117,7 @@ def solve(impact: Impact, struck: Oscillator, duration: float) -> LumpedSolution
 
 
 def _integrate(impact: Impact, struck: Oscillator, duration: float) -> Any:
-    """What solve_ivp gives: first event, touch and parting; second, the indentation turns."""
+    """Return solve_ivp's solution, with events: touch and parting; turns of the indentation."""
     mass, k = impact.sphere.total_mass, hertz.contact_stiffness(impact)
 
     def motion(_: float, state: Floats) -> list[float]:
@@ -147,19 +147,19 @@ def _integrate(impact: Impact, struck: Oscillator, duration: float) -> Any:
 
 
 def _force(delta: Any, k: float) -> Any:
-    """Hertz force in N at an indentation (m), zero out of contact."""
+    """Return the Hertz force in N at an indentation (m), zero out of contact."""
     depth = np.maximum(delta, 0.0)
     return k * depth * np.sqrt(depth)
 
 
 def _scales(impact: Impact) -> tuple[float, float]:
-    """Indentation (m) and contact time (s) on a half-space."""
+    """Return the indentation (m) and contact time (s) on a half-space."""
     args = hertz.arguments(impact)
     return hertz.maximum_indentation(*args), hertz.contact_duration(*args)
 
 
 def _contacts(touches: Floats) -> Floats:
-    """Start and end of each contact, the first touch at 0 included."""
+    """Return the start and end of each contact, the first touch at 0 included."""
     later = touches[touches > 0.0]
     ends = np.concatenate(([0.0], later, [np.nan] * ((later.size + 1) % 2)))
     return np.asarray(ends.reshape(-1, 2))
@@ -176,7 +176,7 @@ MASS_SHARE = 17.0 / 35.0
 
 
 def spring_mass(beam: Beam) -> Oscillator:
-    """m = (17/35) rho A L in kg and K = 48 EI/L^3 in N/m."""
+    """Return m = (17/35) rho A L in kg and K = 48 EI/L^3 in N/m."""
     return Oscillator(
         MASS_SHARE * beam.mass_per_length * beam.span,
         48.0 * beam.bending_stiffness / beam.span**3,
@@ -184,12 +184,12 @@ def spring_mass(beam: Beam) -> Oscillator:
 
 
 def midspan_curvature(beam: Beam, deflection: float) -> float:
-    """w_xx at mid-span in 1/m with that `deflection` (m) there: phi'' w = -12 w/L^2."""
+    """Return w_xx at mid-span in 1/m with that `deflection` (m) there: phi'' w = -12 w/L^2."""
     return -12.0 * deflection / beam.span**2
 
 
 def solve_spring_mass(impact: Impact, duration: float) -> LumpedSolution:
-    """The impact on the beam's spring-mass model over `duration` (s); yield stresses are ignored.
+    """Solve the beam's spring-mass model over `duration` (s); yield stresses are ignored.
 
     Raises ValueError when the contact is not "hertz" or the duration is not positive.
     """
@@ -197,7 +197,7 @@ def solve_spring_mass(impact: Impact, duration: float) -> LumpedSolution:
 
 
 def solve_rigid_beam(impact: Impact, duration: float) -> LumpedSolution:
-    """The impact on a rigid beam of the same contact modulus over `duration` (s).
+    """Solve the impact on a rigid beam of the same contact modulus over `duration` (s).
 
     Raises ValueError when the contact is not "hertz" or the duration is not positive.
     """

@@ -53,7 +53,7 @@ class ModalSolution:
         return float(self.contacts[0, 1])
 
     def at(self, history: str, time: ArrayLike) -> Floats:
-        """The named history at other times (s, shape (n,)), by cubic splines between steps.
+        """Return the named history at other times (s, shape (n,)), by cubic splines between steps.
 
         Raises ValueError when a time is outside the solution's.
         """
@@ -63,7 +63,7 @@ class ModalSolution:
         return np.asarray(CubicSpline(self.time, getattr(self, history))(seconds))
 
     def deflection(self, x: ArrayLike, time: ArrayLike) -> Floats:
-        """w(x, t) in m, shape (time, x), at distances `x` from a support (m) and times (s).
+        """Return w(x, t) in m, shape (time, x), at distances `x` from a support (m) and times (s).
 
         Raises ValueError when an x is off the beam or a time is outside the solution's.
         """
@@ -79,7 +79,7 @@ class ModalSolution:
 def solve(
     impact: Impact, duration: float, *, modes: int = 50, step: float | None = None
 ) -> ModalSolution:
-    """The impact on an elastic beam over `duration` (s), with that many odd modes.
+    """Solve the impact on an elastic beam over `duration` (s), with that many odd modes.
 
     step: largest step in s; default: a thousandth of Hertz's contact time on a half-space, which
     leaves a relative error below 1e-6 in peak force and contact duration (it falls with step^2).
@@ -97,7 +97,7 @@ def solve_with(
     step: float | None,
     compliance: float = 0.0,
 ) -> ModalSolution:
-    """The impact on the beam that has these modes; the rest as in solve.
+    """Solve the impact on the beam that has these modes; the rest as in solve.
 
     compliance: of the contact, in m/N, beyond Hertz's half-spaces; negative where the bodies end.
     """
@@ -134,7 +134,7 @@ def _solution(
 
 
 def _contacts(delta: CubicSpline) -> Floats:
-    """Intervals of positive indentation: its roots between steps, the first touch at 0 included."""
+    """Return the intervals of positive indentation: roots between steps, the first touch at 0."""
     roots = delta.roots(extrapolate=False)
     roots = roots[roots > 0.5 * delta.x[1]]
     ends = np.concatenate(([0.0], roots, [np.nan] * ((roots.size + 1) % 2)))
@@ -142,7 +142,7 @@ def _contacts(delta: CubicSpline) -> Floats:
 
 
 def _peak_time(delta: CubicSpline) -> float:
-    """Time in s of the largest indentation, between steps."""
+    """Return the time in s of the largest indentation, between steps."""
     slope = delta.derivative()
     turns = np.append(slope.roots(extrapolate=False), delta.x[-1])
     return float(turns[np.argmax(delta(turns))])
@@ -160,7 +160,7 @@ def solve_timoshenko(
     step: float | None = None,
     compliance: float = 0.0,
 ) -> ModalSolution:
-    """The impact on an elastic Timoshenko beam over `duration` (s), with that many odd n.
+    """Solve the impact on an elastic Timoshenko beam over `duration` (s), with that many odd n.
 
     step as in solve, compliance as in solve_with. Errors fall with modes^-3; in the
     paper's case 100 leave below 1e-7 of peak force and contact duration, and 1e-5 of the largest

@@ -35,7 +35,7 @@ class Path:
 
 
 def march(impact: Impact, modes: BeamModes, h: float, steps: int, compliance: float = 0.0) -> Path:
-    """The histories over that many steps of `h` (s) from first touch, under Hertz contact.
+    """Return the histories over that many steps of `h` (s) from first touch, under Hertz contact.
 
     compliance: see modal.solve_with.
     """
@@ -85,7 +85,7 @@ def _motion(impact: Impact, modes: BeamModes, h: float) -> _Motion:
 
 
 def _mode_motion(modes: BeamModes, h: float) -> tuple[Floats, Floats]:
-    """Duhamel's integral of each mode over a step: the modes' share of position and rate."""
+    """Return Duhamel's integral over a step: the modes' share of position and rate."""
     omega, flexibility, phi = modes.frequencies, modes.flexibilities, modes.frequencies * h
     cosine, sine, sinc = np.cos(phi), np.sin(phi), np.sinc(phi / np.pi)
     versine = 2.0 * np.sin(0.5 * phi) ** 2

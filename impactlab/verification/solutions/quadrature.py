@@ -16,7 +16,7 @@ Rule = tuple[Floats, Floats]
 
 
 def lobatto(points: int) -> Rule:
-    """Gauss-Lobatto: both ends, exact up to degree 2 points - 3.
+    """Return the Gauss-Lobatto rule: both ends, exact up to degree 2 points - 3.
 
     Between the ends lie the Gauss points for the weight 1 - x^2, which are roots of the Jacobi
     polynomial P^(1,1), their weights divided by 1 - x^2.
@@ -33,7 +33,7 @@ def lobatto(points: int) -> Rule:
 
 
 def legendre(points: int) -> Rule:
-    """Gauss-Legendre: no ends, exact up to degree 2 points - 1.
+    """Return the Gauss-Legendre rule: no ends, exact up to degree 2 points - 1.
 
     Raises ValueError when points is not a whole number of at least 2.
     """
@@ -42,7 +42,7 @@ def legendre(points: int) -> Rule:
 
 
 def layers(points: int) -> Rule:
-    """Midpoints of equal layers (Zhang et al.), exact up to degree 1.
+    """Return the midpoints of equal layers (Zhang et al.), exact up to degree 1.
 
     Raises ValueError when points is not a whole number of at least 2.
     """
@@ -54,7 +54,7 @@ _RULES = {"lobatto": lobatto, "legendre": legendre, "layers": layers}
 
 
 def rule(name: str, points: int) -> Rule:
-    """The rule of that name: "lobatto", "legendre" or "layers".
+    """Return the rule of that name: "lobatto", "legendre" or "layers".
 
     Raises ValueError when the name is unknown or points is not a whole number of at least 2.
     """

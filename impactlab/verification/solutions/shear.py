@@ -15,13 +15,13 @@ from impactlab.verification.solutions import bending
 
 
 def shear_stiffness(beam: Beam) -> float:
-    """K G A in N, G = E/(2 (1 + nu))."""
+    """Return K G A in N, G = E/(2 (1 + nu))."""
     modulus = beam.material.youngs_modulus / (2.0 * (1.0 + beam.material.poissons_ratio))
     return beam.shear_coefficient * modulus * beam.width * beam.depth
 
 
 def static_deflection(beam: Beam, load: float) -> float:
-    """Elastic mid-span deflection in m under a `load` P (N) there: P L^3/(48 EI) + P L/(4 k G A).
+    """Return the elastic mid-span deflection in m: P L^3/(48 EI) + P L/(4 k G A), `load` P in N.
 
     Raises ValueError when the load is negative or not finite.
     """
@@ -31,7 +31,7 @@ def static_deflection(beam: Beam, load: float) -> float:
 
 
 def impact_share(beam: Beam, duration: float) -> float:
-    """How much shear and rotary inertia slow the waves that a contact of `duration` (s) makes.
+    """Return by how much shear and rotary inertia slow the waves of a contact of `duration` (s).
 
     omega = c q^2 (1 - q^2 I (1 + E/(k G))/(2 A) + ...), c = sqrt(EI/(rho A)), of the wave that
     turns by pi during the contact, c q^2 = pi/duration: pi I (1 + E/(k G))/(2 A c duration). It
@@ -47,6 +47,6 @@ def impact_share(beam: Beam, duration: float) -> float:
 
 
 def _modulus_ratio(beam: Beam) -> float:
-    """E/(k G)."""
+    """Return E/(k G)."""
     area = beam.width * beam.depth
     return beam.material.youngs_modulus * area / shear_stiffness(beam)

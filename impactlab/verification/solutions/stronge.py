@@ -56,17 +56,17 @@ class StrongeImpact:
         return stiffness * math.pow(self.yield_indentation, 1.5)
 
     def loading_force(self, indentation: float) -> float:
-        """Force in N at a monotonically reached `indentation` (m, zero or more)."""
+        """Return the force in N at a monotonically reached `indentation` (m, zero or more)."""
         x = not_negative("StrongeImpact", "indentation", indentation) / self.yield_indentation
         return self.yield_force * _force(x)
 
     def loading_work(self, indentation: float) -> float:
-        """Energy in J put in up to a monotonically reached `indentation` (m, zero or more)."""
+        """Return the energy in J put in up to a monotonically reached `indentation` (m)."""
         x = not_negative("StrongeImpact", "indentation", indentation) / self.yield_indentation
         return self.yield_force * self.yield_indentation * _work(x)
 
     def maximum_indentation(self, velocity: float, mass: float) -> float:
-        """delta_m in m: the loading work is the energy of `mass` (kg) at `velocity` (m/s)."""
+        """Return delta_m in m, where the loading work is the energy of `mass` (kg) at `velocity`."""
         speed = positive("StrongeImpact", "velocity", velocity)
         energy = 0.5 * positive("StrongeImpact", "mass", mass) * speed**2
         scaled = energy / (self.yield_force * self.yield_indentation)
@@ -78,18 +78,18 @@ class StrongeImpact:
         return self.yield_indentation * float(root)
 
     def peak_force(self, velocity: float, mass: float) -> float:
-        """F_m in N at the delta_m of `mass` (kg) at `velocity` (m/s)."""
+        """Return F_m in N at the delta_m of `mass` (kg) at `velocity` (m/s)."""
         return self.loading_force(self.maximum_indentation(velocity, mass))
 
     def unloading_radius(self, maximum_indentation: float) -> float:
-        """R_e in m, from R_e/R* = sqrt(F_m/F_y); R* while elastic."""
+        """Return R_e in m, from R_e/R* = sqrt(F_m/F_y); R* while elastic."""
         force = self.loading_force(maximum_indentation)
         if maximum_indentation <= self.yield_indentation:
             return self.effective_radius
         return self.effective_radius * math.sqrt(force / self.yield_force)
 
     def residual_indentation(self, maximum_indentation: float) -> float:
-        """delta_r = delta_m - delta_y R_e/R* in m; 0 while elastic.
+        """Return delta_r = delta_m - delta_y R_e/R* in m; 0 while elastic.
 
         Negative for 1 < x < 1.998: there the law leaves a bulge and not a dent.
         """
@@ -99,18 +99,18 @@ class StrongeImpact:
         return maximum_indentation - self.yield_indentation * radius / self.effective_radius
 
     def unloading_force(self, indentation: float, maximum_indentation: float) -> float:
-        """Force in N on the way back from `maximum_indentation` (both in m)."""
+        """Return the force in N on the way back from `maximum_indentation` (both in m)."""
         radius = self.unloading_radius(maximum_indentation)
         recovered = indentation - self.residual_indentation(maximum_indentation)
         return hertz.stiffness(self.effective_modulus, radius) * math.pow(max(recovered, 0.0), 1.5)
 
     def released_work(self, maximum_indentation: float) -> float:
-        """Energy in J given back: 0.4 F_m (delta_m - delta_r)."""
+        """Return the energy in J given back: 0.4 F_m (delta_m - delta_r)."""
         recovered = maximum_indentation - self.residual_indentation(maximum_indentation)
         return 0.4 * self.loading_force(maximum_indentation) * recovered
 
     def restitution(self, velocity: float, mass: float) -> float:
-        """Coefficient of restitution of `mass` (kg) at `velocity` (m/s): sqrt(released/put in).
+        """Return sqrt(released/put in), the restitution of `mass` (kg) at `velocity` (m/s).
 
         1 while elastic. Above 1 for 1 < x < 2.673 (at most 1.101, at x = 1.415), whatever the
         bodies: there the law itself creates energy.
@@ -121,7 +121,7 @@ class StrongeImpact:
 
 
 def stronge_impact(impact: Impact) -> StrongeImpact:
-    """The bodies of `impact` as if the beam were a half-space; its law and gravity are ignored."""
+    """Return the bodies of `impact` on a half-space; its contact law and gravity are ignored."""
     return StrongeImpact(
         hertz.effective_modulus(impact),
         hertz.effective_radius(impact),
@@ -130,7 +130,7 @@ def stronge_impact(impact: Impact) -> StrongeImpact:
 
 
 def _force(x: float) -> float:
-    """F/F_y."""
+    """Return F/F_y."""
     u = 2.0 * x - 1.0
     if x <= 1.0:
         return math.pow(x, 1.5)
@@ -140,7 +140,7 @@ def _force(x: float) -> float:
 
 
 def _work(x: float) -> float:
-    """Loading work over F_y delta_y."""
+    """Return the loading work over F_y delta_y."""
     if x <= 1.0:
         return 0.4 * math.pow(x, 2.5)
     u = 2.0 * x - 1.0
