@@ -1,4 +1,4 @@
-"""What the runs of a study say, and how far to trust it: from runs.nc to analysis.nc.
+"""Analyses of the runs of a study, and how far to trust them: from runs.nc to analysis.nc.
 
-One analysis a file, each with `applies(runs)` and `analysis(runs)`; `analyse` has their table.
+`analyse` has the table of all analyses.
 """

@@ -49,11 +49,11 @@ def analyse(
     """Return failures, convergence and sensitivity of a study, whichever apply, in one dataset.
 
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
-    attribute `analyses` says which are wanted (without it: all). resolution, refinement: what
-    adaptive.recommending and adaptive.refining found for this study: add the numerical uncertainty
+    attribute `analyses` lists the wanted ones (without it: all). resolution, refinement: results of
+    adaptive.recommending and adaptive.refining for this study, which add the numerical uncertainty
     of sensitivity indices (see `numerical`). Returns the variables that the applying modules
     document, on `response` and the dimensions that they leave, with the attributes of the runs.
-    Raises ValueError when the runs are not what their attributes say.
+    Raises ValueError when the runs contradict their attributes.
     """
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
     parts = [

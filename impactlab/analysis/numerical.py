@@ -1,7 +1,7 @@
-"""What the discretisation may have done to sensitivity indices, beside each of them.
+"""Numerical uncertainty of sensitivity indices, as a variable beside each of them.
 
-Measured where the sample was solved again on other grids; elsewhere bounded by the uncertainty of
-the responses, as if nothing of it were common to all runs.
+It is measured where the sample was solved again on other grids. Elsewhere it is bounded by the
+uncertainty of the responses, as if none of it were common to all runs.
 """
 
 from __future__ import annotations

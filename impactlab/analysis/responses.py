@@ -19,7 +19,7 @@ def relevant_bits(name: str) -> int:
 
 
 def missing(runs: xr.Dataset) -> xr.DataArray:
-    """Return True where a run gives no usable number: not finite, or its status says so.
+    """Return True where a run gives no usable number: it is not finite, or its status excludes it.
 
     Returns bool on (response, *design dims). Raises ValueError when a requested response is not
     among the variables.
@@ -30,7 +30,7 @@ def missing(runs: xr.Dataset) -> xr.DataArray:
 def usable(runs: xr.Dataset) -> xr.DataArray:
     """Return the requested responses in SI units, NaN where missing, on (response, *design dims).
 
-    Coordinates response_units and response_long_name say what each one is. Raises ValueError
+    Coordinates response_units and response_long_name describe each one. Raises ValueError
     when a requested response is not among the variables.
     """
     stacked = _stacked(runs)
@@ -69,7 +69,7 @@ def failures(runs: xr.Dataset) -> xr.Dataset:
 
     Returns number_of_runs, number_of_failed_runs, failed_runs (reason), missing_runs (response).
     A run that failed for two reasons counts under both. `reason` holds the names of the status
-    flags and "unexplained"; reason_long_name says them in words.
+    flags and "unexplained"; reason_long_name explains them.
     """
     gaps, status = missing(runs), runs["status"].compute()
     unexplained = _unexplained(gaps, status)

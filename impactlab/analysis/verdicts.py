@@ -1,4 +1,4 @@
-"""Verdicts as CF flags: what an analysis concludes, in one word a number."""
+"""Verdicts as CF flags: the conclusion of an analysis, one word per number."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def flagged(codes: xr.DataArray, kind: type[Verdict], long_name: str) -> xr.Data
     """Return codes as an int8 variable with CF flag attributes.
 
     Beside flag_values and flag_meanings: sound_flags (names that need no warning) and
-    flag_descriptions (a line a flag, in words).
+    flag_descriptions (one line per flag, in words).
     """
     result = codes.astype(np.int8)
     result.attrs = {

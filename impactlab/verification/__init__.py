@@ -1,4 +1,4 @@
-"""The solver held against solutions independent of it: one check a file, listed in `catalogue`.
+"""Checks of the solver against independent solutions, one subject per file, listed in `catalogue`.
 
 The tests in tests/verification and the verification study run the same checks.
 """

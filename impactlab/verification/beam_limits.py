@@ -1,4 +1,4 @@
-"""Limits of the elastic beam: endlessly long, and endlessly slender."""
+"""Limits of the elastic beam: infinitely long, and infinitely slender."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ from impactlab.verification.solutions.infinite_beam import (
 LONG_NODES = (801, 1601, 3201)
 FINEST = LONG_NODES[-1]
 IMPULSE_DURATION = 150e-6
-"""In s: six times the contact. Waves that cross 3.12 m in this time are those of frequencies above
-60 over the contact's duration, of which the force holds next to nothing."""
+"""In s, six times the contact. Only waves of frequencies above 60 over the contact's duration cross
+3.12 m in this time, and the force contains almost none of these."""
 NEAR = 0.3
-"""In m from mid-span: shapes are compared within. Farther out run the waves of frequencies to which
-the contact is not short."""
+"""Distance in m from mid-span within which shapes are compared; farther out are waves of frequencies
+for which the contact is not short."""
 
 
 def long_impact() -> Impact:
@@ -57,7 +57,7 @@ def long_impact() -> Impact:
 
 @dataclass(frozen=True)
 class Struck:
-    """A run, and what its force (N, shape (time,)) amounts to.
+    """A run, and the impulse of its force (N, shape (time,)).
 
     impulse: N s. centroid: of the force in time, in s.
     """
@@ -216,11 +216,11 @@ SHEAR_HISTORIES = {
     "midspan_deflection": ("mid-span deflection", "m"),
 }
 SLENDERNESS = (1, 2, 4, 8, 16)
-"""How many times as slender as the paper's beam."""
+"""Slenderness over that of the paper's beam."""
 SHEAR_DURATION = 0.4e-3
 """In s."""
 SHEAR_TOLERANCE = 5e-3
-"""Of the largest difference that shear makes: it is the difference of two errors of dx^2."""
+"""Relative to the largest change by shear, which is the difference of two errors of order dx^2."""
 _GRID = Discretisation(nodes=401, points=3)
 _SAMPLES = 401
 

@@ -150,10 +150,10 @@ def _number_of_steps(impact: Impact, grid: Discretisation, duration: float) -> i
 def simulate_in_steps(
     impact: Impact, grid: Discretisation, *, duration: float, steps: int, samples: int
 ) -> xr.Dataset:
-    """Simulate in that many steps, whatever the grid's Courant number.
+    """Simulate in `steps` time steps, whatever the grid's Courant number.
 
-    Raises ValueError where so few steps are unstable.
+    Raises ValueError if so few steps are unstable.
     """
-    # half a step of margin: the kernels round up
+    # Half a step of margin, because the kernels round up.
     courant = duration / ((steps - 0.5) * critical_time_step(impact, grid))
     return simulate(impact, replace(grid, courant=courant), duration=duration, samples=samples)

@@ -135,7 +135,7 @@ def _along(density: Floats, run: xr.Dataset) -> float:
 _CASES = 80
 _SEED = 20240607
 _ROUNDING = 1e-9
-"""Share of the energy brought, below which a dissipation counts as none."""
+"""Share of the energy brought below which a dissipation counts as zero."""
 Case = tuple[Impact, Audit]
 
 
@@ -155,7 +155,7 @@ def check_balances() -> Finding:
         _worst("contact dissipation", [_contact(found) for found in audits], 2e-3),
         _worst("plastic dissipation", [_plastic(found) for found in audits], 1e-12),
         _never_negative("plastic_dissipation", audits),
-        _never_negative("contact_dissipation", [a for a in audits if not _says(a)]),
+        _never_negative("contact_dissipation", [a for a in audits if not _marked(a)]),
         *_created(cases),
     ]
     return Finding(comparisons, [_excess_panel(audits), _loop_panel(cases)])
@@ -216,15 +216,15 @@ def _worst(quantity: str, errors: list[float], tolerance: float) -> Comparison:
 
 def _contact(found: Audit) -> float:
     """Return the stored dissipation less the loop's area; zero if the contact has not ended."""
-    told = found.run["contact_dissipation"].item()
-    return 0.0 if math.isnan(told) else float(told - found.contact) / found.brought
+    lost = found.run["contact_dissipation"].item()
+    return 0.0 if math.isnan(lost) else float(lost - found.contact) / found.brought
 
 
 def _plastic(found: Audit) -> float:
     return float(found.run["plastic_dissipation"].item() - found.plastic) / found.brought
 
 
-def _says(found: Audit) -> bool:
+def _marked(found: Audit) -> bool:
     """Return whether the run is marked: its contact law created energy."""
     return bool(found.run["remarks"].item() & WARNINGS["contact_created_energy"][0])
 
@@ -236,7 +236,7 @@ def _never_negative(name: str, audits: list[Audit]) -> Comparison:
 
 
 _IN_CLOSED_FORM = ("hertz", "stronge")
-"""Laws whose creation of energy is known so; of the others see the check contact_laws."""
+"""Laws whose creation of energy is known in closed form; for others see contact_laws."""
 
 
 def _created(cases: list[Case]) -> list[Comparison]:
@@ -247,12 +247,12 @@ def _created(cases: list[Case]) -> list[Comparison]:
         if case[0].contact in _IN_CLOSED_FORM
         and not math.isnan(case[1].run["contact_dissipation"].item())
     ]
-    says = np.array([_says(found) for _, found in ended])
+    marked = np.array([_marked(found) for _, found in ended])
     known = np.array([_creates(impact, found) for impact, found in ended])
     where = "runs marked; runs whose largest indentation says so by the law's closed form"
-    wrong = float(np.sum(says != known))
+    wrong = float(np.sum(marked != known))
     return [
-        absolute("contact law created energy", where, "1", says.sum(), known.sum(), 0.0),
+        absolute("contact law created energy", where, "1", marked.sum(), known.sum(), 0.0),
         absolute("contact law created energy", "runs marked wrongly", "1", wrong, 0.0, 0.0),
     ]
 
@@ -285,10 +285,10 @@ def _loop_panel(cases: list[Case]) -> Panel:
     """Draw the dissipation over the work of loading, where the law creates energy and beyond."""
     points = []
     for impact, found in cases:
-        law, told = stronge_impact(impact), found.run["contact_dissipation"].item()
+        law, lost = stronge_impact(impact), found.run["contact_dissipation"].item()
         times = found.run["maximum_indentation"].item() / law.yield_indentation
-        if impact.contact == "stronge" and 0.2 < times < 8.0 and not math.isnan(told):
-            points.append((times, told / law.loading_work(times * law.yield_indentation)))
+        if impact.contact == "stronge" and 0.2 < times < 8.0 and not math.isnan(lost):
+            points.append((times, lost / law.loading_work(times * law.yield_indentation)))
     solver = np.array(sorted(points)).reshape(-1, 2)
     law = stronge_impact(paper_impact())
     x = np.linspace(1.001, 8.0, 200)

@@ -36,7 +36,7 @@ HISTORIES = {
     "midspan_deflection": ("mid-span deflection", "m", 1e-3),
     "midspan_curvature": ("mid-span curvature", "m-1", 1e-2),
 }
-"""What is compared: (name, units, tolerance at 201 nodes).
+"""The compared histories: (name, units, tolerance at 201 nodes).
 
 Under a point load curvature goes with the rate of deflection: it holds ten times as much of the
 high frequencies, whose waves the nodes resolve worst.
@@ -50,7 +50,7 @@ _SAMPLES = 401
 def compare(cases: Mapping[str, Case], solve: Solve) -> list[Comparison]:
     """Compare histories at 201 nodes, at 801 nodes, and the order in which their errors fall.
 
-    Of each, the velocity that comes out worst is told. The order is that of the root mean square
+    Each comparison is that of the worst velocity. The order is that of the root mean square
     over time. The largest error of the curvature falls as dx^2 log(1/dx): the kink that first touch
     leaves in it is spread by dispersion, and gathers in part at mid-span, at simple fractions
     of pi/(4 omega_1) (Talbot's effect); there the error has no smooth expansion in dx.
@@ -77,7 +77,7 @@ def _compare(beam: str, case: Case, velocity: float, solve: Solve) -> list[Compa
 
 
 def run(impact: Impact, nodes: int, duration: float) -> xr.Dataset:
-    """Solve the impact with that many nodes."""
+    """Solve the impact on `nodes` nodes."""
     grid = Discretisation(nodes=nodes, points=3)  # 3 points are exact while elastic
     return simulate(impact, grid, duration=duration, samples=_SAMPLES)
 

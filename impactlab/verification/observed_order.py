@@ -164,7 +164,7 @@ def in_space(case: Case) -> list[xr.Dataset]:
 
 
 def _order(name: str, where: str, runs: Sequence[xr.Dataset], doublings: int) -> Comparison:
-    """Compare the order from the first to the last difference, over so many doublings."""
+    """Compare the order from the first to the last difference, over `doublings` doublings."""
     apart = _apart(name, runs)
     observed = float(np.log2(apart[0] / apart[-1])) / doublings
     return absolute(name, where, "1", observed, ORDER, TOLERANCE)

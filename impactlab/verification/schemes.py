@@ -1,7 +1,7 @@
-"""The two schemes in time: each against the modal series and a fine run; drawn cases for stability.
+"""The two time schemes against the modal series and a fine run, and the stability of random cases.
 
-Both cut space in the same way, so their errors are of like size: what the semi-implicit scheme adds
-in time must stay below what the nodes cost anyway.
+Both discretise space in the same way, so their errors are of similar size: the time error of the
+semi-implicit scheme must stay below the space error of the nodes.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ ELASTIC_NODES = (201, 601)
 YIELDING_NODES, FINE = 601, 1601
 VELOCITIES = (15.0, 20.0)
 DURATION = 1.5e-3
-"""Of the yielding cases, in s: past the last of the sub-impacts."""
+"""Duration of the yielding cases in s, past the last of the sub-impacts."""
 TOLERANCES = {
     "peak_force": 3e-4,
     "permanent_indentation": 3e-4,
@@ -51,15 +51,15 @@ TOLERANCES = {
     "remote_plastic_strain": 2e-2,
     "plastic_zone_length": 1e-2,
 }
-"""A few times leapfrog's own error at 601 nodes, which the fine run tells: some errors pass through
-zero there. The peak plastic strain is left out, for it need not converge."""
+"""A few times leapfrog's error at 601 nodes against the fine run, where some errors pass through
+zero. The peak plastic strain is left out, because it need not converge."""
 
 DRAWN, SEED = 48, 1
 DRAWN_DURATION = 4e-3
 LARGEST_IMBALANCE = 1e-2
 
 NODES = (51, 101, 201, 401, 601, 801)
-"""Of the figures."""
+"""Numbers of nodes in the figures."""
 _NAMES = {scheme: scheme.replace("_", "-") for scheme in SCHEMES}
 
 
@@ -157,14 +157,14 @@ def stable(varied: dict[str, Any]) -> Comparison:
     return worst(
         [
             absolute(
-                "energy error", _told(run), "1", run.energy_error.item(), 0.0, LARGEST_IMBALANCE
+                "energy error", _label(run), "1", run.energy_error.item(), 0.0, LARGEST_IMBALANCE
             )
             for _, run in runs.groupby("run", squeeze=False)
         ]
     )
 
 
-def _told(run: xr.Dataset) -> str:
+def _label(run: xr.Dataset) -> str:
     return (
         f"semi-implicit: {run.velocity.item():.3g} m/s, {run.contact.item()}, "
         f"{run.nodes.item()} nodes, {run.points.item()} points, {run.rule.item()}"

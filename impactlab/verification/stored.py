@@ -1,8 +1,8 @@
-"""What checks found, as a labelled dataset (findings.nc), and back.
+"""Outcomes of checks as a labelled dataset (findings.nc), and back.
 
-Three tables and the points of the curves: a row a check on `name`, a row a comparison, a row a
-panel, a row a curve; each row names the one it belongs to. The curves' points stand one after
-another on `point` (CF's contiguous ragged arrays).
+Tables have one row per check on `name`, per comparison, per panel and per curve; each row names the
+one it belongs to. The points of all curves follow one another on `point` (contiguous ragged arrays
+of the CF conventions).
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ _DIMENSIONS = {
 _SCALED_GRID = Discretisation(nodes=101, points=21)
 _SCALED_DURATION = 2e-3
 SCALED_TOLERANCE = 1e-9
-"""Round-off: no answer may tell the scale by more."""
+"""Round-off, the only allowed effect of the scale."""
 
 
 @dataclass(frozen=True)
@@ -109,8 +109,8 @@ def yielding(contact: str) -> Impact:
 def check_similarity() -> Finding:
     """Compare every response, history and profile of the scaled impact with the original.
 
-    Dimensional analysis is all that is independent here; a constant with a unit, hidden in the
-    code, would break it.
+    The independent part is dimensional analysis: a constant with a unit, hidden in the code, would
+    break it.
     """
     found: list[Comparison] = []
     for contact in LAWS:

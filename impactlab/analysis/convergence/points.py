@@ -15,7 +15,7 @@ from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict, verdict_v
 from impactlab.types import Floats
 
 SAFETY = 3.0
-"""Uncertainty over difference to the most points: holds where these halve the error at least."""
+"""Uncertainty over difference to the most points, valid where these at least halve the error."""
 _COMMENT = "The most points are the reference: their own error is not known."
 _ATTRS = {
     "points_error": {

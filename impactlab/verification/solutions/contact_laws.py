@@ -1,4 +1,4 @@
-"""Every contact law again, written from its formulas, and what follows from it by quadrature.
+"""Every contact law written anew from its formulas, and its restitution by quadrature.
 
 A sphere on a rigidly backed half-space: no gravity, no waves. Sources: physics.md ("Further contact
 laws") and the papers named there; Stronge's law with force continuity is in stronge.py in closed

@@ -1,6 +1,6 @@
 """The elastic beam under leapfrog: its stability in closed form, and a plain march to see it.
 
-w_tt = -(EI/mu) w_xxxx by second differences twice, simply supported, nothing else: no contact, no
+w_tt = -(EI/mu) w_xxxx by second differences twice, simply supported, without contact and without
 fibres. Von Neumann's analysis; see e.g. Hughes, The Finite Element Method (1987), section 9.2.
 
 Symbols: dx (m), node spacing; dt (s), time step; EI (N m2); mu (kg/m); omega (1/s), the highest
@@ -66,4 +66,4 @@ def march(beam: Beam, nodes: int, dt: float, steps: int) -> Floats:
 
 
 _OVERFLOW = 1e100
-"""m; far beyond any meaning, far below where floating point ends."""
+"""Deflection in m that stops the march, far below the floating-point limit."""

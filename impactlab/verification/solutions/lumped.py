@@ -37,7 +37,7 @@ from impactlab.verification.solutions import hertz
 
 _RTOL = 1e-12
 _STEPS = 50
-"""At least so many steps in Hertz's contact time: no contact is stepped over."""
+"""Least number of steps in Hertz's contact time, so that no contact is stepped over."""
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ def _check(struck: Oscillator) -> None:
 
 
 MASS_SHARE = 17.0 / 35.0
-"""m over the beam's mass."""
+"""The moving mass over the beam's mass."""
 
 
 def spring_mass(beam: Beam) -> Oscillator:

@@ -79,7 +79,7 @@ class ModalSolution:
 def solve(
     impact: Impact, duration: float, *, modes: int = 50, step: float | None = None
 ) -> ModalSolution:
-    """Solve the impact on an elastic beam over `duration` (s), with that many odd modes.
+    """Solve the impact on an elastic beam over `duration` (s), with `modes` odd modes.
 
     step: largest step in s; default: a thousandth of Hertz's contact time on a half-space, which
     leaves a relative error below 1e-6 in peak force and contact duration (it falls with step^2).
@@ -160,7 +160,7 @@ def solve_timoshenko(
     step: float | None = None,
     compliance: float = 0.0,
 ) -> ModalSolution:
-    """Solve the impact on an elastic Timoshenko beam over `duration` (s), with that many odd n.
+    """Solve the impact on an elastic Timoshenko beam over `duration` (s), with `modes` odd n.
 
     step as in solve, compliance as in solve_with. Errors fall with modes^-3; in the
     paper's case 100 leave below 1e-7 of peak force and contact duration, and 1e-5 of the largest

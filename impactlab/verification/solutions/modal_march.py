@@ -35,7 +35,7 @@ class Path:
 
 
 def march(impact: Impact, modes: BeamModes, h: float, steps: int, compliance: float = 0.0) -> Path:
-    """Return the histories over that many steps of `h` (s) from first touch, under Hertz contact.
+    """Return the histories over `steps` steps of `h` (s) from first touch, under Hertz contact.
 
     compliance: see modal.solve_with.
     """

@@ -1,4 +1,4 @@
-"""What shear and rotary inertia add to a beam of rectangular section: Timoshenko's theory.
+"""Effects of shear and rotary inertia in a beam of rectangular section: Timoshenko's theory.
 
 Symbols: k, shear coefficient; a = k G A (N), shear stiffness; q = n pi/L (1/m), wave number;
 omega (rad/s).
@@ -15,7 +15,7 @@ from impactlab.verification.solutions import bending
 
 
 def shear_stiffness(beam: Beam) -> float:
-    """Return K G A in N, G = E/(2 (1 + nu))."""
+    """Return k G A in N, G = E/(2 (1 + nu))."""
     modulus = beam.material.youngs_modulus / (2.0 * (1.0 + beam.material.poissons_ratio))
     return beam.shear_coefficient * modulus * beam.width * beam.depth
 

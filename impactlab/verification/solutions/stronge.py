@@ -66,7 +66,7 @@ class StrongeImpact:
         return self.yield_force * self.yield_indentation * _work(x)
 
     def maximum_indentation(self, velocity: float, mass: float) -> float:
-        """Return delta_m in m, where the loading work is the energy of `mass` (kg) at `velocity`."""
+        """Return delta_m in m, where the loading work is the energy of `mass` (kg)."""
         speed = positive("StrongeImpact", "velocity", velocity)
         energy = 0.5 * positive("StrongeImpact", "mass", mass) * speed**2
         scaled = energy / (self.yield_force * self.yield_indentation)
