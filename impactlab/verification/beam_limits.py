@@ -40,8 +40,8 @@ IMPULSE_DURATION = 150e-6
 """In s, six times the contact. Only waves of frequencies above 60 over the contact's duration cross
 3.12 m in this time, and the force contains almost none of these."""
 NEAR = 0.3
-"""Distance in m from mid-span within which shapes are compared; farther out are waves of frequencies
-for which the contact is not short."""
+"""Distance in m from mid-span within which shapes are compared; farther out are the waves for whose
+frequencies the contact is not short."""
 
 
 def long_impact() -> Impact:
