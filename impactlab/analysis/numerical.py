@@ -11,7 +11,7 @@ import xarray as xr
 
 from impactlab.analysis.responses import usable
 from impactlab.analysis.sensitivity import refinement as refining
-from impactlab.analysis.sensitivity.imputation import Fit
+from impactlab.analysis.sensitivity.indices import Fit
 from impactlab.analysis.surrogate import fit
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
 

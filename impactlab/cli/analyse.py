@@ -26,7 +26,7 @@ def analyse(
     and surrogate.nc for `impactlab predict`.
     """
     from impactlab.analysis.analyse import analyse as analysed
-    from impactlab.analysis.sensitivity import table
+    from impactlab.analysis.sensitivity.indices import sensitivity_variables, write_csv
     from impactlab.analysis.surrogate import packed
     from impactlab.figures.files import replaced
     from impactlab.study.netcdf import read_netcdf, write_netcdf
@@ -37,9 +37,9 @@ def analyse(
     write_netcdf(found, path)
     for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps of another study
         path.with_name(name).unlink(missing_ok=True)
-    if indices := table.indices(found):
+    if indices := sensitivity_variables(found):
         with replaced(path.with_name("indices.csv")) as temporary:
-            table.write_csv(found, temporary)
+            write_csv(found, temporary)
         write_netcdf(indices, path.with_name("indices.nc"))
     if surrogates := packed(solved, found):
         write_netcdf(surrogates, path.with_name("surrogate.nc"))

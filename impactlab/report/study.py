@@ -10,7 +10,7 @@ from pathlib import Path
 import xarray as xr
 
 from impactlab import wings
-from impactlab.analysis.sensitivity.table import indices
+from impactlab.analysis.sensitivity.indices import sensitivity_variables
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, is_sample
 from impactlab.figures.samples import scatters
@@ -74,7 +74,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[list[Section], li
             of_runs.outcome(runs, analysis),
             *more,
         ], [of_runs.results(runs)]
-    file = "indices.csv" if indices(analysis) else ""
+    file = "indices.csv" if sensitivity_variables(analysis) else ""
     of_sample = [
         of_runs.inputs(runs),
         of_runs.results(runs, ("response_distributions",)),

@@ -12,9 +12,13 @@ import numpy as np
 import numpy.typing as npt
 from SALib.analyze.delta import calc_delta, sobol_first
 
-from impactlab.analysis.sensitivity import dummy
-from impactlab.analysis.sensitivity.index import Index
-from impactlab.analysis.sensitivity.sample import Array, Sample
+from impactlab.analysis.sensitivity.method import (
+    Array,
+    Index,
+    Sample,
+    SensitivityMethod,
+    dummy_column,
+)
 
 GRID = 100
 """Places at which densities are compared, as in SALib."""
@@ -37,19 +41,9 @@ _INDICES = {
 }
 
 
-def indices(sample: Sample) -> dict[str, Index]:
-    """What is estimated, by variable name."""
-    return _INDICES
-
-
 def check(sample: Sample) -> None:
     """Raises ValueError where groups are stated."""
     sample.ungrouped()
-
-
-def varying(outputs: Array, sample: Sample) -> list[Array]:
-    """The outputs that have to vary."""
-    return [outputs]
 
 
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
@@ -59,7 +53,7 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
     the response alone: SALib takes such a class for one without influence.
     """
     runs = len(outputs)
-    inputs = np.column_stack([sample.inputs, dummy.column(runs, sample.rng("dummy"))])
+    inputs = np.column_stack([sample.inputs, dummy_column(runs, sample.rng("dummy"))])
     edges = np.linspace(0, runs, classes(runs) + 1)
     places = np.linspace(outputs.min(), outputs.max(), GRID)
     values = np.array([_salib(column, outputs, edges, places) for column in inputs.T])
@@ -128,3 +122,6 @@ def _density(outputs: Array, starts: npt.NDArray[np.intp], places: Array) -> Arr
     return np.asarray(
         np.add.reduceat(kernels, starts, axis=1) / (np.sqrt(2 * np.pi) * width * sizes)
     )
+
+
+METHOD = SensitivityMethod("delta", lambda sample: _INDICES, check, estimate)

@@ -13,8 +13,7 @@ import math
 import numpy as np
 from SALib.analyze.fast import compute_orders
 
-from impactlab.analysis.sensitivity.index import Index
-from impactlab.analysis.sensitivity.sample import Array, Sample
+from impactlab.analysis.sensitivity.method import Array, Index, Sample, SensitivityMethod
 
 _1999 = "extended FAST: Saltelli et al. (1999), Technometrics 41, 39"
 _DUMMY = "the index of a parameter that the model never sees, from a curve of its own"
@@ -32,11 +31,6 @@ _INDICES = {
         "total-order Sobol index of a dummy", f"{_1999}, section 3", (), comment=_DUMMY
     ),
 }
-
-
-def indices(sample: Sample) -> dict[str, Index]:
-    """What is estimated, by variable name."""
-    return _INDICES
 
 
 def check(sample: Sample) -> None:
@@ -97,3 +91,6 @@ def _orders(curve: Array, harmonics: int) -> tuple[float, float]:
 def _half(curve: Array, start: int) -> Array:
     """Half of a closed curve, from a place on."""
     return np.roll(curve, -start)[: math.ceil(curve.size / 2)]
+
+
+METHOD = SensitivityMethod("fast", lambda sample: _INDICES, check, estimate, varying=varying)

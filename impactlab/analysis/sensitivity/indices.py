@@ -1,21 +1,44 @@
-"""From the runs of a sample study to its indices, with a verdict on each response."""
+"""Sensitivity indices of the runs of a sample, as a dataset and as a table."""
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.stats import rankdata
 
 from impactlab.analysis.responses import usable
-from impactlab.analysis.sensitivity import imputation, sobol, verdict
-from impactlab.analysis.sensitivity.imputation import Fit
-from impactlab.analysis.sensitivity.index import BY_SAMPLES, PAIR, Index, stored
-from impactlab.analysis.sensitivity.methods import METHODS, Method
-from impactlab.analysis.sensitivity.sample import Array, Sample
+from impactlab.analysis.sensitivity import delta, fast, morris, pawn, regression, sobol, verdict
+from impactlab.analysis.sensitivity.method import (
+    BY_SAMPLES,
+    PAIR,
+    Array,
+    Index,
+    Sample,
+    SensitivityMethod,
+    index_variables,
+)
 from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
 from impactlab.analysis.surrogate import fit
 from impactlab.analysis.verdicts import flagged
+
+METHODS: Mapping[str, SensitivityMethod] = {
+    method.name: method
+    for method in (
+        sobol.METHOD,
+        morris.METHOD,
+        fast.METHOD,
+        delta.METHOD,
+        pawn.METHOD,
+        regression.METHOD,
+    )
+}
+"""By their names in study files."""
 
 Answer = tuple[list[SensitivityVerdict], float, dict[str, Array]]
 """What is said of a response, share of its runs that a surrogate supplied, and indices if any."""
@@ -52,7 +75,7 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
     sizes = {name: len(entry[1]) for name, entry in coordinates.items()}
     worst = [max(entry, default=SensitivityVerdict.USABLE) for entry in said]
     codes = xr.DataArray([int(judgement) for judgement in worst], dims="response")
-    return xr.Dataset(stored(rows, wanted, sample, sizes), coords=coordinates).assign(
+    return xr.Dataset(index_variables(rows, wanted, sample, sizes), coords=coordinates).assign(
         sensitivity_verdict=flagged(
             codes, SensitivityVerdict, "verdict on the sensitivity indices"
         ),
@@ -64,14 +87,16 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
 _IMPUTED = {"long_name": "share of runs whose value a surrogate supplied", "units": "1"}
 
 
-def _answer(response: str, outputs: Array, sample: Sample, method: Method, fit: Fit) -> Answer:
+def _answer(
+    response: str, outputs: Array, sample: Sample, method: SensitivityMethod, fit: Fit
+) -> Answer:
     """Of one response; outputs: (runs,), NaN where a run failed."""
     share = 0.0
     if np.isnan(outputs).any() and sample.policy == "impute":
-        if not imputation.possible(outputs, sample):
+        if not can_impute(outputs, sample):
             return [SensitivityVerdict.TOO_FEW_RUNS], share, {}
         share = float(np.isnan(outputs).mean())
-        outputs = imputation.completed(outputs, sample, fit, response)
+        outputs = imputed(outputs, sample, fit, response)
     said = verdict.of_outputs(outputs, method.varying(outputs, sample), share)
     if set(said) & set(verdict.NO_INDEX):
         return said, 0.0, {}
@@ -80,7 +105,7 @@ def _answer(response: str, outputs: Array, sample: Sample, method: Method, fit: 
 
 
 def _coordinates(
-    values: xr.DataArray, sample: Sample, wanted: dict[str, Index]
+    values: xr.DataArray, sample: Sample, wanted: Mapping[str, Index]
 ) -> dict[str, tuple[Any, ...]]:
     factors = list(sample.factors)
     what = "group of varied parameters" if sample.groups else "varied parameter"
@@ -97,3 +122,126 @@ def _coordinates(
         attrs = {"long_name": "base samples used, the first of the sample", "units": "1"}
         coordinates[BY_SAMPLES[0]] = (BY_SAMPLES[0], sobol.base_samples(sample), attrs)
     return coordinates
+
+
+Predict = Callable[[Array], Array]
+"""From places (runs, parameters) in the unit cube to values (runs,)."""
+Fit = Callable[[Array, Array, int], Predict]
+"""Fits a surrogate to places (runs, parameters) in the unit cube, values (runs,), and a seed."""
+
+MOST_IMPUTED = 0.2
+"""Share of runs that may be supplied at most."""
+FEWEST_PER_PARAMETER = 10
+"""Good runs that a surrogate needs for each parameter."""
+
+
+def can_impute(outputs: Array, sample: Sample) -> bool:
+    """Whether enough runs are left to supply the others."""
+    gaps = int(np.isnan(outputs).sum())
+    good = outputs.size - gaps
+    return gaps <= MOST_IMPUTED * outputs.size and good >= FEWEST_PER_PARAMETER * len(
+        sample.parameters
+    )
+
+
+def imputed(outputs: Array, sample: Sample, fit: Fit, response: str) -> Array:
+    """Outputs (runs,) with NaN replaced by what the surrogate predicts there."""
+    gaps = np.isnan(outputs)
+    if not gaps.any():
+        return outputs
+    places = unit_ranks(sample.inputs)
+    seed = int(sample.rng("surrogate", response).integers(1, 2**31))
+    predict = fit(places[~gaps], outputs[~gaps], seed)
+    filled = outputs.copy()
+    filled[gaps] = predict(places[gaps])
+    return filled
+
+
+def unit_ranks(inputs: Array) -> Array:
+    """Places (runs, parameters) in the open unit cube: the share of runs below each value.
+
+    Of a sample as even as those of sensitivity analyses, the probability to 1/runs, whatever the
+    distribution.
+    """
+    return np.asarray((rankdata(inputs, axis=0) - 0.5) / len(inputs))
+
+
+_OF = ("parameter", "other_parameter", "base_samples")
+_BESIDE = ("sensitivity_verdict", "sensitivity_remarks", "imputed_share")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One index. low, high: ends of its interval; NaN where there is none. units: of all three."""
+
+    response: str
+    parameter: str
+    other_parameter: str
+    base_samples: str
+    index: str
+    value: float
+    low: float
+    high: float
+    units: str
+    verdict: str
+
+
+def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
+    """What of an analysis is sensitivity: indices, their intervals and verdicts; or nothing."""
+    wanted = [name for name in analysis.data_vars if _is_index(analysis[name]) or name in _BESIDE]
+    return analysis[wanted]
+
+
+def table_rows(analysis: xr.Dataset) -> Iterator[Row]:
+    """Every index of every response; of a pair of parameters once. None without a sample."""
+    for name, array in sensitivity_variables(analysis).data_vars.items():
+        if not str(name).endswith("_interval") and name not in _BESIDE:
+            yield from _rows(analysis, array)
+
+
+def write_csv(analysis: xr.Dataset, path: Path) -> None:
+    """Write the rows under their names, in UTF-8; an empty cell stands for what is not given."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(field.name for field in fields(Row))
+        writer.writerows(map(_cells, table_rows(analysis)))
+
+
+def _rows(analysis: xr.Dataset, array: xr.DataArray) -> Iterator[Row]:
+    margins = analysis.get(f"{array.name}_interval", xr.full_like(array, np.nan))
+    margins = margins.transpose(*array.dims)
+    verdicts = _verdicts(analysis["sensitivity_verdict"])
+    units = analysis.get("response_units", xr.full_like(analysis["response"], ""))
+    for place in np.ndindex(array.shape):
+        at = dict(zip(map(str, array.dims), place, strict=True))
+        if "other_parameter" in at and at["parameter"] >= at["other_parameter"]:
+            continue
+        labels = {dim: str(array[dim].values[at[dim]]) if dim in at else "" for dim in _OF}
+        value, margin, response = float(array[at]), float(margins[at]), at["response"]
+        yield Row(
+            response=str(array["response"].values[response]),
+            index=str(array.name),
+            value=value,
+            low=value - margin,
+            high=value + margin,
+            units=str(array.attrs.get("units", units.values[response])),
+            verdict=verdicts[response],
+            **labels,
+        )
+
+
+def _is_index(array: xr.DataArray) -> bool:
+    known = set(array.dims) <= {"response", *_OF} and "response" in array.dims
+    return known and ("estimator" in array.attrs or "parameter" in array.dims)
+
+
+def _verdicts(array: xr.DataArray) -> list[str]:
+    flags = np.atleast_1d(array.attrs["flag_values"]).tolist()
+    names = dict(zip(flags, str(array.attrs["flag_meanings"]).split(), strict=True))
+    return [names[code] for code in array.values.tolist()]
+
+
+def _cells(row: Row) -> list[str]:
+    cells = astuple(row)
+    return ["" if isinstance(cell, float) and np.isnan(cell) else str(cell) for cell in cells]

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from SALib.analyze import morris
 
-from impactlab.analysis.sensitivity.index import Index
-from impactlab.analysis.sensitivity.sample import Array, Sample
+from impactlab.analysis.sensitivity.method import Array, Index, Sample, SensitivityMethod
 
 SAME = 1e-13
 """Difference, relative to the largest value, up to which two values are one level."""
@@ -35,11 +34,6 @@ _INDICES = {
 }
 
 
-def indices(sample: Sample) -> dict[str, Index]:
-    """What is estimated, by variable name."""
-    return _INDICES
-
-
 def check(sample: Sample) -> None:
     """Raises ValueError when the runs are not trajectories of single steps."""
     trajectories, factors = sample.number("trajectories"), len(sample.factors)
@@ -54,11 +48,6 @@ def check(sample: Sample) -> None:
             f"the runs of {sample.study} are not Morris' trajectories, each step of which moves "
             "one parameter or group: solve the study again"
         )
-
-
-def varying(outputs: Array, sample: Sample) -> list[Array]:
-    """The outputs that have to vary."""
-    return [outputs]
 
 
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
@@ -103,3 +92,6 @@ def _levels(column: Array) -> Array:
     values, places = np.unique(column, return_inverse=True)
     apart = np.diff(values) > SAME * np.abs(values).max()
     return np.concatenate([[0.0], np.cumsum(apart)])[places]
+
+
+METHOD = SensitivityMethod("morris", lambda sample: _INDICES, check, estimate)

@@ -13,10 +13,14 @@ import numpy as np
 import numpy.typing as npt
 from SALib.analyze import pawn
 
-from impactlab.analysis.sensitivity import dummy
-from impactlab.analysis.sensitivity.bootstrap import counts
-from impactlab.analysis.sensitivity.index import Index
-from impactlab.analysis.sensitivity.sample import Array, Sample
+from impactlab.analysis.sensitivity.method import (
+    Array,
+    Index,
+    Sample,
+    SensitivityMethod,
+    counts,
+    dummy_column,
+)
 
 SLIDES = 10
 """Classes of a parameter's values, as in SALib."""
@@ -37,11 +41,6 @@ _INDICES = {
 }
 
 
-def indices(sample: Sample) -> dict[str, Index]:
-    """What is estimated, by variable name."""
-    return _INDICES
-
-
 def check(sample: Sample) -> None:
     """Raises ValueError where groups are stated, or the slides would be all but empty."""
     sample.ungrouped()
@@ -51,17 +50,12 @@ def check(sample: Sample) -> None:
         )
 
 
-def varying(outputs: Array, sample: Sample) -> list[Array]:
-    """The outputs that have to vary."""
-    return [outputs]
-
-
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
     """Indices of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,), finite and varying.
     """
-    column = dummy.column(len(outputs), sample.rng("dummy"))
+    column = dummy_column(len(outputs), sample.rng("dummy"))
     inputs = np.column_stack([sample.inputs, column])
     names = [*sample.parameters, "dummy"]
     with warnings.catch_warnings():
@@ -118,3 +112,6 @@ def distances(weights: Array, members: npt.NDArray[np.bool_], last: npt.NDArray[
 def _median(values: Array) -> float:
     """Of the slides that are not empty, as in SALib."""
     return float(np.nanmedian(values))
+
+
+METHOD = SensitivityMethod("pawn", lambda sample: _INDICES, check, estimate)

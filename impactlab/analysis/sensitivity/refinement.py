@@ -15,11 +15,10 @@ import xarray as xr
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
 from impactlab.analysis.responses import usable
-from impactlab.analysis.sensitivity import imputation, sobol
-from impactlab.analysis.sensitivity.bootstrap import half_widths
-from impactlab.analysis.sensitivity.imputation import Fit
-from impactlab.analysis.sensitivity.saltelli import Outputs, estimates
-from impactlab.analysis.sensitivity.sample import Array, Sample
+from impactlab.analysis.sensitivity import sobol
+from impactlab.analysis.sensitivity.indices import Fit, can_impute, imputed
+from impactlab.analysis.sensitivity.method import Array, Sample, half_widths
+from impactlab.analysis.sensitivity.sobol import Outputs, estimates
 from impactlab.analysis.sensitivity.verdict import still, tail
 
 ORDERS = ("first_order", "total_order")
@@ -123,9 +122,9 @@ def _safety(change: ByGrid, spacings: Mapping[str, float]) -> Array:
 
 def _complete(outputs: Array, sample: Sample, fit: Fit, name: str) -> Array:
     """With failed runs supplied where the study asks for it and there are runs enough."""
-    if sample.policy != "impute" or not imputation.possible(outputs, sample):
+    if sample.policy != "impute" or not can_impute(outputs, sample):
         return outputs
-    return imputation.completed(outputs, sample, fit, name)
+    return imputed(outputs, sample, fit, name)
 
 
 def _measurable(outputs: Array, sample: Sample) -> bool:

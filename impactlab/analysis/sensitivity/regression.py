@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import rankdata
 
-from impactlab.analysis.sensitivity import dummy
-from impactlab.analysis.sensitivity.bootstrap import half_widths
-from impactlab.analysis.sensitivity.index import Index
-from impactlab.analysis.sensitivity.sample import Array, Sample
+from impactlab.analysis.sensitivity.method import (
+    Array,
+    Index,
+    Sample,
+    SensitivityMethod,
+    dummy_column,
+    half_widths,
+)
 
 _2008 = "Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5"
 _1979 = "Iman and Conover (1979), Technometrics 21, 499"
@@ -31,11 +35,6 @@ _INDICES = {
 }
 
 
-def indices(sample: Sample) -> dict[str, Index]:
-    """What is estimated, by variable name."""
-    return _INDICES
-
-
 def check(sample: Sample) -> None:
     """Raises ValueError where groups are stated, or the runs do not determine a regression."""
     sample.ungrouped()
@@ -47,17 +46,12 @@ def check(sample: Sample) -> None:
         )
 
 
-def varying(outputs: Array, sample: Sample) -> list[Array]:
-    """The outputs that have to vary."""
-    return [outputs]
-
-
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
     """Coefficients of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,), finite and varying. The ranks are those among all runs, in resamples, too.
     """
-    column = dummy.column(len(outputs), sample.rng("dummy"))
+    column = dummy_column(len(outputs), sample.rng("dummy"))
     table = np.column_stack([sample.inputs, column, outputs])
     found: dict[str, Array] = {}
     for name, values in (("regression", table), ("rank_regression", rankdata(table, axis=0))):
@@ -98,3 +92,6 @@ def coefficients(correlation: Array) -> tuple[Array, Array]:
     inner, outer = correlation[..., :-1, :-1], correlation[..., :-1, -1]
     found = np.asarray(np.linalg.solve(inner, outer[..., None])[..., 0], float)
     return found, np.asarray((found * outer).sum(axis=-1))
+
+
+METHOD = SensitivityMethod("regression", lambda sample: _INDICES, check, estimate)

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.sensitivity.sample import Array
+from impactlab.analysis.sensitivity.method import Array
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict
 
 MOSTLY = 0.9

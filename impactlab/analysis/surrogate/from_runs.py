@@ -1,22 +1,130 @@
-"""Surrogates of all responses of a sample, as variables of analysis.nc."""
+"""From runs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from impactlab.analysis.responses import usable
-from impactlab.analysis.surrogate.chaos import Array
-from impactlab.analysis.surrogate.sample import Sample, is_sample
-from impactlab.analysis.surrogate.terms import Degrees
-from impactlab.analysis.surrogate.testing import Tested, surrogate
-from impactlab.analysis.surrogate.verdict import SurrogateVerdict
-from impactlab.analysis.verdicts import flagged
+from impactlab.analysis.surrogate.chaos import (
+    Array,
+    Chaos,
+    Degrees,
+    Errors,
+    Fitted,
+    Indices,
+    indices,
+)
+from impactlab.analysis.surrogate.fitting import Sample, drawn, fewest_runs, fit, is_sample
+from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
+
+GOOD = 0.9
+"""Predictivity on held-out runs from which on a surrogate needs no warning."""
+MOSTLY = 0.9
+FEW = 20
+"""Distinct values up to which a response jumps between levels, where each comes ten times."""
+
+
+class SurrogateVerdict(Verdict):
+    """What a surrogate of a response is worth."""
+
+    USABLE = 0, True, "it predicts at least 90 % of the variance of runs held out"
+    POOR = 1, False, "it misses more than a tenth of the variance of runs held out"
+    JUMPS = 2, False, "the response jumps between few values, which no polynomial follows"
+    MOSTLY_CONSTANT = 3, False, "nine runs in ten share one value: it follows the others badly"
+    FAILED_RUNS = 4, False, "runs are missing: it knows nothing of where they failed"
+    TOO_FEW_RUNS = 5, False, "too few runs answered to fit and to test one: there is none"
+    CONSTANT = 6, False, "the response does not vary: there is none"
+
+
+def before_fitting(values: Array, enough: bool) -> SurrogateVerdict:
+    """What the runs alone say; values: (runs,), NaN where missing.
+
+    enough: whether there are runs enough to fit and to test.
+    """
+    found = values[np.isfinite(values)]
+    if not enough or found.size == 0:
+        return SurrogateVerdict.TOO_FEW_RUNS
+    if np.ptp(found) <= ROUND_OFF * np.abs(found).max():
+        return SurrogateVerdict.CONSTANT
+    if found.size < values.size:
+        return SurrogateVerdict.FAILED_RUNS
+    counts = np.unique(found, return_counts=True)[1]
+    if counts.max() >= MOSTLY * found.size:
+        return SurrogateVerdict.MOSTLY_CONSTANT
+    return (
+        SurrogateVerdict.JUMPS
+        if counts.size <= min(FEW, found.size // 10)
+        else SurrogateVerdict.USABLE
+    )
+
+
+def after_testing(before: SurrogateVerdict, predictivity: float) -> SurrogateVerdict:
+    """The same, or poor where nothing worse is known; NaN is poor, too."""
+    poor = before is SurrogateVerdict.USABLE and not predictivity >= GOOD
+    return SurrogateVerdict.POOR if poor else before
+
+
+_FEWEST_TESTS = 10
+
+
+@dataclass(frozen=True)
+class Tested:
+    """A chaos and how well it predicts.
+
+    predicted: (tests,), in the response's unit. errors: on the tests that have a value. runs: how
+    many the chaos was fitted to.
+    """
+
+    chaos: Chaos
+    predicted: Array
+    errors: Errors
+    runs: int
+    indices: Indices
+
+
+def surrogate(values: Array, sample: Sample) -> tuple[SurrogateVerdict, Tested | None]:
+    """Verdict and surrogate of one response; none where it is constant or runs are too few.
+
+    values: (runs,), NaN where missing.
+    """
+    answered = np.isfinite(values)
+    training = np.flatnonzero(answered & ~sample.held_out)
+    enough = bool(
+        training.size >= fewest_runs(len(sample.parameters))
+        and np.count_nonzero(answered[sample.tests]) >= _FEWEST_TESTS
+    )
+    verdict = before_fitting(values, enough)
+    if verdict in (SurrogateVerdict.TOO_FEW_RUNS, SurrogateVerdict.CONSTANT):
+        return verdict, None
+    tested = _tested(values, sample, training)
+    return after_testing(verdict, tested.errors.q2), tested
+
+
+def _tested(values: Array, sample: Sample, training: NDArray[np.int64]) -> Tested:
+    rows = training[drawn(training.size, sample.fit_seed)]
+    fitted = Fitted(sample.unit[rows], values[rows], sample.block[rows])
+    chaos = fit(fitted.unit, fitted.values, sample.fit_seed)
+    predicted = chaos(sample.unit[sample.tests])
+    errors = _errors(predicted, values[sample.tests])
+    found = indices(chaos, sample.groups, fitted, errors, sample.confidence)
+    return Tested(chaos, predicted, errors, rows.size, found)
+
+
+def _errors(predicted: Array, values: Array) -> Errors:
+    """Of predictions with a value to hold them against; q2 is -inf where the values are alike."""
+    known = np.isfinite(values)
+    square = float(np.mean((predicted - values)[known] ** 2))
+    variance = float(np.var(values[known]))
+    return Errors(1 - square / variance if variance > 0 else -np.inf, float(np.sqrt(square)))
+
 
 Found = Sequence[Tested | None]
 """The surrogate of each response, or none."""

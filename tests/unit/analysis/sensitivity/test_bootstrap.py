@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis.sensitivity import bootstrap
-from impactlab.analysis.sensitivity.sample import Sample
+from impactlab.analysis.sensitivity import method
+from impactlab.analysis.sensitivity.method import Sample
 
 
 def _sample(resamples: int, confidence: float = 0.95) -> Sample:
@@ -19,7 +19,7 @@ def _sample(resamples: int, confidence: float = 0.95) -> Sample:
 
 def test_counts_are_multinomial() -> None:
     """Mean 1, variance 1 - 1/rows, and rows in all."""
-    tallies = np.concatenate(list(bootstrap.counts(50, 4000, np.random.default_rng(1))))
+    tallies = np.concatenate(list(method.counts(50, 4000, np.random.default_rng(1))))
     assert tallies.shape == (4000, 50)
     np.testing.assert_array_equal(tallies.sum(axis=1), 50)
     np.testing.assert_allclose(tallies.mean(axis=0), 1.0, atol=0.07)
@@ -27,16 +27,16 @@ def test_counts_are_multinomial() -> None:
 
 
 def test_chunks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = np.concatenate(list(bootstrap.counts(7, 20, np.random.default_rng(1))))
-    monkeypatch.setattr(bootstrap, "_CELLS", 21)
-    parts = list(bootstrap.counts(7, 20, np.random.default_rng(1)))
+    whole = np.concatenate(list(method.counts(7, 20, np.random.default_rng(1))))
+    monkeypatch.setattr(method, "_CELLS", 21)
+    parts = list(method.counts(7, 20, np.random.default_rng(1)))
     assert [len(part) for part in parts] == [3] * 6 + [2]
     np.testing.assert_array_equal(np.concatenate(parts), whole)
 
 
 def test_more_rows_than_are_held_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bootstrap, "_CELLS", 5)
-    assert [len(part) for part in bootstrap.counts(7, 3, np.random.default_rng(1))] == [1, 1, 1]
+    monkeypatch.setattr(method, "_CELLS", 5)
+    assert [len(part) for part in method.counts(7, 3, np.random.default_rng(1))] == [1, 1, 1]
 
 
 @pytest.mark.parametrize(("confidence", "quantile"), [(0.95, 1.959964), (0.68, 0.994458)])
@@ -48,6 +48,6 @@ def test_half_width_of_a_mean(confidence: float, quantile: float) -> None:
         return {"mean": means[..., 0]}
 
     sample = _sample(4000, confidence)
-    found = bootstrap.half_widths(rows, mean, sample, sample.rng("y"))
+    found = method.half_widths(rows, mean, sample, sample.rng("y"))
     expected = quantile * rows.std() / np.sqrt(400)
     np.testing.assert_allclose(found["mean_interval"], expected, rtol=0.04)

@@ -13,9 +13,8 @@ from SALib.analyze import sobol as salib
 from SALib.sample import sobol as sampler
 
 from impactlab.analysis import sensitivity
-from impactlab.analysis.sensitivity.saltelli import Outputs, estimates
-from impactlab.analysis.sensitivity.sample import Sample
-from impactlab.analysis.sensitivity.sobol import points
+from impactlab.analysis.sensitivity.method import Sample
+from impactlab.analysis.sensitivity.sobol import Outputs, estimates, points
 
 Build = Callable[..., xr.Dataset]
 Z95 = 1.959964

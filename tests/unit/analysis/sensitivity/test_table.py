@@ -14,7 +14,7 @@ from SALib.sample import morris as morris_sampler
 from SALib.sample import sobol as sampler
 
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.sensitivity import table
+from impactlab.analysis.sensitivity.indices import sensitivity_variables, table_rows, write_csv
 
 Build = Callable[..., xr.Dataset]
 PROBLEM = {"num_vars": 3, "names": list("abc"), "bounds": [[0, 1]] * 3}
@@ -30,7 +30,7 @@ def found(drawn: Build, ishigami: Any) -> xr.Dataset:
 
 
 def test_every_index_has_a_row(found: xr.Dataset, tmp_path: Path) -> None:
-    table.write_csv(found, tmp_path / "new" / "indices.csv")
+    write_csv(found, tmp_path / "new" / "indices.csv")
     with (tmp_path / "new" / "indices.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     # of two responses: 3 + 3 indices, 3 pairs, 2 dummies, 4 sizes of 3 + 3
@@ -51,7 +51,7 @@ def test_every_index_has_a_row(found: xr.Dataset, tmp_path: Path) -> None:
 
 
 def test_pairs_once_and_sizes(found: xr.Dataset) -> None:
-    rows = [row for row in table.rows(found) if row.response == "peak_force"]
+    rows = [row for row in table_rows(found) if row.response == "peak_force"]
     pairs = [(row.parameter, row.other_parameter) for row in rows if row.index == "second_order"]
     assert pairs == [("x0", "x1"), ("x0", "x2"), ("x1", "x2")]
     sizes = [row for row in rows if row.index == "first_order_by_samples"]
@@ -61,7 +61,7 @@ def test_pairs_once_and_sizes(found: xr.Dataset) -> None:
 
 
 def test_what_is_not_given_is_an_empty_cell(found: xr.Dataset, tmp_path: Path) -> None:
-    table.write_csv(found, tmp_path / "indices.csv")
+    write_csv(found, tmp_path / "indices.csv")
     lines = (tmp_path / "indices.csv").read_text("utf-8").splitlines()
     assert "impulse,x0,,,first_order,,,,1,failed_runs" in lines
 
@@ -69,10 +69,10 @@ def test_what_is_not_given_is_an_empty_cell(found: xr.Dataset, tmp_path: Path) -
 def test_netcdf_holds_what_the_table_holds(
     found: xr.Dataset, stored: Callable[[xr.Dataset], xr.Dataset]
 ) -> None:
-    kept = stored(table.indices(found))
+    kept = stored(sensitivity_variables(found))
     assert {"first_order", "first_order_interval", "sensitivity_verdict"} <= set(kept)
     assert not {"number_of_runs", "failed_runs", "missing_runs"} & set(kept)
-    assert list(map(str, table.rows(kept))) == list(map(str, table.rows(found)))
+    assert list(map(str, table_rows(kept))) == list(map(str, table_rows(found)))
 
 
 def test_effects_have_the_unit_of_the_response(drawn: Build) -> None:
@@ -80,7 +80,7 @@ def test_effects_have_the_unit_of_the_response(drawn: Build) -> None:
     attrs = {"trajectories": 20, "levels": 4, "optimal_trajectories": 0}
     found = analyse(drawn("morris", unit, unit @ [3.0, 2.0, 1.0], **attrs))
     (row,) = [
-        row for row in table.rows(found) if (row.index, row.parameter) == ("morris_mu_star", "x0")
+        row for row in table_rows(found) if (row.index, row.parameter) == ("morris_mu_star", "x0")
     ]
     assert row.units == "N"
     np.testing.assert_allclose((row.value, row.low, row.high), 3.0, rtol=1e-12)
@@ -88,5 +88,5 @@ def test_effects_have_the_unit_of_the_response(drawn: Build) -> None:
 
 def test_a_grid_has_none(grid_runs: Callable[..., xr.Dataset]) -> None:
     found = analyse(grid_runs({"velocity": [1.0, 2.0]}, peak_force=lambda velocity: velocity))
-    assert not table.indices(found)
-    assert list(table.rows(found)) == []
+    assert not sensitivity_variables(found)
+    assert list(table_rows(found)) == []

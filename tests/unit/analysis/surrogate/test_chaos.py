@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import eval_legendre
 
-from impactlab.analysis.surrogate.chaos import Chaos, basis
-from impactlab.analysis.surrogate.terms import candidates, hyperbolic
+from impactlab.analysis.surrogate.chaos import Chaos, basis, candidates, hyperbolic
 
 
 def _norm(row: tuple[int, ...]) -> float:

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from impactlab.analysis.surrogate.chaos import Chaos, basis
+from impactlab.analysis.surrogate.chaos import Chaos, Errors, Fitted, Indices, basis, indices
 from impactlab.analysis.surrogate.fitting import fit
-from impactlab.analysis.surrogate.indices import Errors, Fitted, Indices, indices
 
 Z95 = 1.959964
 

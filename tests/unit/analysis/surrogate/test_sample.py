@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis.surrogate.sample import Sample, is_sample
+from impactlab.analysis.surrogate.fitting import Sample, is_sample
 
 Build = Callable[..., xr.Dataset]
 

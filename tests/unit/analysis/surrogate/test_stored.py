@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.surrogate import analysis, load_surrogate, packed
-from impactlab.analysis.surrogate.predicting import Surrogate
+from impactlab.analysis.surrogate.stored import Surrogate
 
 from .conftest import ishigami
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from impactlab.study.estimate import remarks
+from impactlab.study.estimate import implausible
 
 IMPOSSIBLE = [
     ("velocity", 1e9, "above the speed of a bar wave in the sphere (5164 m/s)"),
@@ -38,9 +38,9 @@ def test_the_impossible_is_refused_where_it_is_stated(problems, grid, name, valu
 
 @pytest.mark.parametrize(("name", "value", "words"), DOUBTED)
 def test_an_implausible_value_gives_a_warning(read, grid, name, value, words):
-    (remark,) = remarks(read(grid({"sampling.parameters": {name: [value]}})))
-    assert remark.key == f"sampling.parameters.{name}"
-    assert words in str(remark)
+    (warning,) = implausible(read(grid({"sampling.parameters": {name: [value]}})))
+    assert warning.key == f"sampling.parameters.{name}"
+    assert words in str(warning)
 
 
 def test_the_key_is_that_of_the_section_where_it_is_not_varied(problems, grid):
@@ -49,7 +49,7 @@ def test_the_key_is_that_of_the_section_where_it_is_not_varied(problems, grid):
 
 
 def test_the_paper_s_case_is_beyond_doubt(read, grid, sample):
-    assert remarks(read(grid())) == remarks(read(sample())) == []
+    assert implausible(read(grid())) == implausible(read(sample())) == []
 
 
 def test_the_speed_of_a_bar_wave_is_that_of_the_softest_and_heaviest_beam(problems, read, grid):
@@ -62,8 +62,8 @@ def test_the_speed_of_a_bar_wave_is_that_of_the_softest_and_heaviest_beam(proble
 
 def test_a_beam_too_heavy_to_move_is_no_obstacle_to_a_wave(read, grid):
     heavy = {"beam_density": [7.8e9], "velocity": [20]}
-    (remark,) = remarks(read(grid({"sampling.parameters": heavy})))
-    assert remark.key == "sampling.parameters.beam_density"
+    (warning,) = implausible(read(grid({"sampling.parameters": heavy})))
+    assert warning.key == "sampling.parameters.beam_density"
 
 
 @pytest.mark.parametrize(
