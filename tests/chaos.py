@@ -1,4 +1,4 @@
-"""A study of seconds, the command line in processes of its own, and what lies on disk."""
+"""A short study, the command line in separate processes, and helpers to inspect the disk."""
 
 import os
 import signal
@@ -28,13 +28,13 @@ store: {histories: true, samples: 50}
 """
 RUNS = 480
 SMALL = ("--batch-seconds", "0.05")
-"""Some eighty batches."""
+"""About eighty batches."""
 PATIENCE = 120.0
-"""Seconds until a test takes what it waits for to be stuck."""
+"""Seconds to wait before a test counts as stuck."""
 
 
 class Command:
-    """`impactlab ...` under way in a session of its own, and what it says."""
+    """A running `impactlab ...` in a session of its own, and its output."""
 
     def __init__(self, *args, cwd, **env):
         self.said_to = Path(cwd) / "said.txt"
@@ -61,14 +61,14 @@ class Command:
         return self.process.poll() is not None
 
     def wait_until(self, true):
-        """Wait for a condition or the command's end."""
+        """Wait for a condition or for the command to end."""
         deadline = time.monotonic() + PATIENCE
         while not (self.ended or true()):
             assert time.monotonic() < deadline, f"stuck: {self.said}"
             time.sleep(0.005)
 
     def pause(self):
-        """A moment, or less where the command ends."""
+        """Wait a moment, or less if the command ends."""
         with suppress(subprocess.TimeoutExpired):
             self.process.wait(timeout=0.2)
 
@@ -84,11 +84,11 @@ class Command:
             os.kill(self.process.pid, how)
 
     def end(self):
-        """Its exit code."""
+        """Wait for the command and return its exit code."""
         return self.process.wait(timeout=PATIENCE)
 
     def others(self):
-        """The processes of its session, itself left out, that live."""
+        """Return the live processes of its session except itself."""
         return [
             process
             for process in psutil.process_iter(["pid", "status"])
@@ -98,7 +98,7 @@ class Command:
         ]
 
     def workers(self):
-        """Its worker processes: those that have the numbers of a run in them."""
+        """Return its worker processes, which solve the runs."""
         return [process for process in self.others() if "spawn_main" in _line(process)]
 
 
@@ -117,19 +117,19 @@ def _line(process):
 
 
 def new_study(folder, text=STUDY):
-    """The folder, with studies/tough.yaml in it."""
+    """Write studies/tough.yaml and return the folder."""
     (folder / "studies").mkdir(parents=True, exist_ok=True)
     (folder / "studies" / "tough.yaml").write_text(text)
     return folder
 
 
 def run(folder, *args, **env):
-    """`impactlab run` on the study of a folder, started."""
+    """Start `impactlab run` on the study of a folder."""
     return Command("run", "studies/tough.yaml", *args, cwd=folder, **env)
 
 
 def resumed(folder, *args):
-    """The runs.nc that a last, undisturbed `impactlab run` makes, and what it says."""
+    """Return runs.nc and the output of a last, undisturbed `impactlab run`."""
     command = run(folder, *args)
     assert command.end() == 0, command.said
     return stored(folder), command.said
@@ -140,35 +140,35 @@ def stored(folder):
 
 
 def shards(folder):
-    """The files of finished batches."""
+    """Return the files of finished batches."""
     return sorted((folder / "results" / "tough" / "shards").glob("*/*.nc"))
 
 
 def keys_on_disk(folder):
-    """The key of every run that is in a shard."""
+    """Return the key of every run that is in a shard."""
     return {key for path in shards(folder) for key in keys_in(path)}
 
 
 def keys_in(path):
-    """The key of every run in a shard, read without impactlab."""
+    """Return the key of every run in one shard, read without impactlab."""
     with netCDF4.Dataset(path) as shard:
         return {row.tobytes() for row in np.asarray(shard["uint8_byte"][0], dtype=np.uint8)}
 
 
 def solved_before(said):
-    """How many runs a command found on disk, as it says."""
+    """Return the number of runs that a command found on disk, from its output."""
     return int(said.split(" of them solved before")[0].split()[-1])
 
 
 def complaint(said):
-    """What a command ends with: the one line after its log, without a traceback."""
+    """Return the error message of a command: one line after its log, without a traceback."""
     assert "Traceback" not in said, said
     (line,) = [line for line in said.splitlines() if line.startswith("ERROR: ")]
     return line
 
 
 def assert_same_bits(ours, theirs):
-    """Of every variable and coordinate; times and places of making may differ."""
+    """Compare every variable and coordinate; the attributes may differ."""
     assert ours.sizes == theirs.sizes
     assert set(ours.variables) == set(theirs.variables)
     for name, values in theirs.variables.items():

@@ -1,4 +1,4 @@
-"""A dask cluster of separate processes, as a person starts it from a shell."""
+"""A dask cluster of separate processes, as started by hand from a shell."""
 
 import json
 import os
@@ -9,7 +9,7 @@ import time
 from distributed import Client
 
 SOON = {"DASK_DISTRIBUTED__COMM__TIMEOUTS__TCP": "12s"}
-"""A silent connection is given up after twelve seconds, not thirty; dask takes no fewer than 11."""
+"""Give up a silent connection after 12 s, not 30 s; dask allows no less than 11 s."""
 
 
 class Cluster:
@@ -40,14 +40,14 @@ class Cluster:
         return (self._folder / "cluster.txt").read_text()
 
     def add(self, number=1, inside=()):
-        """Start workers of one thread each; inside: the command that their command is given to."""
+        """Start workers of one thread each; inside: a command that wraps theirs."""
         options = (self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
         here = ("--local-directory", self._folder)
         for _ in range(number):
             self.workers.append(self._started("worker", *options, *here, inside=inside))
 
     def wait_for(self, workers):
-        """Wait until so many are there."""
+        """Wait for this number of workers."""
         with Client(self.address, set_as_default=False) as client:
             client.wait_for_workers(workers, timeout=60)
 

@@ -1,4 +1,4 @@
-"""Study files with drawn damage: every kind of study, every kind of mistake, and raw bytes."""
+"""Study files with random damage: every kind of study, every kind of mistake, and raw bytes."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ VALID = {
     + " x3: {distribution: fixed, value: 1}}}\nanalysis: {resamples: 20}\n",
     "checks": "title: Fuzz\ndescription: d\nchecks: [half_space, rigid_beam]\n",
 }
-"""A sound file of each kind."""
+"""One valid file of each kind."""
 
 _WORDS = [
     *("all", "auto", "true", "null", "paper", "hertz", "velocity", "peak_force", "grid", "sobol"),
@@ -77,7 +77,7 @@ _UNITS = ["m", "mm", "MPa", "kg", "s", "m/s", "1", "%"]
 
 
 class Verbatim(str):
-    """YAML to be written as it is."""
+    """YAML to be written verbatim."""
 
 
 class Pairs(list[list[Any]]):
@@ -91,7 +91,7 @@ _GENTLE = st.sampled_from(
         *("timoshenko", "rigid", "semi_implicit", "layers", "auto", "log", "linear", "impute"),
     ]
 )
-"""What may well be right where it is put."""
+"""Values that are often valid where they are put."""
 _LEAVES = st.one_of(
     st.none(),
     st.booleans(),
@@ -123,7 +123,7 @@ def _tree(data: Any) -> Any:
 
 
 def _places(tree: Any) -> list[tuple[list[Any], int]]:
-    """Every (list or pairs, position) below a tree."""
+    """Return every (list or pairs, position) below a tree."""
     found = []
     for at, entry in enumerate(tree if isinstance(tree, list) else []):
         found.append((tree, at))
@@ -157,7 +157,7 @@ def _damage(draw: Any, tree: Any) -> None:
 
 
 def _copy(entry: Any) -> Any:
-    """Apart from the original, which may hold the place of the copy."""
+    """Return a deep copy: the original may contain the place of the copy."""
     if isinstance(entry, list):
         return type(entry)(_copy(each) for each in entry)
     return entry
@@ -175,7 +175,7 @@ def _written(tree: Any) -> str:
 
 @st.composite
 def damaged(draw: Any, kind: str) -> bytes:
-    """The bytes of a study file of this kind with one to three damages, and sometimes torn text."""
+    """Return a study file of this kind with one to three mistakes, and sometimes broken bytes."""
     tree = _tree(YAML(typ="safe", pure=True).load(VALID[kind]))
     for _ in range(draw(st.integers(1, 3))):
         _damage(draw, tree)
@@ -191,11 +191,11 @@ _YAML_BYTES = st.lists(
     st.sampled_from([*b"abk01.:-,?&*!|>'\"%@`#{}[] \t\n\r~<=\\\x00\x1b\xc3\xa9\xff"]), max_size=60
 ).map(bytes)
 raw_bytes = st.binary(max_size=200) | _YAML_BYTES
-"""What need not be a text at all."""
+"""Bytes that need not be text at all."""
 
 
 def exploding(levels: int, width: int, merged: bool) -> bytes:
-    """A billion laughs: aliases, or merge keys, that stand for width**levels values."""
+    """Return a "billion laughs" file: aliases or merge keys that expand to width**levels values."""
     inner = "{k: 1, l: 2}"
     lines = [f"a0: &a0 {inner}"]
     for level in range(1, levels):
@@ -205,7 +205,7 @@ def exploding(levels: int, width: int, merged: bool) -> bytes:
 
 
 def write(folder: Path, raw: bytes) -> Path:
-    """A study file of these bytes."""
+    """Write a study file of these bytes and return its path."""
     path = folder / "fuzz.yaml"
     path.write_bytes(raw)
     return path

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from shutil import disk_usage
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from distributed.system import MEMORY_LIMIT
@@ -194,20 +194,9 @@ def _key(study: Study, gains: Mapping[str, float]) -> str:
     return key_of(name, study.sampling) if name in PARAMETERS else name
 
 
-class _Costs(Protocol):
-    """The costs of a table of cases."""
-
-    def work(self, cases: Array) -> Array:
-        """Return the time of each run, in node-steps of the paper's beam."""
-        ...
-
-    def memory(self, cases: Array) -> Array:
-        """Return the bytes that each run takes."""
-        ...
-
-
-def _costs(study: Study) -> _Costs:
-    found: _Costs = wings.load(wings.SOLID["costs"]) if has_solid_runs(study) else beam_cost
+def _costs(study: Study) -> ModuleType:
+    """Return the module with the functions work and memory (see model.cost) for a study's runs."""
+    found: ModuleType = wings.load(wings.SOLID["costs"]) if has_solid_runs(study) else beam_cost
     return found
 
 

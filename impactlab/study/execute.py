@@ -221,7 +221,7 @@ _FIRST_SECONDS = 0.1
 _LEAST_SECONDS = 0.05
 """Duration of a task near the end."""
 _SHARE = 2
-"""A task takes at most one part in so many of a worker's share of the rest: none idles at last."""
+"""A task takes at most 1/_SHARE of a worker's share of the rest: no worker idles at the end."""
 _SPEED = 3e8
 """Cost per second, before it is measured."""
 _MEMORY = 0.8
