@@ -24,38 +24,51 @@ _AGAINST_VELOCITY = ("restitution", _DENT)
 _OUTSIDE = MARKS["outside_contact_law"][0]
 
 
-def _duration_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether contact_duration is on a grid of at least three velocities."""
-    return _DURATION in runs and runs[_DURATION].sizes.get("velocity", 0) >= _FEWEST
+def _on_velocities(runs: xr.Dataset, name: str) -> bool:
+    """Return whether a response is on a grid of at least three velocities."""
+    return name in runs and runs[name].sizes.get("velocity", 0) >= _FEWEST
 
 
-def _duration_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    return (
-        "Duration of the first contact (a later sub-impact does not count) against the impact "
-        "velocity. Grey: the slope −1/5 of Hertz's elastic impact on a half-space. "
-        f"{_plan_duration(runs).note(runs)} {access.missing_note(runs, [_DURATION])}".strip()
-    )
-
-
-@style.paper
-def _plot_duration(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
+def _curves(runs: xr.Dataset, name: str, label: str) -> tuple[MplFigure, Axes]:
     """Draw a curve per contact law, or per value of what else is varied."""
-    selected, valid = _plan_duration(runs), usable(runs, _DURATION)
-    unit, speed = display(valid.rename(_DURATION)), runs["velocity"].values
+    selected, valid = _plan_curves(runs, name), usable(runs, name)
+    unit, speed = display(valid.rename(name)), runs["velocity"].values
     figure, (ax,) = style.panels(1, columns=1, height=62)
     for curve in selected.curves:
         values = unit(valid.isel(selected.held | curve.where))
         if np.isfinite(values).any():
             ax.plot(speed, values, label=curve.label or "_only", **curves.marked(curve))
     ax.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
-    ax.set_ylabel(labels.axis("duration of the first contact", unit.symbol))
-    _scale(ax, speed)
+    ax.set_ylabel(labels.axis(label, unit.symbol))
     style.legend(figure, selected.title(), selected.labels())
+    return figure, ax
+
+
+def _plan_curves(runs: xr.Dataset, name: str) -> Plan:
+    return plan(runs, name, along=["velocity"], prefer=["contact"])
+
+
+def _notes(runs: xr.Dataset, name: str) -> str:
+    return f"{_plan_curves(runs, name).note(runs)} {access.missing_note(runs, [name])}".strip()
+
+
+def _duration_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    return _on_velocities(runs, _DURATION)
+
+
+def _duration_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    return (
+        "Duration of the first contact (a later sub-impact does not count) against the impact "
+        "velocity. Grey: the slope −1/5 of Hertz's elastic impact on a half-space. "
+        f"{_notes(runs, _DURATION)}".strip()
+    )
+
+
+@style.paper
+def _plot_duration(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
+    figure, ax = _curves(runs, _DURATION, "duration of the first contact")
+    _scale(ax, runs["velocity"].values)
     return figure
-
-
-def _plan_duration(runs: xr.Dataset) -> Plan:
-    return plan(runs, _DURATION, along=["velocity"], prefer=["contact"])
 
 
 def _scale(ax: Axes, speed: np.ndarray) -> None:
