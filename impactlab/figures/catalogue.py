@@ -27,6 +27,7 @@ ANSWERS = (
     forces.FORCE_INDENTATION,
     forces.FORCE_INDENTATION_BY_LAW,
     velocity.CONTACT_DURATION,
+    velocity.RESTITUTION_VELOCITY,
     strains.PLASTIC_STRAIN,
     strains.PLASTIC_STRAIN_DEPTH,
     effects.SHEAR,

@@ -16,11 +16,11 @@ from impactlab.figures.labels import display
 from impactlab.figures.record import Figure
 from impactlab.variables import MARKS
 
-_DURATION = "contact_duration"
+_DURATION, _RESTITUTION = "contact_duration", "restitution"
 _FEWEST = 3
 _FORCE, _INDENTATION = "contact_force", "indentation"
 _DENT = "permanent_indentation"
-_AGAINST_VELOCITY = ("restitution", _DENT)
+_AGAINST_VELOCITY = (_RESTITUTION, _DENT)
 _OUTSIDE = MARKS["outside_contact_law"][0]
 
 
@@ -91,6 +91,38 @@ CONTACT_DURATION = Figure(
     _duration_applies,
     _plot_duration,
     _duration_caption,
+)
+
+
+def _restitution_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    return _on_velocities(runs, _RESTITUTION)
+
+
+def _restitution_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    return (
+        "Coefficient of restitution, the sphere's rebound velocity over its impact velocity, "
+        f"against the impact velocity. {_notes(runs, _RESTITUTION)}".strip()
+    )
+
+
+@style.paper
+def _plot_restitution(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
+    figure, ax = _curves(runs, _RESTITUTION, labels.response(_RESTITUTION))
+    if not ax.lines:
+        style.remark(ax, "no finite values")
+        return figure
+    scales.fit(ax, "x", runs["velocity"].values)
+    scales.linear(ax, "y")
+    ax.set_ylim(min(0.0, ax.get_ylim()[0]), max(1.0, ax.get_ylim()[1]))
+    return figure
+
+
+RESTITUTION_VELOCITY = Figure(
+    "restitution_velocity",
+    "Restitution against velocity",
+    _restitution_applies,
+    _plot_restitution,
+    _restitution_caption,
 )
 
 
