@@ -148,6 +148,33 @@ def test_contact_duration_leaves_a_gap(velocity_study: Study, failing: Any) -> N
     assert duration[0] == pytest.approx(1e3 * float(runs["contact_duration"][0, 0]))
 
 
+def test_the_guide_of_contact_duration_has_hertzs_slope(velocity_study: Study) -> None:
+    runs, _ = velocity_study
+    lines = _panel(CATALOGUE["contact_duration"].plot(runs, NONE), "").lines
+    (guide,) = (_xy(line) for line in lines if line.get_label() == "_guide")
+    x, y = guide
+    assert x.tolist() == [0.25, 20.0]
+    assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(-0.2)
+    assert y[0] > 1e3 * float(runs["contact_duration"].max())
+
+
+def test_restitution_is_the_stored_one_and_leaves_a_gap(
+    velocity_study: Study, failing: Any
+) -> None:
+    runs, _ = velocity_study
+    broken = failing(runs, {"velocity": 3, "contact": 0})
+    figure = CATALOGUE["restitution_velocity"].plot(broken, NONE)
+    curves = _curves(figure)
+    assert set(curves) == {"Hertz", "Stronge"}
+    speed, restitution = _xy(curves["Hertz"])
+    np.testing.assert_array_equal(speed, runs["velocity"])
+    stored = runs["restitution"].sel(contact="hertz").values
+    np.testing.assert_allclose(np.delete(restitution, 3), np.delete(stored, 3))
+    assert np.isnan(restitution[3])
+    low, high = figure.axes[0].get_ylim()
+    assert low <= 0.0 < 1.0 <= high
+
+
 def test_plastic_strain_is_the_largest_over_the_depth_in_percent(velocity_study: Study) -> None:
     runs, _ = velocity_study
     figure = CATALOGUE["plastic_strain"].plot(runs, NONE)

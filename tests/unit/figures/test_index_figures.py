@@ -100,6 +100,17 @@ def test_histograms_count_every_finite_run(study: Study, failing: Any) -> None:
     assert "56 of 256 runs are missing" in caption
 
 
+def test_the_shaded_range_holds_nine_runs_of_ten_about_the_median(study: Study) -> None:
+    runs, analysis = study
+    figure = CATALOGUE["response_distributions"].plot(runs, analysis)
+    axes = _panel(figure, "Peak force")
+    (shaded,) = (patch for patch in axes.patches if patch.get_alpha() is None and patch.zorder == 0)
+    box = shaded.get_extents().transformed(axes.transData.inverted())
+    (median,) = (np.asarray(line.get_xdata()) for line in axes.lines)
+    expected = np.percentile(1e-3 * runs["peak_force"], [5, 50, 95])
+    assert [box.x0, median[0], box.x1] == pytest.approx(expected)
+
+
 def test_few_values_get_a_bar_each(study: Study) -> None:
     runs, analysis = study
     runs["number_of_contacts"][:100] = 3.0

@@ -102,6 +102,19 @@ def test_convergence_of_the_indices_is_the_stored_one(study: Study) -> None:
     assert "up to all 32 base samples" in CATALOGUE["total_order_convergence"].caption(*study)
 
 
+def test_the_bands_reach_one_interval_to_either_side(study: Study) -> None:
+    _, analysis = study
+    axes = _panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")
+    stored = analysis.sel(response="peak_force")
+    for at, band in enumerate(axes.collections):
+        y, margin = (
+            stored[name].isel(parameter=at).values
+            for name in ("total_order_by_samples", "total_order_by_samples_interval")
+        )
+        corners = band.get_paths()[0].vertices[:, 1]
+        assert set(np.round(corners, 9)) == set(np.round([*(y - margin), *(y + margin)], 9))
+
+
 @pytest.mark.parametrize(("failed", "total"), [(0, 40), (3, 50), (40, 40), (500, 8192)])
 def test_the_interval_of_a_share_is_scipys(failed: int, total: int) -> None:
     other = scipy.stats.binomtest(failed, total).proportion_ci(method="wilson")
