@@ -1,4 +1,5 @@
-"""Figures for papers, from stored datasets: one figure a file, listed in `catalogue`.
+"""Figures for papers, from stored datasets: one record per figure, listed in `catalogue`.
 
-`draw.draw_all` writes those that apply to a study; `style` is the look, `reading` the words.
+`draw.draw_all` writes those that apply to a study. `style` is the look, `labels` the words,
+`access` what datasets hold.
 """

@@ -1,4 +1,4 @@
-"""What a figure shows, for who cannot see it: a few sentences from the data as drawn."""
+"""Alternative texts of figures: a few sentences from the data as drawn."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from impactlab.figures import data, labels
 from impactlab.figures.data import Drawn
 
 _PANELS, _CURVES = 5, 3
-"""At most so many panels, and curves of a panel, are told one by one; else the highest curve."""
+"""Largest numbers of panels, and of curves per panel, that are described one by one."""
 
 
 def alt(figure: Figure) -> str:
-    """Each panel in a sentence: where its bars are longest, or the ranges of its curves."""
+    """Return a sentence per panel: where its bars are longest, or the ranges of its curves."""
     curves = list(data.drawn(figure))
-    told = [
+    described = [
         *_drawn(curves),
         *_maps(figure),
         *_meshes(figure),
         *_remarks(figure, {one.panel for one in curves}),
     ]
-    shown = " ".join(told[:_PANELS])
-    more = len(told) - _PANELS
+    shown = " ".join(described[:_PANELS])
+    more = len(described) - _PANELS
     return f"{shown} And {labels.counted(more, 'more panel')}." if more > 0 else shown
 
 
@@ -88,7 +88,7 @@ def _mesh(cells: PolyCollection) -> str:
 
 
 def _cells(ax: Axes) -> NDArray[np.float64]:
-    """The cells of a map, −∞ where there is nothing; empty where no cell has a number."""
+    """Return the cells of a map, −∞ for empty ones; an empty array where no cell has a number."""
     if not ax.images:
         return np.empty(0)
     found: NDArray[np.float64] = np.ma.filled(np.ma.asarray(ax.images[-1].get_array()), np.nan)
@@ -97,7 +97,7 @@ def _cells(ax: Axes) -> NDArray[np.float64]:
 
 
 def _remarks(figure: Figure, drawn: set[str]) -> Iterator[str]:
-    """Panels with words in place of data."""
+    """Yield a sentence per panel with words in place of data."""
     for ax in figure.axes:
         if ax.texts and _title(ax) not in drawn and not _cells(ax).size:
             yield f"{_title(ax)}: {' '.join(ax.texts[0].get_text().split())}."

@@ -37,7 +37,10 @@ class Choice:
 
 @dataclass(frozen=True)
 class Plan:
-    """What is drawn. shown: positions by dimension; held: dimensions fixed at one position."""
+    """The panels and curves of a figure.
+
+    shown: positions by dimension. held: dimensions fixed at one position.
+    """
 
     panels: list[Choice]
     curves: list[Choice]
@@ -45,19 +48,19 @@ class Plan:
     held: dict[str, int]
 
     def runs(self, panel: Choice, curve: Choice) -> dict[str, int]:
-        """The indexers of a curve in a panel, for `isel`."""
+        """Return the indexers of a curve in a panel, for `isel`."""
         return self.held | panel.where | curve.where
 
     def title(self) -> str:
-        """A legend's title: what tells the curves apart."""
+        """Return the legend's title, the parameters in which the curves differ."""
         return labels.sentence(", ".join(labels.parameter(dim) for dim in self.shown))
 
     def labels(self) -> list[str]:
-        """The curves' labels, in order."""
+        """Return the curves' labels, in order."""
         return [curve.label for curve in self.curves]
 
     def note(self, runs: xr.Dataset) -> str:
-        """A caption's sentences: which values are shown and which are held."""
+        """Return a caption's sentences on the values that are shown and held."""
         shown = [labels.setting(runs[dim], where) for dim, where in self.shown.items()]
         held = [labels.setting(runs[dim], [at]) for dim, at in self.held.items()]
         text = f"Curves: {'; '.join(shown)}." if shown else ""
@@ -75,8 +78,8 @@ def plan(
 ) -> Plan:
     """Choose what to show of a variable of the runs.
 
-    along: design dimensions on an axis of the figure. panel: the dimension that gets a panel a
-    value. prefer: dimensions that get curves first. most: the largest number of curves.
+    along: design dimensions on an axis of the figure. panel: the dimension that gets a panel
+    per value. prefer: dimensions that get curves first. most: the largest number of curves.
     """
     dims = [dim for dim in design_dims(runs, runs[variable].dims) if dim not in along]
     panels = _panels(runs, panel) if panel in dims else [Choice({}, "")]
@@ -88,7 +91,7 @@ def plan(
 
 
 def _shown(sizes: dict[str, int], most: int) -> dict[str, list[int]]:
-    """Positions on at most two dimensions; the first leaves room for two of the second."""
+    """Return positions on at most two dimensions; the first leaves room for two of the second."""
     shown: dict[str, list[int]] = {}
     room = min(most, max(most // 2, 2)) if len(sizes) > 1 else most
     for dim, size in list(sizes.items())[:2]:
@@ -99,7 +102,7 @@ def _shown(sizes: dict[str, int], most: int) -> dict[str, list[int]]:
 
 
 def spread(size: int, count: int) -> list[int]:
-    """`count` positions of `size`, evenly spread, the first and the last among them."""
+    """Return `count` positions of `size`, evenly spread, with the first and the last."""
     return [int(at) for at in np.unique(np.linspace(0, size - 1, count).round())]
 
 
@@ -123,7 +126,7 @@ def _rank(dim: str, prefer: Sequence[str]) -> int:
 
 
 def _held(coordinate: xr.DataArray) -> int:
-    """The finest numerics; the middle of other numbers; the first of names."""
+    """Return the position of the finest numerics, the middle number, or the first name."""
     if coordinate.name in _SMALL:
         return int(np.argmin(coordinate.values))
     if coordinate.name in _LARGE:
@@ -132,7 +135,7 @@ def _held(coordinate: xr.DataArray) -> int:
 
 
 def chosen(runs: xr.Dataset, variable: str) -> Plan:
-    """A panel a contact law, a curve for each of some velocities (or what else is varied).
+    """Plan a panel per contact law, a curve for each of some velocities (or what else is varied).
 
     Where nothing else is varied, the laws are the curves.
     """
@@ -142,9 +145,9 @@ def chosen(runs: xr.Dataset, variable: str) -> Plan:
 
 
 def look(curve: Choice) -> dict[str, Any]:
-    """Colour by the first shown dimension, line style by the second (or else the first).
+    """Return the colour by the first shown dimension, the line style by the second (or the first).
 
-    Later curves lie below, for they are the larger ones where the values rise.
+    Later curves lie below, as they are the larger ones where the values rise.
     """
     colour, line = curve.place
     again = colour // len(style.COLOURS)  # one further each time round
@@ -156,7 +159,7 @@ def look(curve: Choice) -> dict[str, Any]:
 
 
 def marked(curve: Choice) -> dict[str, Any]:
-    """The look with markers, for few points."""
+    """Return the look with markers, for few points."""
     colour, line = curve.place
     again = colour // len(style.COLOURS)
     return look(curve) | {"marker": style.MARKERS[(line + again) % len(style.MARKERS)]}
@@ -167,7 +170,7 @@ def draw(
 ) -> tuple[Figure, list[Axes]]:
     """Draw each chosen run that has finite values; the others leave a gap.
 
-    variable: the one that a run cannot do without.
+    variable: runs without finite values of it have no curve.
     """
     selected = chosen(runs, variable)
     valid = runs.assign({variable: usable(runs, variable)})
@@ -186,7 +189,7 @@ def draw(
 
 
 def label(axes: Sequence[Axes], x: str, y: str) -> None:
-    """Axis labels: x below each column, y at the left of each row."""
+    """Label the axes: x below each column, y at the left of each row."""
     for ax in axes:
         place = ax.get_subplotspec()
         assert place is not None
@@ -204,14 +207,14 @@ def finish(figure: Figure, runs: xr.Dataset, variable: str) -> Figure:
 
 
 def note(runs: xr.Dataset, variable: str) -> str:
-    """What a caption says of the choice: curves, what is held, chosen runs without a curve."""
+    """Return a caption's sentences on the curves, what is held, and chosen runs without a curve."""
     selected = chosen(runs, variable)
     gaps = labels.listing(_gaps(runs, variable, selected))
     return f"{selected.note(runs)} {f'No curve for {gaps}.' if gaps else ''}".strip()
 
 
 def _gaps(runs: xr.Dataset, variable: str, selected: Plan) -> list[str]:
-    """The chosen runs that have no finite value, by label."""
+    """Return the labels of the chosen runs that have no finite value."""
     absent = access.absent(usable(runs, variable))
     return [
         ", ".join(filter(None, (curve.label, panel.label)))

@@ -1,7 +1,7 @@
 """The data behind a figure, as drawn: every curve and every row of bars, in the axes' units.
 
-NAME.csv has a row a point; NAME.nc the same as CF's contiguous ragged arrays. Bars of named things
-have the name in `category`. A map of colours has no curves: its numbers are in analysis.nc.
+NAME.csv has a row per point; NAME.nc holds the same as CF's contiguous ragged arrays. Bars of named
+things have the name in `category`. A map of colours has no curves: its numbers are in analysis.nc.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _LABELS = ("panel", "curve", "x_label", "y_label")
 class Drawn:
     """One curve: where it is, what it is called, and its points x, y of shape (points,).
 
-    category: what each point is of, where the axis has names in place of numbers; else "".
+    category: the name of each point, where the axis has names in place of numbers; else "".
     """
 
     panel: str
@@ -43,7 +43,7 @@ class Drawn:
     category: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        """Points of no category."""
+        """Fill in empty categories."""
         if not self.category:
             object.__setattr__(self, "category", [""] * self.x.size)
 
@@ -64,9 +64,9 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
 
 
 def drawn(figure: Figure) -> Iterator[Drawn]:
-    """The curves and bars of all panels; guides, and points without a number, are left out."""
+    """Yield the curves and bars of all panels, without guides and points that are not finite."""
     for number, ax in enumerate(figure.axes, 1):
-        if not _has_ticks(ax):
+        if not _has_data(ax):
             continue
         labels = _label(figure, ax, "x"), _label(figure, ax, "y")
         panel = ax.get_title(loc="left") or _legend_title(ax) or f"panel {number}"
@@ -77,7 +77,7 @@ def drawn(figure: Figure) -> Iterator[Drawn]:
 
 
 def dataset(found: list[Drawn]) -> xr.Dataset:
-    """A row a curve on `curve`, their points one after another on `point`."""
+    """Return the curves on `curve`, with their points one after another on `point`."""
     columns = {
         name if name != "curve" else "curve_label": ("curve", [getattr(one, name) for one in found])
         for name in _LABELS
@@ -114,7 +114,7 @@ def _lines(ax: Axes) -> Iterator[Points]:
 
 
 def _marked(ax: Axes) -> Iterator[Points]:
-    """Points with lines for their intervals."""
+    """Yield points with lines for their intervals."""
     for marks in ax.containers:
         if isinstance(marks, ErrorbarContainer) and marks.lines[0] is not None:
             x, y = (np.asarray(values, dtype=float) for values in marks.lines[0].get_data())
@@ -122,7 +122,7 @@ def _marked(ax: Axes) -> Iterator[Points]:
 
 
 def _bars(ax: Axes) -> Iterator[Points]:
-    """Bars by their middles and their ends."""
+    """Yield bars by their middles and their ends."""
     for bars in ax.containers:
         if not isinstance(bars, BarContainer):
             continue
@@ -137,12 +137,12 @@ def _bars(ax: Axes) -> Iterator[Points]:
 
 
 def _own(label: str) -> str:
-    """Without matplotlib's own names of what has none."""
+    """Return the label, "" for the names that matplotlib makes up."""
     return "" if label.startswith("_") else label
 
 
 def _categories(ax: Axes, y: NDArray[np.float64]) -> list[str]:
-    """The names on the vertical axis that are nearest to y; none where it has numbers."""
+    """Return the names on the vertical axis nearest to y; none where it has numbers."""
     formatter = ax.yaxis.get_major_formatter()
     if not isinstance(formatter, FixedFormatter):
         return []
@@ -150,13 +150,13 @@ def _categories(ax: Axes, y: NDArray[np.float64]) -> list[str]:
     return [names[int(at)] for at in np.clip(np.rint(y), 0, len(names) - 1)]
 
 
-def _has_ticks(ax: Axes) -> bool:
-    """Whether it holds data, and is not the scale of a map's colours."""
+def _has_data(ax: Axes) -> bool:
+    """Return whether the axes hold data, and are not the colour bar of a map."""
     return bool(ax.lines or ax.containers)
 
 
 def _label(figure: Figure, ax: Axes, axis: str) -> str:
-    """The axis's own label, or that of the whole figure, or of the panel that it shares."""
+    """Return the axis's own label, or else the whole figure's, or else that of another panel."""
     own = str(getattr(ax, f"get_{axis}label")())
     whole = str(getattr(figure, f"get_sup{axis}label")())
     others = (str(getattr(other, f"get_{axis}label")()) for other in figure.axes)

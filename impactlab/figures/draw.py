@@ -25,7 +25,7 @@ OVERVIEW = "overview"
 
 
 class Drawing(NamedTuple):
-    """A figure to come: made only when its turn is, for figures are large."""
+    """A figure that is drawn only when its turn comes, as figures are large."""
 
     name: str
     title: str
@@ -71,7 +71,7 @@ def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
     """Write NAME.svg, NAME.png, the data behind it (see data.py), and captions.json.
 
     captions.json: {NAME: {"title", "caption", "alt"}} in the order of the report. Files of figures
-    that it named before and that are not drawn any more are removed. The same datasets give the
+    that it named before and that are no longer drawn are removed. The same datasets give the
     same bytes. Returns the paths written. Raises what drawing raises, with the figure's name added.
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -110,7 +110,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
 
 
 def _captions(path: Path) -> set[str]:
-    """The figures that captions.json names; none where there is no such file."""
+    """Return the figures that captions.json names; none where there is no such file."""
     return set(json.loads(path.read_bytes())) if path.exists() else set()
 
 

@@ -1,4 +1,4 @@
-"""Files that are whole or not there."""
+"""Files that are written completely or not at all."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rich.filesize import decimal
 
 @contextmanager
 def replaced(path: Path) -> Iterator[Path]:
-    """A temporary path beside `path` to write to, renamed to it once the block succeeds.
+    """Give a temporary path beside `path`, which is renamed to it once the block succeeds.
 
     Raises OSError, naming the file and the space left, where it cannot be written; then `path` is
     as it was.

@@ -171,7 +171,7 @@ def _plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> N
                 xerr=margin[at] if np.isfinite(margin[at]) else None,
                 label=labels.parameter(name),
                 elinewidth=0.8,
-                **(style.told_apart(at) | {"linestyle": ""}),
+                **(style.distinct(at) | {"linestyle": ""}),
             )
     responses_grid.warn(ax, analysis, "sensitivity_verdict", response)
     if not ax.lines:

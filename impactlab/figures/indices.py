@@ -201,7 +201,7 @@ def _lines(ax: Axes, analysis: xr.Dataset, variable: str, response: str) -> None
     samples = analysis[_SAMPLES].values
     for at, name in enumerate(measures.parameters(analysis)):
         y = values.isel(parameter=at).values
-        look = style.told_apart(at)
+        look = style.distinct(at)
         if np.isfinite(y).any():
             ax.plot(samples, y, label=labels.parameter(name), markersize=2.5, **look)
         if margins is not None:

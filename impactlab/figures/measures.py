@@ -1,4 +1,4 @@
-"""What the analyses of a sample give: the indices of every method, their intervals and floors."""
+"""Sensitivity measures of every method: their indices, intervals and noise floors."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class Measure:
 class Family:
     """Measures of one method that are shown side by side.
 
-    title: heads the figure and the tables. axis: what the numbers are, with the unit. says: what
-    they mean, a sentence or two. shares: whether 1 is all there is.
+    title: heads the figure and the tables. axis: axis label of the numbers. says: their meaning, a
+    sentence or two. shares: True for shares of a whole.
     """
 
     title: str
@@ -40,11 +40,11 @@ class Family:
     shares: bool = True
 
     def given(self, analysis: xr.Dataset) -> bool:
-        """Whether the analysis has every measure that is not optional."""
+        """Return whether the analysis has every measure that is not optional."""
         return all(one.name in analysis for one in self.measures if not one.optional)
 
     def measures_in(self, analysis: xr.Dataset) -> list[Measure]:
-        """The measures that the analysis has."""
+        """Return the measures that the analysis has."""
         return [one for one in self.measures if one.name in analysis]
 
 
@@ -65,24 +65,24 @@ class Index:
 
     @property
     def above_noise(self) -> NDArray[np.bool_]:
-        """Where the whole interval lies beyond zero and the dummy."""
+        """True where the whole interval lies beyond zero and the dummy."""
         return np.asarray(np.abs(self.values) - self.margins > self.floor)
 
     @property
     def significant(self) -> NDArray[np.bool_]:
-        """Where an index is above noise, and beyond what numerical error could make of it."""
+        """True where an index is above noise, and larger than its numerical error."""
         return self.above_noise & (np.abs(self.values) > self.numerical)
 
     @property
     def numerically_lost(self) -> NDArray[np.bool_]:
-        """Where numerical error alone takes an index that is above noise."""
+        """True where an index is above noise, but not larger than its numerical error."""
         return self.above_noise & ~self.significant
 
     @property
     def ranks(self) -> list[tuple[int, int]]:
         """The best and the worst rank of each magnitude, from 1.
 
-        What interval and numerical error leave open, these two added.
+        They differ where the interval and the numerical error, added, leave the rank open.
         """
         size, reach = np.abs(self.values), self.margins + self.numerical
         best = 1 + (size - reach > (size + reach)[:, None]).sum(1)
@@ -144,22 +144,22 @@ RANKED = (SOBOL, MORRIS, DELTA, PAWN, REGRESSION)
 
 
 def ranking(family: Family) -> Measure:
-    """The measure that parameters are ranked by: the total order of Sobol, else the first."""
+    """Return the measure that ranks the parameters: the total order of Sobol, else the first."""
     return family.measures[1] if family is SOBOL else family.measures[0]
 
 
 def asked(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    """The responses of the runs that the sensitivity analysis knows."""
+    """Return the responses of the runs that are in the sensitivity analysis."""
     return [name for name in responses(runs) if known(analysis, name)]
 
 
 def parameters(analysis: xr.Dataset) -> list[str]:
-    """Names of the varied parameters, or of their groups."""
+    """Return the names of the varied parameters, or of their groups."""
     return [str(name) for name in analysis["parameter"].values]
 
 
 def index(analysis: xr.Dataset, measure: str, response: str) -> Index:
-    """One measure of one response."""
+    """Return one measure of one response."""
     values = analysis[measure].sel(response=response).values
     return Index(
         values,

@@ -1,4 +1,4 @@
-"""Errors as one axis of the discretisation is refined: what the figures of such axes share."""
+"""Panels of errors against one axis of the discretisation that is refined."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Refined:
-    """An axis. name: prefix of the analysis's variables; dim: of the runs.
+    """An axis of refinement. name: prefix of the analysis's variables; dim: of the runs.
 
     prefer: dimensions that get curves first; most: the largest number of curves.
     """
@@ -42,16 +42,16 @@ class Refined:
     most: int = 4
 
     def names(self, runs: xr.Dataset) -> list[str]:
-        """The responses that vary on it."""
+        """Return the responses that vary on it."""
         return [name for name in responses(runs) if self.dim in runs[name].dims]
 
     def plan(self, runs: xr.Dataset) -> Plan:
-        """The curves to draw."""
+        """Return the plan of the curves."""
         first = self.names(runs)[0]
         return plan(runs, first, along=[self.dim], prefer=self.prefer, most=self.most)
 
     def applies(self, runs: xr.Dataset) -> bool:
-        """Whether the grid has at least three values on it."""
+        """Return whether the grid has at least three values on it."""
         return runs.sizes.get(self.dim, 0) >= FEWEST and bool(self.names(runs))
 
 
@@ -70,7 +70,7 @@ class Trend:
 def draw(
     runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, spacing: Array, label: str
 ) -> Figure:
-    """A panel a response, a curve for each of a few other settings.
+    """Draw a panel per response, a curve for each of a few other settings.
 
     spacing: of each value on the axis, in the unit of the label, in the order of the runs.
     """
@@ -94,7 +94,7 @@ def draw(
 
 
 def drawn(difference: xr.DataArray, selected: Plan) -> Iterator[tuple[Choice, Array]]:
-    """Each curve that has an error above round-off, with its errors along the axis."""
+    """Yield each curve that has an error above round-off, with its errors along the axis."""
     for curve in selected.curves:
         errors = scales.positive(
             difference.isel(selected.held | curve.where), above=responses_grid.ROUND_OFF
@@ -106,7 +106,10 @@ def drawn(difference: xr.DataArray, selected: Plan) -> Iterator[tuple[Choice, Ar
 def relative_difference(
     runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, name: str
 ) -> xr.DataArray:
-    """|f - f0|/|f0| on (axis, ...), f0 the limit, or else the finest value; NaN where f0 is 0."""
+    """Return |f - f0|/|f0| on (axis, ...), NaN where f0 is 0.
+
+    f0: the limit, or else the finest value.
+    """
     values = usable(runs, name)
     reference = values.isel({axis.dim: finest(runs, axis.dim)}, drop=True)
     for kind in ("fit_extrapolated", "extrapolated"):
@@ -117,7 +120,7 @@ def relative_difference(
 
 
 def finest(runs: xr.Dataset, dim: str) -> int:
-    """Where on the axis the finest value is: many nodes, a small courant or element size."""
+    """Return the position of the finest value: most nodes, smallest courant or element size."""
     values = runs[dim].values
     return int(np.argmin(values) if dim in ("courant", "element_size") else np.argmax(values))
 
@@ -129,7 +132,7 @@ def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray | None:
 
 
 def _trend(analysis: xr.Dataset, axis: Refined, name: str, where: dict[str, int]) -> Trend:
-    """What the analysis says of one curve."""
+    """Return the trend of one curve by the analysis."""
 
     def read(key: str) -> float:
         found = _of(analysis, f"{axis.name}_{key}", name)
@@ -141,7 +144,7 @@ def _trend(analysis: xr.Dataset, axis: Refined, name: str, where: dict[str, int]
 
 
 def _draw_trend(ax: Axes, spacing: Array, errors: Array, trend: Trend, line: Line2D) -> None:
-    """The order through the errors of the three finest, its number, and the finest's bar."""
+    """Draw the order through the errors of the three finest values, and the bar of the finest."""
     near, colour = np.argsort(spacing)[:FEWEST], line.get_color()
     scale = np.log(errors[near]) - trend.order * np.log(spacing[near])
     if np.isfinite(scale).any():
@@ -156,7 +159,7 @@ def _draw_trend(ax: Axes, spacing: Array, errors: Array, trend: Trend, line: Lin
 
 
 def _write_orders(ax: Axes, orders: list[tuple[Line2D, Trend]]) -> None:
-    """The order of each curve beside its marker, to the right of the panel."""
+    """Write the order of each curve beside its marker, to the right of the panel."""
     known_orders = [(line, trend) for line, trend in orders if np.isfinite(trend.order)]
     if known_orders:
         ax.legend(
@@ -177,7 +180,7 @@ def _write_orders(ax: Axes, orders: list[tuple[Line2D, Trend]]) -> None:
 
 
 def _finish(ax: Axes, spacing: Array, difference: xr.DataArray, dim: str) -> None:
-    """Logarithmic axes and a guide of second order above all that is drawn."""
+    """Make the axes logarithmic, and draw a guide of second order above the curves."""
     if not ax.lines:
         enough = bool((difference.count(dim) > 1).any())
         responses_grid.empty(ax, "same on every grid" if enough else "too few values")

@@ -1,4 +1,4 @@
-"""Small multiples: a panel a response."""
+"""Small multiples: a panel per response."""
 
 from __future__ import annotations
 
@@ -13,16 +13,14 @@ from impactlab.figures.access import usable
 from impactlab.figures.labels import display
 
 COLUMNS = 3
-
-
 ROUND_OFF = 1e-9
-"""Relative differences up to this are none: round-off adds up over the time steps."""
+"""Relative differences up to this count as none: round-off adds up over the time steps."""
 
 
 def panels(
     names: Sequence[str], height: float, beneath: float = 0.0
 ) -> tuple[Figure, dict[str, Axes]]:
-    """As tall as it takes; each panel under its response's name.
+    """Return a figure with a panel per response, under its name.
 
     height: of a row, mm; beneath: of what stands below all rows, mm.
     """
@@ -35,14 +33,14 @@ def panels(
 
 
 def shown(runs: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
-    """A response's usable values in display units, with its name and unit for a label."""
+    """Return a response's usable values in display units, with its name and unit for a label."""
     values = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
     unit = display(values)
     return values * unit.scale, labels.axis(labels.response(name), unit.symbol)
 
 
 def write_verdict(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> None:
-    """The response's verdict under the panel's title, bold where it is a warning."""
+    """Write the response's verdict under the panel's title, bold where it is a warning."""
     found = access.verdict(analysis, variable, name)
     if found is None:
         return
@@ -63,13 +61,13 @@ def write_verdict(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> N
 
 
 def warn(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> None:
-    """The response's verdict under the panel's title, where it is a warning."""
+    """Write the response's verdict under the panel's title, where it is a warning."""
     found = access.verdict(analysis, variable, name)
     if found and not found.sound:
         write_verdict(ax, analysis, variable, name)
 
 
 def empty(ax: Axes, text: str) -> None:
-    """Words in the place of curves, without ticks that would mean nothing."""
+    """Write words in place of curves, and leave out the ticks."""
     style.remark(ax, text)
     ax.set(xticks=[], yticks=[])

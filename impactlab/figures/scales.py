@@ -20,7 +20,7 @@ _POWERS = FuncFormatter(lambda value, _: labels.number(value, plain=(1e-3, 1e5))
 
 
 def fit(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
-    """A logarithmic axis for positive values over more than a factor WIDE, else a linear one."""
+    """Make the axis logarithmic for positive values over more than a factor WIDE, else linear."""
     finite = _finite(values)
     if finite.size and finite.min() > 0 and finite.max() / finite.min() > WIDE:
         logarithmic(axes, which, finite, ticks)
@@ -29,14 +29,14 @@ def fit(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
 
 
 def linear(axes: Axes, which: Which, ticks: int = 5) -> None:
-    """At most `ticks` intervals, numbers without an offset."""
+    """Make the axis linear, with at most `ticks` intervals and numbers without an offset."""
     axis = _axis(axes, which)
     axis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 2.5, 5, 10]))
     axis.set_major_formatter(_PLAIN)
 
 
 def logarithmic(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
-    """A logarithmic axis with plain numbers, at powers of ten or, over short ranges, between."""
+    """Make the axis logarithmic, with ticks at powers of ten or, over short ranges, between."""
     shown = _finite(positive(values))
     ratio = float(shown.max() / shown.min()) if shown.size else 10.0
     axes.set(**{f"{which}scale": "log"})
@@ -47,13 +47,13 @@ def logarithmic(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> 
 
 
 def positive(values: ArrayLike, above: float = 0.0) -> NDArray[np.float64]:
-    """What a logarithmic axis can show; NaN, a gap, for the rest and up to `above`."""
+    """Return the values above `above`, NaN (a gap) for the rest."""
     array = np.asarray(values, dtype=float)
     return np.where(np.isfinite(array) & (array > above), array, np.nan)
 
 
 def at(axes: Axes, which: Which, values: ArrayLike) -> None:
-    """Ticks at just these values."""
+    """Put ticks at just these values."""
     axis = _axis(axes, which)
     axis.set_major_locator(FixedLocator([float(value) for value in np.ravel(values)]))
     axis.set_minor_locator(FixedLocator([]))
@@ -61,7 +61,7 @@ def at(axes: Axes, which: Which, values: ArrayLike) -> None:
 
 
 def apart(values: ArrayLike, share: float = 0.18) -> list[float]:
-    """The values that are at least a share of the logarithmic axis apart, from the largest on."""
+    """Return the values at least a share of the logarithmic axis apart, from the largest on."""
     ordered = np.sort(np.ravel(np.asarray(values, dtype=float)))[::-1]
     least = share * np.log(ordered[0] / ordered[-1])
     kept: list[float] = []
@@ -76,7 +76,7 @@ def _axis(axes: Axes, which: Which) -> Axis:
 
 
 def _digits(ratio: float) -> tuple[float, ...]:
-    """Where in a decade to put ticks, so that there are neither too few nor too many."""
+    """Return the ticks within a decade, by the ratio of the largest to the smallest value."""
     if ratio < 3:
         return (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
     return (1.0, 2.0, 5.0) if ratio < 120 else (1.0,)

@@ -26,7 +26,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 MARKERS = ("o", "s", "^", "D", "v", "P")
 LINES = ("-", (0, (5, 1.5)), (0, (1.5, 1.2)), (0, (5, 1.5, 1, 1.5)), (0, (7, 3)), (0, (3, 1, 1, 1)))
 GUIDE: dict[str, Any] = {"color": "0.45", "linewidth": 0.8, "zorder": 1}
-"""Lines that are no data."""
+"""Look of guide lines, which are no data."""
 MUTED = "0.4"
 
 _SETTINGS: dict[str, Any] = {
@@ -66,13 +66,13 @@ _R = TypeVar("_R")
 
 @contextmanager
 def applied() -> Iterator[None]:
-    """The style, for one thread at a time: matplotlib's settings are global."""
+    """Apply the style, in one thread at a time: matplotlib's settings are global."""
     with _LOCK, matplotlib.style.context(["default", _SETTINGS]):
         yield
 
 
 def paper(plot: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Draw under the style."""
+    """Decorate a function so that it draws under the style."""
 
     @wraps(plot)
     def styled(*args: _P.args, **kwargs: _P.kwargs) -> _R:
@@ -85,7 +85,7 @@ def paper(plot: Callable[_P, _R]) -> Callable[_P, _R]:
 def panels(
     count: int, *, columns: int, height: float, sharex: bool = False, sharey: bool = False
 ) -> tuple[Figure, list[Axes]]:
-    """A figure of `count` panels, one column of a paper wide if one fits in a row, else two.
+    """Return a figure of `count` panels, two columns of a paper wide, or one for one panel per row.
 
     height: of a row of panels, mm.
     """
@@ -103,7 +103,7 @@ def panels(
 
 
 def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
-    """One legend above the panels, of all labelled artists; the figure grows to hold it.
+    """Add one legend of all labelled artists above the panels; the figure grows to hold it.
 
     order: labels in the order wanted; without it, that in which they are drawn. A label that is a
     line in one panel and markers in another is both in the legend.
@@ -127,12 +127,12 @@ def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
 
 
 def _is_marker(artist: Any) -> bool:
-    """Whether an artist is a line drawn as markers alone."""
+    """Return whether an artist is a line drawn as markers alone."""
     return isinstance(artist, Line2D) and artist.get_linestyle() in ("", "None")
 
 
 def panel_legends(figure: Figure) -> None:
-    """A legend above each panel, headed by the panel's title; the figure grows to hold them."""
+    """Add a legend above each panel, under its title; the figure grows to hold them."""
     rows = 0
     for axes in figure.axes:
         handles, labels = axes.get_legend_handles_labels()
@@ -161,14 +161,14 @@ _ABOVE: dict[str, Any] = {
 
 
 def _columns(width: float, labels: list[str], letter: float = 1.6) -> int:
-    """As many columns as fit into mm: a letter is up to 1.6 mm wide at 7 pt, a handle 10 mm."""
+    """Return the columns that fit into a width in mm; letters are up to 1.6 mm wide at 7 pt."""
     longest = max((len(label) for label in labels), default=1)
     fit = int(width / (letter * longest + 10.0))
     return max(1, min(fit, len(labels)))
 
 
-def told_apart(at: int) -> dict[str, Any]:
-    """Colour, line and marker of the curve number `at`, alike in all panels."""
+def distinct(at: int) -> dict[str, Any]:
+    """Return colour, line and marker of the curve number `at`, alike in all panels."""
     return {
         "color": COLOURS[at % len(COLOURS)],
         "linestyle": LINES[at // len(COLOURS) % len(LINES)],
@@ -177,6 +177,6 @@ def told_apart(at: int) -> dict[str, Any]:
 
 
 def remark(axes: Axes, text: str) -> None:
-    """Words in the place of data, in the middle of empty axes."""
+    """Write words in place of data, in the middle of empty axes."""
     axes.grid(visible=False)
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=MUTED)
