@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.options import REFINEMENT, RESULTS, SHARDS, TRIALS
-from impactlab.cli.settling import settled_before
+from impactlab.cli.options import RESULTS
+from impactlab.study import REFINEMENT, SHARDS, TRIALS
 
 
 def clean(
@@ -61,10 +61,11 @@ def _stale(file: Path | None, shards: Path) -> dict[Path, str]:
     from impactlab.study.sampling.design import design
     from impactlab.study.sampling.doubling import stages
     from impactlab.study.schema.files import read_study
+    from impactlab.study.steps import resolved_before
 
     if file is None:
         return stale(shards, ())
     if shards.name != SHARDS:
         return outdated(shards)
-    declared = settled_before(read_study(file), shards.with_name("resolution.nc"))
+    declared = resolved_before(read_study(file), shards.parent)
     return {} if declared is None else stale(shards, list(stages(design(declared))))

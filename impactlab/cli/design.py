@@ -8,8 +8,9 @@ from typing import Annotated
 
 import typer
 
+from impactlab.cli.discretisation import with_discretisation
+from impactlab.cli.interrupt import stop_at_once
 from impactlab.cli.options import StudyFile, results_file
-from impactlab.cli.settling import settled
 
 
 def design(
@@ -20,12 +21,12 @@ def design(
 
     A discretisation that is `auto` is found first, as by `impactlab recommend`.
     """
+    from impactlab.study import steps
     from impactlab.study.engine import Engine
-    from impactlab.study.netcdf import write_netcdf
-    from impactlab.study.sampling.design import design as sampled
     from impactlab.study.schema.files import read_study
 
     declared = read_study(study)
     path = output or results_file(declared.name, "design.nc")
+    stop_at_once()
     engine = Engine(workers=os.cpu_count() or 1)
-    write_netcdf(sampled(settled(declared, path.with_name("resolution.nc"), engine)), path)
+    steps.draw_up(with_discretisation(declared, path.parent, engine), path)

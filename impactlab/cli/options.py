@@ -22,8 +22,6 @@ StoredFiles = Annotated[
     ),
 ]
 RESULTS = Path("results")
-SHARDS, TRIALS, REFINEMENT = "shards", "trials", "refinement"
-"""Folders beside a study's results: its own runs, those behind `auto`, those on finer grids."""
 WITNESS = "witness"
 """Folder of the 3-D model beside a study's results."""
 

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_at_once
-from impactlab.cli.options import TRIALS, StudyFile, chosen, given, results_file
+from impactlab.cli.options import StudyFile, chosen, given, results_file
 
 
 def recommend(
@@ -38,6 +38,7 @@ def recommend(
     evidence.
     """
     from impactlab.report.console import print_recommendation
+    from impactlab.study import TRIALS
     from impactlab.study.adaptive.recommendation import recommend as recommended
     from impactlab.study.engine import Engine
     from impactlab.study.netcdf import write_netcdf

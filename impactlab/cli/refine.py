@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_at_once
-from impactlab.cli.options import REFINEMENT, RunsFile
+from impactlab.cli.options import RunsFile
 
 
 def refine(
@@ -28,15 +28,9 @@ def refine(
     `impactlab analyse --refinement` tells from them how far the indices may be off numerically; the
     more base samples, the closer.
     """
-    from functools import partial
-
-    from impactlab.study.adaptive.refining import refined
-    from impactlab.study.engine import Engine
-    from impactlab.study.execute import execute
-    from impactlab.study.netcdf import read_netcdf, write_netcdf
-
-    solved, path = read_netcdf(runs), output or runs.with_name("refinement.nc")
     stop_at_once()
-    engine = Engine("threads", workers)
-    solve = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
-    write_netcdf(refined(solved, solve, base_samples), path)
+    from impactlab.study import steps
+    from impactlab.study.engine import Engine
+
+    path = output or runs.with_name("refinement.nc")
+    steps.refine(runs, path, Engine("threads", workers), base_samples)

@@ -8,10 +8,9 @@ from typing import Annotated
 
 import typer
 
+from impactlab.cli.discretisation import affordable, with_discretisation
 from impactlab.cli.interrupt import stop_at_once
-from impactlab.cli.options import SHARDS, results_file
-from impactlab.cli.planning import allowed
-from impactlab.cli.settling import settled
+from impactlab.cli.options import results_file
 
 
 def run(
@@ -38,41 +37,28 @@ def run(
 ) -> None:
     """Solve the runs of a study that have not been solved yet.
 
-    Finished batches are kept in results/NAME/shards: an interrupted study goes on from there.
+    Finished batches are kept in results/NAME/shards: an interrupted study resumes there.
     """
     stop_at_once()
-    from functools import partial
-
+    from impactlab.study import steps
     from impactlab.study.engine import Engine, read_profile
-    from impactlab.study.execute import execute, executed
-    from impactlab.study.netcdf import read_netcdf, write_netcdf
-    from impactlab.study.runs import note_study
-    from impactlab.study.sampling.design import design as sampled
+    from impactlab.study.netcdf import read_netcdf
+    from impactlab.study.sampling.design import design
     from impactlab.study.sampling.doubling import study_of_design
     from impactlab.study.schema.files import read_study
-    from impactlab.study.store import locked
 
     stored = read_netcdf(design_file) if design_file.suffix == ".nc" else None
     study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
     path = output or results_file(study.name, "runs.nc")
-    evidence = path.with_name("resolution.nc")
-    if not allowed(study, path, workers, dry_run=dry_run, force=force):
+    price = steps.price(study, path.parent, workers)
+    if not affordable(price, workers, dry_run=dry_run, force=force):
         return
     profile = read_profile(cluster) if cluster else None
     engine = Engine(
         "processes" if processes else "threads", workers, scheduler, profile, batch_seconds
     )
-    samples = sampled(settled(study, evidence, engine)) if stored is None else stored
-    shards = path.parent / SHARDS
-    if stored is None:
-        note_study(shards, design_file)
-    if "until_interval" in samples.attrs:
-        from impactlab.analysis.analyse import analyse as analysed
-        from impactlab.study.adaptive.extending import extended
-
-        solve = partial(execute, shards_folder=shards, engine=engine)
-        with locked(shards):  # over all its steps
-            write_netcdf(extended(samples, solve, analysed), path)
+    if stored is not None:
+        steps.solve(stored, path, engine)
     else:
-        with executed(samples, shards, engine) as runs:
-            write_netcdf(runs, path)
+        study = with_discretisation(study, path.parent, engine)
+        steps.solve(design(study), path, engine, file=design_file)

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.options import RESULTS, SHARDS, StudyFile
-from impactlab.cli.settling import settled_before
+from impactlab.cli.options import RESULTS, StudyFile
 
 
 def status(
@@ -20,13 +19,15 @@ def status(
     Nothing is changed; a study may be at work meanwhile.
     """
     from impactlab.report.console import print_status
+    from impactlab.study import SHARDS
     from impactlab.study.runs import status as status_of
     from impactlab.study.sampling.design import design
     from impactlab.study.sampling.doubling import stages
     from impactlab.study.schema.files import read_study
+    from impactlab.study.steps import resolved_before
 
     folder = results / study.stem
-    declared = settled_before(read_study(study), folder / "resolution.nc")
+    declared = resolved_before(read_study(study), folder)
     if declared is None:
         print(f"{study.stem}: its discretisation is auto and was not found yet: nothing is solved")
         return

@@ -1,1 +1,6 @@
 """Studies: what a YAML file asks for, drawn up as runs, solved under dask, kept as netCDF."""
+
+SHARDS, TRIALS, REFINEMENT = "shards", "trials", "refinement"
+"""Folders beside a study's results: its own runs, pilot runs for `auto`, runs on finer grids."""
+RESOLUTION = "resolution.nc"
+"""File beside a study's results: what the pilot runs found."""
