@@ -21,12 +21,13 @@ def design(
 
     A discretisation that is `auto` is found first, as by `impactlab recommend`.
     """
-    from impactlab.study import steps
     from impactlab.study.engine import Engine
+    from impactlab.study.netcdf import write_netcdf
+    from impactlab.study.sampling.design import design as design_of
     from impactlab.study.schema.files import read_study
 
     declared = read_study(study)
     path = output or results_file(declared.name, "design.nc")
     stop_at_once()
     engine = Engine(workers=os.cpu_count() or 1)
-    steps.draw_up(with_discretisation(declared, path.parent, engine), path)
+    write_netcdf(design_of(with_discretisation(declared, path.parent, engine)), path)

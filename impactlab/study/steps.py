@@ -1,7 +1,7 @@
-"""The steps of a study, one function each: price, resolve, draw up, solve, refine, analyse.
+"""The steps of a study, one function each: price, resolve, solve, refine, analyse.
 
-The commands parse, call these and print; whatever else runs a study calls them too. What not every
-step needs, the analysis above all, is imported where it is used: it takes a second to load.
+The commands parse, call these and print; whatever else runs a study calls them too. Each imports
+what it needs: compiler and analysis take seconds to load.
 """
 
 from __future__ import annotations
@@ -9,25 +9,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import xarray as xr
 
 from impactlab.study import REFINEMENT, RESOLUTION, SHARDS, TRIALS
-from impactlab.study.engine import Engine
-from impactlab.study.errors import Problem
-from impactlab.study.estimate import (
-    Estimate,
-    estimate,
-    exceeded_limits,
-    free_disk,
-    implausible,
-)
-from impactlab.study.execute import execute, executed
 from impactlab.study.netcdf import read_netcdf, whole, write_netcdf
-from impactlab.study.runs import note_study
-from impactlab.study.sampling.design import design
 from impactlab.study.schema.study import FunctionStudy, Study
-from impactlab.study.store import locked
+
+if TYPE_CHECKING:
+    from impactlab.study.engine import Engine
+    from impactlab.study.errors import Problem
+    from impactlab.study.estimate import Estimate
 
 AnyStudy = Study | FunctionStudy
 
@@ -51,10 +44,11 @@ def price(study: AnyStudy, folder: Path, workers: int) -> Price:
 
     Raises StudyError where a run that the price rests on is impossible.
     """
+    from impactlab.study.estimate import estimate, exceeded_limits, free_disk, implausible
+
     study = resolved_before(study, folder) or study
     cost = estimate(study, workers)
-    exceeded = exceeded_limits(cost, folder)
-    return Price(cost, free_disk(folder), exceeded, implausible(study))
+    return Price(cost, free_disk(folder), exceeded_limits(cost, folder), implausible(study))
 
 
 def find_resolution(study: AnyStudy, folder: Path, engine: Engine) -> xr.Dataset | None:
@@ -93,11 +87,6 @@ def resolved_before(study: AnyStudy, folder: Path) -> AnyStudy | None:
     return None if found is None else apply_resolution(study, found)
 
 
-def draw_up(study: AnyStudy, path: Path) -> None:
-    """Sample a study into its runs and write them to `path` (design.nc)."""
-    write_netcdf(design(study), path)
-
-
 def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = None) -> None:
     """Solve the runs of a design that have not been solved yet, and write all to `path` (runs.nc).
 
@@ -106,6 +95,10 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
 
     Raises ValueError, OSError and BlockingIOError as execute.executed does.
     """
+    from impactlab.study.execute import execute, executed
+    from impactlab.study.runs import note_study
+    from impactlab.study.store import locked
+
     shards = path.with_name(SHARDS)
     if file is not None:
         note_study(shards, file)
@@ -124,9 +117,10 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
 def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = None) -> None:
     """Solve the first runs of a Sobol sample on finer grids and write them to `path`."""
     from impactlab.study.adaptive.refining import refined
+    from impactlab.study.execute import execute
 
-    solve_part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
-    write_netcdf(refined(read_netcdf(runs), solve_part, base_samples), path)
+    part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
+    write_netcdf(refined(read_netcdf(runs), part, base_samples), path)
 
 
 def analyse_runs(
