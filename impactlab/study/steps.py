@@ -132,7 +132,7 @@ def analyse_runs(
     evidence on the numerical uncertainty, see analysis.analyse.
     """
     from impactlab.analysis.analyse import analyse
-    from impactlab.analysis.sensitivity import table
+    from impactlab.analysis.sensitivity.indices import sensitivity_variables, write_csv
     from impactlab.analysis.surrogate import packed
 
     solved = read_netcdf(runs)
@@ -141,9 +141,9 @@ def analyse_runs(
     write_netcdf(found, path)
     for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps another study's
         path.with_name(name).unlink(missing_ok=True)
-    if indices := table.indices(found):
+    if indices := sensitivity_variables(found):
         with whole(path.with_name("indices.csv"), indices.nbytes) as unfinished:
-            table.write_csv(found, unfinished)
+            write_csv(found, unfinished)
         write_netcdf(indices, path.with_name("indices.nc"))
     if surrogates := packed(solved, found):
         write_netcdf(surrogates, path.with_name("surrogate.nc"))

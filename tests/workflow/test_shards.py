@@ -37,7 +37,7 @@ def test_status_and_clean(folder):
     (shard,) = folder.glob("results/gone/shards/*/*.nc")
     (kept,) = folder.glob("results/small/shards/*/*.nc")
     refused = impactlab("clean", cwd=folder, said="n\n")
-    assert "its study is gone" in refused.stdout
+    assert "its study does not exist" in refused.stdout
     assert shard.exists()
     assert impactlab("clean", "--yes", cwd=folder).returncode == 0
     assert not shard.exists()
@@ -51,7 +51,7 @@ def test_clean_finds_a_study_that_lies_elsewhere(folder):
     assert impactlab("run", mine, cwd=folder).returncode == 0
     assert "Nothing to remove" in impactlab("clean", "--yes", cwd=folder).stdout
     mine.unlink()
-    assert "its study is gone" in impactlab("clean", "--yes", cwd=folder).stdout
+    assert "its study does not exist" in impactlab("clean", "--yes", cwd=folder).stdout
     assert not list(folder.glob("results/mine/shards/*/*.nc"))
 
 
