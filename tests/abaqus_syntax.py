@@ -1,8 +1,8 @@
-"""What Abaqus asks of the keywords that a deck uses, as a checker.
+"""A checker of Abaqus' syntax, for the keywords that a deck uses.
 
 Only what holds for explicit dynamics; a keyword or parameter that is not listed is a complaint.
 Source: the Keywords Guide, of which *CONTACT PAIR, *SECTION CONTROLS, *PLASTIC and *CYCLIC
-HARDENING were read (2016, 2017); the rest is as recalled.
+HARDENING were read (2016, 2017); the rest is from memory.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 
 
 def complaints(path: Path) -> list[str]:
-    """What Abaqus would not take, a sentence each; empty for a sound deck."""
+    """Return what Abaqus would refuse, one sentence each; empty for a valid deck."""
     deck = cards(path)
     found = [
         f"line {n}: {len(line)} characters"
@@ -166,12 +166,13 @@ def _of_card(card: Card, rule: Rule) -> list[str]:
     if not rule.lines[0] <= len(card.data) <= rule.lines[1]:
         found.append(f"{len(card.data)} data lines")
     counts = {len(line) for line in card.data}
-    found += [f"{n} entries a line" for n in counts if not rule.entries[0] <= n <= rule.entries[1]]
+    least, most = rule.entries
+    found += [f"{n} entries per line" for n in counts if not least <= n <= most]
     return found
 
 
 def _order(deck: list[Card]) -> list[str]:
-    """Model before step, options after what they belong to, and the step closed."""
+    """Check that the model precedes the step, options follow their keyword, and the step ends."""
     found, inside, owner = [], False, ""
     for card in deck:
         rule = RULES[card.keyword]
@@ -186,7 +187,7 @@ def _order(deck: list[Card]) -> list[str]:
 
 
 def _names(deck: list[Card]) -> list[str]:
-    """Every name that is used is defined."""
+    """Check that every name used is defined."""
     there = {
         kind: {c.parameters.get(parameter) for c in deck if c.keyword == keyword}
         | {c.parameters.get(other) for c in deck for word, other in more if c.keyword == word}
@@ -209,7 +210,7 @@ def _used(card: Card, where: str | slice) -> list[str | None]:
 
 
 def _outputs(deck: list[Card]) -> list[str]:
-    """Requests follow *OUTPUT and name variables that it can hold."""
+    """Check that requests follow *OUTPUT and name variables that it can hold."""
     found, kind = [], None
     for card in deck:
         if card.keyword == "OUTPUT":

@@ -1,4 +1,4 @@
-"""CalculiX on a deck: run it, and read what it printed."""
+"""Runs of CalculiX on a deck, and a parser of its output."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 CCX = shutil.which("ccx")
 _LONGEST = 500
-"""Seconds that a run may take: many times what it needs."""
+"""Seconds that a run may take: many times the usual."""
 
 
 def needed(test: Callable[..., None]) -> Callable[..., None]:
-    """Marks a test that runs CalculiX: skipped where there is none."""
+    """Mark a test that runs CalculiX, skipped where there is none."""
     there = pytest.mark.skipif(CCX is None, reason="there is no command ccx (calculix-ccx)")
     return pytest.mark.calculix(there(test))
 
@@ -34,20 +34,20 @@ class Run:
     printed: str
 
     def table(self, title: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Times (t,) and rows (t, rows, columns) of the tables under this title."""
+        """Return times (t,) and rows (t, rows, columns) of the tables under this title."""
         blocks = re.findall(rf"{title}.*? time +(\S+)\n\n((?: +.*\n)+)", self.printed)
         rows = [[line.split() for line in body.splitlines()] for _, body in blocks]
         return np.array([time for time, _ in blocks], float), np.array(rows, float)
 
     def contact(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Times (t,) and the force on the slave surface, (t, 3)."""
+        """Return times (t,) and the force on the slave surface, (t, 3)."""
         times = re.findall(r"statistics for slave set.*? time +(\S+)", self.printed)
         forces = re.findall(r"total surface force.*\n\n(.*)\n", self.printed)
         return np.array(times, float), np.array([f.split()[:3] for f in forces], float)
 
 
 def run(deck: Path, threads: int = 1) -> Run:
-    """CalculiX on this deck, in the deck's folder."""
+    """Run CalculiX on this deck, in the deck's folder."""
     assert CCX is not None
     lines = ["stdbuf", "-oL"]  # else a crash takes the screen with it
     done = subprocess.run(
@@ -64,7 +64,7 @@ def run(deck: Path, threads: int = 1) -> Run:
 
 
 def version() -> str:
-    """Of the installed CalculiX, as 2.20."""
+    """Return the version of the installed CalculiX, such as 2.20."""
     assert CCX is not None
     words = subprocess.run([CCX, "-v"], capture_output=True, text=True, check=False).stdout
     return words.split("Version")[1].split()[0]

@@ -1,4 +1,4 @@
-"""Input decks read back: a parser that knows nothing of who wrote them."""
+"""A parser of input decks, independent of the code that writes them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Card:
 
 
 def cards(path: Path) -> list[Card]:
-    """The deck's cards in their order, comments left out."""
+    """Return the deck's cards in their order, without comments."""
     found: list[Card] = []
     for line in path.read_text(encoding="ascii").splitlines():
         if line.startswith("**"):
@@ -35,7 +35,7 @@ def cards(path: Path) -> list[Card]:
 
 
 def named(deck: list[Card], keyword: str, **parameters: str) -> Card:
-    """The one card of this keyword with these parameters."""
+    """Return the one card of this keyword with these parameters."""
     (card,) = [
         card
         for card in deck
@@ -45,18 +45,18 @@ def named(deck: list[Card], keyword: str, **parameters: str) -> Card:
 
 
 def numbers(card: Card) -> NDArray[np.float64]:
-    """The data of a card whose lines are all of one length."""
+    """Return the data of a card whose lines all have the same length."""
     return np.array(card.data, dtype=float)
 
 
 def members(deck: list[Card], name: str) -> NDArray[np.int64]:
-    """Node numbers, from 1, of a set."""
+    """Return the node numbers, from 1, of a set."""
     lines = named(deck, "NSET", NSET=name).data
     return np.array([int(entry) for line in lines for entry in line])
 
 
 def elements(deck: list[Card]) -> dict[str, NDArray[np.int64]]:
-    """Number and nodes of each element, (e, 9), by set."""
+    """Return number and nodes of each element, (e, 9), by set."""
     return {
         str(card.parameters["ELSET"]): np.array(card.data, dtype=np.int64)
         for card in deck
@@ -75,7 +75,7 @@ FACES = {  # of an eight-node brick, as the manuals of both programs number them
 
 
 def surface(deck: list[Card], name: str) -> NDArray[np.float64]:
-    """Corners of a surface's faces, (f, 4, 3)."""
+    """Return the corners of a surface's faces, (f, 4, 3)."""
     nodes = {int(line[0]): [float(x) for x in line[1:]] for line in named(deck, "NODE").data}
     corners = {int(row[0]): row[1:] for rows in elements(deck).values() for row in rows}
     faces = named(deck, "SURFACE", NAME=name).data

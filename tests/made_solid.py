@@ -1,4 +1,4 @@
-"""Answers of a 3-D run, made up on a true mesh: quick, of plausible size, not physics."""
+"""Invented answers of a 3-D run on a real mesh: quick, of plausible size, not physics."""
 
 from functools import cache
 
@@ -31,7 +31,7 @@ def _mesh():
 
 
 def solid():
-    """The mesh of the paper's case at 2 mm; strains about the contact, waves in time."""
+    """Return the paper's case on a mesh of 2 mm: strains about the contact, waves in time."""
     mesh = _mesh()
     centres = mesh.nodes[mesh.elements].mean(axis=1)
     strain = 0.02 * np.clip(1.0 - np.linalg.norm(centres, axis=1) / DEPTH_OF_STRAIN, 0.0, None)
@@ -73,5 +73,5 @@ _GIVEN = ("velocity", "beam_depth", "beam_span", "sphere_radius")
 
 @cache
 def beam_models():
-    """The beam models' own answers to the paper's case."""
+    """Return the beam models' own answers to the paper's case."""
     return simulate_beams(paper_impact(), Discretisation(nodes=21, points=3), 0.45e-3)

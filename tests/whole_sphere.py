@@ -1,4 +1,4 @@
-"""Hertz's impact of a sphere that is no half-space: to first order in contact radius over radius.
+"""Hertz's impact of a finite sphere, to first order in contact radius over radius.
 
 The sphere's surface answers a pressure p_n P_n(cos theta) with a radial displacement (A. I.
 Lur'e, Three-Dimensional Problems of the Theory of Elasticity, chapter 6); n = 1 is balanced by
@@ -20,7 +20,7 @@ _MODES = 20_000
 
 
 def extra_compliance(radius, contact_radius, E, nu):
-    """In m/N, for lengths in m and E in Pa."""
+    """Return the extra compliance in m/N, for lengths in m and E in Pa."""
     n, G = np.arange(2.0, _MODES), E / (2.0 * (1.0 + nu))
     lame = 2.0 * G * nu / (1.0 - 2.0 * nu)
     upper = 4.0 * n**2 - 2.0 - 4.0 * nu * n**2 + 4.0 * nu + 2.0 * nu * n
@@ -34,7 +34,7 @@ def extra_compliance(radius, contact_radius, E, nu):
 
 
 def impact(case):
-    """Peak force in N and contact duration in s of an impact on an elastic half-space."""
+    """Return peak force in N and contact duration in s of an impact on an elastic half-space."""
     ball, mass = case.sphere, case.sphere.total_mass
     arguments = mass, case.velocity, hertz.effective_modulus(case), ball.radius
     deepest, long = hertz.maximum_indentation(*arguments), hertz.contact_duration(*arguments)

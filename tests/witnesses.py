@@ -1,4 +1,4 @@
-"""Planted studies of beam models beside a 3-D witness."""
+"""Planted studies of beam models beside the 3-D FE model."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NODES = xr.DataArray([101, 201, 401], {"nodes": [101, 201, 401]})
 
 
 def _runs_of(first: xr.DataArray, name: str) -> xr.Dataset:
-    """A response `first` a model, with errors of second order: 1 % on the finest grids."""
+    """Return a response per model from `first`; errors of second order, 1 % on the finest grid."""
     solid = FACTORS["beam_model"] == "solid"
     refined = xr.where(solid, (SIZES / 2.5e-4) ** 2, (400.0 / (NODES - 1)) ** 2)
     force = FACTORS * first * (1.0 + 0.01 * refined)
@@ -36,21 +36,21 @@ def _runs_of(first: xr.DataArray, name: str) -> xr.Dataset:
 
 
 def analysed(runs: xr.Dataset) -> xr.Dataset:
-    """Both convergence studies of the runs."""
+    """Return both convergence studies of the runs."""
     return xr.merge(
         [axes.NODES.analysis(runs), axes.ELEMENT_SIZE.analysis(runs)], join="exact", compat="equals"
     )
 
 
 def against_velocity() -> Study:
-    """Euler and Bernoulli's beam 5 % above the solid, Timoshenko's 2 % below."""
+    """Return runs with Euler-Bernoulli 5 % above the 3-D FE model, and Timoshenko 2 % below."""
     speeds = xr.DataArray(SPEEDS, {"velocity": SPEEDS})
     runs = _runs_of(1e4 * speeds, "velocity")
     return runs, analysed(runs)
 
 
 def counted(runs: xr.Dataset) -> Study:
-    """The same runs, their elements told by how many there are: 2, 4 and 8."""
+    """Return the same runs, with 2, 4 and 8 elements per radius in place of element sizes."""
     values = 2e-3 / runs["element_size"].values
     found = runs.rename(element_size="elements_per_radius")
     found = found.assign_coords(elements_per_radius=values)
@@ -58,7 +58,7 @@ def counted(runs: xr.Dataset) -> Study:
 
 
 def taken_apart() -> Study:
-    """Yielding lowers the force of the beams by 10 %, that of the solid by 20 %."""
+    """Return runs in which yielding lowers the force by 10 % in the beams, and by 20 % in 3-D."""
     stress = {"beam_yield_stress": [345e6, 20e9]}
     solid = FACTORS["beam_model"] == "solid"
     first = xr.where(solid, xr.DataArray([0.8, 1.0], stress), xr.DataArray([0.9, 1.0], stress))

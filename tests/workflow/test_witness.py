@@ -1,4 +1,4 @@
-"""The command `impactlab witness` as a person uses it, on coarse meshes and for moments."""
+"""The command `impactlab witness` as users run it, on coarse meshes and for short durations."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ responses: [peak_force]
 
 @pytest.fixture
 def undrawn(monkeypatch):
-    """Figures take their time."""
+    """Skip the figures, which are slow."""
     monkeypatch.setattr("impactlab.fem3d.comparison.run.draw_witness", lambda *_: None)
 
 
 @pytest.fixture
 def impactlab(tmp_path, monkeypatch, capsys):
-    """Runs the command line in this process; (exit code, what it printed)."""
+    """Run the command line in this process; return (exit code, output)."""
     (tmp_path / "studies").mkdir()
     (tmp_path / "studies" / "some.yaml").write_text(STUDY)
     monkeypatch.chdir(tmp_path)

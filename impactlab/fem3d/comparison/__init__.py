@@ -1,1 +1,1 @@
-"""The 3-D FE model beside the beam models: one case, what it will cost, and what they say of it."""
+"""The 3-D FE model beside the beam models: the plan of one case, its answers and its files."""

@@ -27,7 +27,7 @@ _LONGEST = 5e-3
 
 @dataclass(frozen=True)
 class Case:
-    """name: of the study. file: where it stands. discretisation: of the beam models.
+    """One impact. name, file: of the study. discretisation: of the beam models.
 
     longest: simulated time of the study in s. held: base values of the parameters that the study
     varies, by name.
@@ -72,9 +72,9 @@ USUAL_TIME = 120.0
 MOST_TIME = 3600.0
 """Seconds that a run may take unless it is forced."""
 _CONTACTS = 2.25
-"""Usual duration over that of the first contact: 0.45 ms in the paper's case, as there."""
+"""Usual duration over that of the first contact: 0.45 ms in the paper's case, as in the paper."""
 _LONG = 2.0
-"""Durations over the usual one from which on it is the duration that makes a run long."""
+"""Durations over the usual one at which the duration counts as the cause of a long run."""
 _MOST_ELEMENTS = 10_000
 """Elements of a chosen size at most, by the least cost: time alone does not limit short runs."""
 _FEWEST = 2.0

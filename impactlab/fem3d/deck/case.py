@@ -17,15 +17,15 @@ from impactlab.verification.solutions import hertz
 
 NAMES = "N, mm, t, s (hence MPa, mJ, t/mm3, mm/s)"
 LENGTH = 1e3
-"""mm in a m."""
+"""mm per m."""
 VELOCITY = 1e3
-"""mm/s in a m/s."""
+"""mm/s per m/s."""
 ACCELERATION = 1e3
-"""mm/s2 in a m/s2."""
+"""mm/s2 per m/s2."""
 STRESS = 1e-6
-"""MPa in a Pa."""
+"""MPa per Pa."""
 DENSITY = 1e-12
-"""t/mm3 in a kg/m3."""
+"""t/mm3 per kg/m3."""
 
 
 PER_LINE = 16

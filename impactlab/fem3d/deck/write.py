@@ -1,4 +1,4 @@
-"""The one door: an impact and its mesh become an input deck."""
+"""The public function: an impact and its mesh become an input deck."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from impactlab.model.impact import SOLID
 
 Array = NDArray[np.float64]
 AXES = {"nodes": np.argmax, "element_size": np.argmin, "elements_per_radius": np.argmax}
-"""Refinements, and where on each the finest grid is."""
+"""Refinements, and the function that finds the finest grid on each."""
 _FEWEST = 3
 
 

@@ -25,7 +25,7 @@ _FACES = np.array(
 )
 """Corners of a hexahedron's faces, in VTK's order."""
 _FLAT = 1e-6
-"""Distance from the plane over the size of elements that is none."""
+"""Distance from the plane, over the element size, that counts as zero."""
 
 
 def faces(solid: xr.Dataset, axis: int) -> tuple[Floats, Integers]:

@@ -85,7 +85,7 @@ FIGURES = {
     "plastic_strain": RunFigure(fields.STRAIN_TITLE, fields.plot_strain, fields.strain_caption),
     "histories": RunFigure(_TITLE, _plot, _caption),
 }
-"""By name, which is that of the file."""
+"""Figures by name, which is also the name of the file."""
 
 
 def draw_witness(solid: xr.Dataset, beams: xr.Dataset, folder: Path, study: str) -> list[Path]:

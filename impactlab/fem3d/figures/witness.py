@@ -19,10 +19,10 @@ _NAMES = (
     *("peak_force", "contact_duration", "maximum_deflection"),
     *("permanent_indentation", "maximum_indentation"),
 )
-"""What is drawn first, as far as it is there."""
+"""Responses to draw, most important first."""
 _MOST = 3
 _LEAST, _ROOM = 2.0, 2.0
-"""Least half-height of a panel of differences in %; its most, in times the largest difference."""
+"""Least half-height of a panel of differences in %; its largest, over the largest difference."""
 
 
 def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:

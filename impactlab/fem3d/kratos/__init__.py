@@ -1,4 +1,4 @@
-"""The 3-D FE model in an engine that nobody here wrote: Kratos Multiphysics.
+"""The 3-D FE model in an independent program: Kratos Multiphysics.
 
 The mesh is that of impactlab.fem3d; all else is Kratos': elements, plasticity, contact,
 steps in time. It is no dependency: pip install 'impactlab[kratos]'.

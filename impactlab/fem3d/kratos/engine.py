@@ -50,13 +50,13 @@ def engine(threads: int) -> Engine:
 
 
 MM = 1e3
-"""mm in a m, mm/s in a m/s."""
+"""mm per m, mm/s per m/s."""
 MPA = 1e-6
-"""MPa in a Pa."""
+"""MPa per Pa."""
 TONNES_PER_MM3 = 1e-12
-"""t/mm3 in a kg/m3."""
+"""t/mm3 per kg/m3."""
 N_PER_MM3 = 1e-9
-"""N/mm3 in a N/m3."""
+"""N/mm3 per N/m3."""
 
 
 PART, BEAM_TOP, SPHERE_BOTTOM = "Structure", "BeamTop", "SphereBottom"

@@ -106,7 +106,7 @@ def _surface(part: Any, quads: Integers, first: int, steel: Any) -> None:
 
 
 _TOUCHING = "ComputingContact"
-"""Kratos' part for the pairs of faces that it made out."""
+"""Kratos' part for the pairs of faces that it found."""
 
 
 def vectors(engine: Engine, part: Any, name: str) -> Floats:

@@ -37,7 +37,7 @@ class Moment(NamedTuple):
 
 @dataclass
 class History:
-    """moments: one per step and one before. stopped: why before its time, else ""."""
+    """moments: one per step and one before. stopped: the reason for an early stop, else ""."""
 
     moments: list[Moment] = field(default_factory=list)
     stopped: str = ""
@@ -51,11 +51,11 @@ class History:
 Progress = Callable[[float, float], None]
 
 _HALVINGS = 5
-"""How often a step that does not converge is cut in half."""
+"""Number of times that a step is cut in half if it does not converge."""
 
 
 class Run:
-    """An impact on a mesh in Kratos, ready to go. history: what it has left so far."""
+    """An impact on a mesh in Kratos. history: of the steps so far."""
 
     def __init__(
         self,

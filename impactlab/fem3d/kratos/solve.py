@@ -93,7 +93,7 @@ _OWN = {
     "element_size": ("m", "size of the elements about the contact"),
     "cpu_seconds": ("s", "processor time"),
 }
-"""Units and long_name of what impactlab.variables does not know."""
+"""Units and long_name of variables that impactlab.variables does not have."""
 
 
 def to_dataset(run: Run, impact: Impact, time_step: float, penalty: float) -> xr.Dataset:

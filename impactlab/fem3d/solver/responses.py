@@ -46,7 +46,7 @@ _CAUSES = {
     "deflection_still_growing": "maximum_deflection",
     "indentation_still_growing": "maximum_indentation",
 }
-"""Flags of status, and an answer that is missing because of each."""
+"""Flags of status, and a response that is missing because of each."""
 
 
 def energy_error(energies: list[Energies], impact: Impact) -> float:

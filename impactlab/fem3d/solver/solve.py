@@ -98,7 +98,7 @@ _OWN = {
     "time_step": ("s", "time step at the beginning"),
     "number_of_steps": ("1", "time steps taken"),
 }
-"""Units and long_name of what impactlab.variables does not know."""
+"""Units and long_name of variables that impactlab.variables does not have."""
 _COMMENTS = {
     "peak_plastic_strain": "of the beam, the contact included, where it grows with finer meshes",
     "plastic_dissipation": "in all of beam and sphere, the contact included",

@@ -1,1 +1,1 @@
-"""Runs of the 3-D FE model within a study: their cases, what they cost, and their answers."""
+"""Runs of the 3-D FE model within a study: cases, cost, answers, and report sections."""

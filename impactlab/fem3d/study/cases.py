@@ -32,12 +32,12 @@ Array = np.ndarray[Any, Any]
 SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
 """Record type of the table."""
 SOLID_MODEL = len(BEAM_MODELS)
-"""In the place of the number of a kernel's model."""
+"""Number of the 3-D FE model, after those of the kernels."""
 _BEAM_MODELS_ONLY = (
     *("contact", "shear_coefficient"),
     *("nodes", "points", "rule", "scheme", "courant"),
 )
-"""Fields that the 3-D FE model does not know."""
+"""Fields that the 3-D FE model does not use."""
 
 
 def table(
@@ -118,7 +118,7 @@ _IMPACT = [
 
 
 _LONG = 3600.0
-"""Seconds of a run from which on no mesh is made to tell how long it takes."""
+"""Duration of a run in s beyond which no mesh is made to estimate it."""
 
 
 def work(cases: Array) -> Array:

@@ -17,7 +17,7 @@ _LEAD = (
     "where a finer grid changes nothing), and its difference from the 3-D finite-element model."
 )
 _NOTHING = 1e-8
-"""Uncertainty over the value that is round-off's."""
+"""Uncertainty over the value that counts as round-off."""
 _PARTS = (
     "The answer of the paper's beam is turned into that of the 3-D FE model one effect after the "
     "other: (1 + shear)(1 + elasticity)(1 + law) = 1 + all."

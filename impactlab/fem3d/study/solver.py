@@ -85,7 +85,7 @@ def _histories(run: xr.Dataset, duration: float, samples: int) -> dict[str, Any]
 Array = np.ndarray[Any, Any]
 
 VERSION = hashlib.sha256(f"{SOURCES_HASH} {SOLID_HASH}".encode()).hexdigest()
-"""Of the kernels and of the 3-D FE model."""
+"""Hash of the sources of the kernels and of the 3-D FE model."""
 
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:

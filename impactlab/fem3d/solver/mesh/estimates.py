@@ -20,7 +20,7 @@ from impactlab.verification.solutions import hertz
 _HARDNESS = 2.8
 """Mean pressure of a fully plastic contact over the yield stress (Tabor)."""
 _FINEST = 1e-5
-"""Of an element, over the sphere's radius."""
+"""Smallest element size over the sphere's radius."""
 _MARGIN = 1.25
 """Patch over the estimated contact radius."""
 
@@ -98,16 +98,16 @@ def bending_yields(impact: Impact) -> bool:
 
 
 ONE_POINT_SECONDS, FULL_SECONDS = 200e-9, 500e-9
-"""Of one core for an element's step, its nodes' included: the slower of two machines, on meshes
+"""Time per element and step on one core, nodes included: the slower of two machines, on meshes
 that its caches do not hold; a small mesh on the faster one takes half."""
 _BYTES = 1000
-"""Of an element and its share of the nodes, about."""
+"""Approximate memory per element, with its share of the nodes."""
 _ONE_POINT_BYTES, _FULL_BYTES, _NODE_BYTES = 700, 1600, 250
 
 
 @dataclass(frozen=True)
 class Cost:
-    """elements, steps: counts. cpu_seconds: on one core. memory_bytes: at the most."""
+    """The cost of a run. cpu_seconds: on one core. memory_bytes: at most."""
 
     elements: int
     steps: int

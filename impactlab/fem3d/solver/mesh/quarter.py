@@ -18,7 +18,7 @@ Integers = NDArray[np.int32]
 _BENT = 2.5
 """Length of beam beside the impact, over its depth, that is fully integrated where it may yield."""
 _THINNEST = 0.7
-"""Of a layer of elements, over their size in the contact."""
+"""Thickness of a layer of elements at least, over their size in the contact."""
 
 
 def quarter_mesh(

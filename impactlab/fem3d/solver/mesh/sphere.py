@@ -21,12 +21,12 @@ Integers = NDArray[np.int32]
 _CORE = 0.45
 """Half the core's height, over the radius."""
 _ROUND = 0.5
-"""How far the core is from a cube (0) towards a ball (1)."""
+"""Shape of the core between a cube (0) and a ball (1)."""
 
 
 @dataclass(frozen=True)
 class Sphere:
-    """nodes: (n, 3) in m, the lowest at the origin. elements: (e, 8). sides: the lattice's.
+    """A meshed quarter sphere. nodes: (n, 3) in m, the lowest at the origin. elements: (e, 8).
 
     surface: (sides + 1, sides + 1), the lower surface's nodes by their place along x and y.
     """

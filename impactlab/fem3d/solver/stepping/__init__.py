@@ -1,1 +1,1 @@
-"""Central differences in time: forces from the elements, kicks on the nodes, contact between."""
+"""Central differences in time: forces of the elements, motion of the nodes, contact."""

@@ -56,7 +56,7 @@ class Energies(NamedTuple):
 
 @dataclass
 class History:
-    """moments: one per step. energies: one per checkpoint. stopped: why before its time, else "".
+    """moments: one per step. energies: one per checkpoint. stopped: the reason for an early stop.
 
     offset: largest distance by which matched nodes that touched had slid, over the element size.
     patch_needed: of matched nodes in m, where the contact outgrew its own; else 0.
@@ -87,7 +87,7 @@ _FLAT = 0.1
 
 
 class PatchTooSmallError(ValueError):
-    """Sphere and beam touch where their nodes are not matched. needed: the patch to take, in m."""
+    """Contact where nodes are not matched. needed: the patch to take, in m."""
 
     def __init__(self, message: str, needed: float) -> None:
         """Take the message, and the patch needed in m."""
@@ -96,7 +96,7 @@ class PatchTooSmallError(ValueError):
 
 
 class March:
-    """A system on its way. history: what it has left so far."""
+    """A march of a system through time. history: of the steps so far."""
 
     def __init__(self, system: System, impact: Impact) -> None:
         """Start at first touch."""

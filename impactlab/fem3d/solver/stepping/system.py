@@ -23,7 +23,7 @@ from impactlab.model.impact import Impact
 
 
 class ThreadPool:
-    """Runs compiled functions over ranges of numbers, on `threads` threads (one is the caller's).
+    """A pool for compiled functions over ranges of numbers; one of its threads is the caller's.
 
     Use it as a context: it ends its threads.
     """
@@ -88,7 +88,7 @@ def integrate(
 
 
 class System:
-    """Positions x (n, 3) in m and velocities v (n, 3) in m/s, half a step apart, from first touch.
+    """Nodes with positions x (n, 3) in m and velocities v (n, 3) in m/s, half a step apart.
 
     groups: the elements. mass: (n,) in kg. impulse, lost, beyond: of the last step's contact, see
     close_gaps. All arrays are changed in place.

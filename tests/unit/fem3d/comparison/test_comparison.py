@@ -1,13 +1,22 @@
-"""Responses of all models side by side."""
+"""Responses of all models side by side: in a table, in files, and on a terminal."""
+
+from __future__ import annotations
 
 import csv
+from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
+import witnesses
+import xarray as xr
 from made_solid import RESPONSES, beam_models, solid
 
+from impactlab.fem3d.comparison import run
 from impactlab.fem3d.comparison.comparison import compared
-from impactlab.fem3d.comparison.run import write_csv
+from impactlab.fem3d.comparison.run import write_csv, write_vtu
+from impactlab.fem3d.comparison.terminal import print_comparison
+from impactlab.fem3d.study.report import sections
 from impactlab.variables import STATUS_FLAGS
 
 MODELS = ["solid", "euler_bernoulli", "timoshenko", "spring_mass"]
@@ -58,3 +67,65 @@ def test_the_file_has_a_row_a_number_and_says_why_one_is_missing(tmp_path):
     missing = rows["maximum_deflection", "solid"]
     assert missing["value"] == missing["difference_percent"] == ""
     assert "largest deflection falls on the end" in missing["missing_because"]
+
+
+def test_another_program_reads_mesh_and_fields(tmp_path):
+    given = solid()
+    write_vtu(given, tmp_path / "witness.vtu")
+    read = meshio.read(tmp_path / "witness.vtu")
+    assert read.points.tolist() == given["node_position"].values.tolist()
+    (cells,) = read.cells
+    assert cells.type == "hexahedron"
+    assert cells.data.tolist() == given["element_nodes"].values.tolist()
+    for name in ("equivalent_plastic_strain", "von_mises_stress", "body", "fully_integrated"):
+        (values,) = read.cell_data[name]
+        assert values.ravel().tolist() == given[name].values.tolist(), name
+    assert read.point_data["displacement"].tolist() == given["displacement"].values.tolist()
+    assert np.ptp(read.points[:, 0]) == pytest.approx(0.39)
+    assert [path.name for path in tmp_path.iterdir()] == ["witness.vtu"]
+
+
+def test_a_failed_write_is_told_and_leaves_the_old_file_and_no_rubbish(tmp_path, monkeypatch):
+    path = tmp_path / "witness.vtu"
+    write_vtu(solid(), path)
+    before = path.read_bytes()
+
+    def full(file, *args, **fields):
+        Path(f"{file}.vtu").write_text("half of i")
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(run, "unstructuredGridToVTK", full)
+    with pytest.raises(OSError, match=r"witness\.vtu: could not be written .* are free"):
+        write_vtu(solid(), path)
+    assert path.read_bytes() == before
+    assert [entry.name for entry in tmp_path.iterdir()] == ["witness.vtu"]
+
+
+@pytest.fixture
+def found():
+    """A response with five digits in every model, and differences above and below a tenth."""
+    values = np.array([[69.73e-6, 92.38e-6, 93.59e-6, 0.1126e-3]])
+    return xr.Dataset(
+        {
+            "value": (("response", "model"), values),
+            "difference": (("response", "model"), [[np.nan, 0.3249, -0.0421, 1.321]]),
+            "units": ("response", ["s"]),
+            "status": ("model", np.zeros(4, int)),
+        },
+        coords={"response": ["time_of_peak_force"], "model": MODELS},
+    )
+
+
+def test_the_table_fits_a_terminal(found, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "80")
+    print_comparison(found)
+    head, _, row, *_ = capsys.readouterr().out.splitlines()
+    assert head.split() == ["response", "3-D", "Euler-Bernoulli", "Timoshenko", "Spring-Mass"]
+    assert row.split()[2:] == ["0.06973", "0.09238", "+32%", "0.09359", "-4.2%", "0.1126", "+132%"]
+
+
+def test_effects_have_their_uncertainty_in_per_cent():
+    """Planted: each answer is uncertain by 1.25 % / 1.01; an effect by the sum of its answers."""
+    (section,) = sections(*witnesses.taken_apart())
+    force = [row[1].text for row in section.tables[0].rows]
+    assert force == ["−6.7 % ± 2.3 %", "+2 % ± 2.5 %", "−11 % ± 4.4 %", "−15 % ± 2.1 %"]

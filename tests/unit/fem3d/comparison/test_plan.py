@@ -1,4 +1,4 @@
-"""What a 3-D run will be and cost, before anything is solved."""
+"""The plan and the cost of a 3-D run, before anything is solved."""
 
 import re
 from dataclasses import replace

@@ -68,7 +68,7 @@ def test_full_elements_are_about_the_contact_and_the_others_have_enhanced_hourgl
         ("HISTORY, TIME INTERVAL", "HISTORY, EVERY", "*OUTPUT: no parameter EVERY"),
         ("S, PEEQ", "S, PEEQS", "*ELEMENT OUTPUT: PEEQS in FIELD"),
         ("*FRICTION\n0.\n", "*FRICTION\n", "*FRICTION: 0 data lines"),
-        ("GRAV, 9810, 0, 0, -1", "GRAV, 9810", "*DLOAD: 3 entries a line"),
+        ("GRAV, 9810, 0, 0, -1", "GRAV, 9810", "*DLOAD: 3 entries per line"),
         ("*END STEP\n", "", "no *END STEP"),
         ("*MATERIAL, NAME=BEAM_STEEL\n", "", "*DENSITY: follows *SURFACE"),
         ("*BOUNDARY", "*STEP\n*BOUNDARY", "*BOUNDARY: inside the step"),

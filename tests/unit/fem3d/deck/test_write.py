@@ -1,4 +1,4 @@
-"""What a deck says besides the mesh, and what it refuses."""
+"""The text of a deck besides the mesh, and the cases that are refused."""
 
 from __future__ import annotations
 

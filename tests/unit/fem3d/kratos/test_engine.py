@@ -1,4 +1,4 @@
-"""Kratos is asked for late, and missed in one line."""
+"""Kratos is imported late, and its absence is reported in one line."""
 
 from __future__ import annotations
 

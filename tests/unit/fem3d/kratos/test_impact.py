@@ -1,4 +1,4 @@
-"""Two engines, one mesh: the solid model and Kratos answer alike."""
+"""Two programs, one mesh: the 3-D FE model and Kratos agree."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def ours(mesh: Mesh, impact: Impact) -> xr.Dataset:
 
 
 def test_forces_agree(ours: xr.Dataset, theirs: xr.Dataset) -> None:
-    """What is left is the penalty's: pressure over 1e6 N/mm3 is 2 % of the indentation."""
+    """The rest comes from the penalty: pressure over 1e6 N/mm3 is 2 % of the indentation."""
     assert "stopped" not in theirs.attrs
     assert theirs.peak_force.item() == pytest.approx(ours.peak_force.item(), rel=0.025)
     assert theirs.contact_duration.item() == pytest.approx(ours.contact_duration.item(), rel=0.04)

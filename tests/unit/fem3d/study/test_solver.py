@@ -1,4 +1,4 @@
-"""Runs of the 3-D model in a study: the same as alone, and a failed one is data."""
+"""Runs of the 3-D FE model in a study: the same as alone, and a failed one is data."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_each_model_answers_as_it_does_alone(solved):
 
 
 def test_what_a_model_does_not_know_is_nothing_to_it(study, solved):
-    """Of eight runs four differ: two of the beam, two of the solid."""
+    """Four of eight runs differ: two of the beam, two of the 3-D FE model."""
     work = Work.of(design(study))
     assert np.unique(work.keys).size == 4
     assert np.count_nonzero(work.cost) == 4
@@ -78,7 +78,7 @@ def test_what_a_model_does_not_know_is_nothing_to_it(study, solved):
 
 
 def test_elements_follow_the_contact_radius():
-    """Of a plastic contact the radius grows with the root of the velocity."""
+    """The radius of a plastic contact grows with the root of the velocity."""
     told = TEXT.replace("nodes: [51, 101]", "velocity: [1, 4]")
     told = told.replace("element_size: [4 mm, 3 mm]", "elements_per_radius: [1, 2]")
     cases = witness.cases(design(study_of_text("both", told)), ALL)

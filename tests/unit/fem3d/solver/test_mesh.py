@@ -1,4 +1,4 @@
-"""The quarter model's mesh: whole, conforming, matched, and of the bodies' volume."""
+"""The quarter model's mesh: graded lines; whole, conforming, matched, and of the bodies' volume."""
 
 from __future__ import annotations
 
@@ -10,8 +10,26 @@ import pytest
 
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, estimate, quarter_mesh
 from impactlab.fem3d.solver.mesh.estimates import contact_radius
-from impactlab.fem3d.solver.mesh.mesh import CORNERS
+from impactlab.fem3d.solver.mesh.mesh import CORNERS, graded
 from impactlab.model.paper import paper_impact
+
+
+@pytest.mark.parametrize("length", [4.2, 5.0, 11.7, 390.0])
+def test_fine_first_then_growing_by_no_more_than_the_ratio(length):
+    points = graded(0.5, 3.0, length, 1.3, 4.0)
+    steps = np.diff(points)
+    assert points[0] == 0.0
+    assert points[-1] == length
+    np.testing.assert_allclose(points[:7], 0.5 * np.arange(7))
+    assert steps.min() > 0.45
+    assert steps.max() <= 4.0 * (1 + 1e-9)
+    assert np.all(steps[7:] / steps[6:-1] < 1.3 * (1 + 1e-9))
+    assert np.all(steps[7:] >= steps[6:-1] * (1 - 1e-9))
+
+
+def test_what_is_fine_all_along_is_even():
+    np.testing.assert_allclose(graded(0.4, 3.0, 2.0, 1.3, 4.0), np.linspace(0.0, 2.0, 6))
+
 
 RADIUS, SPAN, WIDTH, DEPTH = 0.035, 0.78, 0.06, 0.0278
 FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -23,7 +41,7 @@ def mesh():
 
 
 def volumes(mesh):
-    """Of each element, by Gauss's rule, which is exact for a hexahedron with straight edges."""
+    """Return each element's volume by Gauss's rule, exact for hexahedra with straight edges."""
     points, result = mesh.nodes[mesh.elements], 0.0
     for place in CORNERS / np.sqrt(3.0):
         one = 1.0 + CORNERS * place
