@@ -1,9 +1,10 @@
-"""The plain solver of physics.md, to hold the kernels against: the same schemes, without a trick.
+"""The plain solver of physics.md, to compare the kernels with: the same schemes, written plainly.
 
 The whole beam, every fibre through its return mapping at every step, the contact laws with
 unloading and reloading written out, the semi-implicit scheme's filter as a dense matrix, and the
 responses read off the full histories afterwards. From impactlab come only the case, the number of
-steps, and from its reference scipy's integration rules and the contact laws beyond the paper's.
+steps and, from its independent solutions, the integration rules and the contact laws beyond the
+paper's.
 SI units; z and w point downwards.
 """
 
@@ -23,7 +24,7 @@ Array = np.ndarray[Any, Any]
 
 HERTZ, STRONGE = 0, 1
 FURTHER = ("stronge_original", "jackson_green", "mjg", "thornton", "kogut_etsion", "brake")
-"""Laws that are written out in the reference."""
+"""Laws that are written out in the independent solutions."""
 LAWS = {name: number for number, name in enumerate(("hertz", "stronge", *FURTHER))}
 TH = 1.1
 PLASTIC_ZONE = 1e-5
@@ -78,7 +79,7 @@ class Run(NamedTuple):
 
 
 def _further(which):
-    """One function of the reference's (0: loading, 1: unloading) for all of FURTHER, by number."""
+    """Return one function (0: loading, 1: unloading) for all laws of FURTHER, by number."""
     scope = dict(vars(contact_laws))  # so that they find each other compiled
     for name, function in vars(contact_laws).items():
         if isinstance(function, FunctionType):
@@ -100,7 +101,7 @@ further_force, further_unloading = _further(0), _further(1)
 
 @numba.njit
 def loading_force(contact, d):
-    """Force at an indentation d that is the largest so far."""
+    """Return the force at an indentation d that is the largest so far."""
     hertz = 4.0 / 3.0 * contact.E * contact.R**0.5
     if d <= 0.0:
         return 0.0
@@ -121,7 +122,7 @@ def loading_force(contact, d):
 
 @numba.njit
 def unloading(contact, deepest):
-    """(force at its start, dent, exponent) of the unloading curve."""
+    """Return (force at its start, dent, exponent) of the unloading curve."""
     F_m = loading_force(contact, deepest)
     if contact.law > STRONGE:
         bodies = contact.E, contact.R, contact.S_y, contact.nu
@@ -135,7 +136,7 @@ def unloading(contact, deepest):
 
 @numba.njit
 def contact_force(contact, d, deepest):
-    """Force at d after a largest indentation `deepest`: unloading and reloading on one curve."""
+    """Return the force at d after a largest indentation `deepest`, reloading as unloading."""
     if d >= deepest:
         return loading_force(contact, d)
     start, dent, exponent = unloading(contact, deepest)
@@ -144,14 +145,14 @@ def contact_force(contact, d, deepest):
 
 @numba.njit
 def top_of_parabola(before, here, after):
-    """Largest value of the parabola through three equally spaced points."""
+    """Return the largest value of the parabola through three equally spaced points."""
     slope, bend = 0.5 * (after - before), after - 2.0 * here + before
     return here - 0.5 * slope**2 / bend
 
 
 @numba.njit
 def moment(bar, kappa, plastic_strain, peeq):
-    """M of one section at curvature kappa, its fibres' state (points,) updated."""
+    """Return M of one section at curvature kappa, and update its fibres (points,)."""
     M = 0.0
     for j in range(bar.z.size):
         strain = -bar.z[j] * kappa
@@ -168,7 +169,7 @@ def moment(bar, kappa, plastic_strain, peeq):
 
 @numba.njit
 def march(bar, contact, v_0, g, m_s, dt, steps, filter, histories, w, plastic_strain, peeq):
-    """Central differences from the first touch; fills histories, shape (7, steps + 1) as in Run.
+    """March by central differences from first touch; fill histories, (7, steps + 1) as in Run.
 
     filter: what the inner nodes' accelerations are multiplied by, (nodes - 2, nodes - 2), or (0, 0)
     for leapfrog.
@@ -235,7 +236,7 @@ def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:
 
 
 def make_filter(bar: Bar, grid: il.Discretisation, dt: float) -> Array:
-    """The inverse of I + BETA dt^2 (EI)_q/mu d^4/dx^4 between supports where w = w_xx = 0."""
+    """Return (I + BETA dt^2 (EI)_q/mu d^4/dx^4)^-1 between supports where w = w_xx = 0."""
     if grid.scheme == "leapfrog":
         return np.zeros((0, 0))
     inner = np.eye(grid.nodes - 2)
@@ -245,7 +246,7 @@ def make_filter(bar: Bar, grid: il.Discretisation, dt: float) -> Array:
 
 
 def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> Run:
-    """`steps` steps of dt seconds."""
+    """Solve over `steps` steps of dt seconds."""
     histories = np.zeros((7, steps + 1))
     bar = make_bar(impact, grid)
     w = np.zeros(grid.nodes)
@@ -269,7 +270,7 @@ def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> 
 
 
 def responses(impact: il.Impact, grid: il.Discretisation, run: Run) -> dict[str, float]:
-    """The responses of impactlab.variables.RESPONSES but for the energies; NaN where missing."""
+    """Return the responses of impactlab.variables but for the energies; NaN where missing."""
     return _peaks(impact, run) | _contacts(impact, run) | _strains(impact, grid, run)
 
 
@@ -330,7 +331,7 @@ def _strains(impact: il.Impact, grid: il.Discretisation, run: Run) -> dict[str, 
 
 
 def _share_plastic(left: float, right: float) -> float:
-    """Share of a cell in which the line from left to right lies above PLASTIC_ZONE."""
+    """Return the share of a cell in which the line from left to right lies above PLASTIC_ZONE."""
     ends = sorted([left, right])
     if left == right:
         return float(left >= PLASTIC_ZONE)

@@ -86,7 +86,7 @@ def test_force_moves_the_beam():
 
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes hours as plain Python")
 def test_balances_of_hundreds_of_impacts():
-    """Exact in an elastic beam; in one that yields, as good as the run says of itself."""
+    """Exact in an elastic beam; in one that yields, as good as the run itself reports."""
     seen = Counter()
 
     @settings(FIXED, max_examples=300 // len(LAWS))

@@ -1,8 +1,20 @@
-"""Every check of the catalogue, and each of its comparisons."""
+"""All checks pass, and the modal series is far closer to its limit than their tolerance."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from impactlab.verification.catalogue import CATALOGUE
+from impactlab.verification.modal_series import (
+    BERNOULLI_CASES,
+    FINEST,
+    HISTORIES,
+    MIDDLE,
+    TIMOSHENKO_CASES,
+    solve_sheared,
+)
+from impactlab.verification.solutions.modal import solve, solve_timoshenko
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
@@ -16,3 +28,21 @@ def test_check(name):
         if not entry.passed
     ]
     assert not failing, "\n".join(failing)
+
+
+SERIES = {f"bernoulli-{beam}": (case, solve, solve) for beam, case in BERNOULLI_CASES.items()} | {
+    f"timoshenko-{beam}": (case, solve_sheared, solve_timoshenko)
+    for beam, case in TIMOSHENKO_CASES.items()
+}
+
+
+@pytest.mark.parametrize("name", HISTORIES)
+@pytest.mark.parametrize(("case", "used", "solve"), SERIES.values(), ids=SERIES)
+def test_series_is_converged(case, used, solve, name):
+    impact = replace(case.impact, velocity=case.velocities[-1])  # the hardest one
+    series = used(impact, case.duration)
+    fine = solve(impact, case.duration, modes=200, step=series.time[1] / 2)
+    tightest = HISTORIES[name][2] * (MIDDLE / FINEST) ** 2
+    time = np.linspace(0, case.duration, 401)
+    one, other = series.at(name, time), fine.at(name, time)
+    assert np.abs(one - other).max() < 0.1 * tightest * np.abs(other).max()

@@ -78,12 +78,12 @@ class Case(NamedTuple):
     steps: int
 
     def plain(self, shake: float = 0.0) -> plain_beam.Run:
-        """The plain solver's run, the velocity shaken by a share of itself."""
+        """Solve with the plain solver, the velocity changed by the share `shake`."""
         impact = replace(self.impact, velocity=self.impact.velocity * (1.0 + shake))
         return plain_beam.solve(impact, self.grid, self.dt, self.steps)
 
     def kernels(self) -> xr.Dataset:
-        """The kernels' run, a sample a step."""
+        """Solve with the kernels, one sample per step."""
         return il.simulate(self.impact, self.grid, duration=self.duration, samples=self.steps + 1)
 
 
@@ -98,12 +98,12 @@ def make_case(values: dict[str, Any], steps: int) -> Case:
 
 
 def difference(one: np.ndarray, other: np.ndarray, least: float = 0.0) -> float:
-    """Largest difference over the largest value of `other` (at least `least`)."""
+    """Return the largest difference over the largest value of `other` (at least `least`)."""
     return float(np.abs(one - other).max() / max(np.abs(other).max(), least))
 
 
 def growth(case: Case, run: plain_beam.Run) -> float:
-    """How much the plain solver's histories magnify a change of velocity."""
+    """Return the factor by which the plain solver's histories magnify a change of velocity."""
     shaken = case.plain(SHAKE)
     changes = (difference(getattr(shaken, name), getattr(run, name)) for name in HISTORIES)
     return max(changes) / SHAKE
@@ -127,7 +127,7 @@ def assert_same(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> None:
 
 
 def features(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> dict[str, bool]:
-    """What happened in a run, and what did not."""
+    """Return which features of the model a run shows."""
     material, deeper = case.impact.beam.material, np.diff(run.deepest) > 0
     return {
         "yields": bool(run.peeq.max() > 0),

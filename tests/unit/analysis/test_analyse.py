@@ -1,4 +1,4 @@
-"""Which analyses apply, counts of failures, and the way through netCDF."""
+"""The analyses that apply, counts of failures, and the way through netCDF."""
 
 from __future__ import annotations
 

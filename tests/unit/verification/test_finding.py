@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from impactlab.verification import catalogue
 from impactlab.verification.catalogue import CATALOGUE, run
 from impactlab.verification.finding import (
     Check,
@@ -127,3 +128,8 @@ def test_ctrl_c_is_no_outcome(monkeypatch):
     monkeypatch.setitem(CATALOGUE, "made_up", Check("made_up", "", "", check))
     with pytest.raises(KeyboardInterrupt):
         run("made_up")
+
+
+def test_every_check_has_a_name_of_its_own():
+    assert [check.name for check in catalogue._CHECKS] == list(CATALOGUE)
+    assert all(check.title and check.source for check in CATALOGUE.values())

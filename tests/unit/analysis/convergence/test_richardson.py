@@ -22,7 +22,7 @@ CELIK_COARSER = [18000, 4500, 980]
 
 
 def _spacings(cells: list[int]) -> list[float]:
-    """Of cells in 2-D."""
+    """Return the spacings from numbers of cells in 2-D."""
     return [count**-0.5 for count in cells]
 
 
