@@ -74,9 +74,9 @@ def apply_resolution(study: AnyStudy, found: xr.Dataset | None) -> AnyStudy:
     """
     if found is None or isinstance(study, FunctionStudy):
         return study
-    from impactlab.study.adaptive.recommendation import resolved
+    from impactlab.study.adaptive.recommendation import apply_recommendation
 
-    return resolved(study, found)
+    return apply_recommendation(study, found)
 
 
 def resolved_before(study: AnyStudy, folder: Path) -> AnyStudy | None:
