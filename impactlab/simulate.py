@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from impactlab.jit.compiler import precompile
-from impactlab.model.checks import integer, positive
-from impactlab.model.columns import anywhere, column
+from impactlab.model.checks import anywhere, column, integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import Value, flatten, with_values

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from impactlab.model.checks import instance, positive
-from impactlab.model.columns import anywhere
+from impactlab.model.checks import anywhere, instance, positive
 from impactlab.model.material import Material
 
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from impactlab.model.checks import integer, one_of, positive
-from impactlab.model.columns import anywhere
+from impactlab.model.checks import anywhere, integer, one_of, positive
 from impactlab.solver import RULES, SCHEMES
 
 _LEAST_FILTERED = 17

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from impactlab.model.checks import not_negative, number, positive
-from impactlab.model.columns import anywhere
+from impactlab.model.checks import anywhere, not_negative, number, positive
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from impactlab.model.columns import Column
+from impactlab.model.checks import Column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
 from impactlab.solver import RULES, SCHEMES

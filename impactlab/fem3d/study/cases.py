@@ -17,8 +17,7 @@ from distributed.system import MEMORY_LIMIT
 from impactlab.fem3d.solver import Cost, estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.model import cost
-from impactlab.model.checks import positive
-from impactlab.model.columns import column
+from impactlab.model.checks import column, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.paper import paper_impact

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.model.columns import Column, anywhere, column
+from impactlab.model.checks import Column, anywhere, column
 
 NAN = float("nan")
 

@@ -1,4 +1,4 @@
-"""Stronge's law as a kernel, against the closed forms and its own limits."""
+"""The laws of Hertz and Stronge as kernels, against the closed forms and their own limits."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from impactlab.solver.contact import hertz
 from impactlab.solver.contact.stronge import MEAN_PRESSURE, THETA, U_PLASTIC, curve
+from impactlab.verification.solutions import hertz as closed_form
 from impactlab.verification.solutions.stronge import StrongeImpact
 
 E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
@@ -69,3 +71,15 @@ def test_first_yield_is_at_a_mean_pressure_of_1_1_yield_stresses():
 def test_force_grows_with_indentation():
     forces = [at(x)[0] for x in np.geomspace(1e-3, 1e3, 400)]
     assert np.all(np.diff(forces) > 0)
+
+
+@pytest.mark.parametrize("delta", [1e-9, 2e-5, 1e-3])
+def test_force_and_a_way_back_that_is_the_way_there(delta):
+    F, K, delta_r, n = hertz.curve(delta, E, R, S_y, nu)
+    assert closed_form.stiffness(E, R) * delta**1.5 == pytest.approx(F, rel=1e-14)
+    assert K * (delta - delta_r) ** n == pytest.approx(F, rel=1e-14)
+    assert (delta_r, n) == (0.0, 1.5)
+
+
+def test_nothing_without_indentation():
+    assert hertz.curve(0.0, E, R, S_y, nu)[0] == 0.0
