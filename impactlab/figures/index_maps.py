@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from impactlab.figures import access, labels, measures, responses_grid, scales, style
 from impactlab.figures.indices import undefined
 from impactlab.figures.labels import display
-from impactlab.figures.measures import MORRIS, asked, parameters
+from impactlab.figures.measures import MORRIS, analysed, parameters
 from impactlab.figures.record import Figure
 
 _INDEX = "second_order"
@@ -31,7 +31,7 @@ def _second_order_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     return (
         _INDEX in analysis
         and analysis.sizes["parameter"] >= _FEWEST
-        and bool(asked(runs, analysis))
+        and bool(analysed(runs, analysis))
     )
 
 
@@ -40,14 +40,14 @@ def _second_order_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         "Share of the variance, in %, that two parameters bring together; columns are "
         f"numbered as the rows. Grey: zero lies within the {access.confidence(analysis)} "
         "interval. "
-        f"{access.missing_note(runs, asked(runs, analysis))}".strip()
+        f"{access.missing_note(runs, analysed(runs, analysis))}".strip()
     )
 
 
 @style.paper
 def _plot_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
     """Draw a panel per response, a cell per pair, all on one colour scale."""
-    shown = asked(runs, analysis)
+    shown = analysed(runs, analysis)
     listed = parameters(analysis)
     figure, axes = responses_grid.panels(shown, 12 + 4.6 * len(listed), beneath=14)
     values = {name: 100 * pairs(analysis[_INDEX].sel(response=name)) for name in shown}
@@ -134,23 +134,25 @@ SECOND_ORDER = Figure(
 def _morris_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Return whether the analysis has the mean magnitudes and the spread of elementary effects."""
     return (
-        "morris_mu_star" in analysis and "morris_sigma" in analysis and bool(asked(runs, analysis))
+        "morris_mu_star" in analysis
+        and "morris_sigma" in analysis
+        and bool(analysed(runs, analysis))
     )
 
 
 def _morris_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
-        f"{MORRIS.says} Above σ = µ* an effect changes its size or sign with the others or along "
-        "the range; below σ = 0.1 µ* it is nearly linear and additive. Lines: "
+        f"{MORRIS.meaning} Above σ = µ* an effect changes its size or sign with the others or "
+        "along the range; below σ = 0.1 µ* it is nearly linear and additive. Lines: "
         f"{access.confidence(analysis)} intervals of µ*. "
-        f"{access.missing_note(runs, asked(runs, analysis))}".strip()
+        f"{access.missing_note(runs, analysed(runs, analysis))}".strip()
     )
 
 
 @style.paper
 def _plot_morris(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
     """Draw a panel per response, a marker per parameter."""
-    figure, axes = responses_grid.panels(asked(runs, analysis), height=48)
+    figure, axes = responses_grid.panels(analysed(runs, analysis), height=48)
     for name, ax in axes.items():
         _plane(ax, runs, analysis, name)
     style.legend(figure)

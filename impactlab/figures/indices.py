@@ -11,7 +11,7 @@ from matplotlib.figure import Figure as MplFigure
 from matplotlib.ticker import FixedFormatter
 
 from impactlab.figures import access, labels, measures, responses_grid, scales, style
-from impactlab.figures.measures import Family, Measure, asked
+from impactlab.figures.measures import Family, Measure, analysed
 from impactlab.figures.record import Figure
 
 _THICK = 0.76
@@ -36,17 +36,17 @@ def index_bars(name: str, family: Family) -> Figure:
 
 def _bars_apply(family: Family, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Return whether the analysis has these indices, for responses of these runs."""
-    return family.given(analysis) and bool(asked(runs, analysis))
+    return family.given(analysis) and bool(analysed(runs, analysis))
 
 
 def _bars_caption(family: Family, runs: xr.Dataset, analysis: xr.Dataset) -> str:
     sentences = (
-        family.says,
+        family.meaning,
         _estimator(analysis, family),
         f"Lines on the bars: {access.confidence(analysis)} intervals.",
         _floor_words(analysis, family),
         _numerical_words(analysis, family),
-        access.missing_note(runs, asked(runs, analysis)),
+        access.missing_note(runs, analysed(runs, analysis)),
     )
     return " ".join(filter(None, sentences))
 
@@ -56,7 +56,7 @@ def _plot_bars(family: Family, runs: xr.Dataset, analysis: xr.Dataset) -> MplFig
     """Draw a panel per response, a row per parameter, a bar per measure, pale within the noise."""
     rows, bars = analysis.sizes["parameter"], len(family.measures_in(analysis))
     height = 10 + max(4.2, 1.4 * bars) * rows
-    figure, axes = responses_grid.panels(asked(runs, analysis), height, beneath=8)
+    figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
     for at, (name, ax) in enumerate(axes.items()):
         _bars(ax, analysis, family, name)
         undefined(ax, analysis, name, family.measures_in(analysis)[0].name)
@@ -165,7 +165,7 @@ def _by_samples(measure: Measure) -> str:
 def _convergence_applies(measure: Measure, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Return whether the analysis has the index from two sizes of the sample or more."""
     given = _by_samples(measure) in analysis and analysis.sizes[_SAMPLES] > 1
-    return given and bool(asked(runs, analysis))
+    return given and bool(analysed(runs, analysis))
 
 
 def _convergence_caption(measure: Measure, runs: xr.Dataset, analysis: xr.Dataset) -> str:
@@ -174,14 +174,14 @@ def _convergence_caption(measure: Measure, runs: xr.Dataset, analysis: xr.Datase
         f"{int(analysis[_SAMPLES].max())} base samples; bands: {access.confidence(analysis)} "
         "intervals, cut off outside −0.25 to 1.25. Indices that still drift beyond their bands "
         "at the right need more samples. "
-        f"{access.missing_note(runs, asked(runs, analysis))}".strip()
+        f"{access.missing_note(runs, analysed(runs, analysis))}".strip()
     )
 
 
 @style.paper
 def _plot_convergence(measure: Measure, runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
     """Draw a panel per response, a line with its band per parameter."""
-    figure, axes = responses_grid.panels(asked(runs, analysis), height=44)
+    figure, axes = responses_grid.panels(analysed(runs, analysis), height=44)
     for name, ax in axes.items():
         _lines(ax, analysis, _by_samples(measure), name)
         ax.set_xscale("log", base=2)

@@ -29,14 +29,14 @@ class Measure:
 class Family:
     """Measures of one method that are shown side by side.
 
-    title: heads the figure and the tables. axis: axis label of the numbers. says: their meaning, a
-    sentence or two. shares: True for shares of a whole.
+    title: heads the figure and the tables. axis: label of their axis. meaning: of the numbers, in
+    a sentence or two. shares: True for shares of a whole.
     """
 
     title: str
     measures: tuple[Measure, ...]
     axis: str
-    says: str
+    meaning: str
     shares: bool = True
 
     def given(self, analysis: xr.Dataset) -> bool:
@@ -148,7 +148,7 @@ def ranking(family: Family) -> Measure:
     return family.measures[1] if family is SOBOL else family.measures[0]
 
 
-def asked(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+def analysed(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """Return the responses of the runs that are in the sensitivity analysis."""
     return [name for name in responses(runs) if known(analysis, name)]
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from impactlab.figures import access, labels, measures
 from impactlab.figures.labels import display
-from impactlab.figures.measures import MORRIS, SOBOL, Family, Measure, asked
+from impactlab.figures.measures import MORRIS, SOBOL, Family, Measure, analysed
 from impactlab.report.page import Cell, Section, Table
 
 _FINE = 0.005
@@ -41,7 +41,7 @@ def tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Table
 
 def second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """Return one row per pair of parameters, one column per response; noise is grey."""
-    names, shown = measures.parameters(analysis), asked(runs, analysis)
+    names, shown = measures.parameters(analysis), analysed(runs, analysis)
     head = ["Pair", *(labels.sentence(labels.response(name)) for name in shown)]
     rows = []
     for first, second in combinations(range(len(names)), 2):
@@ -97,7 +97,7 @@ def numerical_warnings(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """Return one sentence per response and order with indices that numerical error may explain."""
     return [
         text
-        for name in asked(runs, analysis)
+        for name in analysed(runs, analysis)
         for measure in SOBOL.measures
         if measure.name in analysis
         for text in _lost(analysis, name, measure.name, measure.words)
@@ -109,7 +109,7 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset, family: Family, measure: Meas
     dummy = [f"dummy_{measure.name}"] if f"dummy_{measure.name}" in analysis else []
     head = ["Response", *(labels.sentence(labels.parameter(name)) for name in names)]
     rows = []
-    for response in asked(runs, analysis):
+    for response in analysed(runs, analysis):
         cells = _cells(runs, analysis, family, measure.name, response)
         cells += [Cell(_index(analysis, name, response)[0], "muted") for name in dummy]
         rows.append([named(analysis, response), *cells])
@@ -181,7 +181,7 @@ def _uncertainties(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     head = ["Response", "Numerical uncertainty", "Share of the variance that could be numerical"]
     head += [f"Indices of {order.words} may be off by up to" for order in orders]
     rows = []
-    for name in asked(runs, analysis):
+    for name in analysed(runs, analysis):
         found = analysis.sel(response=name)
         cells = [_largest(found, key, _percent) for key in _OF_RESPONSES]
         cells += [_largest(found, f"{order.name}_numerical", labels.number) for order in orders]

@@ -22,7 +22,7 @@ from impactlab.figures.measures import (
     SOBOL,
     Family,
     Index,
-    asked,
+    analysed,
 )
 from impactlab.report.indices import in_units, named, with_margin
 from impactlab.report.page import Cell, Table
@@ -46,7 +46,7 @@ def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
     head = ["Response", *(labels.sentence(labels.parameter(name)) for name in names)]
     rows = [
         [named(analysis, name), *_ranks(measures.index(analysis, measure.name, name))]
-        for name in asked(runs, analysis)
+        for name in analysed(runs, analysis)
     ]
     title = f"Ranks of the parameters by {family.title}, {measure.words}"
     explained = "noise: not told from zero or the dummy"
@@ -57,7 +57,7 @@ def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
 
 def sentences(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[str]:
     """Return one or two sentences per response, on significant indices alone."""
-    return [_sentence(runs, analysis, family, name) for name in asked(runs, analysis)]
+    return [_sentence(runs, analysis, family, name) for name in analysed(runs, analysis)]
 
 
 def _ranks(index: Index) -> list[Cell]:

@@ -20,7 +20,7 @@ from impactlab.figures.access import (
     varied,
 )
 from impactlab.figures.labels import Display, display
-from impactlab.figures.measures import asked
+from impactlab.figures.measures import analysed
 from impactlab.model.parameters import PARAMETERS
 from impactlab.report.page import Cell, Section, Table
 from impactlab.variables import attributes
@@ -127,7 +127,7 @@ def _imputed(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
     """Yield one sentence per response whose indices rest on values from a surrogate."""
     if "imputed_share" not in analysis:
         return
-    for name in asked(runs, analysis):
+    for name in analysed(runs, analysis):
         share = float(np.nan_to_num(analysis["imputed_share"].sel(response=name)))
         if share > 0:
             yield (

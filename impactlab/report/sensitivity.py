@@ -15,7 +15,7 @@ from impactlab.figures.measures import (
     SOBOL,
     SURROGATE,
     Family,
-    asked,
+    analysed,
 )
 from impactlab.report import indices, ranking
 from impactlab.report.page import Cell, Section, Table
@@ -38,7 +38,7 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset, file: str = "") -> list[Sec
     They are: indices, second order, convergence, ranking, other methods, surrogate. file: name of
     the file of all indices beside the page, "" for none.
     """
-    if not asked(runs, analysis):
+    if not analysed(runs, analysis):
         return []
     found = [family for family in RANKED if family.given(analysis)]
     return [
@@ -123,7 +123,7 @@ def _other(runs: xr.Dataset, analysis: xr.Dataset, family: Family, ranked: bool)
     return Section(
         name,
         family.title,
-        family.says,
+        family.meaning,
         [] if ranked else ranking.sentences(runs, analysis, family),
         figures=[figure],
         folded=indices.tables(runs, analysis, family),
@@ -133,7 +133,7 @@ def _other(runs: xr.Dataset, analysis: xr.Dataset, family: Family, ranked: bool)
 def _quality(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     head = ["Response", "Predictivity Q² on held-out runs", "Root mean square error"]
     rows = []
-    for name in asked(runs, analysis):
+    for name in analysed(runs, analysis):
         q2 = float(analysis["surrogate_q2"].sel(response=name))
         cell = Cell("undefined", "muted")
         if np.isfinite(q2):
@@ -154,7 +154,7 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """Return one sentence per response and order whose two estimates do not overlap."""
     found = []
     keys = np.array([labels.parameter(key) for key in measures.parameters(analysis)])
-    for name in asked(runs, analysis):
+    for name in analysed(runs, analysis):
         for order, label in _PAIRS:
             sampled = measures.index(analysis, order, name)
             fitted = measures.index(analysis, f"surrogate_{order}", name)
