@@ -1,4 +1,7 @@
-"""The section's fibres, its elastic interval and its energies (moments: tests/verification)."""
+"""A fibre against closed forms; a section's elastic interval and energies.
+
+Its moments are in tests/verification.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,13 @@ import pytest
 from impactlab.solver import RULES
 from impactlab.solver.energy import plastic_energies
 from impactlab.solver.section import bend as bend_row
-from impactlab.solver.section import make_section
+from impactlab.solver.section import (
+    dissipated_energy,
+    elastic_range,
+    make_section,
+    return_mapping,
+    stored_energy,
+)
 from impactlab.verification.solutions import quadrature
 
 HARDENINGS = [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9), (2e9, 3e9)]
@@ -99,3 +108,119 @@ def test_work_of_the_moment_is_stored_or_dissipated(cut, isotropic, kinematic):
     stored, dissipated = plastic_energies(section, plastic[np.newaxis], peeq[np.newaxis], 0)
     assert stored > 0
     assert stored + dissipated == pytest.approx(work, rel=1e-4)
+
+
+E, S_y = 210e9, 345e6
+YIELD_STRAIN = S_y / E
+FIBRE_HARDENINGS = [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9), (2e9, 40e9)]
+
+every_fibre_hardening = pytest.mark.parametrize(("H_i", "H_k"), FIBRE_HARDENINGS)
+
+
+def strain_fibre(strains, H_i, H_k):
+    """(stress, plastic strain, PEEQ) along a path from the virgin fibre, each of its shape."""
+    plastic, peeq, states = 0.0, 0.0, []
+    for strain in strains:
+        plastic, peeq = return_mapping(strain, plastic, peeq, E, S_y, H_i, H_k)
+        states.append((E * (strain - plastic), plastic, peeq))
+    return np.array(states).T
+
+
+def path(*turns, steps=200):
+    """Strains from 0 through the turns (in yield strains)."""
+    ends = np.array([0.0, *turns]) * YIELD_STRAIN
+    legs = [np.linspace(a, b, steps + 1)[1:] for a, b in pairwise(ends)]
+    return np.concatenate([[0.0], *legs])
+
+
+@every_fibre_hardening
+@pytest.mark.parametrize("share", [-0.999, -0.5, 0.0, 0.5, 0.999])
+def test_below_yield_nothing_flows(H_i, H_k, share):
+    assert return_mapping(share * YIELD_STRAIN, 0.0, 0.0, E, S_y, H_i, H_k) == (0.0, 0.0)
+
+
+@every_fibre_hardening
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_one_step_is_the_closed_form(H_i, H_k, sign):
+    """stress = S_y + H (strain - yield strain) E/(E + H), H the sum of the moduli."""
+    strain, H = 5 * YIELD_STRAIN, H_i + H_k
+    plastic, peeq = return_mapping(sign * strain, 0.0, 0.0, E, S_y, H_i, H_k)
+    stress = E * (sign * strain - plastic)
+    expected = S_y + E * H / (E + H) * (strain - YIELD_STRAIN)
+    assert stress == pytest.approx(sign * expected, rel=1e-13)
+    assert plastic == pytest.approx(sign * (strain - expected / E), rel=1e-13)
+    assert peeq == pytest.approx(abs(plastic), rel=1e-15)
+
+
+@every_fibre_hardening
+def test_one_step_is_many_steps(H_i, H_k):
+    once = strain_fibre([6 * YIELD_STRAIN, -4 * YIELD_STRAIN], H_i, H_k)[:, -1]
+    slowly = strain_fibre(path(6, -4), H_i, H_k)[:, -1]
+    assert slowly == pytest.approx(once, rel=1e-12)
+
+
+@every_fibre_hardening
+def test_after_a_slip_the_fibre_lies_on_its_yield_surface(H_i, H_k):
+    for strain in (3 * YIELD_STRAIN, -5 * YIELD_STRAIN):
+        plastic, peeq = return_mapping(strain, 2e-3, 7e-3, E, S_y, H_i, H_k)
+        distance = abs(E * (strain - plastic) - H_k * plastic) - (S_y + H_i * peeq)
+        assert distance == pytest.approx(0, abs=1e-6 * S_y)
+        assert peeq > 7e-3
+        assert return_mapping(strain, plastic, peeq, E, S_y, H_i, H_k) == pytest.approx(
+            (plastic, peeq), rel=1e-14
+        )
+
+
+def reverse_yield_stress(H_i, H_k):
+    """(stress at the turn, stress at which the fibre then yields in reverse)."""
+    stress, plastic, peeq = strain_fibre([6 * YIELD_STRAIN], H_i, H_k)[:, 0]
+    least, _ = elastic_range(plastic, peeq, E, S_y, H_i, H_k)
+    return stress, E * (least - plastic)
+
+
+def test_bauschinger_with_kinematic_hardening():
+    """The elastic range keeps its width of 2 S_y."""
+    stress, reverse = reverse_yield_stress(0.0, 20e9)
+    assert stress > 1.2 * S_y
+    assert reverse == pytest.approx(stress - 2 * S_y, rel=1e-12)
+
+
+def test_no_bauschinger_with_isotropic_hardening():
+    """The elastic range widens: the fibre yields in reverse at the opposite stress."""
+    stress, reverse = reverse_yield_stress(20e9, 0.0)
+    assert stress > 1.2 * S_y
+    assert reverse == pytest.approx(-stress, rel=1e-12)
+
+
+def test_cycles_shake_down_with_isotropic_hardening_alone():
+    """Between fixed strains it ends up elastic; with kinematic hardening it flows for ever."""
+    cycles = path(*[2, -2] * 40, steps=20)
+    isotropic, kinematic = strain_fibre(cycles, 60e9, 0.0)[2], strain_fibre(cycles, 0.0, 60e9)[2]
+    cycle = slice(-41, None, 40)
+    assert np.diff(isotropic[cycle])[0] < 1e-3 * YIELD_STRAIN
+    # the loop repeats itself: each half slips by (4 eps_y E - 2 S_y)/(E + H_k)
+    expected = 2 * (4 * YIELD_STRAIN * E - 2 * S_y) / (E + 60e9)
+    assert np.diff(kinematic[cycle])[0] == pytest.approx(expected, rel=1e-10)
+
+
+@every_fibre_hardening
+def test_elastic_range_ends_where_the_fibre_yields(H_i, H_k):
+    _, plastic, peeq = strain_fibre(path(4, -3, 5), H_i, H_k)[:, -1]
+    least, largest = elastic_range(plastic, peeq, E, S_y, H_i, H_k)
+    small = 1e-9 * YIELD_STRAIN
+    assert largest == pytest.approx(5 * YIELD_STRAIN, rel=1e-12)
+    for inside in (least + small, largest - small):
+        assert return_mapping(inside, plastic, peeq, E, S_y, H_i, H_k) == (plastic, peeq)
+    for outside in (least - small, largest + small):
+        assert return_mapping(outside, plastic, peeq, E, S_y, H_i, H_k)[1] > peeq
+
+
+@every_fibre_hardening
+def test_work_is_stored_or_dissipated(H_i, H_k):
+    """Around a path that ends at zero strain, the integral of stress over strain."""
+    strains = path(5, -4, 2, 0, steps=1000)
+    stress, plastic, peeq = strain_fibre(strains, H_i, H_k)
+    work = np.trapezoid(stress, strains)
+    stored = stored_energy(plastic[-1], E, H_k)
+    assert stored > 0
+    assert stored + dissipated_energy(peeq[-1], S_y, H_i) == pytest.approx(work, rel=1e-4)
