@@ -184,7 +184,7 @@ def _seen(paths: Iterable[Path]) -> Iterator[os.stat_result]:
 
 _STUDY = "study"
 """File beside the folders of shards that names the study file."""
-NO_STUDY = "its study does not exist any more"
+NO_STUDY = "its study does not exist"
 SET_ASIDE = "was damaged and set aside"
 UNFINISHED = "is unfinished"
 OTHER_RUNS = "holds no run of the study"

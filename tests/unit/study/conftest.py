@@ -1,4 +1,4 @@
-"""A small design, and what is asked of it."""
+"""A small design and its requested output."""
 
 import pytest
 import xarray as xr

@@ -1,4 +1,4 @@
-"""What is started here can be reached from here alone."""
+"""Dask clients listen on the loopback alone; Slurm jobs follow their profile."""
 
 import asyncio
 import gc
@@ -18,7 +18,7 @@ from impactlab.study.errors import StudyError
 
 
 def listening():
-    """The addresses at which this process and its children can be reached."""
+    """Return the addresses at which this process and its children listen."""
     here = psutil.Process()
     return {
         connection.laddr.ip
@@ -37,10 +37,10 @@ def test_scheduler_workers_and_dashboard_listen_on_the_loopback_alone(kind):
 
 
 @pytest.mark.parametrize(
-    ("error", "told"), [(TornadoTimeoutError("Timeout"), 0), (OSError("lost"), 1)]
+    ("error", "logged"), [(TornadoTimeoutError("Timeout"), 0), (OSError("lost"), 1)]
 )
-def test_what_dask_leaves_behind_at_its_end_is_not_told(caplog, error, told):
-    """A sender that still waits when the loop ends: its time runs out, and nobody asks for it."""
+def test_timeouts_at_the_end_of_dask_are_not_logged(caplog, error, logged):
+    """A sender that still waits when the loop ends times out, and nobody reads its error."""
     with Engine().client():
         pass
 
@@ -49,11 +49,11 @@ def test_what_dask_leaves_behind_at_its_end_is_not_told(caplog, error, told):
 
     asyncio.run(leave())
     gc.collect()
-    assert len([record for record in caplog.records if record.name == "asyncio"]) == told
+    assert len([record for record in caplog.records if record.name == "asyncio"]) == logged
 
 
 class SlurmHere(LocalCluster):
-    """Threads in the place of jobs."""
+    """A cluster of threads in place of jobs."""
 
     def scale(self, n=0, *, jobs=0):
         return super().scale(n or jobs)
@@ -120,7 +120,7 @@ def test_mistakes_name_file_and_key(profile, old, new, words):
     assert "workers.yaml" in str(caught.value)
 
 
-def test_without_slurm_it_is_said(profile, monkeypatch):
+def test_missing_slurm_is_an_error(profile, monkeypatch):
     pytest.importorskip("dask_jobqueue")
     monkeypatch.setenv("PATH", "")
     with pytest.raises(OSError, match="no command sbatch"):

@@ -1,4 +1,4 @@
-"""What a study costs is told before anything runs, and beyond a month asked for twice."""
+"""The cost of a study is estimated before anything runs, and compared with limits."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_a_small_grid_costs_the_sum_of_its_runs():
     assert found.wall(100) == found.largest > found.seconds / 100
 
 
-def test_runs_that_are_looked_at_stand_for_all(monkeypatch):
+def test_a_cost_sample_represents_all_runs(monkeypatch):
     study = grid({"nodes": range(11, 211, 2), "beam_depth": np.linspace(0.02, 0.03, 50).tolist()})
     sampled = estimate(study, 1)
     monkeypatch.setattr("impactlab.study.estimate._MOST", 10_000)
@@ -75,7 +75,7 @@ def test_runs_that_are_looked_at_stand_for_all(monkeypatch):
     assert estimate(study, 1) == whole
 
 
-def test_a_growing_sample_costs_what_it_may_come_to():
+def test_a_growing_sample_costs_its_largest_size():
     study = study_of_text("some", SAMPLE)
     found = estimate(study, 1)
     assert found.runs == 20_000
@@ -85,11 +85,11 @@ def test_a_growing_sample_costs_what_it_may_come_to():
     assert found.seconds == pytest.approx(less.seconds * 20_000 / 6144, rel=0.1)
 
 
-def test_room_is_that_of_the_answers():
+def test_memory_and_disk_are_those_of_the_answers():
     study = grid(NODES, store="store: {histories: true, samples: 50000}")
     cases = solver_named("impact").cases(design(study), np.arange(6))
     found = estimate(study, workers=2)
-    answers = 8 * 6 * 50_000 * 5  # five histories of eight bytes a number
+    answers = 8 * 6 * 50_000 * 5  # five histories, eight bytes per number
     assert found.disk / 2 == pytest.approx(answers, rel=0.01)
     of_the_kernels = 2 * memory(cases).max()
     assert found.memory - _PROGRAM == pytest.approx(2 * answers / 5 + of_the_kernels, rel=0.01)
@@ -110,7 +110,7 @@ def test_room_is_that_of_the_answers():
         ),
     ],
 )
-def test_what_takes_more_than_a_month_is_told_at_the_key_that_drives_it(study, key, tmp_path):
+def test_more_than_a_month_is_reported_at_the_key_that_drives_it(study, key, tmp_path):
     found = estimate(study, 1)
     assert found.seconds > MOST_TIME
     problem = exceeded_limits(found, tmp_path)[0]
@@ -118,7 +118,7 @@ def test_what_takes_more_than_a_month_is_told_at_the_key_that_drives_it(study, k
     assert "exceeds the limit of 30 days" in str(problem)
 
 
-def test_more_room_than_there_is_is_told(tmp_path):
+def test_more_memory_or_disk_than_available_is_reported(tmp_path):
     frugal = Estimate("a.yaml", 1, 1.0, 1e6, 1e6, 1.0, {}, "nodes", "store.samples")
     assert exceeded_limits(frugal, tmp_path / "not" / "made") == []
     (greedy,) = exceeded_limits(replace(frugal, memory=1e18), tmp_path)
@@ -128,7 +128,7 @@ def test_more_room_than_there_is_is_told(tmp_path):
     assert "1,000 PB of disk" in greedy.reason
 
 
-def test_what_a_study_has_on_disk_already_is_no_more_to_be_found(tmp_path, monkeypatch):
+def test_shards_already_on_disk_count_as_available(tmp_path, monkeypatch):
     monkeypatch.setattr("impactlab.study.estimate.disk_usage", lambda path: Namespace(free=1000))
     (tmp_path / "shards").mkdir()
     (tmp_path / "shards" / "some.nc").write_bytes(bytes(500))

@@ -1,4 +1,4 @@
-"""Fan-out: the same bits however the runs are spread, and none solved twice."""
+"""Execution: the same bits for any workers and batches, no run solved twice, balanced tasks."""
 
 from dataclasses import replace
 from threading import Barrier
@@ -47,7 +47,7 @@ def design(velocities=(0.5, 1.0, 5.0), nodes=(11, 21), **attrs):
 
 @pytest.fixture
 def solved(monkeypatch):
-    """How many runs were sent out, a study each."""
+    """Return the list of the numbers of runs submitted, one per study."""
     counts = []
     original = executing.solved
 
@@ -73,7 +73,7 @@ def test_runs_carry_the_labels_of_the_design(tmp_path):
 
 
 def test_workers_that_come_later_need_not_wait_for_a_task_to_end(tmp_path, monkeypatch):
-    monkeypatch.setattr(executing, "_RUNS", 1)  # a run a task
+    monkeypatch.setattr(executing, "_RUNS", 1)  # one run per task
     monkeypatch.setattr(executing, "_LOOK_AGAIN", 0.05)
     solve, all_at_once = impact.solve, Barrier(6)
 
@@ -93,7 +93,7 @@ def test_workers_that_come_later_need_not_wait_for_a_task_to_end(tmp_path, monke
 @pytest.mark.parametrize("engine", [Engine("threads", 3), Engine("processes", 2)])
 def test_same_bits_for_any_engine_and_batch_size(tmp_path, engine, monkeypatch):
     whole = execute(design(), tmp_path / "one", Engine("threads", 1))
-    monkeypatch.setattr(executing, "_RUNS", 1)  # a run a task
+    monkeypatch.setattr(executing, "_RUNS", 1)  # one run per task
     split = execute(design(), tmp_path / "two", engine)
     for name in whole.data_vars:
         assert whole[name].values.tobytes() == split[name].values.tobytes(), name
@@ -173,7 +173,7 @@ def test_workers_with_other_kernels_are_refused():
 
 
 def simulated(cost, speed, workers, values=20):
-    """Batches taken and learnt from one after the other by workers of this speed."""
+    """Take batches and learn from them one after the other, for workers of this speed."""
     batches = Batches(np.arange(cost.size), cost, values)
     taken = []
     while (runs := batches.take(workers)).size:
@@ -214,7 +214,7 @@ def test_a_dear_run_is_a_task_of_its_own():
 
 
 def test_sizes_follow_a_change_of_cost():
-    """Where a run costs ten times what it was said to, from the middle on."""
+    """Runs cost ten times their estimate from the middle on."""
     batches = Batches(np.arange(200_000), np.full(200_000, 3e5), 20)
     seconds = []
     while (runs := batches.take(2)).size:

@@ -1,4 +1,4 @@
-"""Answers are read from shards, column by column; what is lost meanwhile is an error, no hole."""
+"""Answers, progress and removable files of a study, from its shards."""
 
 import numpy as np
 import pytest

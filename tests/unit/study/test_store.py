@@ -1,4 +1,4 @@
-"""Shards: found again by content, and never when damaged."""
+"""Shards are found by content and never when damaged; runs by key; one process works at a time."""
 
 import os
 import shutil
@@ -183,7 +183,7 @@ def test_what_was_not_written_to_its_end_is_cleared(shards):
 
 
 def keys(*numbers):
-    """Some end in zero bytes, as hashes do."""
+    """Return keys, some of which end in zero bytes, as hashes do."""
     return np.array([number.to_bytes(2, "big") + bytes(14) for number in numbers], dtype=KEY)
 
 
@@ -227,7 +227,7 @@ with locked(Path(sys.argv[1])):
 
 @pytest.fixture
 def other(tmp_path):
-    """Another process at work in the folder."""
+    """Start another process at work in the folder."""
     command = [sys.executable, "-c", HOLD, str(tmp_path)]
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "held\n"

@@ -55,7 +55,7 @@ def found(tmp_path_factory):
     return recommend(study, folder, Engine(workers=2)), study
 
 
-def test_nobody_gets_between_two_trials(study, tmp_path, monkeypatch):
+def test_pilot_runs_lock_their_folder_throughout(study, tmp_path, monkeypatch):
     def looking(*_):
         raise OSError(holder(tmp_path / "trials"))
 
