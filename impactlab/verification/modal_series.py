@@ -29,7 +29,7 @@ from impactlab.verification.solutions import hertz, modal
 from impactlab.verification.solutions.modal import ModalSolution, solve
 
 Solve = Callable[[Impact, float], ModalSolution]
-"""The series of an impact over a duration (s)."""
+"""Function from an impact and a duration (s) to its modal series."""
 
 HISTORIES = {
     "contact_force": ("contact force", "N", 1e-3),

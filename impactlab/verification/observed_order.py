@@ -33,9 +33,9 @@ from impactlab.verification.finding import (
 ORDER, TOLERANCE = 2.0, 0.2
 NODES = (101, 201, 401, 801)
 HALVINGS = (1, 2, 4, 8, 16, 32)
-"""Time steps: those of a Courant number of 0.8, over these. The order is read from the last four:
-before, the grid's fastest modes, of omega = 2/dt at Courant number 1, are not yet in phase (their
-error is omega^3 dt^2/24 times the duration)."""
+"""Divisors of the time step at a Courant number of 0.8. The order is that of the last four: before,
+the grid's fastest modes, of omega = 2/dt at Courant number 1, are not yet in phase (their error is
+omega^3 dt^2/24 times the duration)."""
 IN_STEPS = "steps over those at a Courant number of 0.8"
 _SAMPLES = 301
 
@@ -82,7 +82,7 @@ ANSWERS: dict[str, Callable[[xr.Dataset, xr.Dataset], float]] = {
     "contact duration": _difference(lambda run: float(run.contact_duration)),
     "plastic dissipation": _difference(lambda run: float(run.plastic_dissipation)),
 }
-"""How far apart two runs are, by answer; histories as root mean square over the largest value."""
+"""Difference of two runs by answer; histories by the root mean square over the largest value."""
 _LOADING = tuple(ANSWERS)[:4]
 
 
@@ -108,7 +108,8 @@ CASES_IN_SPACE = {
         hardening(12.0), 64, 0.2e-3, (*_LOADING, "contact duration", "plastic dissipation")
     ),
 }
-"""All in as many steps. The points are many, because each fibre that yields bends M(kappa)."""
+"""All with the same number of time steps. The points are many, because each fibre that yields bends
+M(kappa)."""
 
 
 def check_observed_order() -> Finding:
@@ -155,7 +156,7 @@ def in_space(case: Case) -> list[xr.Dataset]:
     """Solve with successively more nodes, all with the time steps of the finest grid."""
     grids = [Discretisation(nodes=nodes, points=case.points) for nodes in NODES]
     largest = grids[-1].courant * critical_time_step(case.impact, grids[-1])
-    # a multiple of the intervals between samples, so that each sample falls on a step
+    # A multiple of the number of samples less one, so that each sample falls on a step.
     steps = math.ceil(case.duration / largest / (_SAMPLES - 1)) * (_SAMPLES - 1)
     return [
         simulate_in_steps(case.impact, grid, duration=case.duration, steps=steps, samples=_SAMPLES)

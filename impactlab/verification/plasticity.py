@@ -26,7 +26,7 @@ _HARDENING = {
 _POINTS = (2, 3, 4, 9, 21)
 _FINE = ("legendre", 100)
 _TURN = 6.0
-"""Over the curvature at first yield."""
+"""Largest curvature over that at first yield."""
 
 
 def check_moment_curvature() -> Finding:
@@ -105,13 +105,13 @@ def _exact_moments(beam: Beam, kappa: Floats) -> Floats:
 
 
 _RATIOS = (10.0, 30.0, 100.0, 300.0)
-"""Kinetic energy over the elastic energy that the beam can store."""
+"""Kinetic energy over the largest elastic energy of the beam."""
 _HEAVY = 100.0
 _MASSES = (_HEAVY, 20.0, 5.0)
-"""Striker over beam. The lighter, the more the momentum that the beam takes matters: 6 % at 5."""
+"""Mass of the striker over that of the beam, whose momentum matters more, the lighter: 6 % at 5."""
 _MODE_GRID = Discretisation(nodes=101, points=40, rule="layers")
 _YIELD_STRESS = 20e6
-"""In Pa: so low that the elastic deflection is small while the rotation is, too."""
+"""In Pa, so low that both the elastic deflection and the rotation are small."""
 
 
 def check_rigid_plastic_mode() -> Finding:

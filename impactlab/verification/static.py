@@ -101,11 +101,11 @@ def _sheared() -> list[Comparison]:
 
 
 _HINGE = 20e-3
-"""Mid-span deflection in m from which on the load stands still: 20/9 of 6.1 mm at first yield."""
+"""Mid-span deflection in m above which the load is constant: 20/9 of 6.1 mm at first yield."""
 _LARGEST = 30e-3
-"""Deflection in m up to which curves are compared; every run gets farther."""
+"""Deflection in m up to which curves are compared; every run exceeds it."""
 _COLLAPSE_DURATION = 1.0
-"""In s, 107 periods: the striker comes, stops, and has left after 0.86 s."""
+"""In s, 107 periods: the striker stops, and has left after 0.86 s."""
 
 
 def check_static_collapse() -> Finding:

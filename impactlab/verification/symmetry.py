@@ -271,7 +271,7 @@ def check_time_reversal() -> Finding:
     march.turn(state)
     solver = simulate(impact, _REVERSED_GRID, duration=_REVERSED_DURATION, samples=march.steps + 1)
     where = f"the paper's case, elastic, {march.steps} steps there and back"
-    # the force at the turning point belongs to the way back, that at first touch to the way there
+    # The force at the turn belongs to the way back, the force at first touch to the way there.
     found = [
         curve(
             "contact force of the march and of simulate()",
