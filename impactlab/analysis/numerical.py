@@ -40,7 +40,7 @@ def numerical(
 ) -> xr.Dataset:
     """Return the numerical uncertainty of each response, and of its indices; no unit.
 
-    runs: a sample; analysis: its indices; resolution, refinement: see adaptive.recommending and
+    runs: a sample; analysis: its indices; resolution, refinement: see adaptive.recommendation and
     adaptive.refining, of the same study; fit: see `sensitivity.analysis`.
 
     Returns of a resolution numerical_uncertainty (response), relative, the worst over the corner
