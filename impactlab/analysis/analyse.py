@@ -51,8 +51,10 @@ def analyse(
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
     attribute `analyses` lists the wanted ones (without it: all). resolution, refinement: results of
     adaptive.recommendation and adaptive.refining for this study, which add the numerical
-    uncertainty of sensitivity indices (see `numerical`). Returns the variables that the applying modules
-    document, on `response` and the dimensions that they leave, with the attributes of the runs.
+    uncertainty of sensitivity indices (see `numerical`). Returns the variables that the applying
+    analyses document, on `response` and the dimensions that they leave, with the attributes of the
+    runs.
+
     Raises ValueError when the runs contradict their attributes.
     """
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
