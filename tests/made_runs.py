@@ -1,4 +1,4 @@
-"""Runs and their analyses made up after the data contract: of plausible size, not physics."""
+"""Made-up runs and analyses in the form of stored ones: of plausible size, not physics."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _fixed(varied: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def design_of(varied: Mapping[str, Any], **attrs: Any) -> xr.Dataset:
-    """A dataset of coordinates with the contract's attributes."""
+    """Return a dataset of coordinates with the attributes of a design."""
     names = [name for name in varied if name != "run"]
     given = {"varied": names, "responses": list(RESPONSES), "history_samples": 400} | ATTRIBUTES
     title = f"The {attrs['study']} study"
@@ -40,7 +40,7 @@ def design_of(varied: Mapping[str, Any], **attrs: Any) -> xr.Dataset:
 
 
 def answers(design: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Every response, smooth in velocity, yield stress, modulus and nodes, in SI."""
+    """Return every response, smooth in velocity, yield stress, modulus and nodes, in SI."""
     whole = xr.DataArray(np.empty(tuple(design.sizes.values())), dims=tuple(design.sizes))
     velocity = design["velocity"]
     size = (design["beam_yield_stress"] / 345e6) ** 0.1 * (design["beam_youngs_modulus"] / 210e9)
@@ -78,13 +78,14 @@ def answers(design: xr.Dataset) -> dict[str, xr.DataArray]:
 
 
 def with_answers(design: xr.Dataset) -> xr.Dataset:
+    """Return the runs of a design, with every response and no failures."""
     found = answers(design)
     status = xr.zeros_like(found["peak_force"], dtype=np.int32)
     return described(design.assign(found | {"status": status}))
 
 
 def with_histories(runs: xr.Dataset) -> xr.Dataset:
-    """A pulse and a smaller one after a gap; PEEQ around mid-span."""
+    """Add a pulse and a smaller one after a gap, and PEEQ around mid-span."""
     time = xr.DataArray(np.linspace(0.0, 4e-3, 401), dims="time")
     x = xr.DataArray(np.linspace(0.0, 0.78, 201), dims="x")
     z = xr.DataArray(np.linspace(-0.0139, 0.0139, 9), dims="z")
@@ -108,7 +109,7 @@ def with_histories(runs: xr.Dataset) -> xr.Dataset:
 
 
 def flags(codes: xr.DataArray, *names: str) -> xr.DataArray:
-    """Verdicts with CF flags; the first is the sound one."""
+    """Return verdicts with CF flags; the first is the sound one."""
     attrs = {
         "flag_values": np.arange(len(names), dtype=np.int8),
         "flag_meanings": " ".join(names),
@@ -119,7 +120,7 @@ def flags(codes: xr.DataArray, *names: str) -> xr.DataArray:
 
 
 def indices(runs: xr.Dataset, parameters: list[str]) -> xr.Dataset:
-    """71 % from the velocity, 12 % from the yield stress, a little noise below zero."""
+    """Return indices: 71 % from the velocity, 12 % from the yield stress, noise below zero."""
     count = len(RESPONSES)
     first = np.tile([0.71, 0.12, -0.01, 0.005], (count, 1))
     total = np.tile([0.80, 0.19, 0.02, 0.01], (count, 1))
@@ -144,7 +145,7 @@ def indices(runs: xr.Dataset, parameters: list[str]) -> xr.Dataset:
 
 
 def surrogates(runs: xr.Dataset) -> dict[str, Any]:
-    """Tests on every fifth run, 1 % off; none of the constant response."""
+    """Return tests on every fifth run, 1 % off, but of the constant response."""
     constant = xr.DataArray([name == "number_of_contacts" for name in RESPONSES], dims="response")
     tested = runs[list(RESPONSES)].isel(run=slice(0, None, 5)).to_array("response")
     off = 1.0 + 0.01 * (-1.0) ** tested["run"]

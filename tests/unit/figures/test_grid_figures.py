@@ -15,7 +15,8 @@ from impactlab.solver.contact import LAWS
 from impactlab.verification.solutions.shear import impact_share
 
 NONE = xr.Dataset()
-LAWS_FIGURE = CATALOGUE["contact_laws"]
+LAWS_FIGURE, SHEAR_FIGURE = CATALOGUE["contact_laws"], CATALOGUE["shear"]
+DEPTHS = np.array([0.01, 0.02, 0.04, 0.08])
 
 
 def _look(line):
@@ -26,9 +27,7 @@ def test_every_law_has_a_curve_of_its_own_look_in_every_panel(laws_study):
     for ax in LAWS_FIGURE.plot(*laws_study).axes:
         lines = [line for line in ax.lines if not str(line.get_label()).startswith("_")]
         assert len(lines) == len(LAWS)
-        looks = [
-            (line.get_color(), line._unscaled_dash_pattern, line.get_marker()) for line in lines
-        ]
+        looks = [_look(line) for line in lines]
         assert all(one != other for one, other in combinations(looks, 2))
 
 
@@ -57,11 +56,6 @@ def test_it_needs_three_laws_on_a_grid(laws_study):
     assert LAWS_FIGURE.applies(runs, analysis)
     assert not LAWS_FIGURE.applies(runs.isel(contact=slice(2)), analysis)
     assert not LAWS_FIGURE.applies(runs.isel(velocity=[0]), analysis)
-
-
-NONE = xr.Dataset()
-SHEAR_FIGURE = CATALOGUE["shear"]
-DEPTHS = np.array([0.01, 0.02, 0.04, 0.08])
 
 
 def _curve(ax, label):
