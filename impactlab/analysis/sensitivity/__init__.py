@@ -1,6 +1,6 @@
-"""What the responses of a sample depend on, and how far the answer is to be trusted.
+"""Sensitivity indices of the responses of a sample, and verdicts on them.
 
-One method a file, each a line in `methods`; `indices` puts them to a study's runs.
+Each method is a file with its record `METHOD`; `indices` has the registry.
 """
 
 from impactlab.analysis.sensitivity.indices import analysis, applies

@@ -47,7 +47,7 @@ def check(sample: Sample) -> None:
 
 
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
-    """Indices of one response and half-widths of their intervals, by variable name.
+    """Return indices of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,), finite and varying. NaN for a parameter of which a class holds one value of
     the response alone: SALib takes such a class for one without influence.
@@ -70,13 +70,13 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
 
 
 def classes(runs: int) -> int:
-    """Into how many classes of equal numbers the values of a parameter go, as in SALib."""
+    """Return the number of classes of a parameter's values, as in SALib."""
     exponent = 2.0 / (7.0 + np.tanh((1500.0 - runs) / 500.0))
     return round(min(int(np.ceil(runs**exponent)), 48))
 
 
 def _salib(column: Array, outputs: Array, edges: Array, places: Array) -> Array:
-    """Delta with its bias, NaN where a class has no density; and the first order.
+    """Return delta with its bias, NaN where a class has no density, and the first order.
 
     edges: of the classes, in ranks; places: (GRID,), where densities are compared.
     """
@@ -88,7 +88,7 @@ def _salib(column: Array, outputs: Array, edges: Array, places: Array) -> Array:
 
 
 def resampled(inputs: Array, outputs: Array, edges: Array, places: Array) -> Array:
-    """The same of all parameters, (parameter, 2); NaN where a resample does not vary.
+    """Return both of all parameters, (parameter, 2); NaN where a resample does not vary.
 
     inputs: (runs, parameters). Sums over the classes are sums over stretches of sorted runs.
     """
@@ -108,7 +108,9 @@ def resampled(inputs: Array, outputs: Array, edges: Array, places: Array) -> Arr
 
 
 def _density(outputs: Array, starts: npt.NDArray[np.intp], places: Array) -> Array:
-    """Of each class of outputs (runs,), which begin at `starts`, at the places: (places, classes).
+    """Return the density of each class of outputs at the places, (places, classes).
+
+    outputs: (runs,), sorted by class; starts: where the classes begin.
 
     Gaussian kernels of Silverman's width, as scipy.stats.gaussian_kde has them; NaN for a class
     that does not vary.

@@ -41,20 +41,20 @@ def check(sample: Sample) -> None:
     sample.expect(points * curves, f"{curves} curves of {points} points")
     if points <= 4 * harmonics**2:
         raise ValueError(
-            f"{sample.study}: {points} points a curve are too few for {harmonics} harmonics: "
+            f"{sample.study}: {points} points per curve are too few for {harmonics} harmonics: "
             f"take more than {4 * harmonics**2}"
         )
 
 
 def varying(outputs: Array, sample: Sample) -> list[Array]:
-    """The outputs that have to vary: each curve is divided by its own variance."""
+    """Return the curves, each of which has to vary: it is divided by its own variance."""
     return list(_curves(outputs, sample))
 
 
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
-    """Indices of one response and half-widths of their intervals, by variable name.
+    """Return indices of one response and half-widths of their intervals, by variable name.
 
-    outputs: (runs,), a curve a parameter and the dummy's last, finite and varying.
+    outputs: (runs,), one curve per parameter and the dummy's last, finite and varying.
     """
     curves, harmonics = _curves(outputs, sample), sample.number("harmonics")
     found = np.array([_orders(curve, harmonics) for curve in curves]).T
@@ -77,7 +77,7 @@ def _curves(outputs: Array, sample: Sample) -> Array:
 
 
 def _orders(curve: Array, harmonics: int) -> tuple[float, float]:
-    """First and total order from one curve, whose parameter has SALib's frequency.
+    """Return first and total order from one curve, whose parameter has SALib's frequency.
 
     NaN where it does not vary, as half of a curve may.
     """
@@ -89,7 +89,7 @@ def _orders(curve: Array, harmonics: int) -> tuple[float, float]:
 
 
 def _half(curve: Array, start: int) -> Array:
-    """Half of a closed curve, from a place on."""
+    """Return half of a closed curve, beginning at `start`."""
     return np.roll(curve, -start)[: math.ceil(curve.size / 2)]
 
 

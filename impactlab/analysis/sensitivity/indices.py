@@ -41,25 +41,25 @@ METHODS: Mapping[str, SensitivityMethod] = {
 """By their names in study files."""
 
 Answer = tuple[list[SensitivityVerdict], float, dict[str, Array]]
-"""What is said of a response, share of its runs that a surrogate supplied, and indices if any."""
+"""Verdicts on a response, share of its runs that a surrogate supplied, and indices if any."""
 
 
 def applies(runs: xr.Dataset) -> bool:
-    """Whether the runs are a sample of one of the methods."""
+    """Return True if the runs are a sample of one of the methods."""
     return runs.attrs.get("method") in METHODS
 
 
 def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
-    """Sensitivity indices of every response, by the method that the sample was drawn for.
+    """Return sensitivity indices of every response, by the method the sample was drawn for.
 
     fit: makes the surrogate that supplies failed runs where the study asks for it
     (`failed_runs: impute`).
 
-    Returns what the method's module lists, on (response, *dims), with <name>_interval, the
-    half-width of the bootstrap interval; sensitivity_verdict, the worst that is to be said;
-    sensitivity_remarks, all of it; and imputed_share (response).
+    Returns the indices of the method, on (response, *dims), with <name>_interval, the half-width
+    of the bootstrap interval; sensitivity_verdict, the worst verdict; sensitivity_remarks, all of
+    them; and imputed_share (response).
     `parameter` holds the varied parameters, or their groups. Indices are NaN where the verdict
-    gives none. Raises ValueError when the runs are not the sample that their attributes tell of.
+    gives none. Raises ValueError when the runs are not the sample that their attributes describe.
     """
     sample, method = Sample.of(runs), METHODS[str(runs.attrs["method"])]
     method.check(sample)
@@ -90,7 +90,7 @@ _IMPUTED = {"long_name": "share of runs whose value a surrogate supplied", "unit
 def _answer(
     response: str, outputs: Array, sample: Sample, method: SensitivityMethod, fit: Fit
 ) -> Answer:
-    """Of one response; outputs: (runs,), NaN where a run failed."""
+    """Analyse one response; outputs: (runs,), NaN where a run failed."""
     share = 0.0
     if np.isnan(outputs).any() and sample.policy == "impute":
         if not can_impute(outputs, sample):
@@ -127,16 +127,16 @@ def _coordinates(
 Predict = Callable[[Array], Array]
 """From places (runs, parameters) in the unit cube to values (runs,)."""
 Fit = Callable[[Array, Array, int], Predict]
-"""Fits a surrogate to places (runs, parameters) in the unit cube, values (runs,), and a seed."""
+"""From places (runs, parameters) in the unit cube, values (runs,), and a seed to a surrogate."""
 
 MOST_IMPUTED = 0.2
-"""Share of runs that may be supplied at most."""
+"""Largest share of runs that may be supplied."""
 FEWEST_PER_PARAMETER = 10
-"""Good runs that a surrogate needs for each parameter."""
+"""Good runs that a surrogate needs per parameter."""
 
 
 def can_impute(outputs: Array, sample: Sample) -> bool:
-    """Whether enough runs are left to supply the others."""
+    """Return True if enough runs are left to supply the others."""
     gaps = int(np.isnan(outputs).sum())
     good = outputs.size - gaps
     return gaps <= MOST_IMPUTED * outputs.size and good >= FEWEST_PER_PARAMETER * len(
@@ -145,7 +145,10 @@ def can_impute(outputs: Array, sample: Sample) -> bool:
 
 
 def imputed(outputs: Array, sample: Sample, fit: Fit, response: str) -> Array:
-    """Outputs (runs,) with NaN replaced by what the surrogate predicts there."""
+    """Return outputs (runs,) with the surrogate's predictions in the place of NaN.
+
+    A mean would take away variance; the share of supplied runs is stored beside the indices.
+    """
     gaps = np.isnan(outputs)
     if not gaps.any():
         return outputs
@@ -158,10 +161,10 @@ def imputed(outputs: Array, sample: Sample, fit: Fit, response: str) -> Array:
 
 
 def unit_ranks(inputs: Array) -> Array:
-    """Places (runs, parameters) in the open unit cube: the share of runs below each value.
+    """Return places (runs, parameters) in the open unit cube: the share of runs below each value.
 
-    Of a sample as even as those of sensitivity analyses, the probability to 1/runs, whatever the
-    distribution.
+    In a sample as even as those of sensitivity analyses, this is the probability to 1/runs,
+    whatever the distribution.
     """
     return np.asarray((rankdata(inputs, axis=0) - 0.5) / len(inputs))
 
@@ -187,20 +190,20 @@ class Row:
 
 
 def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
-    """What of an analysis is sensitivity: indices, their intervals and verdicts; or nothing."""
+    """Return the sensitivity variables of an analysis: indices, intervals and verdicts."""
     wanted = [name for name in analysis.data_vars if _is_index(analysis[name]) or name in _BESIDE]
     return analysis[wanted]
 
 
 def table_rows(analysis: xr.Dataset) -> Iterator[Row]:
-    """Every index of every response; of a pair of parameters once. None without a sample."""
+    """Yield every index of every response; that of a pair of parameters once."""
     for name, array in sensitivity_variables(analysis).data_vars.items():
         if not str(name).endswith("_interval") and name not in _BESIDE:
             yield from _rows(analysis, array)
 
 
 def write_csv(analysis: xr.Dataset, path: Path) -> None:
-    """Write the rows under their names, in UTF-8; an empty cell stands for what is not given."""
+    """Write the rows under their names, in UTF-8; missing values are empty cells."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")

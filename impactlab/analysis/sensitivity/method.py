@@ -1,4 +1,10 @@
-"""Samples, the record of an index and of a method, and the bootstrap that methods share."""
+"""The sample under analysis, records of an index and of a method, and the bootstrap.
+
+The bootstrap resamples functions of means by matrix products: the mean over a resample is the mean
+weighted by how often each row was drawn, so that all resamples together are one product of counts
+(resamples, rows) by rows (rows, columns). Efron and Tibshirani (1993), An Introduction to the
+Bootstrap, sections 6.2 and 20.2.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +29,7 @@ POLICIES = ("fail", "impute")
 
 @dataclass(frozen=True)
 class Sample:
-    """How the sample was drawn and how its indices are to be estimated.
+    """A sample, and the settings of its indices.
 
     groups: the group of each parameter; empty where each stands for itself. inputs: (runs,
     parameter), in SI units and in the order of the runs. settings: the attributes of the runs.
@@ -36,7 +42,7 @@ class Sample:
 
     @classmethod
     def of(cls, runs: xr.Dataset) -> Sample:
-        """From the coordinates and attributes of a sample study's runs."""
+        """Return the sample of runs, from their coordinates and attributes."""
         names = listed(runs, "varied")
         ordered = runs.sortby("run")
         return cls(
@@ -48,12 +54,12 @@ class Sample:
 
     @property
     def factors(self) -> tuple[str, ...]:
-        """What has indices: the groups in order of appearance, or the parameters."""
+        """Names of the indices: groups in order of appearance, or parameters."""
         return tuple(dict.fromkeys(self.groups or self.parameters))
 
     @property
     def confidence(self) -> float:
-        """Of the intervals, in (0, 1)."""
+        """Confidence level of the intervals, in (0, 1)."""
         return float(self.settings.get("confidence", CONFIDENCE))
 
     @property
@@ -63,10 +69,10 @@ class Sample:
 
     @property
     def policy(self) -> str:
-        """What to do about failed runs. Raises ValueError for a word that has no meaning."""
+        """Policy for failed runs. Raises ValueError for an unknown one."""
         policy = str(self.settings.get("failed_runs", POLICIES[0]))
         if policy not in POLICIES:
-            raise ValueError(f"{self.study}: failed_runs = {policy!r}, but may be fail or impute")
+            raise ValueError(f"{self.study}: failed_runs = {policy!r}: choose from fail, impute")
         return policy
 
     @property
@@ -75,37 +81,36 @@ class Sample:
         return f"the study {str(self.settings.get('study', '?'))!r}"
 
     def number(self, setting: str) -> int:
-        """A whole number that the method needs. Raises ValueError where it is absent."""
+        """Return a whole number that the method needs. Raises ValueError where it is absent."""
         if setting not in self.settings:
             raise ValueError(
-                f"the runs of {self.study} do not say their {setting}: solve the study again"
+                f"the runs of {self.study} have no attribute {setting}: solve the study again"
             )
         return int(self.settings[setting])
 
     def expect(self, runs: int, words: str) -> None:
-        """Raises ValueError when the number of runs is not that of the sample; words: why so."""
+        """Raises ValueError unless the sample has this number of runs; words: where it is from."""
         if len(self.inputs) != runs:
             raise ValueError(
-                f"the runs of {self.study} number {len(self.inputs)}, but {words} make {runs}: "
-                "solve the study again"
+                f"{self.study} has {len(self.inputs)} runs, but {words} make {runs}: solve it again"
             )
 
     def ungrouped(self) -> None:
         """Raises ValueError where groups are stated for a method that has none."""
         if self.groups:
             raise ValueError(
-                f"{self.study}: the method {self.settings['method']!r} has no groups: take them "
-                "out, or use sobol or morris"
+                f"{self.study}: the method {self.settings['method']!r} has no groups: remove them, "
+                "or use sobol or morris"
             )
 
     def rng(self, *purpose: str) -> np.random.Generator:
-        """A stream of its own for each purpose, such as a response, whatever the order."""
+        """Return the random stream of a purpose, such as a response, independent of all others."""
         key = tuple("\0".join(purpose).encode())
         seed = self.number("seed")
         return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
 
     def half_width(self, replicates: Array) -> Array:
-        """Of the interval, from bootstrap replicates (resamples, ...) by their deviation.
+        """Return half-widths of intervals from bootstrap replicates (resamples, ...).
 
         NaN where a replicate is: a resample without variance has no index.
         """
@@ -137,13 +142,13 @@ class Index:
     comment: str = ""
 
     def attributes(self) -> dict[str, object]:
-        """Of its variable."""
+        """Return the attributes of its variable."""
         attrs: dict[str, object] = {"long_name": self.long_name, "estimator": self.estimator}
         attrs |= {"units": self.units} if self.units else {}
         return attrs | ({"comment": self.comment} if self.comment else {})
 
     def interval_attributes(self, sample: Sample) -> dict[str, object]:
-        """Of the variable of its half-width."""
+        """Return the attributes of the variable of its half-width."""
         words = f"half-width of the {100 * sample.confidence:g} % interval of the {self.long_name}"
         own = {"confidence": sample.confidence, "resamples": sample.resamples}
         return self.attributes() | {"long_name": words} | own
@@ -155,7 +160,7 @@ def index_variables(
     sample: Sample,
     sizes: Mapping[str, int],
 ) -> Stored:
-    """Dataset variables from one mapping of indices a response; an empty one stands for NaN."""
+    """Return dataset variables from one mapping of indices per response; an empty one is NaN."""
     variables: Stored = {}
     for name, index in indices.items():
         gap = np.full([sizes[dim] for dim in index.dims], np.nan)
@@ -169,18 +174,21 @@ def index_variables(
 
 
 def dummy_column(runs: int, rng: np.random.Generator) -> Array:
-    """A Latin hypercube in one dimension, (runs,), in the open interval (0, 1)."""
+    """Return values of a parameter that the model never saw, (runs,): its indices are noise.
+
+    A Latin hypercube in one dimension, in the open interval (0, 1).
+    """
     return (rng.permutation(runs) + 0.5) / runs
 
 
 Estimator = Callable[[Array], Mapping[str, Array]]
 """From means (..., columns) to indices (..., *dims)."""
 _CELLS = 2_000_000
-"""Counts held at a time: 16 MB, and about three times that while they are drawn."""
+"""Number of counts held at a time: 16 MB, and about three times that while they are drawn."""
 
 
 def counts(rows: int, resamples: int, rng: np.random.Generator) -> Iterator[Array]:
-    """How often each row is drawn: (some resamples, rows), of `resamples` in all.
+    """Yield how often each row is drawn: (some resamples, rows), of `resamples` in all.
 
     The draws do not depend on how many are held at a time.
     """
@@ -195,7 +203,7 @@ def counts(rows: int, resamples: int, rng: np.random.Generator) -> Iterator[Arra
 def half_widths(
     columns: Array, estimator: Estimator, sample: Sample, rng: np.random.Generator
 ) -> dict[str, Array]:
-    """Half-widths of the intervals of all that the estimator gives, by `<name>_interval`.
+    """Return half-widths of intervals of everything the estimator gives, by `<name>_interval`.
 
     columns: (rows, columns), resampled by row.
     """

@@ -45,13 +45,13 @@ def check(sample: Sample) -> None:
     steps = (moved[:, :, None, :] == members).all(axis=-1)
     if not (steps.sum(axis=1) == 1).all():
         raise ValueError(
-            f"the runs of {sample.study} are not Morris' trajectories, each step of which moves "
+            f"the runs of {sample.study} are not Morris' trajectories, each step of which changes "
             "one parameter or group: solve the study again"
         )
 
 
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
-    """Elementary effects of one response, by variable name.
+    """Return elementary effects of one response, by variable name.
 
     outputs: (runs,), trajectory by trajectory, finite and varying.
     """
@@ -80,7 +80,7 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
 
 
 def levels(inputs: Array) -> Array:
-    """The number of the level of each value, (runs, parameter), from 0 on.
+    """Return the number of the level of each value, (runs, parameter), from 0 on.
 
     SALib sees a step in every change; the same level may come out of a quantile with another last
     digit.

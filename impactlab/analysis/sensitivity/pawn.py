@@ -51,7 +51,7 @@ def check(sample: Sample) -> None:
 
 
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
-    """Indices of one response and half-widths of their intervals, by variable name.
+    """Return indices of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,), finite and varying.
     """
@@ -73,7 +73,7 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
 
 
 def _half_widths(inputs: Array, outputs: Array, sample: Sample, rng: np.random.Generator) -> Array:
-    """Of the medians, (parameter,): runs are drawn anew, the limits of the slides stay."""
+    """Return those of the medians, (parameter,): runs are drawn anew between the same limits."""
     order = np.argsort(outputs, kind="stable")
     last = last_of_equals(outputs[order])
     members = [slides(column)[order] for column in inputs.T]
@@ -86,18 +86,18 @@ def _half_widths(inputs: Array, outputs: Array, sample: Sample, rng: np.random.G
 
 
 def slides(column: Array) -> npt.NDArray[np.bool_]:
-    """Which runs lie in which slide, bool (runs, slides); SALib leaves out the largest value."""
+    """Return which runs lie in which slide, (runs, slides); SALib omits the largest value."""
     limits = np.quantile(column, np.linspace(0, 1, SLIDES + 1))
     return (column[:, None] >= limits[:-1]) & (column[:, None] < limits[1:])
 
 
 def last_of_equals(ordered: Array) -> npt.NDArray[np.intp]:
-    """The places of the last of each stretch of equal outputs, at which distributions step."""
+    """Return the last place of each stretch of equal outputs, where distributions step."""
     return np.flatnonzero(np.diff(ordered, append=np.inf))
 
 
 def distances(weights: Array, members: npt.NDArray[np.bool_], last: npt.NDArray[np.intp]) -> Array:
-    """Kolmogorov-Smirnov distance of each slide from all runs, (slides,).
+    """Return the Kolmogorov-Smirnov distance of each slide from all runs, (slides,).
 
     weights: (runs,), how often each run counts, by rising output; members: bool (runs, slides) in
     the same order; last: of `last_of_equals`. NaN where empty.
@@ -110,7 +110,7 @@ def distances(weights: Array, members: npt.NDArray[np.bool_], last: npt.NDArray[
 
 
 def _median(values: Array) -> float:
-    """Of the slides that are not empty, as in SALib."""
+    """Return the median over the slides that are not empty, as in SALib."""
     return float(np.nanmedian(values))
 
 

@@ -1,4 +1,4 @@
-"""What other grids do to Sobol indices, from the first base samples solved on each of them.
+"""Change of Sobol indices on other grids, from the first base samples solved on each of them.
 
 All grids see the same points of the sample, so that the sampling error of an index nearly cancels
 in its change from grid to grid; what is left of it is bootstrapped, the base samples of all grids
@@ -25,7 +25,7 @@ ORDERS = ("first_order", "total_order")
 ENDINGS = ("", "_change", "_change_interval")
 USED, FINER, COARSER, MORE_POINTS = "used", "finer", "coarser", "more_points"
 TAIL_SHARE = 0.25
-"""Of the variance, that one run in a hundred may carry at most (of a normal response: 0.09).
+"""Largest share of the variance that one run in a hundred may carry (normal response: 0.09).
 
 Above, single runs decide, such as those in which a further impact falls into the first contact:
 which of them another grid moves, and whether it moves one, so few base samples cannot tell.
@@ -38,7 +38,7 @@ ByGrid = Mapping[str, Array]
 
 
 def uncertainty(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
-    """How far the indices of the used grid may lie from those of no spacing and many points.
+    """Return how far the indices of the used grid may lie from those in the limit.
 
     refinement: see adaptive.refining. fit: makes the surrogate that supplies failed runs where the
     study asks for it.
@@ -46,7 +46,7 @@ def uncertainty(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
     Returns for each of ORDERS, on (response, parameter) and without unit: <order>, that distance;
     <order>_change, from the used to the finer grid, and <order>_change_interval, the half-width of
     its interval. NaN where a grid gives no index, and where few runs carry the variance
-    (TAIL_SHARE). Raises ValueError when the runs are not the sample that their attributes tell of.
+    (TAIL_SHARE). Raises ValueError when the runs are not the sample that their attributes describe.
 
     The distance is the change to the finer grid and as much again from there to the limit (first
     order) times SAFETY_DOUBTFUL, or SAFETY_CREDIBLE where the coarser grid, too, shows that the
@@ -75,7 +75,7 @@ def uncertainty(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
 def _of_response(
     name: str, outputs: Array, spacings: Mapping[str, float], sample: Sample, fit: Fit
 ) -> dict[str, Array]:
-    """Of one response; empty where a grid gives no index. outputs: (grid, run)."""
+    """Analyse one response; empty where a grid gives no index. outputs: (grid, run)."""
     complete = [_complete(row, sample, fit, name) for row in outputs]
     if not all(_measurable(row, sample) for row in complete):
         return {}
@@ -108,7 +108,7 @@ def _distance(change: ByGrid, width: ByGrid, spacings: Mapping[str, float]) -> A
 
 
 def _safety(change: ByGrid, spacings: Mapping[str, float]) -> Array:
-    """On the part beyond the finer grid, (factor,)."""
+    """Return the safety factor on the part beyond the finer grid, (factor,)."""
     if COARSER not in change:
         return np.full_like(change[FINER], SAFETY_DOUBTFUL)
     steps = [spacings[grid] for grid in (FINER, USED, COARSER)]
@@ -121,14 +121,14 @@ def _safety(change: ByGrid, spacings: Mapping[str, float]) -> Array:
 
 
 def _complete(outputs: Array, sample: Sample, fit: Fit, name: str) -> Array:
-    """With failed runs supplied where the study asks for it and there are runs enough."""
+    """Return outputs with failed runs supplied, if the study asks for it and enough are left."""
     if sample.policy != "impute" or not can_impute(outputs, sample):
         return outputs
     return imputed(outputs, sample, fit, name)
 
 
 def _measurable(outputs: Array, sample: Sample) -> bool:
-    """Whether every run answers, the response varies, and no few runs carry its variance."""
+    """Return True if every run answered, the response varies, and no few runs dominate it."""
     if not np.isfinite(outputs).all() or still(outputs, sobol.varying(outputs, sample)):
         return False
     return tail(outputs) <= TAIL_SHARE

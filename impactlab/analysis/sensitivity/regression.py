@@ -47,7 +47,7 @@ def check(sample: Sample) -> None:
 
 
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
-    """Coefficients of one response and half-widths of their intervals, by variable name.
+    """Return coefficients of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,), finite and varying. The ranks are those among all runs, in resamples, too.
     """
@@ -62,7 +62,7 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
 def _regression(
     name: str, table: Array, sample: Sample, rng: np.random.Generator
 ) -> dict[str, Array]:
-    """Of the last column on the others, of which the last is the dummy."""
+    """Regress the last column on the others, of which the last is the dummy."""
     standard = (table - table.mean(axis=0)) / table.std(axis=0)
     products = (standard[:, :, None] * standard[:, None, :]).reshape(len(table), -1)
     columns = np.column_stack([standard, products])
@@ -78,7 +78,7 @@ def _regression(
 
 
 def correlations(means: Array, size: int) -> Array:
-    """Matrix (..., size, size) from means of the columns and of their products (..., columns)."""
+    """Return the matrix (..., size, size) from means of columns and of their products."""
     centre = means[..., :size]
     second = means[..., size:].reshape(*means.shape[:-1], size, size)
     covariance = second - centre[..., :, None] * centre[..., None, :]
@@ -88,7 +88,7 @@ def correlations(means: Array, size: int) -> Array:
 
 
 def coefficients(correlation: Array) -> tuple[Array, Array]:
-    """Standardised coefficients (..., regressors) of the last variable, and their R^2 (...)."""
+    """Return standardised coefficients (..., regressors) of the last variable, and R^2 (...)."""
     inner, outer = correlation[..., :-1, :-1], correlation[..., :-1, -1]
     found = np.asarray(np.linalg.solve(inner, outer[..., None])[..., 0], float)
     return found, np.asarray((found * outer).sum(axis=-1))

@@ -1,4 +1,10 @@
-"""Sobol indices."""
+"""Sobol indices with bootstrap intervals, from a Saltelli sample, by SALib's estimators.
+
+SALib answers a NaN or a constant output with indices of zero, takes seed 0 for no seed, and needs a
+minute per output for its intervals. It gets complete and varying outputs alone, and gives the
+indices; the intervals are those of its bootstrap, from the same estimators as functions of means
+over the base samples.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +27,7 @@ from impactlab.analysis.sensitivity.method import (
 from impactlab.analysis.sensitivity.verdict import still
 
 _ALONE = 5
-"""Columns of a row's statistics that belong to no factor: a, b, a^2, b^2, a b."""
+"""Number of columns of the statistics that belong to no factor: a, b, a^2, b^2, a b."""
 
 
 @dataclass(frozen=True)
@@ -39,18 +45,18 @@ class Outputs:
 
     @classmethod
     def of(cls, outputs: Array, factors: int, second_order: bool) -> Outputs:
-        """From outputs (runs,) in SALib's order, not all equal."""
+        """Return the parts of outputs (runs,) in SALib's order, not all equal."""
         standard = (outputs - outputs.mean()) / outputs.std()
         size = len(outputs) // step(factors, second_order)
         return cls(*separate_output_values(standard, factors, size, second_order))
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
-        """Of factors whose second order was sampled."""
+        """Pairs of factors whose second order was sampled."""
         return list(combinations(range(self.ab.shape[1]), 2)) if self.ba is not None else []
 
     def statistics(self, interactions: bool = True) -> Array:
-        """What the estimators take the means of, (base samples, columns)."""
+        """Return the columns whose means the estimators take, (base samples, columns)."""
         a, b = self.a[:, None], self.b[:, None]
         columns = [a, b, a**2, b**2, a * b, b * (self.ab - a), (a - self.ab) ** 2 / 2]
         if self.ba is not None and interactions:
@@ -60,12 +66,12 @@ class Outputs:
 
 
 def step(factors: int, second_order: bool) -> int:
-    """Runs for each base sample."""
+    """Return the number of runs per base sample."""
     return (2 if second_order else 1) * factors + 2
 
 
 def estimates(means: Array, factors: int) -> dict[str, Array]:
-    """Indices from the means of the statistics, (..., columns); NaN where nothing varies.
+    """Return indices from the means of the statistics, (..., columns); NaN where nothing varies.
 
     first_order, total_order (..., factor): Saltelli et al. (2010), Table 2 (b) and (f);
     second_order (..., pair): Saltelli (2002), Theorem 2; and the noise floor, dummy_first_order
@@ -98,7 +104,7 @@ def estimates(means: Array, factors: int) -> dict[str, Array]:
 
 
 HALVINGS = 5
-"""How often the sample is halved to show how its indices settle: from N/32 on."""
+"""Number of halvings of the sample that show how its indices settle: from N/32 on."""
 FEWEST = 8
 """Base samples below which halves are not shown."""
 _2010 = "Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2"
@@ -124,7 +130,7 @@ _INDICES = {
 
 
 def indices(sample: Sample) -> dict[str, Index]:
-    """What is estimated, by variable name."""
+    """Return the indices of a sample, by variable name."""
     second = _second_order(sample)
     return {name: index for name, index in _INDICES.items() if second or index.dims != PAIR}
 
@@ -137,20 +143,20 @@ def check(sample: Sample) -> None:
 
 
 def base_samples(sample: Sample) -> list[int]:
-    """The sizes of the nested samples, up to the whole one."""
+    """Return the sizes of the nested samples, up to the whole one."""
     whole = sample.number("base_samples")
     sizes = [whole >> halving for halving in range(HALVINGS, 0, -1)]
     return [size for size in sizes if size >= FEWEST] + [whole]
 
 
 def varying(outputs: Array, sample: Sample) -> list[Array]:
-    """The outputs that have to vary: the variance comes from the two base samples."""
+    """Return the outputs that have to vary: the variance comes from the two base samples."""
     size = step(len(sample.factors), _second_order(sample))
     return [np.concatenate([outputs[::size], outputs[size - 1 :: size]])]
 
 
 def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
-    """Indices of one response and half-widths of their intervals, by variable name.
+    """Return indices of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,) in SALib's order, finite and varying.
     """
@@ -168,7 +174,7 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
 
 
 def points(outputs: Outputs) -> dict[str, Array]:
-    """SALib's indices: first_order, total_order (factor) and second_order, symmetric."""
+    """Return SALib's indices: first_order, total_order (factor) and second_order, symmetric."""
     a, b, ab, ba = outputs.a, outputs.b, outputs.ab, outputs.ba
     found = {
         "first_order": np.array([sobol.first_order(a, column, b) for column in ab.T]),
@@ -181,7 +187,7 @@ def points(outputs: Outputs) -> dict[str, Array]:
 
 
 def _indices(outputs: Outputs, sample: Sample, response: str) -> dict[str, Array]:
-    """Everything on the whole sample."""
+    """Return everything on the whole sample."""
     factors, statistics = len(sample.factors), outputs.statistics()
     floor = estimates(statistics.mean(axis=0), factors)
     spread = half_widths(
@@ -194,7 +200,7 @@ def _indices(outputs: Outputs, sample: Sample, response: str) -> dict[str, Array
 
 
 def _nested(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
-    """First and total order of a part of the sample; NaN where that does not vary."""
+    """Return first and total order of a part of the sample; NaN where that does not vary."""
     factors = len(sample.factors)
     gap = np.full(factors, np.nan)
     if still(outputs, varying(outputs, sample)):
@@ -208,7 +214,7 @@ def _nested(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
 
 
 def _matrix(values: Array, factors: int) -> Array:
-    """Values of pairs as a symmetric matrix, NaN on its diagonal."""
+    """Return values of pairs as a symmetric matrix, NaN on its diagonal."""
     matrix = np.full((factors, factors), np.nan)
     matrix[np.triu_indices(factors, 1)] = values
     return np.where(np.isnan(matrix), matrix.T, matrix)

@@ -1,4 +1,4 @@
-"""Whether the indices of a response may be used, as a sceptical reader would judge it."""
+"""Verdicts on sensitivity indices, as a sceptical reader would judge them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _JUDGED = ("first_order", "total_order", "delta", "pawn", "regression", "rank_re
 
 
 class SensitivityVerdict(Verdict):
-    """Whether the indices of a response may be used; where several hold, the worst is told."""
+    """Verdicts on the indices of a response; where several hold, the worst counts."""
 
     USABLE = 0, True, "every run answered and the response varies"
     JUMPS = 1, False, "the response takes ten values or fewer: its indices are those of jumps"
@@ -80,7 +80,7 @@ NO_INDEX = (
 def of_outputs(
     outputs: Array, varying: Sequence[Array], imputed: float
 ) -> list[SensitivityVerdict]:
-    """What is to be said of one response before its indices are known; empty for the best.
+    """Return the verdicts on one response before its indices are known; empty for the best.
 
     outputs: (runs,); varying: parts of them, each of which has to vary; imputed: share of runs
     whose value a surrogate supplied.
@@ -100,7 +100,7 @@ def of_outputs(
 
 
 def remarks(said: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:
-    """All that is said of each response, (response,): bits of `flag_masks`, 0 for nothing."""
+    """Return all verdicts on each response, (response,): bits of `flag_masks`, 0 for none."""
     kinds = [kind for kind in SensitivityVerdict if kind is not SensitivityVerdict.USABLE]
     masks: dict[SensitivityVerdict, int] = {kind: 1 << at for at, kind in enumerate(kinds)}
     codes = [sum(masks[kind] for kind in set(entry)) for entry in said]
@@ -113,13 +113,13 @@ def remarks(said: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:
 
 
 def still(outputs: Array, varying: Sequence[Array]) -> bool:
-    """Whether one of the parts does not vary, for its size or beside the variance of the whole."""
+    """Return True if a part does not vary, for its size or beside the variance of the whole."""
     smallest, least = ROUND_OFF * np.abs(outputs).max(), ROUND_OFF * np.var(outputs)
     return any(np.ptp(part) <= smallest or np.var(part) <= least for part in varying)
 
 
 def of_indices(found: Mapping[str, Array]) -> list[SensitivityVerdict]:
-    """What is to be said of the indices of one response, by variable name; empty for the best."""
+    """Return the verdicts on the indices of one response; empty for the best."""
     holds = {
         SensitivityVerdict.WIDE_INTERVALS: _wide(found),
         SensitivityVerdict.NOT_LINEAR: "rank_regression" in found and _best_fit(found) < LINEAR,
@@ -137,12 +137,12 @@ def _wide(found: Mapping[str, Array]) -> bool:
 
 
 def _best_fit(found: Mapping[str, Array]) -> float:
-    """Share of the variance that the better regression explains."""
+    """Return the share of the variance that the better regression explains."""
     return max(float(found[f"{kind}_r_squared"]) for kind in ("regression", "rank_regression"))
 
 
 def _inconsistent(found: Mapping[str, Array]) -> bool:
-    """Whether the shares contradict that they are shares, by more than their intervals.
+    """Return True if the indices contradict that they are shares, by more than their intervals.
 
     Below zero by twice the interval: of many indices that are zero, some lie outside of it once.
     """
@@ -156,6 +156,6 @@ def _inconsistent(found: Mapping[str, Array]) -> bool:
 
 
 def tail(outputs: Array) -> float:
-    """Share of the variance that comes from the runs farthest from the mean."""
+    """Return the share of the variance that comes from the runs farthest from the mean."""
     squares = np.sort((outputs - outputs.mean()) ** 2)
     return float(squares[-max(1, round(TAIL * squares.size)) :].sum() / squares.sum())

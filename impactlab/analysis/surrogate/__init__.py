@@ -1,4 +1,4 @@
-"""Surrogates: polynomial chaos expansions that stand in for the solver, and what they are worth.
+"""Surrogates: polynomial chaos expansions that stand in for the solver.
 
 `fit(unit, values, seed)` gives one from points of the unit cube, `analysis(runs)` one of every
 response of a sample with its test and Sobol indices, `load_surrogate(path)` those that

@@ -1,4 +1,8 @@
-"""Polynomial chaos."""
+"""Polynomial chaos: sums of products of Legendre polynomials on the unit cube.
+
+Its Sobol indices are shares of the sum of its squared coefficients: Sudret (2008), Reliab. Eng.
+Syst. Saf. 93, 964, eqs. 36 to 39.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +24,7 @@ _ROUNDING = 1e-9
 
 
 def candidates(parameters: int, most: int, highest: int) -> Degrees:
-    """The largest hyperbolic set of at most `most` terms, the constant first.
+    """Return the largest hyperbolic set of at most `most` terms, the constant first.
 
     A set holds the terms whose degrees a_i keep to (sum a_i^q)^(1/q) <= p with q = 0.7; p is at
     most `highest`. Blatman and Sudret (2011), J. Comput. Phys. 230, 2345, eq. 24.
@@ -36,14 +40,14 @@ def candidates(parameters: int, most: int, highest: int) -> Degrees:
 
 @cache
 def hyperbolic(parameters: int, degree: int) -> Degrees:
-    """All terms up to this degree, by total degree, then in the order of the parameters."""
+    """Return all terms up to this degree, sorted by total degree, then by parameter."""
     rows = [(0,) * parameters, *_within(parameters, degree)]
     rows.sort(key=lambda row: (sum(row), [-part for part in row]))
     return np.array(rows, dtype=np.int64)
 
 
 def _within(parameters: int, degree: int) -> list[tuple[int, ...]]:
-    """The terms but the constant one: each grows from one without its last active parameter."""
+    """Return all terms but the constant, each grown from one without its last parameter."""
     limit = degree**_NORM + _ROUNDING
     found: list[tuple[int, ...]] = []
     grown = [((0,) * parameters, 0, 0.0)]
@@ -65,7 +69,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Chaos:
-    """A fitted response: called with points, it predicts.
+    """A fitted response, which predicts when called with points.
 
     degrees: (terms, parameters). coefficients: (terms,), in the response's unit.
     """
@@ -74,12 +78,12 @@ class Chaos:
     coefficients: Array
 
     def __call__(self, unit: Array) -> Array:
-        """The response at points of the unit cube, (points, parameters) to (points,)."""
+        """Return the response at points of the unit cube, (points, parameters) to (points,)."""
         return np.asarray(self.coefficients @ basis(unit, self.degrees))
 
 
 def basis(unit: Array, degrees: Degrees) -> Array:
-    """Every term at every point of the unit cube: (terms, points) from (points, parameters).
+    """Return every term at every point of the unit cube, (points, parameters) to (terms, points).
 
     A term is a product of Legendre polynomials sqrt(2 a + 1) P_a(2 u - 1), by recurrence: of mean
     zero and variance one, and uncorrelated with every other term, where u is uniform.
@@ -96,7 +100,7 @@ def basis(unit: Array, degrees: Degrees) -> Array:
 
 @dataclass(frozen=True)
 class Indices:
-    """Of each label, (labels,): index and half-width of its interval."""
+    """Indices and half-widths of their intervals, each (labels,)."""
 
     first_order: Array
     total_order: Array
@@ -106,7 +110,10 @@ class Indices:
 
 @dataclass(frozen=True)
 class Errors:
-    """On runs held out: 1 less mean squared error over variance, and the root of the former."""
+    """Errors on held-out runs.
+
+    q2: 1 - mean squared error / variance; rmse: root of the mean squared error.
+    """
 
     q2: float
     rmse: float
@@ -119,7 +126,7 @@ class Errors:
 
 @dataclass(frozen=True)
 class Fitted:
-    """What a chaos was fitted to: unit (runs, parameters), values (runs,), block (runs,)."""
+    """Runs that a chaos was fitted to: unit (runs, parameters), values (runs,), block (runs,)."""
 
     unit: Array
     values: Array
@@ -129,7 +136,7 @@ class Fitted:
 def indices(
     chaos: Chaos, groups: Sequence[str], runs: Fitted, errors: Errors, confidence: float
 ) -> Indices:
-    """Indices of first and total order, with intervals.
+    """Return indices of first and total order, with intervals.
 
     groups: of each parameter. errors: on runs held out. A half-width is the sum of two parts: the
     scatter of the coefficients (the linearised bootstrap of whole blocks of runs, their residuals
@@ -155,7 +162,7 @@ def indices(
 
 
 def _members(chaos: Chaos, groups: Sequence[str]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """(labels, terms): the terms of a label alone, and those that it takes part in."""
+    """Return masks (labels, terms): terms of the label alone, and all terms with the label."""
     labels = list(dict.fromkeys(groups))
     belongs = np.array([[group == label for label in labels] for group in groups])
     taking_part = ((chaos.degrees > 0).astype(int) @ belongs > 0).T
@@ -163,7 +170,7 @@ def _members(chaos: Chaos, groups: Sequence[str]) -> tuple[NDArray[np.bool_], ND
 
 
 def _influence(chaos: Chaos, runs: Fitted, rmse: float) -> Array:
-    """(terms, blocks): how far each block of runs draws each coefficient from the others'.
+    """Return the influence of each block of runs on each coefficient, (terms, blocks).
 
     Their outer product is the covariance of the coefficients that is robust to dependence within
     blocks: Liang and Zeger (1986), Biometrika 73, 13. The residuals are scaled to the error on

@@ -1,4 +1,8 @@
-"""Fitting."""
+"""Sparse polynomial chaos from the runs of a sample.
+
+Hybrid least angle regression: it picks the terms, and least squares fits their coefficients.
+Blatman and Sudret (2011), J. Comput. Phys. 230, 2345, section 4.3.
+"""
 
 from __future__ import annotations
 
@@ -17,17 +21,17 @@ from impactlab.analysis.surrogate.chaos import Array, Chaos, basis, candidates
 from impactlab.model.distributions import cumulative, is_distributed
 
 _SHARE = 0.2
-"""Of the blocks of runs, to test on."""
+"""Share of the blocks of runs to test on."""
 _MOST_TESTS = 4000
 _BLOCKS = {"sobol": "base_samples", "morris": "trajectories"}
-"""Methods whose runs come in blocks of near-copies, and the attribute that says how many."""
+"""Methods whose runs come in blocks of near-copies, and the attribute with their number."""
 _LENGTHS = {"fast": "samples"}
-"""Methods whose blocks are curves through the cube, and the attribute that says how long."""
+"""Methods whose blocks are curves through the cube, and the attribute with their length."""
 
 
 @dataclass(frozen=True)
 class Sample:
-    """A sample's points, in the order of `run`.
+    """The points of a sample in the unit cube, in the order of `run`.
 
     parameters: names of the varied parameters. groups: the group of each, or again its name.
     unit: (runs, parameters), the probability of each value. block: (runs,), equal for runs that
@@ -43,7 +47,7 @@ class Sample:
 
     @classmethod
     def of(cls, runs: xr.Dataset) -> Sample:
-        """From a sample's runs, sorted by `run`. Raises ValueError where blocks do not fit."""
+        """Return the sample of runs sorted by `run`. Raises ValueError where blocks do not fit."""
         names = listed(runs, "varied")
         columns = [cumulative(runs[name].attrs, runs[name].values) for name in names]
         return cls(
@@ -57,12 +61,12 @@ class Sample:
 
     @property
     def labels(self) -> list[str]:
-        """What indices are given for: groups, or parameters, in the order of the study file."""
+        """Names of the indices: groups, or parameters, in the order of the study file."""
         return list(dict.fromkeys(self.groups))
 
     @cached_property
     def held_out(self) -> NDArray[np.bool_]:
-        """Which runs no surrogate sees, (runs,): a fifth of the blocks, whole, one at least."""
+        """Mask of the runs that no surrogate sees, (runs,): a fifth of the blocks, one at least."""
         blocks = int(self.block[-1]) + 1
         chosen = self._random("held out").permutation(blocks)[: max(1, round(_SHARE * blocks))]
         return np.isin(self.block, chosen)
@@ -75,7 +79,7 @@ class Sample:
 
     @property
     def fit_seed(self) -> int:
-        """Of the choice of runs to fit to."""
+        """Seed of the choice of runs to fit to."""
         return int(self._random("fit").integers(2**31))
 
     def _random(self, purpose: str) -> np.random.Generator:
@@ -84,7 +88,7 @@ class Sample:
 
 
 def is_sample(runs: xr.Dataset) -> bool:
-    """Whether runs are draws from distributions that they tell of."""
+    """Return True if the runs are draws from distributions in their attributes."""
     return "run" in runs.dims and all(
         name in runs.coords and is_distributed(runs[name].attrs) for name in listed(runs, "varied")
     )
@@ -100,33 +104,33 @@ def _block_length(runs: xr.Dataset) -> int:
         length = 1
     if length < 1 or count % length:
         raise ValueError(
-            f"the runs of study {runs.attrs.get('study', '?')!r} number {count}, which is no whole "
-            f"number of blocks of its method {method}: solve the study again"
+    """Return the rising positions of the runs of a fit: all, or a draw of MOST_RUNS."""
+            f"of its method {method}: solve it again"
         )
     return length
 
 
 MOST_RUNS = 20_000
-"""Runs that a fit uses; of more, it draws as many."""
+"""Largest number of runs that a fit uses; of more, it draws as many."""
 _MOST_CANDIDATES = 400
 _MOST_TERMS = 200
 _HIGHEST_DEGREE = 20
 _SMALLEST = 1e-12
-"""Leverage that is left to a run at least, so that nothing is divided by zero."""
+"""Least leverage left to a run, so that nothing is divided by zero."""
 
 
 def fewest_runs(parameters: int) -> int:
-    """How many runs a fit needs: four for each term of the linear model."""
+    """Return the number of runs that a fit needs: four per term of the linear model."""
     return 4 * (parameters + 1)
 
 
 def drawn(runs: int, seed: int) -> NDArray[np.int64]:
-    """Positions of the runs that a fit uses, rising: all, or a draw of MOST_RUNS."""
+    """Return the positions of the runs that a fit uses, rising: all, or a draw of MOST_RUNS."""
     return np.sort(np.random.default_rng(seed).permutation(runs)[:MOST_RUNS])
 
 
 def fit(unit: Array, values: Array, seed: int) -> Chaos:
-    """A chaos that predicts `values` from points of the unit cube.
+    """Return a chaos that predicts `values` from points of the unit cube.
 
     unit: (runs, parameters), the probabilities of the parameters' values; values: (runs,), finite.
     seed: which runs are used where there are more than MOST_RUNS. Raises ValueError when there
@@ -135,7 +139,7 @@ def fit(unit: Array, values: Array, seed: int) -> Chaos:
     if len(values) < fewest_runs(unit.shape[1]):
         raise ValueError(
             f"{len(values)} runs are too few for a surrogate in {unit.shape[1]} parameters: "
-            f"it needs {fewest_runs(unit.shape[1])}"
+            f"solve {fewest_runs(unit.shape[1])} or more"
         )
     rows = drawn(len(values), seed)
     with threadpool_limits(limits=1):  # the same bits on any number of processors
@@ -154,25 +158,27 @@ def _fitted(unit: Array, values: Array) -> Chaos:
 
 
 def _highest_degree(unit: Array) -> int:
-    """What the parameter with the fewest levels can tell apart."""
+    """Return the degree that the parameter with the fewest levels can resolve."""
     levels = min(np.unique(np.round(column, 9)).size for column in unit.T)
     return min(_HIGHEST_DEGREE, levels - 1)
 
 
 def _order(columns: Array, values: Array) -> list[int]:
-    """The terms in the order in which least angle regression takes them, the constant first.
+    """Return the terms in the order of least angle regression, the constant first.
 
     values: of mean zero.
     """
+    # scikit-learn is a large dependency for one function, but its treatment of dependent terms and
+    # round-off decides which terms are picked: another one would change stored results.
     from sklearn.exceptions import ConvergenceWarning
     from sklearn.linear_model import lars_path_gram  # takes a second
 
     centred = columns[1:] - columns[1:].mean(axis=1, keepdims=True)
     centred /= np.linalg.norm(centred, axis=1, keepdims=True)
-    # Of norm one as the terms are: its tolerances are absolute.
+    # Scaled to norm one, as the terms are, because the tolerances are absolute.
     correlation = centred @ (values / (np.linalg.norm(values) or 1.0))
     with warnings.catch_warnings():
-        # Terms that the runs cannot tell apart: it drops one of them, as it should.
+        # Of terms that the runs cannot distinguish it rightly drops one.
         warnings.simplefilter("ignore", ConvergenceWarning)
         _, active, _ = lars_path_gram(
             correlation,
@@ -184,7 +190,7 @@ def _order(columns: Array, values: Array) -> list[int]:
 
 
 def _least_squares(columns: Array, values: Array) -> Array:
-    """The coefficients of as many terms, from the first, as predict best.
+    """Return the coefficients of the first terms, as many as predict best.
 
     Best: the least leave-one-out error, which one QR decomposition gives for all counts at once,
     corrected for the number of terms k of n runs by (n + k)/(n - k): Blatman and Sudret (2011),

@@ -1,4 +1,4 @@
-"""From runs."""
+"""Surrogates of all responses of a sample: fitted, tested on held-out runs, and judged."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ FEW = 20
 
 
 class SurrogateVerdict(Verdict):
-    """What a surrogate of a response is worth."""
+    """Verdicts on the surrogate of a response."""
 
     USABLE = 0, True, "it predicts at least 90 % of the variance of runs held out"
     POOR = 1, False, "it misses more than a tenth of the variance of runs held out"
@@ -45,9 +45,9 @@ class SurrogateVerdict(Verdict):
 
 
 def before_fitting(values: Array, enough: bool) -> SurrogateVerdict:
-    """What the runs alone say; values: (runs,), NaN where missing.
+    """Return the verdict from the runs alone; values: (runs,), NaN where missing.
 
-    enough: whether there are runs enough to fit and to test.
+    enough: whether there are enough runs to fit and to test.
     """
     found = values[np.isfinite(values)]
     if not enough or found.size == 0:
@@ -67,7 +67,7 @@ def before_fitting(values: Array, enough: bool) -> SurrogateVerdict:
 
 
 def after_testing(before: SurrogateVerdict, predictivity: float) -> SurrogateVerdict:
-    """The same, or poor where nothing worse is known; NaN is poor, too."""
+    """Return the verdict after the test: POOR where it was USABLE; a NaN is poor, too."""
     poor = before is SurrogateVerdict.USABLE and not predictivity >= GOOD
     return SurrogateVerdict.POOR if poor else before
 
@@ -91,7 +91,7 @@ class Tested:
 
 
 def surrogate(values: Array, sample: Sample) -> tuple[SurrogateVerdict, Tested | None]:
-    """Verdict and surrogate of one response; none where it is constant or runs are too few.
+    """Return verdict and surrogate of one response; None where constant or with too few runs.
 
     values: (runs,), NaN where missing.
     """
@@ -119,7 +119,7 @@ def _tested(values: Array, sample: Sample, training: NDArray[np.int64]) -> Teste
 
 
 def _errors(predicted: Array, values: Array) -> Errors:
-    """Of predictions with a value to hold them against; q2 is -inf where the values are alike."""
+    """Return the errors of predictions at known values; q2 is -inf where these are all equal."""
     known = np.isfinite(values)
     square = float(np.mean((predicted - values)[known] ** 2))
     variance = float(np.var(values[known]))
@@ -131,12 +131,12 @@ Found = Sequence[Tested | None]
 
 
 def applies(runs: xr.Dataset) -> bool:
-    """Whether the runs are a sample, by any method, with the distributions of its parameters."""
+    """Return True if the runs are a sample, by any method, with distributions of parameters."""
     return is_sample(runs)
 
 
 def analysis(runs: xr.Dataset) -> xr.Dataset:
-    """A polynomial chaos of every response, its test on held-out runs, and its Sobol indices.
+    """Return a polynomial chaos of every response, its test and its Sobol indices.
 
     Returns, on (response): surrogate_verdict, surrogate_q2 (1 less mean squared error over
     variance, of held-out runs), surrogate_rmse (in the unit of the response), surrogate_runs
@@ -214,7 +214,7 @@ def _indices(found: Found, sample: Sample) -> dict[str, Any]:
 
 
 def _terms(found: Found, sample: Sample) -> dict[str, Any]:
-    """The terms that any response has, and each one's coefficients: zero where it has not."""
+    """Return the terms of all responses, and the coefficients of each: zero where it has none."""
     constant: Degrees = np.zeros((1, len(sample.parameters)), dtype=np.int64)
     degrees = np.unique(
         np.concatenate([constant, *(one.chaos.degrees for one in found if one)]), axis=0

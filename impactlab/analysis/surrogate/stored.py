@@ -1,4 +1,4 @@
-"""Stored."""
+"""Stored surrogates: surrogate.nc, and predictions from it within the ranges of its runs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
 from impactlab.model.distributions import arguments, cumulative
 
 _AT_ONCE = 4096
-"""Points of which all terms fit in the processor's cache, about."""
+"""Number of points whose terms about fit in the processor's cache."""
 _VERDICTS = {int(member): member for member in SurrogateVerdict}
 
 
@@ -23,19 +23,19 @@ class Surrogate:
     """The surrogates of all responses of one study."""
 
     def __init__(self, dataset: xr.Dataset) -> None:
-        """From surrogate.nc (see `packed`)."""
+        """Take the dataset of surrogate.nc (see `packed`)."""
         self.dataset = dataset
         self.parameters: tuple[str, ...] = tuple(map(str, dataset["parameter"].values))
         self.responses: tuple[str, ...] = tuple(map(str, dataset["response"].values))
         self._distributions = [json.loads(text) for text in dataset["distribution"].values]
 
     def units(self, parameter: str) -> str:
-        """The SI unit of a parameter. Raises ValueError where it was not varied."""
+        """Return the SI unit of a parameter. Raises ValueError where it was not varied."""
         self._check_known(parameter)
         return str(self.dataset["parameter_units"].sel(parameter=parameter).item())
 
     def predict(self, **values: Any) -> xr.Dataset:
-        """Every response at values of all varied parameters, in SI units.
+        """Predict every response at values of all varied parameters, in SI units.
 
         values: by name, numbers, arrays of one dimension (`point`) or DataArrays, which are
         broadcast against each other. Returns the responses on the common dimensions, NaN where
@@ -58,7 +58,7 @@ class Surrogate:
         return xr.Dataset(variables, coords)
 
     def _columns(self, values: dict[str, Any]) -> list[xr.DataArray]:
-        """The values in the order of the parameters, of one shape, checked."""
+        """Return the checked values in the order of the parameters, of one shape."""
         for name in values:
             self._check_known(name)
         if absent := [name for name in self.parameters if name not in values]:
@@ -71,7 +71,7 @@ class Surrogate:
         ]
 
     def _evaluated(self, unit: Array) -> Iterator[Array]:
-        """(responses, points) of one stretch of points after another."""
+        """Yield (responses, points), one batch of points after another."""
         degrees, coefficients = self.dataset["degree"].values, self.dataset["coefficient"].values
         for start in range(0, max(len(unit), 1), _AT_ONCE):
             yield coefficients @ basis(unit[start : start + _AT_ONCE], degrees)
@@ -113,7 +113,7 @@ class Surrogate:
 
 
 def _array(name: str, value: Any) -> xr.DataArray:
-    """A parameter's values as floats. Raises ValueError where they are no numbers."""
+    """Return a parameter's values as floats. Raises ValueError where they are not numbers."""
     if isinstance(value, xr.DataArray):
         return value.astype(float)
     try:
@@ -131,7 +131,7 @@ _OF_RESPONSE = ("verdict", "q2", "rmse", "runs")
 
 
 def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
-    """The surrogates of a sample as a dataset of their own; None where the analysis has none.
+    """Return the surrogates of a sample as a dataset; None where the analysis has none.
 
     Variables, without the prefix that they have in `analysis`: coefficient (response, term),
     degree (term, parameter), verdict, q2, rmse and runs (response); on (parameter): distribution
@@ -150,7 +150,7 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
 
 
 def load_surrogate(path: str | Path) -> Surrogate:
-    """The surrogates of a study from its surrogate.nc.
+    """Load the surrogates of a study from its surrogate.nc.
 
     Raises OSError, naming a file that cannot be read, and ValueError where it holds no surrogate.
     """
@@ -181,6 +181,6 @@ def _inputs(runs: xr.Dataset, dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _range(column: xr.DataArray) -> tuple[float, float]:
-    """The bounds of a parameter's distribution, or its extreme draws where it has none."""
+    """Return the bounds of a parameter's distribution, or its extreme draws."""
     ends = {"low": column.min(), "high": column.max()} | arguments(column.attrs)
     return float(ends["low"]), float(ends["high"])

@@ -110,5 +110,5 @@ def test_processors_do_not_matter(random: np.random.Generator, threads: int) -> 
 
 def test_too_few_runs_are_refused(random: np.random.Generator) -> None:
     unit = random.random((15, 3))
-    with pytest.raises(ValueError, match=r"15 runs are too few .* 3 parameters: it needs 16"):
+    with pytest.raises(ValueError, match=r"15 runs are too few .* 3 parameters: solve 16 or more"):
         fit(unit, unit[:, 0], 0)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import importlib
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from impactlab.analysis.sensitivity.indices import METHODS as INDICES
 from impactlab.study.sampling.methods import METHODS
 
 SETTINGS = {
@@ -20,8 +23,24 @@ SETTINGS = {
 methods = pytest.mark.parametrize("method", SETTINGS)
 
 
-def test_every_method_has_a_sampler():
-    assert SETTINGS.keys() == {name for name, method in METHODS.items() if method.draws}
+def test_every_method_but_the_grid_draws_and_is_analysed():
+    assert SETTINGS.keys() == METHODS.keys() - {"grid"} == INDICES.keys()
+    for name, method in METHODS.items():
+        assert method.name == name
+        assert (method.draws is None) == (not method.indices) == (name == "grid")
+
+
+@methods
+def test_a_method_names_the_analysis_of_its_runs(method):
+    module, _, record = METHODS[method].indices.rpartition(".")
+    assert getattr(importlib.import_module(module), record) is INDICES[method]
+    assert INDICES[method].name == method
+
+
+@methods
+def test_the_docs_list_every_method_with_its_summary(method):
+    table = Path(__file__).parents[4] / "docs" / "studies.md"
+    assert f"| `{method}` | {METHODS[method].summary} |" in table.read_text(encoding="utf-8")
 
 
 @methods
