@@ -26,7 +26,7 @@ def column(values: Iterable[Any]) -> Column:
     if not isinstance(values, np.ndarray) or values.dtype.kind == "O":
         values = list(values)
         if any(isinstance(value, bool | np.bool_) for value in values):
-            raise ValueError("a truth is no number")
+            raise ValueError("expected a number, not true or false")
     array = np.asarray(values)
     if array.ndim != 1 or array.dtype.kind not in "fiuU":
         raise ValueError("no column of numbers, nor of words")

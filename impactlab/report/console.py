@@ -93,7 +93,7 @@ def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable
     for name, words in lines.items():
         console.print(f"{name:15s}{words}", markup=False, highlight=False)
     for problem in problems:
-        console.print(f"beyond bearing: {problem}", markup=False, highlight=False)
+        console.print(f"exceeds the limit: {problem}", markup=False, highlight=False)
 
 
 def print_outcomes(outcomes: Iterable[Outcome]) -> None:

@@ -104,8 +104,8 @@ def _block_length(runs: xr.Dataset) -> int:
         length = 1
     if length < 1 or count % length:
         raise ValueError(
-    """Return the rising positions of the runs of a fit: all, or a draw of MOST_RUNS."""
-            f"of its method {method}: solve it again"
+            f"study {runs.attrs.get('study', '?')!r} has {count} runs, not a whole number of "
+            f"blocks of its method {method}: solve it again"
         )
     return length
 

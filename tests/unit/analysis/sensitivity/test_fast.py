@@ -88,7 +88,7 @@ def test_a_curve_that_does_not_vary_has_no_indices(
 
 def test_refuses_what_is_not_its_sample(drawn: Build, ishigami: Any) -> None:
     runs = _runs(drawn, ishigami)
-    with pytest.raises(ValueError, match="number 4099, but 4 curves of 1024 points make 4096"):
+    with pytest.raises(ValueError, match="has 4099 runs, but 4 curves of 1024 points make 4096"):
         sensitivity.analysis(runs.isel(run=slice(None, -1)))
     with pytest.raises(ValueError, match="too few for 16 harmonics: take more than 1024"):
         sensitivity.analysis(runs.isel(run=slice(None, 4096)).assign_attrs(harmonics=16))

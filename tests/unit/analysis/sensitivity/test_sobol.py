@@ -273,5 +273,5 @@ def test_order_of_runs_is_that_of_the_run_coordinate(sample_runs: Build, good: A
 
 def test_refuses_a_part_of_a_sample(sample_runs: Build, good: Any) -> None:
     runs = sample_runs(NAMES, 64, peak_force=good).isel(run=slice(0, 504))
-    with pytest.raises(ValueError, match=r"'synthetic' number 504, but .* make 512"):
+    with pytest.raises(ValueError, match=r"'synthetic' has 504 runs, but .* make 512"):
         sensitivity.analysis(runs)

@@ -149,7 +149,7 @@ def test_a_surrogate_that_fails_is_told(drawn: Build, verdicts_of: Read, unit: A
 
 
 def test_an_unknown_policy_is_refused(drawn: Build, unit: Any) -> None:
-    with pytest.raises(ValueError, match="failed_runs = 'drop', but may be fail or impute"):
+    with pytest.raises(ValueError, match="failed_runs = 'drop': choose from fail, impute"):
         sensitivity.analysis(_broken(drawn, unit, 0.02, failed_runs="drop"))
 
 

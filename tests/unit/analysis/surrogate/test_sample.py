@@ -75,7 +75,7 @@ def test_groups_stand_for_their_parameters(drawn_runs: Build) -> None:
 
 def test_runs_that_are_no_whole_sample_are_refused(drawn_runs: Build) -> None:
     runs = drawn_runs(peak_force=first).isel(run=slice(0, 1000))
-    with pytest.raises(ValueError, match=r"'synthetic' number 1000, .* method sobol: solve"):
+    with pytest.raises(ValueError, match=r"'synthetic' has 1000 runs, .* method sobol: solve"):
         Sample.of(runs)
 
 

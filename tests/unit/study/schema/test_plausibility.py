@@ -1,4 +1,4 @@
-"""What no beam and no sphere can be is refused by name; what they hardly are is told."""
+"""Impossible values are refused by name; implausible ones give a warning."""
 
 from __future__ import annotations
 
