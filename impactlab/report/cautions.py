@@ -1,4 +1,4 @@
-"""Cautions about the numbers of a study, and notes on its physics."""
+"""Cautions about the results of a study, and notes on its physics."""
 
 from __future__ import annotations
 
@@ -16,12 +16,15 @@ from impactlab.report.indices import numerical_warnings
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
 from impactlab.variables import MARKS, WARNINGS
 
+_UNCONVERGED = "Somewhere in the grid, these responses have not converged in {}"
 _JUDGED = {
-    "nodes_summary": "Not converged in nodes somewhere in the grid",
-    "time_step_summary": "Not converged in the time step somewhere in the grid",
-    "element_size_summary": "Not converged in the element size somewhere in the grid",
-    "points_summary": "Not converged in integration points somewhere in the grid",
-    "sensitivity_verdict": "Sensitivity indices not usable as they stand",
+    "nodes_summary": _UNCONVERGED.format("nodes"),
+    "time_step_summary": _UNCONVERGED.format("the time step"),
+    "element_size_summary": _UNCONVERGED.format("the element size"),
+    "points_summary": _UNCONVERGED.format("integration points"),
+    "sensitivity_verdict": (
+        "The sensitivity indices of these responses are not usable as they stand"
+    ),
 }
 _ENERGY_LIMIT = 1e-3
 """Largest energy imbalance, relative to the initial kinetic energy, of a run without suspicion."""
@@ -47,16 +50,18 @@ def _stale(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
     """Compare the times of solving: an analysis carries the attributes of its runs."""
     if analysis.attrs.get("created", runs.attrs.get("created")) != runs.attrs.get("created"):
         yield (
-            "The analysis is not of these runs: it was made from runs solved at another time. "
-            "Verdicts and indices here may be wrong; make the analysis again (impactlab analyse)."
+            "The analysis does not belong to these runs: it was made from runs that were solved at "
+            "another time. The verdicts and indices below may be wrong; repeat the analysis "
+            "(impactlab analyse)."
         )
 
 
 def _failures(runs: xr.Dataset) -> Iterator[str]:
     if failed := int(access.failed(runs).sum()):
         yield (
-            f"{failed} of {count(runs)} runs failed: they miss at least one response, and are left "
-            "out of figures and tables of what they miss. They are listed below with the reason."
+            f"{failed} of {count(runs)} runs failed: each lacks at least one response and is left "
+            "out of the figures and tables of that response. The failed runs are listed below with "
+            "the reason."
         )
 
 
@@ -68,9 +73,9 @@ def _outside(runs: xr.Dataset) -> Iterator[str]:
     for law in np.unique(runs["contact"].values).tolist():
         if number := int((beyond & (runs["contact"] == law)).sum()):
             yield (
-                f"{number} of {count(runs)} runs went beyond the range of the contact law “{law}”: "
-                f"it holds for {CONTACT_LAWS[law].holds}. "
-                "Their responses are kept, but extrapolated."
+                f"{number} of {count(runs)} runs went beyond the range of the contact law “{law}”, "
+                f"which holds for {CONTACT_LAWS[law].holds}. Their responses are kept, but they are "
+                "extrapolated."
             )
 
 
@@ -84,23 +89,23 @@ def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
                 meaning = f": {verdict.meaning}" if verdict.meaning else ""
                 flags[f"{verdict.words}{meaning}"].append(labels.response(name))
         for flag, names in flags.items():
-            yield f"{text} — {labels.listing(names)} ({flag})."
+            yield f"{text}: {labels.listing(names)} ({flag})."
 
 
 def _imputed(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
     if "imputed_share" in analysis and bool((analysis["imputed_share"] > 0).any()):
         worst = labels.number(100 * float(analysis["imputed_share"].max()), 2)
         yield (
-            f"Values of failed runs, up to {worst} % of the runs of a response, come from a "
-            "surrogate fitted to the good ones: the indices rest on it there."
+            "A surrogate fitted to the successful runs supplied the values of failed runs, up to "
+            f"{worst} % of the runs per response; the indices of these responses depend on it."
         )
 
 
 def _numerical(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
     if number := len(numerical_warnings(runs, analysis)):
         yield (
-            "Some indices are below what the numerical error could change, see “Numerical "
-            f"uncertainty” ({labels.counted(number, 'warning')} there)."
+            "Some indices are smaller than the change that the numerical error could cause; see "
+            f"“Numerical uncertainty” ({labels.counted(number, 'warning')})."
         )
 
 
@@ -111,8 +116,8 @@ def _strain(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
         return
     if bool((usable(runs, name) > 0).any()):
         yield (
-            "The peak plastic strain depends on the number of nodes, and this study does not vary "
-            "them: compare it between runs, but do not take it for a converged value."
+            "The peak plastic strain depends on the number of nodes, which this study does not "
+            "vary: compare it between runs, but do not treat it as a converged value."
         )
 
 
@@ -164,11 +169,13 @@ def _few_lobatto_points(runs: xr.Dataset) -> bool:
 def _about(law: str) -> str:
     """Return the flaws of a contact law and what about it is unconfirmed."""
     about = CONTACT_LAWS[law]
-    parts = [f"Contact law “{law}” ({about.title}).", about.flaws]
+    parts = [f"Some runs use the contact law “{law}” ({about.title}).", about.flaws]
     if "energy" in about.flaws:
-        parts.append("This is the law, not the solver; the energy balance accounts for it.")
+        parts.append(
+            "This comes from the law, not from the solver; the energy balance accounts for it."
+        )
     if about.unconfirmed:
-        parts.append(f"Not confirmed: {about.unconfirmed}.")
+        parts.append(f"The following is not confirmed: {about.unconfirmed}.")
     return " ".join(filter(None, parts))
 
 
@@ -176,14 +183,14 @@ _AT_THE_END = ("rebound_velocity", "restitution", "impulse", "permanent_indentat
 NOTES = (
     Note(
         lambda runs: "contact_duration" in runs,
-        "One impact holds several sub-impacts: contact ends and begins again. The contact duration "
-        "is that of the first contact; the total contact time adds up all contacts within the "
-        "simulated time.",
+        "One impact consists of several sub-impacts: contact ends and begins again. The contact "
+        "duration is that of the first contact; the total contact time adds up all contacts within "
+        "the simulated time.",
     ),
     Note(
         lambda runs: any(name in runs for name in _AT_THE_END),
-        "Rebound velocity, restitution, impulse and permanent indentation hold for the last "
-        "contact within the simulated time: a contact after its end is not in them.",
+        "Rebound velocity, restitution, impulse and permanent indentation refer to the last "
+        "contact within the simulated time and do not include a later contact.",
     ),
     *(
         Note(lambda runs, law=law: _holds(runs, "contact", law), _about(law))  # type: ignore[misc]
@@ -194,19 +201,20 @@ NOTES = (
         lambda runs: "peak_plastic_strain" in runs,
         "In a perfectly plastic section the peak plastic strain (PEEQ) at mid-span does not "
         "converge as the nodes get closer: with 3 Lobatto points it doubles with each halving of "
-        "the spacing, with 5 it still grows, and from 9 on it grows slowly.",
+        "the spacing, with 5 it still grows, and with 9 or more it grows slowly.",
     ),
     Note(
         lambda runs: _holds(runs, "scheme", "semi_implicit"),
-        "The semi-implicit scheme takes time steps of half a bar wave's time over a spacing: with "
-        "many nodes longer than leapfrog's, with few shorter. It tends to the same answers, with "
-        "errors about as large at the same nodes. What does not converge, the peak plastic "
-        "strain of a perfectly plastic beam, is not to be compared between the two schemes.",
+        "The semi-implicit scheme takes time steps of half the time that a bar wave needs to cross "
+        "one spacing: with many nodes they are longer than those of leapfrog, with few they are "
+        "shorter. It converges to the same answers, with errors of about the same size for the "
+        "same nodes. Do not compare the peak plastic strain of a perfectly plastic beam between "
+        "the two schemes, because it does not converge.",
     ),
     Note(
         _few_lobatto_points,
-        "Few Lobatto points change the beam itself: 2 make it 3 times too stiff, and 3 put its "
-        "full plastic moment at the yield moment.",
+        "Few Lobatto points change the beam itself: 2 points make it 3 times too stiff, and "
+        "with 3 points its full plastic moment equals the yield moment.",
     ),
 )
 """Every note there is; a new note is one more entry."""

@@ -12,7 +12,7 @@ from rich.filesize import decimal
 from rich.markup import escape
 from rich.table import Column, Table
 
-from impactlab.study.quantities import amount, time
+from impactlab.study.quantities import time
 from impactlab.variables import RESPONSES, marks, reasons, warnings_in
 from impactlab.verification.finding import Outcome, gravest_first
 
@@ -40,8 +40,10 @@ def print_responses(run: Any) -> None:
     console = Console()
     console.print(table)
     for reason in reasons(run["status"].item()):
-        console.print(f"missing because {reason}; a longer duration may help", markup=False)
-    for note in (*marks(run["status"].item()), *warnings_in(run["remarks"].item())):
+        console.print(
+            f"A response is missing because {reason}; a longer duration may help.", markup=False
+        )
+    for note in (*marks(run["status"].item()), *remarked(run["remarks"].item())):
         console.print(f"note: {note}", markup=False)
 
 
@@ -76,19 +78,21 @@ def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
 def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable[Problem]) -> None:
     """Print what a study costs, and the limits that it exceeds.
 
-    room: bytes of disk that it may take.
+    room: bytes of disk that it may use.
     """
     at = ", ".join(f"{name} = {_short(value)}" for name, value in cost.largest_run.items())
     lines = {
         "runs": f"{cost.runs:,}",
         "cost": f"about {time(cost.seconds)} of one core, most of it by {cost.slow}",
         "wall": f"about {time(cost.wall(workers))} on {workers} workers",
-        "memory": f"about {amount(cost.memory)}",
-        "disk": f"about {amount(cost.disk)}, of {amount(room)} that it may take",
+        "memory": f"about {decimal(round(cost.memory))}",
+        "disk": f"about {decimal(round(cost.disk))} of the {decimal(round(room))} that it may use",
         "largest run": f"about {time(cost.largest)}" + f" ({at})" * bool(at),
     }
     if cost.auto:
-        lines["discretisation"] = "auto: to be found by trials; the default stands in its place"
+        lines["discretisation"] = (
+            "auto: pilot runs will determine it; this estimate uses the default"
+        )
     console = Console(soft_wrap=True)
     for name, words in lines.items():
         console.print(f"{name:15s}{words}", markup=False, highlight=False)
@@ -116,9 +120,9 @@ def print_status(name: str, found: Status) -> None:
     left = found.runs - found.done
     print(f"{name}: {found.done:,} of {found.runs:,} runs solved, {left:,} left")
     if found.failed:
-        print(f"failed: {found.failed:,} lack a response that is asked for")
+        print(f"failed: {found.failed:,} lack a requested response")
     if found.age is not None:
-        print(f"on disk: {decimal(found.size)}, the latest {_age(found.age)} ago")
+        print(f"on disk: {decimal(found.size)}, last written {_age(found.age)} ago")
     print(f"at work: {found.holder or 'nobody'}")
 
 
@@ -141,7 +145,7 @@ def print_recommendation(found: xr.Dataset) -> None:
     console = Console()
     best = int(found["recommended"])
     console.print(_headline(found, best), markup=False)
-    table = Table(Column("response", no_wrap=True), "in all", *_AXES, "checked", "")
+    table = Table(Column("response", no_wrap=True), "total", *_AXES, "checked", "")
     evidence = _evidence(found, best)
     for name in found["response"].values:
         shares = [_percent(column.sel(response=name)) for column in evidence.values()]
@@ -149,8 +153,9 @@ def print_recommendation(found: xr.Dataset) -> None:
         table.add_row(str(name), *shares, *[""] * (len(table.columns) - 2 - len(shares)), remark)
     console.print(table)
     console.print(
-        f"Relative uncertainty, the worst of {found.sizes['case']} corner cases: in all, and of "
-        "each axis. Checked: the difference to the last rungs of all axes at once.",
+        "The table gives the largest relative uncertainty over the "
+        f"{found.sizes['case']} corner cases, in total and per axis. The check is the difference "
+        "from the finest level of all axes at once.",
         markup=False,
     )
 
@@ -172,11 +177,14 @@ def _headline(found: xr.Dataset, best: int) -> str:
     tolerance = f"{100 * found.attrs['tolerance']:g} %"
     if best < 0:
         most = int(found["nodes"].max())
-        return f"No discretisation up to {most} nodes meets {tolerance} for any asked response."
+        return f"No discretisation up to {most} nodes meets {tolerance} for any requested response."
     chosen = found.isel(candidate=best)
     grid = ", ".join(f"{axis} = {chosen[f'candidate_{axis}'].item():g}" for axis in _AXES)
     cost = chosen["candidate_cost"].item()
-    return f"Cheapest for {tolerance}: {grid}; {cost:.2g} times the cost of the study's own."
+    return (
+        f"The cheapest discretisation for {tolerance} is {grid}; it costs {cost:.2g} times as much "
+        "as the study's own."
+    )
 
 
 def _evidence(found: xr.Dataset, best: int) -> dict[str, xr.DataArray]:
@@ -203,8 +211,8 @@ def _evidence(found: xr.Dataset, best: int) -> dict[str, xr.DataArray]:
 
 def _remark(found: xr.Dataset) -> str:
     if not found["asked"]:
-        return "not asked"
-    return "" if found["reached"] else "none reaches it"
+        return "not requested"
+    return "" if found["reached"] else "not reached"
 
 
 def _percent(share: xr.DataArray) -> str:

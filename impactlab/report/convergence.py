@@ -114,15 +114,16 @@ def _rules(analysis: xr.Dataset) -> dict[str, dict[str, int]]:
 
 
 _ORDERS = (
-    "Observed order, grid convergence index (GCI) and asymptotic ratio are those of the three "
-    "finest grids, with the factor 1.25, or 3 where not every three successive grids show a "
+    "The observed order, the grid convergence index (GCI) and the asymptotic ratio come from the "
+    "three finest grids, with the factor 1.25, or 3 where not every three successive grids show a "
     "credible order. The fit is that of Eça and Hoekstra over four grids or more. The numerical "
-    "uncertainty of the finest value rests on both, on the larger where there is an order; all are "
-    "relative to that value. Ranges and largest values are over the rest of the grid."
+    "uncertainty of the finest value is based on both, and on the larger where there is an order; "
+    "all are relative to that value. Ranges and largest values are taken over the rest of the grid."
 )
 _RULES = (
-    "Each rule is judged by its own most points. The numerical uncertainty is three times the "
-    "difference to the next fewer points, since the error need not follow a power of the points."
+    "Each rule is compared with its own largest number of points. The numerical uncertainty is "
+    "three times the difference from the next smaller number, because the error need not follow a "
+    "power of the number of points."
 )
 _AXES: dict[str, tuple[str, Callable[[xr.Dataset, xr.Dataset, str, str], Table], str]] = {
     "nodes": ("Convergence in nodes along the span", _refined, _ORDERS),
@@ -186,13 +187,13 @@ def _needed(analysis: xr.Dataset, name: str, where: dict[str, int]) -> Cell:
         return Cell("–", "number")
     needed = analysis["points_needed"].sel(response=name).isel(where).values
     if np.isnan(needed).all():
-        return Cell("none below the most", "warning")
+        return Cell("none below the largest", "warning")
     text = f"{np.nanmin(needed):.0f}"
     if np.nanmax(needed) > np.nanmin(needed):
         text += f" to {np.nanmax(needed):.0f}"
     gaps = int(np.isnan(needed).sum())
     return Cell(
-        text, "number", f"none below the most at {gaps} of {needed.size} points" if gaps else ""
+        text, "number", f"none below the largest at {gaps} of {needed.size} points" if gaps else ""
     )
 
 

@@ -18,17 +18,17 @@ _FINE = 0.005
 _LEAST = 0.001
 """Magnitude below which an index and its half-width are not printed separately."""
 _LEAD = (
-    "The runs carry a numerical error, estimated by refining the discretisation. An index that it "
-    "could change by as much is not told from it, however narrow the interval, and no sentence "
-    "names it as significant."
+    "The runs have a numerical error, which was estimated by refining the discretisation. An index "
+    "that this error could change by as much as its own value is not distinguishable from it, "
+    "however narrow the interval, and no sentence calls it significant."
 )
 _MEASURED = (
-    " How far the indices may be off is measured where the first runs of the sample were solved "
-    "again on finer grids; what moves all runs alike moves no index."
+    " The error of the indices was measured where the first runs of the sample were solved again "
+    "on finer grids; a change that is common to all runs changes no index."
 )
 _BOUND = (
-    " Where it is only a bound, it follows from the errors of corner cases and is far too large as "
-    "a rule: of a Sobol sample whose runs do not fail, impactlab refine measures it."
+    " Where it is only a bound, it follows from the errors of corner cases and is usually far too "
+    "large; impactlab refine measures it for a Sobol sample whose runs do not fail."
 )
 _OF_RESPONSES = ("numerical_uncertainty", "numerical_share")
 _FROM = "numerical_from"
@@ -161,9 +161,9 @@ def _lost(analysis: xr.Dataset, name: str, measure: str, label: str) -> Iterator
         ]
         bound = labels.number(float(index.numerical[lost].max()), 2)
         yield (
-            f"{labels.sentence(labels.response(name))}, {label}: not resolved at this "
-            "discretisation, for the numerical error could change these indices by as much (up to "
-            f"{bound}): {labels.listing(listed)}."
+            f"{labels.sentence(labels.response(name))}, {label}: these indices are not "
+            "resolved at this discretisation, because the numerical error could change them by as "
+            f"much (up to {bound}): {labels.listing(listed)}."
         )
 
 
@@ -179,7 +179,7 @@ def _uncertainties(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """Return one row per response: uncertainty, and the largest error of an index per order."""
     orders = [one for one in SOBOL.measures if f"{one.name}_numerical" in analysis]
     head = ["Response", "Numerical uncertainty", "Share of the variance that could be numerical"]
-    head += [f"Indices of {order.words} may be off by up to" for order in orders]
+    head += [f"Largest numerical error of the indices of {order.words}" for order in orders]
     rows = []
     for name in analysed(runs, analysis):
         found = analysis.sel(response=name)
@@ -187,7 +187,7 @@ def _uncertainties(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
         cells += [_largest(found, f"{order.name}_numerical", labels.number) for order in orders]
         source = access.verdict(analysis, _FROM, name)
         rows.append([named(analysis, name), *cells, *([Cell(source.words)] if source else [])])
-    head += ["Which is"] * (_FROM in analysis)
+    head += ["Basis"] * (_FROM in analysis)
     return Table("Numerical uncertainty of each response", head, rows)
 
 

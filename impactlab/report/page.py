@@ -95,8 +95,8 @@ def commands(
     name = stored.attrs.get("study", "NAME")
     return [
         (f"impactlab {command} studies/{name}.yaml", purpose),
-        (f"make study STUDIES={name}", "makes its results, figures and this report again"),
-        ("make study", "makes all results, figures and reports"),
+        (f"make study STUDIES={name}", "reproduces its results, figures and this report"),
+        ("make study", "reproduces all results, figures and reports"),
     ]
 
 

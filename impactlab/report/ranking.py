@@ -49,9 +49,9 @@ def table(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
         for name in analysed(runs, analysis)
     ]
     title = f"Ranks of the parameters by {family.title}, {measure.words}"
-    explained = "noise: not told from zero or the dummy"
+    explained = "noise: not distinguishable from zero or the dummy"
     if f"{measure.name}_numerical" in analysis:
-        explained += "; numerical: not told from its numerical error"
+        explained += "; numerical: not distinguishable from its numerical error"
     return Table(f"{title} ({explained})", head, rows)
 
 
@@ -82,7 +82,7 @@ def _sentence(runs: xr.Dataset, analysis: xr.Dataset, family: Family, name: str)
         return f"The indices of the {response} are undefined{why}."
     text = " ".join(_WRITERS[family.title](runs, analysis, name))
     if verdict and not verdict.sound:
-        text += f" To be taken with care: {verdict.meaning or verdict.words}."
+        text += f" Use these indices with caution: {verdict.meaning or verdict.words}."
     return text
 
 
@@ -93,16 +93,16 @@ def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
     lost = _shares(analysis, index, index.numerically_lost)
     if found:
         (first, share), *rest = found
-        head = f"{share} of the variance of the {response} comes from the {first} alone"
-        others = [f"{share} from the {key}" for key, share in rest]
-        yield f"At these ranges {labels.listing([head, *others])}."
+        head = f"{_the(first)} alone explains {share} of the variance of the {response}"
+        others = [f"{_the(key)} {share}" for key, share in rest]
+        yield f"Over these ranges, {labels.listing([head, *others])}."
     if lost:
         yield (
-            f"The numerical error leaves open what share of the variance of the {response} comes "
-            f"from these alone: {'; '.join(f'{key}, {share}' for key, share in lost)}."
+            f"The numerical error leaves open which share of the variance of the {response} these "
+            f"parameters explain alone: {'; '.join(f'{key}, {share}' for key, share in lost)}."
         )
     if not found and not lost:
-        yield f"No parameter alone has a significant share in the variance of the {response}."
+        yield f"No parameter alone explains a significant share of the variance of the {response}."
     yield from _interactions(analysis, name)
 
 
@@ -116,26 +116,26 @@ def _interactions(analysis: xr.Dataset, name: str) -> Iterator[str]:
     if beyond.any():
         at = int(np.argmax(np.where(beyond, surplus, -np.inf)))
         parameter = labels.parameter(measures.parameters(analysis)[at])
-        yield f"With all its interactions the {parameter} takes part in {_share(total, at)}."
+        yield f"With all its interactions, {_the(parameter)} contributes to {_share(total, at)}."
 
 
 def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
     """Yield how far the response moves, and whose effects are uneven."""
     response, found = labels.response(name), _significant(analysis, "morris_mu_star", name)
     if not found:
-        yield f"No parameter moves the {response} significantly."
+        yield f"No parameter changes the {response} significantly."
         return
     (first, value, margin), *rest = found[:_NAMED]
-    moved = [f"the {first} moves the {response} by {in_units(runs[name], value, margin)}"]
-    moved += [f"the {key} by {in_units(runs[name], v, m)}" for key, v, m in rest]
-    yield f"Going through its whole range, {labels.listing(moved)} on average."
+    moved = [f"{_the(first)} changes the {response} by {in_units(runs[name], value, margin)}"]
+    moved += [f"{_the(key)} by {in_units(runs[name], v, m)}" for key, v, m in rest]
+    yield f"Over its whole range, {labels.listing(moved)} on average."
     spread = analysis["morris_sigma"].sel(response=name).values
     sizes = dict(zip(measures.parameters(analysis), spread, strict=True))
     keys = {labels.parameter(key): float(value) for key, value in sizes.items()}
-    if uneven := [f"the {key}" for key, value, _ in found if keys[key] > value]:
+    if uneven := [_the(key) for key, value, _ in found if keys[key] > value]:
         yield (
-            f"The effect of {labels.listing(uneven)} changes with the others or along the range by "
-            "more than its mean (σ above µ*)."
+            f"The effect of {labels.listing(uneven)} varies with the others or along its range "
+            "by more than its mean (σ above µ*)."
         )
 
 
@@ -145,10 +145,10 @@ def _dependence(measure: str, label: str) -> Callable[..., Iterator[str]]:
     def write(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
         found = _significant(analysis, measure, name)
         if not found:
-            yield f"No dependence of the {labels.response(name)} stands out of the noise."
+            yield f"No dependence of the {labels.response(name)} exceeds the noise."
             return
         leads = (1, 1) in measures.index(analysis, measure, name).ranks
-        listed = [f"the {key} ({label} {with_margin(v, m)})" for key, v, m in found[:_NAMED]]
+        listed = [f"{_the(key)} ({label} {with_margin(v, m)})" for key, v, m in found[:_NAMED]]
         yield f"The {labels.response(name)} depends{' most' * leads} on {_then(listed, leads)}."
 
     return write
@@ -158,16 +158,17 @@ def _regression(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[s
     """Yield the parameters that the response rises or falls with, and how well a line fits."""
     found = _significant(analysis, "regression", name)
     listed = [
-        f"{'rises' if value > 0 else 'falls'} with the {key} ({with_margin(value, margin)})"
+        f"{'rises' if value > 0 else 'falls'} with {_the(key)} ({with_margin(value, margin)})"
         for key, value, margin in found[:_NAMED]
     ]
     if listed:
         yield f"The {labels.response(name)} {labels.listing(listed)}."
     else:
-        yield f"The {labels.response(name)} rises or falls with no parameter significantly."
+        response = labels.response(name)
+        yield f"The {response} neither rises nor falls significantly with any parameter."
     if "regression_r_squared" in analysis:
         share = float(analysis["regression_r_squared"].sel(response=name))
-        little = ": the coefficients do not tell what it depends on" * (share < _POOR_FIT)
+        little = ", so the coefficients do not show what it depends on" * (share < _POOR_FIT)
         yield f"The linear fit explains {100 * share:.0f} % of its variance{little}."
 
 
@@ -178,6 +179,11 @@ _WRITERS: dict[str, Callable[[xr.Dataset, xr.Dataset, str], Iterator[str]]] = {
     PAWN.title: _dependence("pawn", "median distance"),
     REGRESSION.title: _regression,
 }
+
+
+def _the(parameter: str) -> str:
+    """Return a parameter with its article; a symbol such as x1 has none."""
+    return parameter if parameter[-1].isdigit() else f"the {parameter}"
 
 
 def _then(listed: list[str], ordered: bool) -> str:

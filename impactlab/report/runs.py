@@ -53,10 +53,13 @@ def outcome(runs: xr.Dataset, analysis: xr.Dataset, figures: tuple[str, ...] = (
     title = "How the runs ended"
     if not number:
         return Section("outcome", title, f"All {total} runs gave every response.", imputed)
-    lead = f"{number} of {total} runs failed, that is, miss at least one response."
+    lead = f"{number} of {total} runs failed: each lacks at least one response."
     causes = access.causes(runs, failed)
     rows = [[Cell(labels.sentence(why)), Cell(str(n), "number")] for why, n in causes.items()]
-    tables = [Table("Why", ["Reason", "Runs"], rows), _failed_runs(runs, failed, number)]
+    tables = [
+        Table("Reasons for the failures", ["Reason", "Runs"], rows),
+        _failed_runs(runs, failed, number),
+    ]
     return Section("outcome", title, lead, imputed, tables, list(figures))
 
 

@@ -57,7 +57,7 @@ def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
     return Section(
         "surrogate",
         "Surrogate",
-        "A surrogate was fitted to the runs and tried on runs that it had not seen.",
+        "A surrogate was fitted to the runs and tested on runs that it had not seen.",
         _differences(runs, analysis) if fitted and "first_order" in analysis else [],
         [_quality(runs, analysis)],
         ["surrogate_validation", "surrogate_indices"],
@@ -68,8 +68,8 @@ def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
 def _sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
     lead = (
         "A first-order index is the share of the variance that comes from a parameter "
-        "alone; a total-order index adds all its interactions. Grey: not told from zero, or from "
-        "the dummy parameter where one was sampled."
+        "alone; a total-order index adds all its interactions. Indices in grey are not "
+        "distinguishable from zero, or from the dummy parameter where one was sampled."
     )
     return Section(
         "sensitivity",
@@ -84,8 +84,8 @@ def _second(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
     return Section(
         "second-order",
         "Second order",
-        "The share of the variance that comes from two parameters together, beyond what each "
-        "brings alone.",
+        "A second-order index is the share of the variance that comes from two parameters "
+        "together, beyond what each contributes alone.",
         figures=["sobol_second_order"],
         folded=[indices.second_order(runs, analysis)],
     )
@@ -95,17 +95,17 @@ def _convergence() -> Section:
     return Section(
         "index-convergence",
         "Convergence of the indices",
-        "The indices from the first part of the sample alone, with nothing solved anew. An index "
-        "that has not settled at the right end is not known better than its drift.",
+        "The figures show the indices from the first part of the sample alone; no run was solved "
+        "again. An index that still drifts at the right end is not known better than its drift.",
         figures=[f"{measure.name}_convergence" for measure in SOBOL.measures],
     )
 
 
 def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family, file: str) -> Section:
     lead = (
-        "Sentences name significant parameters only, with the half-width of the "
-        f"{access.confidence(analysis)} interval. Ranks are a range where intervals, widened by "
-        "the numerical error where that is known, overlap."
+        "The sentences name significant parameters only, with the half-width of the "
+        f"{access.confidence(analysis)} interval. A rank is a range where intervals overlap; they "
+        "are widened by the numerical error where it is known."
     )
     return Section(
         "ranking",
@@ -163,6 +163,6 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
                 where = labels.listing(keys[apart].tolist())
                 found.append(
                     f"{labels.sentence(labels.response(name))}: the {label} indices of the runs "
-                    f"and of the surrogate differ beyond their intervals for {where}."
+                    f"and of the surrogate differ by more than their intervals for {where}."
                 )
     return found

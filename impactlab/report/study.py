@@ -35,7 +35,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     ordered = _numbered(pictures(figures_folder), placed)
     rest = [name for name in ordered if name not in placed]
     if rest or not ordered:
-        lead = "" if rest else "No figure applies to what this study keeps."
+        lead = "" if rest else "This study stores no data that a figure could show."
         then = [*then, Section("figures", "Figures", lead, figures=rest)]
     name = str(runs.attrs.get("study", "study"))
     write_page(
@@ -88,8 +88,8 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[list[Section], li
 
 def _scatter(runs: xr.Dataset) -> Section:
     lead = (
-        "A line that bends or tilts is a parameter that matters by itself; points that fan out "
-        "around a flat line hint at one that matters together with others."
+        "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
+        "around a flat line suggest a parameter that matters together with others."
     )
     names = [figure.name for figure in scatters(runs)]
     return Section("scatter", "Each response against each parameter", lead, figures=names)

@@ -38,7 +38,7 @@ class CheckResult:
 
     @property
     def short(self) -> bool:
-        """Whether the passed comparisons need no folding."""
+        """Return whether the passed comparisons need no folding."""
         return len(self.passed.rows) <= _SHORT
 
 
@@ -53,7 +53,7 @@ class Tally:
 
     @property
     def passed(self) -> bool:
-        """Whether there is a check, and all pass."""
+        """Return whether there is a check, and all pass."""
         return self.checks > 0 and self.bad_checks == 0
 
 
@@ -83,7 +83,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
         overview=drawn.get(OVERVIEW),
         checks=[_check(outcome, drawn.get(outcome.name)) for outcome in outcomes],
         provenance=provenance(findings, "findings"),
-        commands=commands(findings, "verify", "makes these checks again"),
+        commands=commands(findings, "verify", "repeats these checks"),
         study_text=str(findings.attrs.get("study_text", "")),
     )
 
@@ -99,8 +99,15 @@ def _check(outcome: Outcome, picture: Picture | None) -> CheckResult:
 
 
 def _summary(outcomes: Sequence[Outcome]) -> Table:
-    head = ["Check", "Verdict", "Passed", "Largest error over tolerance", "It is that of", "Time"]
-    return Table("Checks, what failed first", head, [_row(outcome) for outcome in outcomes])
+    head = [
+        "Check",
+        "Verdict",
+        "Passed",
+        "Largest error over tolerance",
+        "Quantity and case of that error",
+        "Time",
+    ]
+    return Table("All checks, failed ones first", head, [_row(outcome) for outcome in outcomes])
 
 
 def _row(outcome: Outcome) -> list[Cell]:

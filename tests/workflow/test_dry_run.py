@@ -60,7 +60,7 @@ def test_a_month_is_not_begun_unless_it_is_forced(impactlab, tmp_path, monkeypat
 
 def test_a_discretisation_that_is_sought_is_not_sought(impactlab, tmp_path):
     _, said = impactlab("run", "--dry-run", "studies/some.yaml", grid="auto")
-    assert "auto: to be found by trials" in said
+    assert "auto: pilot runs will determine it" in said
     assert not (tmp_path / "results").exists()
 
 

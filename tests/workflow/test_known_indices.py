@@ -116,8 +116,7 @@ def test_the_report_tells_what_is_known(ishigami, tmp_path):
     draw_all(runs, analysis, tmp_path / "figures")
     write_report(runs, analysis, tmp_path / "figures", tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
-    assert "44 % (± " in page
-    assert "of the variance of the value comes from the x2 alone" in page
+    assert "Over these ranges, x2 alone explains 44 % (± " in page
     assert "NaN" not in re.sub(r"base64,[^\"]*", "", page)
 
 

@@ -48,7 +48,7 @@ def test_verdicts_a_row_a_response(report: Any, discretisation_study: Study) -> 
 
 def test_what_is_not_converged_is_a_caution(report: Any, discretisation_study: Study) -> None:
     page = report(*discretisation_study)
-    caution = _list(page, "Not converged in nodes")
+    caution = _list(page, "Somewhere in the grid, these responses have not converged in nodes: ")
     assert "peak plastic strain (divergent: meaning of divergent)" in caution
     assert "peak force" not in caution.split(").")[0]
 
@@ -62,8 +62,8 @@ def test_numbers_that_are_not_defined_are_dashes(report: Any, discretisation_stu
     analysis["points_needed"].loc[{"response": "impulse", "velocity": 15.0}] = np.nan
     page = report(runs, analysis)
     assert _row(page, NODES, "Peak plastic strain")[3:5] == ["–", "∞ %"]
-    assert _row(page, POINTS, "Peak plastic strain")[3] == "none below the most"
-    assert _row(page, POINTS, "Impulse")[3] == "5none below the most at 3 of 6 points"
+    assert _row(page, POINTS, "Peak plastic strain")[3] == "none below the largest"
+    assert _row(page, POINTS, "Impulse")[3] == "5none below the largest at 3 of 6 points"
 
 
 def test_the_index_and_uncertainties_shown_are_the_largest_over_the_grid(
@@ -114,17 +114,19 @@ def test_the_time_step_has_a_table_and_a_caution(report: Any, time_step_study: S
     table = "Convergence in the time step at fixed nodes"
     assert _row(page, table, "Peak force")[1:4] == ["converged", "–", "2"]
     assert _row(page, table, "Peak force")[-1] == "0.01 %"
-    assert "impulse (divergent" in _list(page, "Not converged in the time step")
+    assert "impulse (divergent" in _list(
+        page, "these responses have not converged in the time step"
+    )
     assert NODES not in page.tables
 
 
 def test_sentences_name_significant_shares_alone(report: Any, sobol_study: Study) -> None:
     page = report(*sobol_study)
-    sentence = _list(page, "At these ranges 71 % (± 3) of the variance of the peak force comes")
+    sentence = _list(page, "Over these ranges, the impact velocity alone explains 71 % (± 3)")
     assert sentence.startswith(
-        "At these ranges 71 % (± 3) of the variance of the peak force comes from the impact "
-        "velocity alone and 12 % (± 3) from the yield stress of the beam. With all its "
-        "interactions the impact velocity takes part in 80 % (± 4)."
+        "Over these ranges, the impact velocity alone explains 71 % (± 3) of the variance of the "
+        "peak force and the yield stress of the beam 12 % (± 3). With all its interactions, the "
+        "impact velocity contributes to 80 % (± 4)."
     )
     assert "radius of the sphere" not in sentence.split("contact duration")[0]
 
@@ -134,7 +136,7 @@ def test_small_shares_keep_a_decimal(report: Any, sobol_study: Study) -> None:
     impulse = {"response": "impulse", "parameter": "sphere_radius"}
     analysis["first_order"].loc[impulse] = 0.0123
     analysis["first_order_interval"].loc[impulse] = 0.006
-    assert "1.2 % (± 0.6) from the radius of the sphere" in report(runs, analysis).text
+    assert "the radius of the sphere 1.2 % (± 0.6)" in report(runs, analysis).text
 
 
 def test_nothing_is_minus_zero(report: Any, sobol_study: Study) -> None:
@@ -166,18 +168,18 @@ def test_no_significant_share_is_said(report: Any, sobol_study: Study) -> None:
     runs, analysis = sobol_study
     analysis["first_order_interval"][:] = 2.0
     page = report(runs, analysis)
-    assert "No parameter alone has a significant share in the variance of the peak force." in (
+    assert "No parameter alone explains a significant share of the variance of the peak force." in (
         page.text
     )
-    assert "At these ranges" not in page.text
+    assert "Over these ranges" not in page.text
 
 
 def test_unsound_indices_carry_a_warning(report: Any, sobol_study: Study) -> None:
     runs, analysis = sobol_study
     analysis["sensitivity_verdict"].loc[{"response": "impulse"}] = 2
     page = report(runs, analysis)
-    assert "To be taken with care: meaning of failed_runs." in page.text
-    caution = _list(page, "Sensitivity indices not usable")
+    assert "Use these indices with caution: meaning of failed_runs." in page.text
+    caution = _list(page, "The sensitivity indices of these responses are not usable")
     assert "number of contacts (constant" in caution
     assert "impulse (failed runs" in page.text
 

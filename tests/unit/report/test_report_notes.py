@@ -27,7 +27,7 @@ def test_plastic_strain_without_a_convergence_study(material_study: Study) -> No
 
 
 def test_a_verdict_of_its_own_takes_the_place(discretisation_study: Study) -> None:
-    assert not _said(cautions(*discretisation_study), "this study does not vary them")
+    assert not _said(cautions(*discretisation_study), "which this study does not vary")
 
 
 def test_energy_imbalance_and_restitution_above_one(material_study: Study) -> None:
@@ -52,7 +52,7 @@ def test_runs_whose_contact_law_created_energy_are_counted(material_study: Study
 
 def test_an_analysis_of_other_runs_is_told(material_study: Study) -> None:
     runs, analysis = material_study
-    words = "The analysis is not of these runs"
+    words = "The analysis does not belong to these runs"
     assert not _said(cautions(runs, analysis), words)
     assert not _said(cautions(runs, xr.Dataset()), words)
     stale = analysis.assign_attrs(created="1999-12-31T23:59:59+00:00")
@@ -79,8 +79,8 @@ def test_notes_say_what_of_a_law_is_not_confirmed(laws_study: Study) -> None:
     for law in doubted:
         said = [text for text in notes(runs.sel(contact=[law])) if f"“{law}”" in text]
         assert len(said) == 1
-        assert f"Not confirmed: {CONTACT_LAWS[law].unconfirmed}." in said[0]
-    assert not _said(notes(runs.sel(contact=["hertz", "stronge"])), "Not confirmed")
+        assert f"The following is not confirmed: {CONTACT_LAWS[law].unconfirmed}." in said[0]
+    assert not _said(notes(runs.sel(contact=["hertz", "stronge"])), "not confirmed")
 
 
 def test_notes_on_responses(velocity_study: Study) -> None:

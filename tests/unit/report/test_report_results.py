@@ -23,7 +23,7 @@ def test_failed_runs_are_counted_named_and_explained(
     broken["restitution"][0, 0] = np.nan
     page = report(broken, analysis)
     assert "2 of 16 runs failed" in page.text
-    assert page.tables["Why"][1:] == [
+    assert page.tables["Reasons for the failures"][1:] == [
         ["The run diverged; every response is missing", "1"],
         [words[0].upper() + words[1:], "1"],
     ]
@@ -39,7 +39,7 @@ def test_failed_runs_are_counted_named_and_explained(
 def test_no_failure_is_said_plainly(report: Any, velocity_study: Study) -> None:
     page = report(*velocity_study)
     assert "All 16 runs gave every response." in page.text
-    assert "Why" not in page.tables
+    assert "Reasons for the failures" not in page.tables
 
 
 def test_failed_runs_of_a_sample_are_named_by_number(

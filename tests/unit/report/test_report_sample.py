@@ -84,11 +84,14 @@ def test_an_index_within_the_dummys_interval_is_not_named(study: Study) -> None:
     runs, analysis = study
     analysis["dummy_first_order"].loc[PEAK] = 0.2
     (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
-    assert "71 % (± 3) of the variance of the peak force comes from the impact velocity" in sentence
+    assert (
+        "the impact velocity alone explains 71 % (± 3) of the variance of the peak force"
+        in sentence
+    )
     assert "yield stress" not in sentence
     analysis["dummy_first_order"].loc[PEAK] = 0.8
     (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
-    assert sentence.startswith("No parameter alone has a significant share")
+    assert sentence.startswith("No parameter alone explains a significant share")
 
 
 def test_an_index_below_the_numerical_error_is_not_named_but_warned_of(study: Study) -> None:
@@ -99,14 +102,14 @@ def test_an_index_below_the_numerical_error_is_not_named_but_warned_of(study: St
     assert "yield stress" not in told
     assert "71 % (± 3) of the variance" in told
     assert left.startswith(
-        "leaves open what share of the variance of the peak force comes from these alone: yield "
-        "stress of the beam, 12 % (± 3, numerically ± 20). With all its interactions"
+        "leaves open which share of the variance of the peak force these parameters explain alone: "
+        "yield stress of the beam, 12 % (± 3, numerically ± 20). With all its interactions,"
     )
     (warning,) = numerical_warnings(runs, analysis)
     value = float(analysis["first_order"].sel(PEAK)[1])
     assert warning == (
-        "Peak force, first order: not resolved at this discretisation, for the numerical error "
-        "could change these indices by as much (up to 0.2): yield stress of the beam "
+        "Peak force, first order: these indices are not resolved at this discretisation, because "
+        "the numerical error could change them by as much (up to 0.2): yield stress of the beam "
         f"({value:.3f})."
     )
 
@@ -119,9 +122,9 @@ def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant
         analysis[f"{order}_numerical"].loc[PEAK] = 0.9
     (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
     assert sentence == (
-        "The numerical error leaves open what share of the variance of the peak force comes from "
-        "these alone: impact velocity, 71 % (± 3, numerically ± 90); yield stress of the beam, "
-        "12 % (± 3, numerically ± 90)."
+        "The numerical error leaves open which share of the variance of the peak force these "
+        "parameters explain alone: impact velocity, 71 % (± 3, numerically ± 90); yield stress of "
+        "the beam, 12 % (± 3, numerically ± 90)."
     )
     rows = _table(report(runs, analysis), "Ranks of the parameters by Sobol indices, total order")
     assert rows[1] == ["Peak force", "numerical", "numerical", "noise", "noise"]
@@ -148,7 +151,9 @@ def test_the_numerical_warning_is_a_caution_and_in_the_table(report: Any, study:
     runs, analysis = study
     analysis["total_order_numerical"].loc[PEAK] = 0.5
     page = report(runs, analysis)
-    assert "Some indices are below what the numerical error could change" in page.text
+    assert (
+        "Some indices are smaller than the change that the numerical error could cause" in page.text
+    )
     row = next(r for r in _table(page, "Sobol indices, total order") if r[0] == "Peak force")
     assert row[1] == "0.79 ± 0.04"
     assert row[2].endswith("below numerical error")
@@ -178,9 +183,9 @@ def test_morris_in_words(study: Study) -> None:
     analysis["morris_mu_star_interval"].loc[PEAK] = 600.0
     analysis["morris_sigma"].loc[PEAK] = [1e3, 4e3, 1e3, 1e3]
     assert ranking.sentences(runs, analysis, ranking.MORRIS)[0] == (
-        "Going through its whole range, the impact velocity moves the peak force by 12 kN ± 0.6 "
-        "and the yield stress of the beam by 3 kN ± 0.6 on average. The effect of the yield stress "
-        "of the beam changes with the others or along the range by more than its mean (σ above µ*)."
+        "Over its whole range, the impact velocity changes the peak force by 12 kN ± 0.6 and "
+        "the yield stress of the beam by 3 kN ± 0.6 on average. The effect of the yield stress "
+        "of the beam varies with the others or along its range by more than its mean (σ above µ*)."
     )
 
 
@@ -203,8 +208,8 @@ def test_a_poor_fit_is_said_with_its_coefficients(study: Study) -> None:
     analysis["regression_r_squared"].loc[PEAK] = 0.45
     assert ranking.sentences(runs, analysis, ranking.REGRESSION)[0] == (
         "The peak force rises with the impact velocity (0.60 ± 0.02) and falls with the yield "
-        "stress of the beam (−0.30 ± 0.02). The linear fit explains 45 % of its variance: the "
-        "coefficients do not tell what it depends on."
+        "stress of the beam (−0.30 ± 0.02). The linear fit explains 45 % of its variance, so "
+        "the coefficients do not show what it depends on."
     )
 
 
@@ -214,8 +219,8 @@ def test_a_surrogate_that_disagrees_or_is_poor_is_named(study: Study) -> None:
     analysis["surrogate_q2"].loc[PEAK] = 0.6
     found = surrogate(runs, analysis)
     assert found.sentences == [
-        "Peak force: the total-order indices of the runs and of the surrogate differ beyond their "
-        "intervals for impact velocity."
+        "Peak force: the total-order indices of the runs and of the surrogate differ by more than "
+        "their intervals for impact velocity."
     ]
     assert (found.tables[0].rows[0][1].text, found.tables[0].rows[0][1].detail) == ("0.6", "poor")
 
@@ -226,7 +231,7 @@ def test_imputed_values_are_told(report: Any, study: Study) -> None:
     page = report(runs, analysis)
     told = "For the indices of the peak force, a surrogate supplied the value of 0.4 % of the runs."
     assert told in page.text
-    assert "up to 0.4 % of the runs of a response, come from a surrogate" in page.text
+    assert "supplied the values of failed runs, up to 0.4 % of the runs per response" in page.text
 
 
 def test_groups_take_the_place_of_parameters(report: Any) -> None:
