@@ -1,4 +1,4 @@
-"""The page as a whole: self-contained, well-formed, safe, and with its figures."""
+"""Pages as a whole, self-contained, well-formed and safe; their figures, and the index."""
 
 from __future__ import annotations
 
@@ -6,9 +6,13 @@ import base64
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import pytest
+import xarray as xr
 
+from impactlab.report.pictures import drawn_data
+from impactlab.report.results import write_index
 from impactlab.report.study import write_report
 
 Study = Any
@@ -94,3 +98,82 @@ def test_provenance_and_the_study_file_are_told(report: Any, material_study: Stu
     assert "2000-01-01 00:00:00 UTC" in page.text
     assert "impactlab run studies/material.yaml" in page.text
     assert "make study" in page.text
+
+
+def test_the_data_of_a_figure_are_thinned_evenly(tmp_path: Path) -> None:
+    lines = ["panel,curve,x_label,y_label,category,x,y"]
+    for curve in ("one", "two"):
+        lines += [f"Force,{curve},Time (ms),Force (kN),,{at},{at * at}" for at in range(200)]
+    (tmp_path / "figure.csv").write_text("\n".join(lines))
+    table = drawn_data(tmp_path / "figure.csv")
+    assert table.caption == "Data as drawn (80 of 400 points)"
+    assert table.head == ["Panel", "Curve", "Time (ms)", "Force (kN)"]
+    assert [cell.text for cell in table.rows[1]] == ["Force", "one", "5", "25"]
+    assert [cell.text for cell in table.rows[40]] == ["Force", "two", "0", "0"]
+
+
+def test_the_data_of_named_bars_are_all_told(tmp_path: Path) -> None:
+    lines = ["panel,curve,x_label,y_label,category,x,y"]
+    lines += [f"Force,first order,Share (–),,parameter {at},0.5,{at}" for at in range(100)]
+    (tmp_path / "figure.csv").write_text("\n".join(lines))
+    table = drawn_data(tmp_path / "figure.csv")
+    assert table.head == ["Panel", "Curve", "Of", "Share (–)"]
+    assert len(table.rows) == 100
+
+
+def _index(results: Path, page: Any, path: Path | None = None) -> Any:
+    path = path or results / "index.html"
+    write_index(results, path)
+    return page(path.read_text("utf-8"))
+
+
+def test_links_every_report(results: Path, page: Any) -> None:
+    found = _index(results, page)
+    assert found.open == []
+    links = [attrs["href"] for attrs in found.named("a") if not attrs["href"].startswith("#")]
+    assert links == ["velocity/report.html"]
+    assert "The velocity study" in found.text
+    assert "6 runs (grid), none failed" in found.text
+
+
+def test_addresses_are_relative_and_exist(results: Path, page: Any) -> None:
+    home = results.parent / "elsewhere" / "index.html"
+    found = _index(results, page, home)
+    addresses = [attrs["src"] for attrs in found.named("img")]
+    addresses += [a["href"] for a in found.named("a") if not a["href"].startswith("#")]
+    assert len(addresses) == 2
+    assert all((home.parent / unquote(address)).is_file() for address in addresses)
+    assert found.named("img")[0]["alt"] == "Contact force during the first contact"
+
+
+def test_failures_are_told(results: Path, page: Any, failing: Any) -> None:
+    path = results / "velocity" / "runs.nc"
+    runs = failing(xr.load_dataset(path), {"velocity": 0, "contact": 0})
+    path.unlink()
+    runs.to_netcdf(path)
+    assert "6 runs (grid), 1 failed" in _index(results, page).text
+
+
+def test_markup_and_odd_names_do_no_harm(results: Path, page: Any) -> None:
+    odd = results / 'a "b" #1'
+    (results / "velocity").rename(odd)
+    runs = xr.load_dataset(odd / "runs.nc")
+    (odd / "runs.nc").unlink()
+    runs.assign_attrs(title="<i>T</i>").to_netcdf(odd / "runs.nc")
+    found = _index(results, page)
+    assert found.named("i") == []
+    assert "<i>T</i>" in found.text
+    link = next(a["href"] for a in found.named("a") if not a["href"].startswith("#"))
+    assert (results / unquote(link)).is_file()
+
+
+def test_folders_without_a_report_are_left_out(results: Path, page: Any) -> None:
+    (results / "half").mkdir()
+    (results / "half" / "runs.nc").touch()
+    (results / "other").mkdir()
+    (results / "other" / "report.html").touch()
+    assert len(_index(results, page).named("li")) == 1
+
+
+def test_an_empty_folder_says_what_to_do(tmp_path: Path, page: Any) -> None:
+    assert "make study" in _index(tmp_path, page).text

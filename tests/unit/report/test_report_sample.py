@@ -15,8 +15,7 @@ from impactlab.analysis.numerical import NumericalFrom
 from impactlab.analysis.verdicts import flagged
 from impactlab.figures.draw import draw_all
 from impactlab.report import ranking
-from impactlab.report.indices import numerical_warnings
-from impactlab.report.pictures import drawn_data
+from impactlab.report.indices import numerical_warnings, with_margin
 from impactlab.report.sensitivity import surrogate
 from impactlab.report.study import write_report
 
@@ -266,22 +265,18 @@ def test_responses_and_parameters_of_another_solver(report: Any) -> None:
     assert "uniform: low −3.142, high 3.142" in page.text
 
 
-def test_the_data_of_a_figure_are_thinned_evenly(tmp_path: Path) -> None:
-    lines = ["panel,curve,x_label,y_label,category,x,y"]
-    for curve in ("one", "two"):
-        lines += [f"Force,{curve},Time (ms),Force (kN),,{at},{at * at}" for at in range(200)]
-    (tmp_path / "figure.csv").write_text("\n".join(lines))
-    table = drawn_data(tmp_path / "figure.csv")
-    assert table.caption == "Data as drawn (80 of 400 points)"
-    assert table.head == ["Panel", "Curve", "Time (ms)", "Force (kN)"]
-    assert [cell.text for cell in table.rows[1]] == ["Force", "one", "5", "25"]
-    assert [cell.text for cell in table.rows[40]] == ["Force", "two", "0", "0"]
-
-
-def test_the_data_of_named_bars_are_all_told(tmp_path: Path) -> None:
-    lines = ["panel,curve,x_label,y_label,category,x,y"]
-    lines += [f"Force,first order,Share (–),,parameter {at},0.5,{at}" for at in range(100)]
-    (tmp_path / "figure.csv").write_text("\n".join(lines))
-    table = drawn_data(tmp_path / "figure.csv")
-    assert table.head == ["Panel", "Curve", "Of", "Share (–)"]
-    assert len(table.rows) == 100
+@pytest.mark.parametrize(
+    ("value", "margin", "text"),
+    [
+        (0.7123, 0.03, "0.71 ± 0.03"),
+        (0.0213, 0.0021, "0.021 ± 0.002"),
+        (-0.004, 0.02, "0.00 ± 0.02"),
+        (-0.034, 0.02, "−0.03 ± 0.02"),
+        (0.0002, 0.0004, "below 0.001"),
+        (0.0002, 0.01, "0.00 ± 0.01"),
+        (0.5, np.inf, "0.50"),
+        (np.nan, 0.1, "undefined"),
+    ],
+)
+def test_digits_follow_the_interval(value: float, margin: float, text: str) -> None:
+    assert with_margin(value, margin) == text
