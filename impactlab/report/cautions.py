@@ -73,9 +73,9 @@ def _outside(runs: xr.Dataset) -> Iterator[str]:
     for law in np.unique(runs["contact"].values).tolist():
         if number := int((beyond & (runs["contact"] == law)).sum()):
             yield (
-                f"{number} of {count(runs)} runs went beyond the range of the contact law “{law}”, "
-                f"which holds for {CONTACT_LAWS[law].holds}. Their responses are kept, but they are "
-                "extrapolated."
+                f"{number} of {count(runs)} runs went beyond the range of the contact law "
+                f"“{law}”, which holds for {CONTACT_LAWS[law].holds}. Their responses are kept, "
+                "but they are extrapolated."
             )
 
 

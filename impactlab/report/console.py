@@ -43,7 +43,7 @@ def print_responses(run: Any) -> None:
         console.print(
             f"A response is missing because {reason}; a longer duration may help.", markup=False
         )
-    for note in (*marks(run["status"].item()), *remarked(run["remarks"].item())):
+    for note in (*marks(run["status"].item()), *warnings_in(run["remarks"].item())):
         console.print(f"note: {note}", markup=False)
 
 
