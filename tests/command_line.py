@@ -39,7 +39,7 @@ def process(*args, cwd, said="", env=None, python=()):
 
 
 def succeeded(*args, cwd, **options):
-    """As `process`, which must end well."""
+    """Run `process`, which must succeed."""
     done = process(*args, cwd=cwd, **options)
     assert done.returncode == 0, done.stderr
     return done
@@ -55,7 +55,7 @@ def here(*args):
 
 
 def called(*args, cwd, said=""):
-    """As `process`, but in this process, which saves it seconds of imports."""
+    """Run the command in this process, which saves seconds of imports."""
     out, err = io.StringIO(), io.StringIO()
     with (
         contextlib.chdir(cwd),
@@ -68,7 +68,7 @@ def called(*args, cwd, said=""):
 
 
 def done(*args, cwd):
-    """As `called`, which must end well."""
+    """Run `called`, which must succeed."""
     ended = called(*args, cwd=cwd)
     assert ended.returncode == 0, ended.stderr
     return ended

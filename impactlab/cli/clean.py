@@ -18,7 +18,7 @@ def clean(
 ) -> None:
     """Remove solved runs that no study asks for any more.
 
-    It asks first. What a changed study still asks for stays, and so do runs.nc and the reports.
+    Asks first. Runs that a changed study still needs stay, and so do runs.nc and the reports.
     """
     from contextlib import ExitStack
 
@@ -48,7 +48,7 @@ def _folders(results: Path) -> list[Path]:
 
 
 def _study_of(shards: Path, folder: Path) -> Path | None:
-    """Its file, there or where it was when its runs were solved; None where it is in neither."""
+    """Return the study file, in the folder or where its runs were solved from; else None."""
     from impactlab.study.runs import noted_study
 
     file = folder / f"{shards.parent.name}.yaml"
@@ -56,7 +56,7 @@ def _study_of(shards: Path, folder: Path) -> Path | None:
 
 
 def _stale(file: Path | None, shards: Path) -> dict[Path, str]:
-    """What can go of one study's shards; nothing while its discretisation has to be found."""
+    """Return the shards of one study to remove; none while its discretisation is to be found."""
     from impactlab.study.runs import outdated, stale
     from impactlab.study.sampling.design import design
     from impactlab.study.sampling.doubling import stages

@@ -1,4 +1,4 @@
-"""What commands print of a study's price and of a discretisation that is `auto`."""
+"""The price of a study and its `auto` discretisation, as commands print them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What Ctrl-C does."""
+"""Ctrl-C: how a command ends when it is interrupted."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ _STOPPING = b"impactlab: stopping to keep what is computed; Ctrl-C again ends at
 
 
 def stop_without_more() -> None:
-    """From here on, Ctrl-C ends the process: nothing is begun, and imports lose exceptions."""
+    """Make Ctrl-C end the process at once: nothing has begun, and imports swallow exceptions."""
     signal.signal(signal.SIGINT, _stop_without_more)
 
 
 def stopped() -> None:
-    """From here on, Ctrl-C does nothing: the process ends by itself, its work done or put away."""
+    """Make Ctrl-C do nothing: the process is about to end by itself."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def stop_quietly() -> None:
-    """From here on, Ctrl-C ends the command in one line; what is half done is put away."""
+    """Make Ctrl-C end the command with one line; unfinished files are removed."""
     signal.signal(signal.SIGINT, _stop)
 
 
 def stop_at_once() -> None:
-    """From here on, Ctrl-C ends the command without its clean-up: dask's own may hang.
+    """Make Ctrl-C end the command without any clean-up: that of dask may hang.
 
     Finished batches are on disk.
     """
@@ -42,7 +42,7 @@ def stop_at_once() -> None:
 
 @contextmanager
 def stop_kept() -> Iterator[Callable[[], bool]]:
-    """Within, a first Ctrl-C only asks to stop, and what is given tells whether it was asked.
+    """Take a first Ctrl-C as a request to stop; the function given tells whether one was made.
 
     A second one ends the command in one line.
     """

@@ -1,4 +1,4 @@
-"""What a finer discretisation does to sensitivity indices."""
+"""The effect of a finer discretisation on sensitivity indices."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def refine(
 ) -> None:
     """Solve the first runs of a Sobol sample on finer grids.
 
-    `impactlab analyse --refinement` tells from them how far the indices may be off numerically; the
-    more base samples, the closer.
+    `impactlab analyse --refinement` estimates the numerical error of the indices from them; more base
+    samples narrow the estimate.
     """
     stop_at_once()
     from impactlab.study import steps

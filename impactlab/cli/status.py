@@ -1,4 +1,4 @@
-"""How far a study is."""
+"""The progress of a study."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ def status(
     study: StudyFile,
     results: Annotated[Path, typer.Option(help="Where results land.")] = RESULTS,
 ) -> None:
-    """Tell how far a study is: runs solved, failed and left.
+    """Show the progress of a study: runs solved, failed and left.
 
-    Nothing is changed; a study may be at work meanwhile.
+    Changes nothing; the study may be running.
     """
     from impactlab.report.console import print_status
     from impactlab.study import SHARDS
@@ -40,7 +40,7 @@ def status(
 
 
 def _last_samples(runs: Path, study_sha256: str) -> int | None:
-    """The base samples at which this very study's sample ceased to grow; None: it may still."""
+    """Return the base samples at which this study's sample stopped growing; None if it still may."""
     from impactlab.study.netcdf import read_attributes
 
     attrs = read_attributes(runs) if runs.exists() else {}

@@ -18,13 +18,13 @@ def verify(
     output: Annotated[Path | None, typer.Option(help="Default: results/NAME/findings.nc.")] = None,
     exit_zero: Annotated[
         bool,
-        typer.Option("--exit-zero", help="End with exit code 0 although a check fails."),
+        typer.Option("--exit-zero", help="Exit with code 0 even if checks fail."),
     ] = False,
 ) -> None:
-    """Hold the solver against independent solutions.
+    """Compare the solver with independent solutions.
 
-    Exit code 1 where a check fails; what was found is written all the same. Of a findings.nc the
-    verdict is told again.
+    The exit code is 1 if a check fails; the findings are written either way. Given a findings.nc, the
+    command prints its verdict again.
     """
     from impactlab.report.console import print_outcomes
     from impactlab.study.checking import check, failure

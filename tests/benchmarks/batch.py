@@ -1,4 +1,4 @@
-"""What a batch of runs costs beside its kernels, and what a second thread brings: `make bench`.
+"""The cost of a batch of runs beside its kernels, and the gain of a second thread: `make bench`.
 
 The kernels alone, `run_all` over a case table that is already there, run right before each timed
 batch, and the ratios of these pairs are reported: what else the machine does then weighs on both.

@@ -1,4 +1,4 @@
-"""What the intervals of Sobol indices cost: `make bench`.
+"""The cost of the intervals of Sobol indices: `make bench`.
 
 Against SALib's own bootstrap where that is bearable, and at the full size: 10 responses of 10
 parameters, 8192 base samples with second order, 1000 resamples.

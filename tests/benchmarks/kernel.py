@@ -1,4 +1,4 @@
-"""How many times the elastic C stencil the kernel costs: `make bench`.
+"""The cost of the kernel in multiples of an elastic C stencil: `make bench`.
 
 The yardstick runs right before each timed run of the kernel, on the same core, and the ratios of
 these pairs are reported: what else the machine does then weighs on both.
@@ -34,7 +34,7 @@ WIDER = "-mprefer-vector-width=512"
 
 @dataclass(frozen=True)
 class Case:
-    """One line of the table; target: the ratio that issue 3 asks for."""
+    """One line of the table; target: the ratio to stay below."""
 
     name: str
     velocity: float
@@ -78,7 +78,7 @@ def yardstick(programs: list[Path], nodes: int, steps: int) -> float:
 
 
 def kernel(case: Case) -> tuple[Callable[[], float], int]:
-    """A function that solves the case and tells its seconds a node-step; the number of steps."""
+    """Return a function that solves the case and returns seconds per node-step; the steps."""
     grid = il.Discretisation(nodes=case.nodes, points=case.points)
     cases = case_table(
         il.paper_impact(case.velocity),
@@ -113,7 +113,7 @@ def main() -> int:
     parser.add_argument("--pairs", type=int, default=15)
     parser.add_argument("--output", type=Path, default=Path("results/benchmarks.csv"))
     options = parser.parse_args()
-    table = Table("case", "ns a node-step", "C", "ratio min", "median", "max", "target")
+    table = Table("case", "ns per node-step", "C", "ratio min", "median", "max", "target")
     lines = ["case,kernel_ns,stencil_ns,ratio_min,ratio_median,ratio_max,target"]
     with tempfile.TemporaryDirectory() as folder:
         programs = stencils(Path(folder))

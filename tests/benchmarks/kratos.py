@@ -69,7 +69,7 @@ def main() -> None:
 
 
 def kept(path: Path, solve: Callable[[], xr.Dataset]) -> xr.Dataset:
-    """What was solved before, else what `solve` gives."""
+    """Return the stored answer, or that of `solve`."""
     if not path.exists():
         solve().to_netcdf(path)
     return xr.load_dataset(path)

@@ -1,4 +1,4 @@
-"""What a study costs beside its kernels, and what memory: `make scaling`, with --full a million.
+"""The cost of a study beside its kernels, and its memory: `make scaling`, with --full a million.
 
 Each line is a process of its own, so that its peak memory is its own. `short` and `long` (runs of
 1 and 8 ms) compare its processor time with what its own threads spent in the kernels: both in one
@@ -101,7 +101,7 @@ def apart(what: str, runs: int, threads: int) -> dict[str, object]:
 
 
 def verdicts(lines: list[dict]) -> list[tuple[str, float, str]]:
-    """What the lines say: (what, value, target)."""
+    """Return the lines as (what, value, target)."""
     small, large, short, one, two, two_again, one_again = lines
     memory = large["peak_MB"] / small["peak_MB"]
     said = [("peak memory of the most runs in times the least", memory, "<= 1.5")]

@@ -1,4 +1,4 @@
-"""What each scheme in time costs and how far it errs: `make bench`.
+"""Cost and error of each scheme in time: `make bench`.
 
 Elastic: root mean square error of the force history over its peak, against the modal series.
 Yielding: against leapfrog with 3201 nodes. The two schemes are timed in turns, on the same core,
@@ -39,7 +39,7 @@ Errors = Callable[[xr.Dataset], dict[str, float]]
 
 @dataclass(frozen=True)
 class Line:
-    """One line of the table. seconds: (pairs,), of processor time a run."""
+    """One line of the table. seconds: (pairs,), of processor time per run."""
 
     scheme: str
     nodes: int
@@ -130,7 +130,7 @@ def main() -> int:
         "elastic, 0.99 m/s": (unyielding, against_series(unyielding)),
         "yielding, 15 m/s": (yielding, against_fine(yielding)),
     }
-    columns = ["scheme", "nodes", "ms", "ns a node-step", "times faster"]
+    columns = ["scheme", "nodes", "ms", "ns per node-step", "times faster"]
     written = ["case,scheme,nodes,milliseconds,ns_a_node_step,times_faster,quantity,error"]
     for name, (impact, errors) in cases.items():
         lines = list(measured(impact, errors, options.pairs))

@@ -1,4 +1,4 @@
-"""What a study costs is told first, and a month is not begun unless it is asked for twice."""
+"""The cost of a study is shown first, and a month of solving needs --force."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a study says stays text: on pages, in tables, in figures, on a terminal; and in results/."""
+"""Texts of a study stay text: on pages, in tables, in figures, on a terminal; and in results/."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was solved before an interruption is kept."""
+"""Runs solved before an interruption are kept."""
 
 import os
 import signal

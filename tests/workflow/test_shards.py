@@ -1,4 +1,4 @@
-"""What the command line tells of finished runs, and what it removes."""
+"""The command line on finished runs: their status, and their removal."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""What the tests of disturbed studies share."""
+"""Fixtures of the tests of disturbed studies."""
 
 import pytest
 from chaos import new_study, resumed
