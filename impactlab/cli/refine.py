@@ -25,8 +25,8 @@ def refine(
 ) -> None:
     """Solve the first runs of a Sobol sample on finer grids.
 
-    `impactlab analyse --refinement` estimates the numerical error of the indices from them; more base
-    samples narrow the estimate.
+    `impactlab analyse --refinement` estimates the numerical error of the indices from them; more
+    base samples narrow the estimate.
     """
     stop_at_once()
     from impactlab.study import steps

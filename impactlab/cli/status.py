@@ -40,7 +40,7 @@ def status(
 
 
 def _last_samples(runs: Path, study_sha256: str) -> int | None:
-    """Return the base samples at which this study's sample stopped growing; None if it still may."""
+    """Return the base samples at which this sample stopped growing; None if it still may."""
     from impactlab.study.netcdf import read_attributes
 
     attrs = read_attributes(runs) if runs.exists() else {}

@@ -23,8 +23,8 @@ def verify(
 ) -> None:
     """Compare the solver with independent solutions.
 
-    The exit code is 1 if a check fails; the findings are written either way. Given a findings.nc, the
-    command prints its verdict again.
+    The exit code is 1 if a check fails; the findings are written either way. Given a findings.nc,
+    the command prints its verdict again.
     """
     from impactlab.report.console import print_outcomes
     from impactlab.study.checking import check, failure

@@ -55,7 +55,7 @@ def bounded():
 
 
 def outcome(path):
-    """Return the outcome for a file: "refused", or a kind of study, which can be estimated and drawn."""
+    """Return "refused", or the kind of study, which can be estimated and drawn."""
     with bounded():
         try:
             study = read_any(path)
