@@ -202,8 +202,8 @@ def _element_size(keys: list[str], solid: bool) -> Reasons:
             yield key, f"has no effect without beam_model: {SOLID}: take it out"
     elif not keys:
         reason = (
-            f"is required for beam_model: {SOLID} (with 1 mm a run takes seconds, with 0.5 mm a "
-            "minute)"
+            f"is required for beam_model: {SOLID} (runs with 1 mm take seconds, those with "
+            "0.5 mm a minute)"
         )
         yield f"discretisation.{ELEMENTS[0]}", reason
     for key in keys[1:] if solid else []:

@@ -30,7 +30,7 @@ def normal() -> Any:
 
 
 def exact_delta(share: float) -> float:
-    """Of a linear Gaussian model: half the mean distance of the densities with and without x.
+    """Return half the mean distance of the densities with and without x, of a Gaussian model.
 
     Given x = z, the response is N(z sqrt(share), 1 - share) against N(0, 1).
     """

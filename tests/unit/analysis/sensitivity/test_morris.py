@@ -41,7 +41,7 @@ def test_linear_function_is_exact(drawn: Build) -> None:
 
 
 def test_interaction_shows_in_sigma(drawn: Build) -> None:
-    """Of x0 x1, an effect is the other's value: one of four levels."""
+    """An effect of x0 x1 is the other's value: one of four levels."""
     unit = _unit(3, number=400)
     runs = _runs(drawn, unit, unit[:, 0] * unit[:, 1], trajectories=400)
     found = sensitivity.analysis(runs).isel(response=0)

@@ -1,4 +1,4 @@
-"""What a sceptical reader is told, each case made up; and the policies for failed runs."""
+"""Verdicts on made-up cases, and the policies for failed runs."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _verdict(drawn: Build, read: Read, unit: Any, outputs: Any, **attrs: Any) ->
 
 
 def _remarks(found: xr.Dataset) -> set[str]:
-    """Of the first response, by CF alone."""
+    """Return the verdict on the first response, by CF alone."""
     array = found["sensitivity_remarks"]
     pairs = zip(array.attrs["flag_masks"], array.attrs["flag_meanings"].split(), strict=True)
     return {name for mask, name in pairs if int(array[0]) & mask}

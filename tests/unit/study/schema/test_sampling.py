@@ -86,7 +86,7 @@ def test_failed_runs_are_no_indices_unless_asked_to_be_supplied(read, problems, 
 
 
 def test_other_parameters_than_those_of_an_impact(read):
-    """Of a test function, say."""
+    """A test function has others, for example."""
 
     def below_four(value):
         if value >= 4:
