@@ -211,7 +211,7 @@ def _evidence(found: xr.Dataset, best: int) -> dict[str, xr.DataArray]:
 
 def _remark(found: xr.Dataset) -> str:
     if not found["asked"]:
-        return "not requested"
+        return "not asked"
     return "" if found["reached"] else "not reached"
 
 
