@@ -69,17 +69,17 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
         _answer(name, row, sample, method, fit)
         for name, row in zip(names, values.values, strict=True)
     ]
-    said, shares, rows = zip(*answers, strict=True)
+    verdicts, shares, rows = zip(*answers, strict=True)
     wanted = method.indices(sample)
     coordinates = _coordinates(values, sample, wanted)
     sizes = {name: len(entry[1]) for name, entry in coordinates.items()}
-    worst = [max(entry, default=SensitivityVerdict.USABLE) for entry in said]
+    worst = [max(entry, default=SensitivityVerdict.USABLE) for entry in verdicts]
     codes = xr.DataArray([int(judgement) for judgement in worst], dims="response")
     return xr.Dataset(index_variables(rows, wanted, sample, sizes), coords=coordinates).assign(
         sensitivity_verdict=flagged(
             codes, SensitivityVerdict, "verdict on the sensitivity indices"
         ),
-        sensitivity_remarks=verdict.remarks(said),
+        sensitivity_remarks=verdict.remarks(verdicts),
         imputed_share=("response", np.array(shares), _IMPUTED),
     )
 
@@ -97,11 +97,11 @@ def _answer(
             return [SensitivityVerdict.TOO_FEW_RUNS], share, {}
         share = float(np.isnan(outputs).mean())
         outputs = imputed(outputs, sample, fit, response)
-    said = verdict.of_outputs(outputs, method.varying(outputs, sample), share)
-    if set(said) & set(verdict.NO_INDEX):
-        return said, 0.0, {}
+    verdicts = verdict.of_outputs(outputs, method.varying(outputs, sample), share)
+    if set(verdicts) & set(verdict.NO_INDEX):
+        return verdicts, 0.0, {}
     found = method.estimate(outputs, sample, response)
-    return said + verdict.of_indices(found), share, found
+    return verdicts + verdict.of_indices(found), share, found
 
 
 def _coordinates(

@@ -59,7 +59,7 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
     inputs = np.column_stack([sample.inputs, column])
     names = [*sample.parameters, "dummy"]
     with warnings.catch_warnings():
-        # of the significance of a distance, which is not asked for
+        # of the significance of a distance, which is not used
         warnings.filterwarnings("ignore", "ks_2samp", RuntimeWarning)
         found = pawn.analyze({"num_vars": len(names), "names": names}, inputs, outputs, S=SLIDES)
     spread = _half_widths(inputs, outputs, sample, sample.rng(response))

@@ -96,8 +96,8 @@ def _of_response(
     for order in ORDERS:
         change = dict(zip(spacings, found[order], strict=True))
         width = dict(zip(spacings, widths[f"{order}_interval"], strict=True))
-        told = _distance(change, width, spacings), change[FINER], width[FINER]
-        answer |= {f"{order}{ending}": value for ending, value in zip(ENDINGS, told, strict=True)}
+        values = _distance(change, width, spacings), change[FINER], width[FINER]
+        answer |= {f"{order}{ending}": value for ending, value in zip(ENDINGS, values, strict=True)}
     return answer
 
 

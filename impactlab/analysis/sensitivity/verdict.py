@@ -99,11 +99,11 @@ def of_outputs(
     return [verdict for verdict, held in holds.items() if held]
 
 
-def remarks(said: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:
+def remarks(verdicts: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:
     """Return all verdicts on each response, (response,): bits of `flag_masks`, 0 for none."""
     kinds = [kind for kind in SensitivityVerdict if kind is not SensitivityVerdict.USABLE]
     masks: dict[SensitivityVerdict, int] = {kind: 1 << at for at, kind in enumerate(kinds)}
-    codes = [sum(masks[kind] for kind in set(entry)) for entry in said]
+    codes = [sum(masks[kind] for kind in set(entry)) for entry in verdicts]
     attrs = {
         "long_name": "all that is to be said of the sensitivity indices, beside the verdict",
         "flag_masks": np.array(list(masks.values()), np.int32),
