@@ -1,4 +1,4 @@
-"""What the wings add to the core, imported when it is first asked for.
+"""Additions of the wings to the core, imported when they are first needed.
 
 The core never imports a wing: it looks here. What belongs to a model of the beam is asked for only
 by studies that have runs of it, so a study without 3-D runs loads nothing of fem3d.

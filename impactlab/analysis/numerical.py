@@ -151,7 +151,7 @@ def _same(runs: xr.Dataset, resolution: xr.Dataset) -> None:
 
 
 def _same_values(runs: xr.Dataset, refinement: xr.Dataset) -> None:
-    """Raises ValueError unless the used grid of the refinement gives what the runs give."""
+    """Raise ValueError unless the used grid of the refinement gives what the runs give."""
     there = usable(refinement).sel(grid=refining.USED)
     here = usable(runs).reindex(response=there["response"], run=there["run"])
     here = here.transpose(*there.dims)

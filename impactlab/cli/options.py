@@ -42,7 +42,7 @@ def results_file(study: str, name: str) -> Path:
 
 
 def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
-    """The names of a list "a,b"; none of "". Raises ValueError naming the option."""
+    """Return the names of a list "a,b", none of "". Raises ValueError naming the option."""
     from impactlab.study.errors import unknown
 
     found = tuple(filter(None, text.replace(",", " ").split()))
@@ -53,7 +53,7 @@ def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
 
 
 def given(option: str, text: str, units: str) -> float:
-    """An option's quantity in SI; raises ValueError naming the option."""
+    """Return an option's quantity in SI. Raises ValueError naming the option."""
     from impactlab.study.quantities import si
 
     try:

@@ -173,7 +173,7 @@ def pull(
     kappa_max: Array,
     grid: Grid,
 ) -> float:
-    """The beam's increment of u by an explicit step; the number of sections outside (see move)."""
+    """Set du to the increment of an explicit step; return the sections outside (see move)."""
     outside = 0.0
     for i in range(np.uint64(2), np.uint64(grid.mid + 1)):
         here, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]

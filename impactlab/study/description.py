@@ -1,4 +1,4 @@
-"""What a workflow needs to know of a study file before its first step."""
+"""Descriptions of study files for a workflow, before its first step."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ AnyStudy = Study | FunctionStudy
 
 @dataclass(frozen=True)
 class Price:
-    """What a study costs and whether it may run.
+    """The price of a study, and whether it may run.
 
     cost: time, memory and disk. free: bytes of disk that it may take. exceeded: the limits that it
     exceeds. implausible: values that are possible but improbable.

@@ -42,7 +42,7 @@ _INDICES = {
 
 
 def check(sample: Sample) -> None:
-    """Raises ValueError where groups are stated."""
+    """Raise ValueError where groups are stated."""
     sample.ungrouped()
 
 

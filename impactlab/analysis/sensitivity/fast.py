@@ -34,7 +34,7 @@ _INDICES = {
 
 
 def check(sample: Sample) -> None:
-    """Raises ValueError where the runs are not a curve for each parameter and the dummy."""
+    """Raise ValueError where the runs are not a curve for each parameter and the dummy."""
     sample.ungrouped()
     curves = len(sample.parameters) + 1
     points, harmonics = len(sample.inputs) // curves, sample.number("harmonics")

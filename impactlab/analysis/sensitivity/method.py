@@ -89,14 +89,14 @@ class Sample:
         return int(self.settings[setting])
 
     def expect(self, runs: int, words: str) -> None:
-        """Raises ValueError unless the sample has this number of runs; words: where it is from."""
+        """Raise ValueError unless the sample has this number of runs; words: where it is from."""
         if len(self.inputs) != runs:
             raise ValueError(
                 f"{self.study} has {len(self.inputs)} runs, but {words} make {runs}: solve it again"
             )
 
     def ungrouped(self) -> None:
-        """Raises ValueError where groups are stated for a method that has none."""
+        """Raise ValueError where groups are stated for a method that has none."""
         if self.groups:
             raise ValueError(
                 f"{self.study}: the method {self.settings['method']!r} has no groups: remove them, "

@@ -35,7 +35,7 @@ _INDICES = {
 
 
 def check(sample: Sample) -> None:
-    """Raises ValueError when the runs are not trajectories of single steps."""
+    """Raise ValueError when the runs are not trajectories of single steps."""
     trajectories, factors = sample.number("trajectories"), len(sample.factors)
     trajectories = sample.number("optimal_trajectories") or trajectories
     sample.expect(trajectories * (factors + 1), f"{trajectories} trajectories of {factors} steps")

@@ -42,7 +42,7 @@ _INDICES = {
 
 
 def check(sample: Sample) -> None:
-    """Raises ValueError where groups are stated, or the slides would be all but empty."""
+    """Raise ValueError where groups are stated, or the slides would be all but empty."""
     sample.ungrouped()
     if (runs := len(sample.inputs)) < SLIDES * FEWEST:
         raise ValueError(

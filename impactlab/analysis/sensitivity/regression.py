@@ -36,7 +36,7 @@ _INDICES = {
 
 
 def check(sample: Sample) -> None:
-    """Raises ValueError where groups are stated, or the runs do not determine a regression."""
+    """Raise ValueError where groups are stated, or the runs do not determine a regression."""
     sample.ungrouped()
     runs, needed = sample.inputs.shape[0], 2 * (sample.inputs.shape[1] + 2)
     if runs < needed:

@@ -136,7 +136,7 @@ def indices(sample: Sample) -> dict[str, Index]:
 
 
 def check(sample: Sample) -> None:
-    """Raises ValueError when the number of runs does not fit the sample."""
+    """Raise ValueError when the number of runs does not fit the sample."""
     base, factors = sample.number("base_samples"), len(sample.factors)
     words = f"{base} base samples of {factors} {'groups' if sample.groups else 'parameters'}"
     sample.expect(base * step(factors, _second_order(sample)), words)

@@ -128,7 +128,7 @@ class Plan:
             option = f"--duration {1e3 * self.duration:g} ms" if lasting else size
             work = f"{self.cost.steps:,} steps of {elements}"
             long = time(self.seconds(workers))
-            yield option, f"about {long}, above the hour that a run may take, for {work}"
+            yield option, f"about {long}, which exceeds the limit of one hour per run, for {work}"
 
 
 def planned(

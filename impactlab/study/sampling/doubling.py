@@ -67,7 +67,7 @@ def _with_discretisation(study: Study | FunctionStudy, design: xr.Dataset) -> St
 
 
 def _check_nested(small: xr.Dataset, large: xr.Dataset) -> None:
-    """Raises ValueError unless the runs of the small design come first, bit for bit."""
+    """Raise ValueError unless the runs of the small design come first, bit for bit."""
     runs = small.sizes["run"]
     for name in np.atleast_1d(small.attrs["varied"]):
         if not np.array_equal(small[name].values, large[name].values[:runs]):

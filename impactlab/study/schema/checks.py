@@ -75,7 +75,7 @@ def _one_mesh_for_profiles(file: StudyFile) -> Reasons:
 
 
 def _analysis_of_a_sample(file: StudyFile) -> Reasons:
-    """The section `analysis` is for samples."""
+    """Check that the section `analysis` belongs to a sample."""
     if file.analysis is not None and not isinstance(file.sampling, Sample):
         yield "analysis", "has no effect with method: grid: take it out"
 
@@ -98,7 +98,7 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
 
 
 def _automatic_discretisation(file: StudyFile) -> Reasons:
-    """An automatic discretisation is not varied, and is judged by responses of the study."""
+    """Check that an automatic discretisation is not varied, and its responses are the study's."""
     auto = file.discretisation.auto
     for name in ("nodes", "points", "courant") if auto else ():
         if name in file.sampling.parameters:
@@ -111,7 +111,7 @@ def _automatic_discretisation(file: StudyFile) -> Reasons:
 
 
 def _indices_to_grow_by(file: StudyFile) -> Reasons:
-    """A sample that grows until its indices are good enough has these indices."""
+    """Check that a growing sample has the indices that decide when it stops."""
     until = file.sampling.until if isinstance(file.sampling, Sobol) else None
     if until is None:
         return
@@ -123,7 +123,7 @@ def _indices_to_grow_by(file: StudyFile) -> Reasons:
 
 
 def _corners(file: StudyFile) -> Reasons:
-    """The model accepts all combinations of varied values."""
+    """Check that the model accepts all combinations of varied values."""
     varied = file.sampling.bounds()
     if refused := refused_corner((file.impact, file.discretisation.discretisation), varied):
         name = refused.name if refused.name in varied else next(iter(refused.values))
@@ -161,7 +161,7 @@ def _words(sampling: Grid | Sample) -> dict[str, tuple[Value, ...]]:
 
 
 def _solid(file: StudyFile) -> Reasons:
-    """Runs of the 3-D model have an element size, and none of the options that it lacks."""
+    """Check that runs of the 3-D model have an element size and no option that it lacks."""
     solid = has_solid_runs(file)
     yield from _element_size(list(_element_keys(file)), solid)
     if not solid:
@@ -196,7 +196,7 @@ def _element_keys(file: StudyFile) -> Iterator[str]:
 
 
 def _element_size(keys: list[str], solid: bool) -> Reasons:
-    """The 3-D model takes one element size, the others none."""
+    """Check that the 3-D model has one element size, and the others none."""
     if not solid:
         for key in keys:
             yield key, f"has no effect without beam_model: {SOLID}: take it out"

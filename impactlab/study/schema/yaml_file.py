@@ -57,7 +57,7 @@ def read_name(path: Path) -> str:
 
 
 def check_name(name: str, file: str) -> None:
-    """Raises StudyError, naming the file, unless a study can have this name."""
+    """Raise StudyError, naming the file, unless a study can have this name."""
     if not _NAME.fullmatch(name):
         reason = (
             "its name becomes the name of a folder: use at most 100 letters, digits, _ and -, with "
@@ -213,7 +213,7 @@ def _children(node: Node) -> Iterator[tuple[str, Node]]:
 
 
 def _check_kind(node: Node, path: Key) -> None:
-    """Raises RefusedError for anything but plain keys, lists and values."""
+    """Raise RefusedError for anything but plain keys, lists and values."""
     tag = str(node.tag)
     if tag.removeprefix(_CORE) not in _TAGS:
         raise RefusedError(path, f"has the tag {dotted([tag.replace(_CORE, '!!')])}: take it out")
