@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -87,6 +88,14 @@ def test_stored_runs_are_those_of_the_library(folder):
 
 def test_a_finished_workflow_has_nothing_to_do(folder):
     assert "Nothing to be done" in snakemake(folder, "--dry-run").stdout
+
+
+def test_the_report_of_the_workflow_has_pages_and_figures(folder):
+    done = snakemake(folder, "--report", "report.zip")
+    assert done.returncode == 0, done.stderr
+    with zipfile.ZipFile(folder / "report.zip") as archive:
+        names = {Path(name).name for name in archive.namelist()}
+    assert {"report.html", "index.html", "contact_duration.svg"} <= names
 
 
 def test_a_changed_study_reruns_alone(folder):
