@@ -103,6 +103,14 @@ def test_dent_grows(fig10: Any) -> None:
     assert "6 to 7 m/s" in found.why
 
 
+def test_a_dent_that_shrinks_in_the_last_step_fails(fig10: Any) -> None:
+    data = fig10()
+    data["fig10_nodes"]["permanent_indentation"].loc[{"velocity": SPEEDS[-1]}] = 1e-6
+    (found,) = contact.DENT_GROWS.judge(data)
+    assert found.verdict == FAILS
+    assert f"to {SPEEDS[-1]:g} m/s" in found.why
+
+
 def test_plastic_strain_as_in_the_paper(fig10: Any) -> None:
     data = fig10(begins=6.5, slope=4e-4)
     assert verdicts(plasticity.ELASTIC_TO_5.judge(data)) == [HOLDS, READING]
