@@ -1,4 +1,4 @@
-"""What is declared in several places agrees, and `make` says what is missing."""
+"""Declarations in several places agree, and `make` says what is missing."""
 
 from __future__ import annotations
 

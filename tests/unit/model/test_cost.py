@@ -47,7 +47,7 @@ def test_columns_are_many_runs_at_once() -> None:
 
 
 def test_a_light_sphere_asks_for_small_steps() -> None:
-    """Of Hertz's spring at the depth that takes all energy; by hand."""
+    """Return the stiffness of Hertz's spring at the depth that takes all energy, by hand."""
     light = case_table(
         replace(paper_impact(2.0), sphere=replace(paper_impact().sphere, mass=1e-12)),
         Discretisation(nodes=21),

@@ -80,7 +80,7 @@ def test_the_edges_of_what_is_allowed(part, field, value):
 
 @pytest.mark.parametrize("nodes", [5, 15])
 def test_the_semi_implicit_scheme_needs_17_nodes(nodes):
-    """Also where only one of the two is changed, or columns of them."""
+    """The same holds if only one of the two changes, or for columns of them."""
     message = (
         rf"^Discretisation\.nodes = {nodes}: must be at least 17 with the semi_implicit scheme"
     )

@@ -75,7 +75,7 @@ def test_notes_on_the_contact_law(velocity_study: Study) -> None:
 def test_notes_say_what_of_a_law_is_not_confirmed(laws_study: Study) -> None:
     runs, _ = laws_study
     doubted = [law for law in LAWS if CONTACT_LAWS[law].unconfirmed]
-    assert "mjg" in doubted
+    assert sum(law in doubted for law in LAWS[:8]) == 6
     for law in doubted:
         said = [text for text in notes(runs.sel(contact=[law])) if f"“{law}”" in text]
         assert len(said) == 1

@@ -92,7 +92,7 @@ def test_solve_keeps_only_what_was_asked_for():
 
 
 def test_the_solid_model_is_solved_elsewhere():
-    """Where words become numbers, an unknown one would be the first of them."""
+    """An unknown word must not become the first number of its list."""
     impact = replace(IMPACT, beam_model="solid")
     with pytest.raises(ValueError, match=r"'solid': .*`impactlab witness`"):
         il.simulate(impact, GRID, duration=1e-4)

@@ -28,7 +28,7 @@ def mirrored(values):
 
 
 def fourth_difference(values):
-    """Of w from the support to mid-span, at each node but the support."""
+    """Return that of w from the support to mid-span, at each node but the support."""
     return np.diff(mirrored(values), 4)
 
 

@@ -58,7 +58,7 @@ def bent(kappa):
 
 
 def step(beam, plastic_state, section, now):
-    """What the time loop does."""
+    """Do as the time loop does."""
     if follow_tangents(
         beam.w,
         now,

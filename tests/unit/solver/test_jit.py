@@ -30,7 +30,7 @@ def tree(tmp_path):
 
 
 def hash_of(tree):
-    """What a process that runs these sources calls itself."""
+    """Return the hash that a process with these sources has."""
     spec = importlib.util.spec_from_file_location("copied_jit", tree / "jit.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -105,7 +105,7 @@ def stiffness():
 
 
 def responses():
-    """Of an elastic and of a plastic contact, the beam yielding in both."""
+    """Return those of an elastic and a plastic contact, the beam yielding in both."""
     grid = il.Discretisation(nodes=11, points=5)
     runs = [il.simulate(il.paper_impact(20.0, law), grid, duration=1e-3) for law in LAWS]
     return [{name: run[name].item() for name in (*RESPONSES, "status")} for run in runs]

@@ -36,7 +36,7 @@ def answer():
 
 @pytest.fixture
 def events():
-    """Of a run that ended well: one contact, over, and the beam on its way back."""
+    """Return that of a run that ended well: one contact, over, and the beam on its way back."""
     record = np.zeros(1, EVENTS)[0]
     record.contacts, record.touching = 1, 0
     record.t_first_end, record.time_in_contact, record.t_peak = 3e-4, 3e-4, 1e-4
@@ -60,7 +60,7 @@ def read_everything(answer, case, events, contact, peeq):
 
 @pytest.fixture
 def peeq():
-    """Of a half beam with two fibres a section: indices as in solver/beam.py."""
+    """Return that of a half beam, two fibres per section; indices as in solver/beam.py."""
     return np.zeros((MID + 3, 2))
 
 

@@ -39,7 +39,7 @@ def grid_with(n, alpha, EI=EI, dx=DX):
 
 
 def second_differences(nodes):
-    """Of the whole beam's inner nodes, between supports where w = 0, (nodes - 2, nodes - 2)."""
+    """Return that of the inner nodes, between supports where w = 0, (nodes - 2, nodes - 2)."""
     inner = nodes - 2
     return np.eye(inner, k=-1) - 2 * np.eye(inner) + np.eye(inner, k=1)
 
@@ -90,7 +90,7 @@ def test_no_filter_has_no_rows():
 
 
 def fourth_difference(values):
-    """Of w from the support to mid-span, at each node but the support."""
+    """Return that of w from the support to mid-span, at each node but the support."""
     return np.diff(np.concatenate([[-values[1]], values, values[-2:-4:-1]]), 4)
 
 

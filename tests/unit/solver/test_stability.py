@@ -22,7 +22,7 @@ ELASTIC = {"contact": "hertz", "beam_yield_stress": 200e9}
 
 
 def largest_frequency(case, stiffness, k_c):
-    """Of beam and sphere (rad/s), the contact a spring k_c: eigenvalues of the whole system."""
+    """Return that of beam and sphere (rad/s), the contact a spring k_c, by eigenvalues."""
     nodes, m_s = case.nodes, case.sphere_mass
     dx = case.beam_span / (nodes - 1)
     lumped = case.beam_density * case.beam_width * case.beam_depth * dx

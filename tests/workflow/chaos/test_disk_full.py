@@ -51,7 +51,7 @@ def forced(folder, *options):
 
 
 def complains(command, *words):
-    """That it ends in one line with these words."""
+    """Assert that it ends in one line with these words."""
     assert command.end() == 1, command.said
     said = complaint(command.said)
     for word in words:

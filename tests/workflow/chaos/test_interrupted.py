@@ -22,7 +22,7 @@ def gone(processes):
 
 
 def interrupted(folder, moments, to_all, *engine):
-    """What a study says that is interrupted at a drawn moment."""
+    """Return the messages of a study interrupted at a drawn moment."""
     command = run(folder, "--workers", "2", *engine, *SMALL)
     command.wait_until_it_solves()
     time.sleep(moments.uniform(0, 0.6))

@@ -18,7 +18,7 @@ AROUND = 1.0
 
 
 def disturbed(folder, moments):
-    """Whether the study was killed at a drawn moment of what it has left to do."""
+    """Return whether the study was killed at a drawn moment of its remaining work."""
     before = len(keys_on_disk(folder))
     command = run(folder, "--workers", "1", *SMALL)
     command.wait_until_it_solves()

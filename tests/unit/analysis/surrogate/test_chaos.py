@@ -109,7 +109,7 @@ def test_the_share_that_is_missed_widens_every_interval() -> None:
 
 @pytest.mark.parametrize("copies", [1, 4])
 def test_intervals_tell_the_scatter_of_repeated_fits(copies: int) -> None:
-    """Of noise that whole blocks share: copies of a run bring no knowledge."""
+    """Noise that whole blocks share: copies of a run bring no knowledge."""
     random, found = np.random.default_rng(1), []
     errors = Errors(q2=1.0, rmse=0.3)
     for _ in range(60):

@@ -123,7 +123,7 @@ def test_responses_without_indices_alone_ask_for_no_runs(sample, solve, shrinkin
 
 
 def test_the_analysis_of_the_package_decides(sample, solve, tmp_path):
-    """Also when the design and the runs have been in files."""
+    """The same holds if the design and the runs have been in files."""
     sample(interval=0.08).to_netcdf(tmp_path / "design.nc")
     runs = extended(xr.load_dataset(tmp_path / "design.nc"), solve, analyse)
     runs.to_netcdf(tmp_path / "runs.nc")
