@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter
 from numpy.typing import NDArray
 
-from impactlab.figures.files import replaced
+from impactlab.files import replaced
 
 FORMATS = ("csv", "nc")
 Points = tuple[str, NDArray[np.float64], NDArray[np.float64]]

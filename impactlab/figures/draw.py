@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from impactlab.figures import data, findings, style
 from impactlab.figures.alt import alt
 from impactlab.figures.catalogue import applicable
-from impactlab.figures.files import replaced
+from impactlab.files import replaced
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 

@@ -14,8 +14,8 @@ import xarray as xr
 
 from impactlab.figures import labels
 from impactlab.figures.access import count
-from impactlab.figures.files import replaced
 from impactlab.figures.labels import Display, display
+from impactlab.files import replaced
 from impactlab.paper.figures import Stored, draw_paper
 from impactlab.paper.statements import judge_all
 from impactlab.paper.statements.statement import (

@@ -11,7 +11,7 @@ from typing import Any
 import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from impactlab.figures.files import replaced
+from impactlab.files import replaced
 
 _PROVENANCE = {
     "created": "Solved",

@@ -8,63 +8,32 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import shutil
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
 import numpy as np
 import xarray as xr
 from netCDF4 import Dataset, set_chunk_cache
-from rich.filesize import decimal
 
+from impactlab.files import replaced
 from impactlab.variables import HISTORIES, PROFILES
 
 _CACHE = 1_000_000
 """Bytes per variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
 
 
-@contextmanager
-def whole(path: Path, size: int) -> Iterator[Path]:
-    """Give a temporary name to write to, renamed in the end: readers see all of a file or nothing.
-
-    size: of what is written, in bytes, roughly. Raises OSError, naming the file and the space left,
-    when the disk does not take it; an older file then stays as it was.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{path.name}.{uuid4().hex}")
-    try:
-        yield unfinished
-        with unfinished.open("rb") as handle:
-            os.fsync(handle.fileno())
-        unfinished.replace(path)
-    except (OSError, RuntimeError) as error:  # HDF5 does not tell a full disk from others
-        raise OSError(_unwritten(path, size, error)) from error
-    finally:
-        unfinished.unlink(missing_ok=True)
-
-
 def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
-    """Write the whole dataset or nothing, large variables compressed. Raises OSError: see whole."""
+    """Write a dataset, large variables compressed. Raises OSError as `files.replaced`."""
     large = {
         str(name): {"zlib": True, "complevel": 1}
         for name, values in dataset.data_vars.items()
         if values.dtype.kind == "f" and values.size > 10_000
     }
     set_chunk_cache(_CACHE)
-    with whole(path, dataset.nbytes) as unfinished:
+    with replaced(path, dataset.nbytes) as unfinished:
         dataset.to_netcdf(unfinished, engine="netcdf4", encoding=large)
-
-
-def _unwritten(path: Path, size: int, error: Exception) -> str:
-    free = shutil.disk_usage(path.parent).free
-    message = f"{path}: could not be written ({error}); {decimal(free)} are free on its disk"
-    if free < size:
-        return f"{message}, {decimal(size)} are needed: make room, then run the same command again"
-    return message
 
 
 def read_netcdf(path: Path) -> xr.Dataset:
@@ -106,7 +75,7 @@ def write_shard(path: Path, keys: Array, columns: Columns) -> None:
     """Write the whole shard or nothing. Raises OSError, naming the file, when the disk is full."""
     arrays = {KEYS: _bytes(keys)} | columns
     size = sum(values.nbytes for values in arrays.values())
-    with whole(path, size) as unfinished, Dataset(unfinished, "w") as file:
+    with replaced(path, size) as unfinished, Dataset(unfinished, "w") as file:
         places: dict[str, tuple[str, int]] = {}
         for alike in _alike(arrays):
             table = _written(file, [arrays[name] for name in alike], _DIMS.get(alike[0], ()))

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from impactlab.files import replaced
 from impactlab.study import REFINEMENT, RESOLUTION, SHARDS, TRIALS
-from impactlab.study.netcdf import read_netcdf, whole, write_netcdf
+from impactlab.study.netcdf import read_netcdf, write_netcdf
 from impactlab.study.schema.study import FunctionStudy, Study
 
 if TYPE_CHECKING:
@@ -142,7 +143,7 @@ def analyse_runs(
     for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps another study's
         path.with_name(name).unlink(missing_ok=True)
     if indices := sensitivity_variables(found):
-        with whole(path.with_name("indices.csv"), indices.nbytes) as unfinished:
+        with replaced(path.with_name("indices.csv"), indices.nbytes) as unfinished:
             write_csv(found, unfinished)
         write_netcdf(indices, path.with_name("indices.nc"))
     if surrogates := packed(solved, found):

@@ -19,7 +19,8 @@ from impactlab.fem3d.comparison.comparison import compared, simulate_beams
 from impactlab.fem3d.comparison.plan import Plan
 from impactlab.fem3d.figures.run import draw_witness
 from impactlab.fem3d.solver import solve_on
-from impactlab.study.netcdf import read_netcdf, whole, write_netcdf
+from impactlab.files import replaced
+from impactlab.study.netcdf import read_netcdf, write_netcdf
 from impactlab.variables import reasons
 
 Array = np.ndarray[Any, Any]
@@ -106,7 +107,7 @@ def _is_complete(file: Path) -> bool:
 def write_csv(found: xr.Dataset, path: Path) -> None:
     """Write one row per response and model, in SI units; whole or not at all (see whole)."""
     with (
-        whole(path, found["value"].size * len(_HEAD) * _NUMBER) as unfinished,
+        replaced(path, found["value"].size * len(_HEAD) * _NUMBER) as unfinished,
         unfinished.open("w", encoding="utf-8", newline="") as file,
     ):
         writer = csv.writer(file, lineterminator="\n")
@@ -136,7 +137,7 @@ def write_vtu(dataset: xr.Dataset, path: Path) -> None:
     place = points.pop("node_position")
     count = len(elements)
     with (
-        whole(path, dataset.nbytes) as unfinished,
+        replaced(path, dataset.nbytes) as unfinished,
         tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder,
     ):
         written = unstructuredGridToVTK(

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from impactlab.figures import catalogue, data, scales, style
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.draw import draw_all, save
-from impactlab.figures.files import replaced
+from impactlab.files import replaced
 
 Study = Any
 
