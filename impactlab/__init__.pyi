@@ -1,9 +1,9 @@
 from .analysis.surrogate import load_surrogate as load_surrogate
-from .model.beam import Beam as Beam
 from .model.discretisation import Discretisation as Discretisation
+from .model.impact import Beam as Beam
 from .model.impact import Impact as Impact
-from .model.material import Material as Material
-from .model.paper import paper_impact as paper_impact
-from .model.sphere import Sphere as Sphere
+from .model.impact import Material as Material
+from .model.impact import Sphere as Sphere
+from .model.impact import paper_impact as paper_impact
 from .simulate import simulate as simulate
 from .simulate import simulate_many as simulate_many

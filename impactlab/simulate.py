@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from impactlab.jit.compiler import precompile
-from impactlab.model.checks import anywhere, column, integer, positive
+from impactlab.model.checks import column, integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import Value, flatten, with_values
@@ -239,7 +239,7 @@ def _table(
     impact: Impact, discretisation: Discretisation, duration: float, runs: int
 ) -> np.ndarray[Any, Any]:
     """Return the records of as many runs as the impact's columns are long, or one for all."""
-    if anywhere(np.equal(impact.beam_model, SOLID)):
+    if np.any(np.equal(impact.beam_model, SOLID)):
         raise ValueError(
             f"Impact.beam_model = {SOLID!r}: is no model of the kernels: use `impactlab witness`, "
             "impactlab.fem3d.solver.solve, or a study of the method grid"

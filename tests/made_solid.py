@@ -8,7 +8,7 @@ import xarray as xr
 from impactlab.fem3d.comparison.comparison import simulate_beams
 from impactlab.fem3d.solver import quarter_mesh
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
 from impactlab.variables import STATUS_FLAGS, described
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
 from impactlab.variables import RESPONSES, STATUS_FLAGS, described
 

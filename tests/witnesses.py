@@ -7,7 +7,7 @@ import xarray as xr
 
 from impactlab.analysis.convergence import axes
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
 from impactlab.variables import described
 

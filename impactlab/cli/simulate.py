@@ -33,7 +33,7 @@ def simulate(
     from dataclasses import replace
 
     from impactlab.model.discretisation import Discretisation
-    from impactlab.model.paper import paper_impact
+    from impactlab.model.impact import paper_impact
     from impactlab.report.console import print_responses
 
     impact = paper_impact(given("--velocity", velocity, "m s-1"), contact)

@@ -13,9 +13,8 @@ from impactlab.figures.access import is_sample, physical, responses, usable
 from impactlab.figures.curves import Choice, Plan, plan
 from impactlab.figures.labels import display
 from impactlab.figures.record import Figure
-from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Beam, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.verification.solutions.shear import impact_share
 

@@ -33,50 +33,53 @@ def column(values: Iterable[Any]) -> Column:
     return (array if array.dtype.kind == "U" else array.astype(np.float64)).view(Column)
 
 
-def anywhere(condition: Any) -> bool:
-    """Return whether a comparison holds, for a number or for any value of a column."""
-    return bool(condition.any()) if isinstance(condition, np.ndarray) else bool(condition)
+def require(holds: Any, owner: str, field: str, value: Any, words: str) -> None:
+    """Raise ValueError naming the field and what it must be, unless `holds`: all of a column."""
+    if not np.all(holds):
+        # Python refuses to write out numbers of thousands of digits
+        huge = isinstance(value, int) and value.bit_length() > 1024
+        shown = f"a number of {value.bit_length()} bits" if huge else repr(value)
+        raise ValueError(f"{owner}.{field} = {shown}: {words}")
 
 
 def number(owner: str, field: str, value: Any) -> float:
     """Return `value` as a finite float. Raises ValueError naming `owner.field` otherwise."""
+    words = "must be a finite number"
     if isinstance(value, Column):
-        sound = value.dtype.kind == "f" and bool(np.isfinite(value).all())
-    else:
-        real = isinstance(value, Real) and not isinstance(value, bool)
-        sound = real and _finite(value)
-    if not sound:
-        raise ValueError(f"{owner}.{field} = {_shown(value)}: must be a finite number")
-    return value if isinstance(value, Column) else float(value)  # type: ignore[return-value]
+        require(value.dtype.kind == "f" and np.isfinite(value), owner, field, value, words)
+        return value  # type: ignore[return-value]
+    real = isinstance(value, Real) and not isinstance(value, bool)
+    try:
+        sound = real and math.isfinite(value)
+    except OverflowError:  # a whole number beyond what a float holds
+        sound = False
+    require(sound, owner, field, value, words)
+    return float(value)
 
 
 def positive(owner: str, field: str, value: Any) -> float:
     """Return `value` as a finite float above zero, or raise ValueError naming the field."""
-    if anywhere((result := number(owner, field, value)) <= 0):
-        raise ValueError(f"{owner}.{field} = {value!r}: must be above zero")
+    result = number(owner, field, value)
+    require(result > 0, owner, field, value, "must be above zero")
     return result
 
 
 def not_negative(owner: str, field: str, value: Any) -> float:
     """Return `value` as a finite float of zero or more, or raise ValueError naming the field."""
-    if anywhere((result := number(owner, field, value)) < 0):
-        raise ValueError(f"{owner}.{field} = {value!r}: must not be negative")
+    result = number(owner, field, value)
+    require(result >= 0, owner, field, value, "must not be negative")
     return result
 
 
 def integer(owner: str, field: str, value: Any, least: int) -> int:
     """Return `value` as an int of at least `least`, or raise ValueError naming the field."""
     if isinstance(value, Column):
-        whole = value.dtype.kind == "f" and bool(np.all(value == np.floor(value)))
-        whole = whole and bool(np.all(value >= least))
+        whole = value.dtype.kind == "f" and (value == np.floor(value)) & (value >= least)
     else:
         whole = isinstance(value, Integral) or (isinstance(value, float) and value.is_integer())
         whole = whole and not isinstance(value, bool) and int(value) >= least
-    if not whole:
-        shown = _shown(value)
-        raise ValueError(f"{owner}.{field} = {shown}: must be a whole number of at least {least}")
-    if anywhere(value > _MOST):
-        raise ValueError(f"{owner}.{field} = {_shown(value)}: must be at most {_MOST}")
+    require(whole, owner, field, value, f"must be a whole number of at least {least}")
+    require(value <= _MOST, owner, field, value, f"must be at most {_MOST}")
     return value.astype(np.int64) if isinstance(value, Column) else int(value)  # type: ignore[return-value]
 
 
@@ -86,25 +89,10 @@ def one_of(owner: str, field: str, value: Any, choices: tuple[str, ...]) -> str:
         among = set(value.tolist()) <= set(choices)
     else:  # other arrays have no truth
         among = isinstance(value, str) and value in choices
-    if not among:
-        raise ValueError(f"{owner}.{field} = {value!r}: must be one of {', '.join(choices)}")
+    require(among, owner, field, value, f"must be one of {', '.join(choices)}")
     return value if isinstance(value, Column) else str(value)  # type: ignore[return-value]
 
 
 def instance(owner: str, field: str, value: Any, kind: type) -> None:
     """Raise ValueError naming the field when `value` is not a `kind`."""
-    if not isinstance(value, kind):
-        raise ValueError(f"{owner}.{field} = {value!r}: must be a {kind.__name__}")
-
-
-def _finite(value: Any) -> bool:
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # a whole number beyond what a float holds
-        return False
-
-
-def _shown(value: Any) -> str:
-    """Return the value as text; Python refuses to write out numbers of thousands of digits."""
-    huge = isinstance(value, int) and value.bit_length() > 1024
-    return f"a number of {value.bit_length()} bits" if huge else repr(value)
+    require(isinstance(value, kind), owner, field, value, f"must be a {kind.__name__}")

@@ -47,15 +47,6 @@ def work(cases: Any) -> Any:
     nodes, model = cases["nodes"], cases["beam_model"]
     filtered = cases["scheme"] != SCHEMES.index("leapfrog")
     lumped = model >= BEAM_MODELS.index("spring_mass")
-    bending = node_steps(cases) / (0.5 * nodes)
-    contact = cases["duration"] / (cases["courant"] * _contact_step(cases, lumped))
-    steps = 1.0 + np.where(lumped, _LUMPED * contact, np.hypot(bending, contact))
-    rate = np.take(_RATES, model) * np.where(filtered, _FILTERED, 1.0)
-    return steps * (0.5 * nodes * rate + _BESIDES)
-
-
-def _contact_step(cases: Any, lumped: Any) -> Any:
-    """Return the step in s of sphere, and beam's middle node if any, on Hertz's spring."""
     compliance = sum(
         (1.0 - cases[f"{body}_poissons_ratio"] ** 2) / cases[f"{body}_youngs_modulus"]
         for body in ("sphere", "beam")
@@ -64,9 +55,15 @@ def _contact_step(cases: Any, lumped: Any) -> Any:
     hertz = 4.0 / 3.0 / compliance * np.sqrt(radius)
     indentation = (1.25 * mass * cases["velocity"] ** 2 / hertz) ** 0.4
     stiffness = 1.5 * hertz * np.sqrt(np.minimum(indentation, radius))
-    dx = cases["beam_span"] / (cases["nodes"] - 1)
+    dx = cases["beam_span"] / (nodes - 1)
     node = cases["beam_density"] * cases["beam_width"] * cases["beam_depth"] * dx
-    return 2.0 / np.sqrt(stiffness * (1.0 / mass + np.where(lumped, 0.0, 1.0 / node)))
+    # the largest step of the sphere, and of the beam's middle node if any, on that spring
+    step = 2.0 / np.sqrt(stiffness * (1.0 / mass + np.where(lumped, 0.0, 1.0 / node)))
+    contact = cases["duration"] / (cases["courant"] * step)
+    bending = node_steps(cases) / (0.5 * nodes)
+    steps = 1.0 + np.where(lumped, _LUMPED * contact, np.hypot(bending, contact))
+    rate = np.take(_RATES, model) * np.where(filtered, _FILTERED, 1.0)
+    return steps * (0.5 * nodes * rate + _BESIDES)
 
 
 def memory(cases: Any) -> Any:

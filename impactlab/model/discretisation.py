@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from impactlab.model.checks import anywhere, integer, one_of, positive
+from impactlab.model.checks import integer, one_of, positive, require
 from impactlab.solver import RULES, SCHEMES
 
 _LEAST_FILTERED = 17
@@ -45,28 +46,22 @@ class Discretisation:
         for field, least in (("nodes", 5), ("points", 2)):  # 21.0, as YAML may give it, is 21
             value = integer("Discretisation", field, getattr(self, field), least)
             object.__setattr__(self, field, value)
-        if anywhere(self.nodes % 2 == 0):
-            raise ValueError(
-                f"Discretisation.nodes = {self.nodes!r}: must be odd, so that mid-span is a node"
-            )
+        odd = np.equal(self.nodes % 2, 1)
+        self._require(odd, "nodes", "must be odd, so that mid-span is a node")
         one_of("Discretisation", "rule", self.rule, RULES)
         one_of("Discretisation", "scheme", self.scheme, SCHEMES)
         for field in ("element_size", "elements_per_radius"):
             if getattr(self, field) is not None:
                 positive("Discretisation", field, getattr(self, field))
-        if self.element_size is not None and self.elements_per_radius is not None:
-            raise ValueError(
-                f"Discretisation.elements_per_radius = {self.elements_per_radius!r}: element_size "
-                "says it already: take one of them out"
-            )
-        few = np.less(self.nodes, _LEAST_FILTERED)
-        if anywhere(few & np.equal(self.scheme, "semi_implicit")):
-            raise ValueError(
-                f"Discretisation.nodes = {self.nodes!r}: must be at least {_LEAST_FILTERED} with "
-                "the semi_implicit scheme"
-            )
-        if anywhere(positive("Discretisation", "courant", self.courant) > 1):
-            raise ValueError(
-                f"Discretisation.courant = {self.courant!r}: must be in (0, 1]; above 1 the "
-                "scheme is unstable or inaccurate"
-            )
+        twice = self.element_size is not None and self.elements_per_radius is not None
+        words = "element_size says it already: take one of them out"
+        self._require(not twice, "elements_per_radius", words)
+        enough = np.greater_equal(self.nodes, _LEAST_FILTERED)
+        words = f"must be at least {_LEAST_FILTERED} with the semi_implicit scheme"
+        self._require(enough | np.not_equal(self.scheme, "semi_implicit"), "nodes", words)
+        positive("Discretisation", "courant", self.courant)
+        words = "must be in (0, 1]; above 1 the scheme is unstable or inaccurate"
+        self._require(np.less_equal(self.courant, 1), "courant", words)
+
+    def _require(self, holds: Any, field: str, words: str) -> None:
+        require(holds, "Discretisation", field, getattr(self, field), words)

@@ -7,6 +7,7 @@ attributes of a varied coordinate of runs.nc, whose other attributes do not matt
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -17,42 +18,26 @@ Arguments = Mapping[str, Any]
 Values = NDArray[np.float64]
 
 
-def _uniform(low: float, high: float) -> Any:
-    return scipy.stats.uniform(low, high - low)
-
-
-def _log_uniform(low: float, high: float) -> Any:
-    return scipy.stats.loguniform(low, high)
-
-
-def _normal(mean: float, standard_deviation: float) -> Any:
-    return scipy.stats.norm(mean, standard_deviation)
-
-
-def _truncated_normal(mean: float, standard_deviation: float, low: float, high: float) -> Any:
-    """Return it by mean and deviation before the cut; scipy counts the cuts in deviations."""
-    cuts = [(at - mean) / standard_deviation for at in (low, high)]
-    return scipy.stats.truncnorm(*cuts, mean, standard_deviation)
-
-
-def _lognormal(median: float, geometric_standard_deviation: float) -> Any:
-    return scipy.stats.lognorm(np.log(geometric_standard_deviation), scale=median)
-
-
-def _triangular(low: float, mode: float, high: float) -> Any:
-    """Scipy counts the mode in parts of the base."""
-    return scipy.stats.triang((mode - low) / (high - low), low, high - low)
-
-
-_FORMS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
-    "uniform": (_uniform, ("low", "high")),
-    "log_uniform": (_log_uniform, ("low", "high")),
-    "normal": (_normal, ("mean", "standard_deviation")),
-    "truncated_normal": (_truncated_normal, ("mean", "standard_deviation", "low", "high")),
-    "lognormal": (_lognormal, ("median", "geometric_standard_deviation")),
-    "triangular": (_triangular, ("low", "mode", "high")),
+_FORMS: dict[str, Callable[..., Any]] = {
+    "uniform": lambda low, high: scipy.stats.uniform(low, high - low),
+    "log_uniform": lambda low, high: scipy.stats.loguniform(low, high),
+    "normal": lambda mean, standard_deviation: scipy.stats.norm(mean, standard_deviation),
+    # mean and deviation are those before the cut; scipy counts the cuts in deviations
+    "truncated_normal": lambda mean, standard_deviation, low, high: scipy.stats.truncnorm(
+        (low - mean) / standard_deviation,
+        (high - mean) / standard_deviation,
+        mean,
+        standard_deviation,
+    ),
+    "lognormal": lambda median, geometric_standard_deviation: scipy.stats.lognorm(
+        np.log(geometric_standard_deviation), scale=median
+    ),
+    # scipy counts the mode in parts of the base
+    "triangular": lambda low, mode, high: scipy.stats.triang(
+        (mode - low) / (high - low), low, high - low
+    ),
 }
-"""By their name in study files: scipy's distribution, and the arguments that it is made of."""
+"""By their name in study files: scipy's distribution, of the arguments that a study gives."""
 
 
 def is_distributed(attributes: Arguments) -> bool:
@@ -68,7 +53,7 @@ def arguments(attributes: Arguments) -> dict[str, Any]:
     name = attributes.get("distribution")
     if name not in _FORMS:
         raise ValueError(f"unknown distribution {name!r}: choose from {', '.join(_FORMS)}")
-    keys = _FORMS[name][1]
+    keys = signature(_FORMS[name]).parameters
     if absent := [key for key in keys if key not in attributes]:
         raise ValueError(f"a distribution {name!r} needs {', '.join(absent)}")
     return {"distribution": name} | {key: float(attributes[key]) for key in keys}
@@ -81,7 +66,7 @@ def quantile(attributes: Arguments, probability: ArrayLike) -> Values:
     `arguments`.
     """
     given = arguments(attributes)
-    values = _frozen(given).ppf(probability)
+    values = _frozen(attributes).ppf(probability)
     return np.asarray(np.clip(values, given.get("low", -np.inf), given.get("high", np.inf)))
 
 
@@ -90,9 +75,9 @@ def cumulative(attributes: Arguments, values: ArrayLike) -> Values:
 
     Raises ValueError as `arguments`.
     """
-    return np.asarray(_frozen(arguments(attributes)).cdf(values))
+    return np.asarray(_frozen(attributes).cdf(values))
 
 
-def _frozen(given: dict[str, Any]) -> Any:
-    make, keys = _FORMS[given["distribution"]]
-    return make(**{key: given[key] for key in keys})
+def _frozen(attributes: Arguments) -> Any:
+    given = arguments(attributes)
+    return _FORMS[given.pop("distribution")](**given)

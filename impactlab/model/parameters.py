@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Any
 
 from impactlab.model.checks import Column
@@ -35,70 +36,60 @@ class Parameter:
     whole: bool = False
 
 
-def _material(body: str) -> tuple[Parameter, ...]:
-    def entry(field: str, units: str, words: str) -> Parameter:
-        path = ("impact", body, "material", field)
-        return Parameter(f"{body}_{field}", units, f"{words} of the {body}", path)
-
-    return (
-        entry("density", "kg m-3", "density"),
-        entry("youngs_modulus", "Pa", "Young's modulus"),
-        entry("poissons_ratio", "1", "Poisson's ratio"),
-        entry("yield_stress", "Pa", "yield stress"),
-        entry("isotropic_hardening_modulus", "Pa", "isotropic hardening modulus"),
-        entry("kinematic_hardening_modulus", "Pa", "kinematic hardening modulus"),
-    )
-
-
+_HARDENING = ("isotropic_hardening_modulus", "kinematic_hardening_modulus")
+_MATERIAL = {
+    "density": ("kg m-3", "density"),
+    "youngs_modulus": ("Pa", "Young's modulus"),
+    "poissons_ratio": ("1", "Poisson's ratio"),
+    "yield_stress": ("Pa", "yield stress"),
+    _HARDENING[0]: ("Pa", "isotropic hardening modulus"),
+    _HARDENING[1]: ("Pa", "kinematic hardening modulus"),
+}
+_ROWS = (
+    ("velocity", "m s-1", "impact velocity", "impact.velocity"),
+    ("gravity", "m s-2", "gravity on the sphere", "impact.gravity"),
+    ("contact", "1", "contact law", "impact.contact"),
+    ("beam_model", "1", "model of the beam", "impact.beam_model"),
+    ("sphere_radius", "m", "radius of the sphere", "impact.sphere.radius"),
+    ("sphere_mass", "kg", "mass of the sphere", "impact.sphere.mass"),
+    *(
+        (f"sphere_{field}", units, f"{words} of the sphere", f"impact.sphere.material.{field}")
+        for field, (units, words) in _MATERIAL.items()
+        if field not in _HARDENING
+    ),
+    ("beam_span", "m", "span of the beam", "impact.beam.span"),
+    ("beam_width", "m", "width of the beam", "impact.beam.width"),
+    ("beam_depth", "m", "depth of the beam", "impact.beam.depth"),
+    ("shear_coefficient", "1", "shear coefficient of the beam", "impact.beam.shear_coefficient"),
+    *(
+        (f"beam_{field}", units, f"{words} of the beam", f"impact.beam.material.{field}")
+        for field, (units, words) in _MATERIAL.items()
+    ),
+    ("nodes", "1", "nodes along the span", "discretisation.nodes"),
+    ("points", "1", "integration points over the depth", "discretisation.points"),
+    ("rule", "1", "integration rule", "discretisation.rule"),
+    ("scheme", "1", "scheme in time", "discretisation.scheme"),
+    ("courant", "1", "time step over the scheme's largest", "discretisation.courant"),
+    (
+        "element_size",
+        "m",
+        "size of the solid elements about the contact",
+        "discretisation.element_size",
+    ),
+    (
+        "elements_per_radius",
+        "1",
+        "solid elements over the expected contact radius",
+        "discretisation.elements_per_radius",
+    ),
+)
+_CHOICES = {"contact": LAWS, "beam_model": MODELS, "rule": RULES, "scheme": SCHEMES}
+_WHOLE = ("nodes", "points")
 PARAMETERS: dict[str, Parameter] = {
-    entry.name: entry
-    for entry in (
-        Parameter("velocity", "m s-1", "impact velocity", ("impact", "velocity")),
-        Parameter("gravity", "m s-2", "gravity on the sphere", ("impact", "gravity")),
-        Parameter("contact", "1", "contact law", ("impact", "contact"), choices=LAWS),
-        Parameter("beam_model", "1", "model of the beam", ("impact", "beam_model"), choices=MODELS),
-        Parameter("sphere_radius", "m", "radius of the sphere", ("impact", "sphere", "radius")),
-        Parameter("sphere_mass", "kg", "mass of the sphere", ("impact", "sphere", "mass")),
-        *_material("sphere")[:4],
-        Parameter("beam_span", "m", "span of the beam", ("impact", "beam", "span")),
-        Parameter("beam_width", "m", "width of the beam", ("impact", "beam", "width")),
-        Parameter("beam_depth", "m", "depth of the beam", ("impact", "beam", "depth")),
-        Parameter(
-            "shear_coefficient",
-            "1",
-            "shear coefficient of the beam",
-            ("impact", "beam", "shear_coefficient"),
-        ),
-        *_material("beam"),
-        Parameter("nodes", "1", "nodes along the span", ("discretisation", "nodes"), whole=True),
-        Parameter(
-            "points",
-            "1",
-            "integration points over the depth",
-            ("discretisation", "points"),
-            whole=True,
-        ),
-        Parameter("rule", "1", "integration rule", ("discretisation", "rule"), choices=RULES),
-        Parameter("scheme", "1", "scheme in time", ("discretisation", "scheme"), choices=SCHEMES),
-        Parameter(
-            "courant",
-            "1",
-            "time step over the scheme's largest",
-            ("discretisation", "courant"),
-        ),
-        Parameter(
-            "element_size",
-            "m",
-            "size of the solid elements about the contact",
-            ("discretisation", "element_size"),
-        ),
-        Parameter(
-            "elements_per_radius",
-            "1",
-            "solid elements over the expected contact radius",
-            ("discretisation", "elements_per_radius"),
-        ),
+    name: Parameter(
+        name, units, words, tuple(path.split(".")), _CHOICES.get(name, ()), name in _WHOLE
     )
+    for name, units, words, path in _ROWS
 }
 ELEMENTS = ("element_size", "elements_per_radius")
 """The parameters of the 3-D model's elements, which takes one of them."""
@@ -106,8 +97,11 @@ ELEMENTS = ("element_size", "elements_per_radius")
 
 def flatten(impact: Impact, discretisation: Discretisation) -> dict[str, Value]:
     """Return every parameter's value by name, without those that are None (mass, element size)."""
-    roots = {"impact": impact, "discretisation": discretisation}
-    values = {name: _get(roots, entry.path) for name, entry in PARAMETERS.items()}
+    roots: dict[str, Any] = {"impact": impact, "discretisation": discretisation}
+    values = {
+        name: reduce(getattr, entry.path[1:], roots[entry.path[0]])
+        for name, entry in PARAMETERS.items()
+    }
     return {name: value for name, value in values.items() if value is not None}
 
 
@@ -118,7 +112,6 @@ def with_values(
 
     Raises ValueError for an unknown name, or where the model classes refuse a value.
     """
-    roots: dict[str, Any] = {"impact": impact, "discretisation": discretisation}
     tree: dict[str, Any] = {}
     for name, value in values.items():
         if name not in PARAMETERS:
@@ -128,15 +121,10 @@ def with_values(
         for part in parents:
             node = node.setdefault(part, {})
         node[leaf] = value
-    changed = {key: _replaced(root, tree.get(key, {})) for key, root in roots.items()}
-    return changed["impact"], changed["discretisation"]
-
-
-def _get(roots: Mapping[str, Any], path: tuple[str, ...]) -> Any:
-    node: Any = roots[path[0]]
-    for part in path[1:]:
-        node = getattr(node, part)
-    return node
+    return (
+        _replaced(impact, tree.get("impact", {})),
+        _replaced(discretisation, tree.get("discretisation", {})),
+    )
 
 
 def _replaced(node: Any, changes: Mapping[str, Any]) -> Any:

@@ -16,8 +16,7 @@ from impactlab import wings
 from impactlab.model import cost as beam_cost
 from impactlab.model.cost import A_SECOND
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import SOLID
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import SOLID, paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
 from impactlab.simulate import case_table
 from impactlab.study.errors import Problem, StudyError

@@ -9,8 +9,7 @@ from itertools import groupby, product
 from typing import Any
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
 
 Base = tuple[Impact, Discretisation]

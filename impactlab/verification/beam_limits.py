@@ -8,10 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Beam, Impact, paper_impact
 from impactlab.simulate import simulate
 from impactlab.types import Floats
 from impactlab.verification.cases import elastic, slimmer

@@ -7,12 +7,8 @@ from dataclasses import dataclass, replace
 
 import xarray as xr
 
-from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.material import Material
-from impactlab.model.paper import paper_impact
-from impactlab.model.sphere import Sphere
+from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
 from impactlab.simulate import case_table, simulate
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.leapfrog import discretise

@@ -9,8 +9,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import simulate
 from impactlab.verification.cases import Case, elastic
 from impactlab.verification.finding import (

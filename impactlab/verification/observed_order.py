@@ -12,8 +12,7 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.verification.cases import (
     critical_time_step,
     elastic,

@@ -15,8 +15,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import simulate, simulate_many
 from impactlab.solver import RULES, SCHEMES
 from impactlab.solver.contact import LAWS

@@ -11,8 +11,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.simulate import case_table, simulate
 from impactlab.solver.beam import Beam, Grid, make_beam, move_virgin, strike

@@ -15,8 +15,7 @@ from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, least_cos
 from impactlab.fem3d.solver.mesh.estimates import checked_patch, contact_radius
 from impactlab.model.checks import positive
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import Value, flatten, with_values
 from impactlab.study.quantities import amount, time
 from impactlab.study.schema.study import Study

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from impactlab.fem3d.deck.cards import curve, gravity
 from impactlab.fem3d.deck.case import STRESS, Case, Flavour, values
 from impactlab.fem3d.deck.mesh import BEAM_SURFACE, SPHERE_SURFACE, TRACKED, element_groups
-from impactlab.model.material import Material
+from impactlab.model.impact import Material
 
 _FRAMES = 50
 """States of all elements over the duration."""

@@ -12,7 +12,7 @@ from impactlab.fem3d.deck.cards import curve, gravity
 from impactlab.fem3d.deck.case import LENGTH, STRESS, Case, Flavour, values
 from impactlab.fem3d.deck.mesh import BEAM_SURFACE, BODIES, SPHERE_SURFACE, TRACKED
 from impactlab.fem3d.solver.mesh.estimates import contact_radius
-from impactlab.model.material import Material
+from impactlab.model.impact import Material
 from impactlab.verification.solutions import hertz
 
 _OVERCLOSURE = 0.002

@@ -21,7 +21,7 @@ from impactlab.fem3d.deck.mesh import SPHERE_NODES, SUPPORT, SYMMETRY_X, SYMMETR
 from impactlab.fem3d.solver.mesh import SPHERE
 from impactlab.fem3d.solver.mesh.mesh import element_volumes
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.material import Material
+from impactlab.model.impact import Material
 from impactlab.model.parameters import PARAMETERS, flatten
 
 _WIDTH = 96

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from impactlab.fem3d.solver.mesh import Mesh
 from impactlab.model.checks import instance, positive
-from impactlab.model.impact import Impact
-from impactlab.model.material import Material
+from impactlab.model.impact import Impact, Material
 from impactlab.verification.solutions import hertz
 
 NAMES = "N, mm, t, s (hence MPa, mJ, t/mm3, mm/s)"

@@ -13,8 +13,7 @@ from impactlab.fem3d.kratos.engine import BEAM_TOP, MM, MPA, SPHERE_BOTTOM, TONN
 from impactlab.fem3d.solver import Mesh
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
 from impactlab.fem3d.solver.mesh.mesh import Floats, Integers, element_volumes
-from impactlab.model.impact import Impact
-from impactlab.model.material import Material
+from impactlab.model.impact import Impact, Material
 
 ELEMENT, LAW, FACE = "SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw", 4
 

@@ -19,8 +19,7 @@ from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.model import cost
 from impactlab.model.checks import column, positive
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import SOLID, Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import SOLID, Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import case_table
 from impactlab.solver import BEAM_MODELS

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.paper.statements.statement import (
     Data,
     Judgement,

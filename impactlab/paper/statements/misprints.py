@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.paper.statements.convergence import READINGS_OF_P
 from impactlab.paper.statements.evidence import runs_of, select_response
 from impactlab.paper.statements.statement import (

@@ -10,8 +10,7 @@ from typing import Annotated, Any
 from pydantic import ValidationInfo, WrapValidator, create_model
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, Parameter, with_values
 from impactlab.study.schema.parameters import VALUES
 from impactlab.study.schema.section import Number, Section, at_key, between, names, one_of

@@ -10,8 +10,7 @@ import xarray as xr
 
 from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import (
     answer_variables,

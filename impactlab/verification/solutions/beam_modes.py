@@ -24,8 +24,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from impactlab.model.beam import Beam
 from impactlab.model.checks import integer
+from impactlab.model.impact import Beam
 from impactlab.types import Floats
 from impactlab.verification.solutions.shear import shear_stiffness
 

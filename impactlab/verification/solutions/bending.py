@@ -19,9 +19,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from impactlab.model.beam import Beam
 from impactlab.model.checks import not_negative
-from impactlab.model.material import Material
+from impactlab.model.impact import Beam, Material
 from impactlab.types import Floats
 
 

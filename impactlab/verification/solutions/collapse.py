@@ -20,9 +20,8 @@ import math
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from impactlab.model.beam import Beam
 from impactlab.model.checks import positive
-from impactlab.model.impact import Impact
+from impactlab.model.impact import Beam, Impact
 from impactlab.verification.solutions import bending
 
 _FAR = 1e6

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from impactlab.model.beam import Beam
+from impactlab.model.impact import Beam
 from impactlab.types import Floats
 
 

@@ -10,8 +10,7 @@ import math
 from scipy.special import gamma
 
 from impactlab.model.checks import positive
-from impactlab.model.impact import Impact
-from impactlab.model.material import Material
+from impactlab.model.impact import Impact, Material
 
 CONTACT_TIME_FACTOR = float(2.0 * math.sqrt(math.pi) * gamma(1.4) / gamma(0.9))
 """t_c v/delta_m = 2 * integral of (1 - s^2.5)^(-1/2) over [0, 1] = 2.9433."""

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import fresnel
 
-from impactlab.model.beam import Beam
 from impactlab.model.checks import number
+from impactlab.model.impact import Beam
 from impactlab.types import Floats
 
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
-from impactlab.model.beam import Beam
 from impactlab.model.checks import not_negative, positive
+from impactlab.model.impact import Beam
 from impactlab.verification.solutions import bending
 
 

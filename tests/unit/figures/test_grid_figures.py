@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.solver.contact import LAWS
 from impactlab.verification.solutions.shear import impact_share
 

@@ -8,7 +8,7 @@ import pytest
 
 from impactlab.model.cost import node_steps, work
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.simulate import case_table
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.contact.history import make_pair

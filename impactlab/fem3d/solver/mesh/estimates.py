@@ -13,8 +13,7 @@ import numpy as np
 
 from impactlab.fem3d.solver.mesh.mesh import BEAM, SPHERE, Mesh, uniform
 from impactlab.model.checks import positive
-from impactlab.model.impact import Impact
-from impactlab.model.material import Material
+from impactlab.model.impact import Impact, Material
 from impactlab.verification.solutions import hertz
 
 _HARDNESS = 2.8

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from impactlab.fem3d.solver.mesh.estimates import bending_yields, checked_patch, checked_size
 from impactlab.fem3d.solver.mesh.mesh import BEAM, SPHERE, Mesh, brick, graded
 from impactlab.fem3d.solver.mesh.sphere import Sphere, quarter_sphere
-from impactlab.model.beam import Beam
 from impactlab.model.checks import positive
-from impactlab.model.impact import Impact
+from impactlab.model.impact import Beam, Impact
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]

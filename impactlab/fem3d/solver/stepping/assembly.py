@@ -21,8 +21,7 @@ from impactlab.fem3d.solver.jit import Array
 from impactlab.fem3d.solver.material import POINT_ROWS, Metal
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
 from impactlab.fem3d.solver.mesh.mesh import Integers
-from impactlab.model.impact import Impact
-from impactlab.model.material import Material
+from impactlab.model.impact import Impact, Material
 
 
 @dataclass(frozen=True, eq=False)

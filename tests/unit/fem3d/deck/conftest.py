@@ -9,8 +9,7 @@ import pytest
 
 from impactlab.fem3d.deck import write_deck
 from impactlab.fem3d.solver.mesh import quarter_mesh
-from impactlab.model.beam import Beam
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Beam, paper_impact
 
 
 @pytest.fixture(scope="session")

@@ -12,10 +12,7 @@ import whole_sphere
 
 from impactlab.fem3d.deck import write_deck
 from impactlab.fem3d.solver.mesh import quarter_mesh
-from impactlab.model.beam import Beam
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
-from impactlab.model.sphere import Sphere
+from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
 from impactlab.verification.solutions import hertz
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from impactlab.fem3d.solver import Mesh, quarter_mesh
-from impactlab.model.impact import Impact
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Impact, paper_impact
 
 
 @pytest.fixture(scope="package")

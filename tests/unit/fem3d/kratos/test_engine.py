@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from impactlab.fem3d import kratos
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 
 
 @pytest.mark.parametrize(

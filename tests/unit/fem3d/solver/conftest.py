@@ -10,7 +10,7 @@ from impactlab.fem3d.solver.elements.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.material import STRESS
 from impactlab.fem3d.solver.mesh.mesh import brick
 from impactlab.fem3d.solver.stepping.assembly import _group, force_assembly, metal
-from impactlab.model.material import Material
+from impactlab.model.impact import Material
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
 KINDS = {"one_point": one_point, "full": full}

@@ -11,11 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import eval_legendre
 
 from impactlab.fem3d.solver import quarter_mesh, solve, solve_on
-from impactlab.model.beam import Beam
-from impactlab.model.impact import Impact
-from impactlab.model.material import Material
-from impactlab.model.paper import paper_impact
-from impactlab.model.sphere import Sphere
+from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
 from impactlab.verification.solutions import hertz, modal
 
 STEEL = Material(density=7800.0, youngs_modulus=210e9, poissons_ratio=0.3, yield_stress=200e9)

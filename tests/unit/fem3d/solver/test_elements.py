@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.mesh.mesh import brick
-from impactlab.model.material import Material
+from impactlab.model.impact import Material
 
 G, K = 200e9 / 2.6, 200e9 / 1.2
 GRADIENT = 1e-7 * np.array([[1.0, -0.4, 0.3], [0.7, 0.5, -0.6], [-0.2, 0.9, -1.1]])

@@ -11,7 +11,7 @@ import pytest
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, estimate, quarter_mesh
 from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.fem3d.solver.mesh.mesh import CORNERS, graded
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 
 
 @pytest.mark.parametrize("length", [4.2, 5.0, 11.7, 390.0])

@@ -11,10 +11,7 @@ from impactlab.fem3d.solver.mesh.mesh import brick
 from impactlab.fem3d.solver.stepping.assembly import MOST_THREADS, _group, blocks_of, force_assembly
 from impactlab.fem3d.solver.stepping.march import March
 from impactlab.fem3d.solver.stepping.system import System, ThreadPool
-from impactlab.model.beam import Beam
-from impactlab.model.impact import Impact
-from impactlab.model.material import Material
-from impactlab.model.sphere import Sphere
+from impactlab.model.impact import Beam, Impact, Material, Sphere
 
 METAL = (210e9, 0.3, 80e9, 175e9, 345e6, 0.0, 0.0)
 

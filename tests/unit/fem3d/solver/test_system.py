@@ -15,7 +15,7 @@ from impactlab.fem3d.solver.mesh.mesh import nodal_masses
 from impactlab.fem3d.solver.stepping.march import SAFETY
 from impactlab.fem3d.solver.stepping.stability import critical_step
 from impactlab.fem3d.solver.stepping.system import System, ThreadPool
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
 IMPACT = paper_impact()

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from SALib.analyze import sobol as sobol_analysis
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import ELEMENTS, PARAMETERS
 from impactlab.study.errors import StudyError
 from impactlab.variables import ANALYSES, RESPONSES

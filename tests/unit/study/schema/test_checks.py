@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
 from impactlab.study.sampling.design import design
 from impactlab.variables import ANALYSES

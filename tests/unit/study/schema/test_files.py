@@ -7,13 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from impactlab.model.beam import Beam
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
-from impactlab.model.material import Material
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten
-from impactlab.model.sphere import Sphere
 from impactlab.study.errors import StudyError
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.sobol import Sobol

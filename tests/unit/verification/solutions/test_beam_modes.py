@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.linalg import eigh
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.verification.solutions.beam_modes import odd_modes, timoshenko_odd_modes
 from impactlab.verification.solutions.shear import (
     shear_stiffness,

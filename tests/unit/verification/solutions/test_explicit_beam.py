@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.verification.solutions import explicit_beam
 
 BEAM = paper_impact().beam

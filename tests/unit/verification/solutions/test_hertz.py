@@ -7,7 +7,7 @@ import math
 import pytest
 from scipy.integrate import solve_ivp
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.verification.cases import timoshenko_impact
 from impactlab.verification.solutions import hertz
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import beta
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.verification.solutions.beam_modes import odd_modes
 from impactlab.verification.solutions.infinite_beam import (
     curvature_under_force,

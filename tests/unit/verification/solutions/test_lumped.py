@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.verification.cases import timoshenko_impact
 from impactlab.verification.solutions import hertz, lumped, modal
 from impactlab.verification.solutions.beam_modes import BeamModes, odd_modes

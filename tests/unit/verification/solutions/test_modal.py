@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp, trapezoid
 from scipy.optimize import brentq
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.verification.cases import timoshenko_impact
 from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.beam_modes import odd_modes

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.verification.cases import slimmer, timoshenko_impact
 from impactlab.verification.solutions import modal
 from impactlab.verification.solutions.hertz import contact_stiffness

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from impactlab.model.paper import paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.verification.solutions.stronge import StrongeImpact, stronge_impact
 
 BODIES = StrongeImpact(effective_modulus=115e9, effective_radius=0.035, yield_stress=345e6)
