@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from impactlab.jit.compiler import precompile
+from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact

@@ -1,10 +1,10 @@
-"""The decorators of this solver's kernels (see impactlab.jit.compiler), and their sources' hash."""
+"""The decorators of this solver's kernels (see impactlab.jit), and their sources' hash."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from impactlab.jit.compiler import Compiler
+from impactlab.jit import Compiler
 
 _COMPILER = Compiler(Path(__file__).parent)
 SOURCES_HASH = _COMPILER.sources_hash

@@ -60,7 +60,7 @@ def evidence(wildcards, input):
 
 
 MODEL = ("variables.py", "model/*.py")
-SOLVER = (*MODEL, "simulate.py", "solver/**/*.py", "jit/*.py")
+SOLVER = (*MODEL, "simulate.py", "solver/**/*.py", "jit.py")
 FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "stored"))
 REPORTING = ("report/**/*.py", "report/templates/*")
 DESCRIBED = read_studies()

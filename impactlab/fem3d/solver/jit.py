@@ -1,4 +1,4 @@
-"""The decorators of this solver's loops (see impactlab.jit.compiler), and their sources' hash.
+"""The decorators of this solver's loops (see impactlab.jit), and their sources' hash.
 
 Products may be fused with sums, but no sum is reordered: the same bits for any number of threads.
 """
@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from impactlab.jit.compiler import Compiler
+from impactlab.jit import Compiler
 
 Array: TypeAlias = np.ndarray[Any, Any]
 """An array as an argument of compiled functions."""

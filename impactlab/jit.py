@@ -1,0 +1,295 @@
+"""Functions compiled by numba: free of the GIL, kept in a folder of their sources' own.
+
+A kernel is compiled by a process of its own (`precompile`), which leaves it in the cache. A process
+that compiles it runs other machine code than one that loads it: of the copies of an inner function
+it links another one, whose sums may be ordered differently, and answers differ in the last bit. So
+all processes load it. (One that has compiled an inner function itself, as tests do, still links
+that.)
+
+numba's own cache notices a changed function, but neither a changed callee in another file nor a
+damaged file, and looks for code by the path and age of its source. Here a folder belongs to one set
+of sources and kind of machine, wherever the sources lie, it has one file per function and
+signature, with a checksum, and a damaged file empties its folder.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import logging
+import os
+import pickle
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar, cast
+from uuid import uuid4
+
+import numpy as np
+import platformdirs
+from filelock import FileLock
+
+try:
+    import numba
+except ValueError as _error:
+    _settings = sorted(f"{k}={v}" for k, v in os.environ.items() if k.startswith("NUMBA_"))
+    if not _settings:
+        raise
+    raise ValueError(
+        f"numba refuses a setting of the environment ({', '.join(_settings)}): {_error} "
+        "Correct or unset it."
+    ) from None
+import llvmlite
+from llvmlite import binding
+from numba.core import serialize
+from numba.core.caching import _Cache
+from numba.core.compiler import CompileResult
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+log = logging.getLogger(__name__)
+
+_COMPILES = "IMPACTLAB_COMPILES"
+"""Environment variable of a process that compiles everything itself, for others to load."""
+_SUFFIX = ".kernel"
+_DIGEST = hashlib.sha256().digest_size
+_FOLDER = re.compile(r"kernels-[0-9a-f]{16}(-[0-9a-f]{8})?(\.[0-9a-f]{32})?")
+_UNUSED = 30 * 24 * 3600.0
+"""Seconds after which the folder of other sources, or of another machine, is taken away."""
+
+
+def cache_folder(sources_hash: str) -> Path | None:
+    """Return the folder for these sources on this machine, or None where it cannot be made."""
+    config: Any = numba.config  # numba's types do not list its settings
+    name, features = config.CPU_NAME or binding.get_host_cpu_name(), config.CPU_FEATURES
+    if features is None:
+        features = binding.get_host_cpu_features().flatten()
+    tools = sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__
+    machine = hashlib.sha256(f"{name} {features} {tools}".encode()).hexdigest()[:8]
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    root = Path(given) if given else platformdirs.user_cache_path("impactlab")
+    folder = root / f"kernels-{sources_hash[:16]}-{machine}"
+    try:
+        if not folder.exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            _remove_unused(root)
+        os.utime(folder)  # in use
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        log.warning(
+            "compiled kernels cannot be kept in %s (%s), so each process compiles them anew; "
+            "NUMBA_CACHE_DIR may name another folder",
+            folder,
+            error.strerror,
+        )
+        return None
+    return folder
+
+
+def _remove_unused(root: Path) -> None:
+    """Take away the folders of kernels in `root` that no process has looked into for 30 days."""
+    for folder in root.iterdir():
+        if not _FOLDER.fullmatch(folder.name) or folder.is_symlink() or not folder.is_dir():
+            continue
+        aside = folder.with_name(f"{folder.name.partition('.')[0]}.{uuid4().hex}")
+        try:
+            if time.time() - folder.stat().st_mtime > _UNUSED:
+                folder.rename(aside)  # at once: nobody finds half of it
+                shutil.rmtree(aside, ignore_errors=True)
+        except OSError:  # another process was faster, or it belongs to somebody else
+            continue
+
+
+class KernelCache(_Cache):
+    """The compiled forms of one function, as numba's dispatchers ask for them."""
+
+    def __init__(self, folder: Path, function: Callable[..., Any]) -> None:
+        """Cache `function` in `folder`."""
+        self.folder = folder
+        self._name = f"{function.__module__}.{function.__qualname__}"
+
+    @property
+    def cache_path(self) -> str:
+        """The folder, as numba's statistics name it."""
+        return str(self.folder)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the compiled form for these argument types, or None where there is none."""
+        if _COMPILES in os.environ or (payload := _read(self._path(sig))) is None:
+            return None
+        target_context.refresh()
+        rebuild: Any = CompileResult._rebuild
+        return rebuild(target_context, *pickle.loads(payload))
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a compiled form, unless it holds addresses of this process."""
+        if data.library.has_dynamic_globals or data.lifted:
+            return
+        try:
+            dumps: Any = serialize.dumps  # without types, as `_rebuild` above
+            _write(self._path(sig), dumps(data._reduce()))
+        except OSError as error:
+            log.warning("%s: a compiled kernel could not be kept: %s", self.folder, error.strerror)
+
+    def enable(self) -> None:
+        """Do nothing: a function without a cache has numba's NullCache."""
+
+    disable = enable
+
+    def flush(self) -> None:
+        """Remove every compiled form of this function."""
+        for path in self._files():
+            path.unlink(missing_ok=True)
+
+    def is_kept(self) -> bool:
+        """Return whether there is a sound compiled form of this function."""
+        return any(_read(path) is not None for path in self._files())
+
+    def _files(self) -> list[Path]:
+        return list(self.folder.glob(f"{self._name}-*{_SUFFIX}"))
+
+    def _path(self, sig: Any) -> Path:
+        types = hashlib.sha256(repr(sig).encode()).hexdigest()[:16]
+        return self.folder / f"{self._name}-{types}{_SUFFIX}"
+
+
+def discard(folder: Path) -> None:
+    """Remove everything compiled from a folder."""
+    for path in folder.glob(f"*{_SUFFIX}*"):
+        path.unlink(missing_ok=True)
+
+
+def _read(path: Path) -> bytes | None:
+    """Return what a file holds after its checksum.
+
+    None where there is no file, and where it is damaged: then its folder is emptied, since code
+    compiled beside code from the cache may differ in the last bit from code compiled as a whole.
+    """
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        return None
+    payload = content[_DIGEST:]
+    if hashlib.sha256(payload).digest() == content[:_DIGEST]:
+        return payload
+    log.warning("damaged compiled kernels in %s are removed and compiled again", path.parent)
+    discard(path.parent)
+    return None
+
+
+def _write(path: Path, payload: bytes) -> None:
+    """Write checksum and payload into a file, all of it or nothing."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f"{path.name}.{uuid4().hex}")
+    try:
+        part.write_bytes(hashlib.sha256(payload).digest() + payload)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+class Compiler:
+    """The decorators of one package of kernels; under NUMBA_DISABLE_JIT=1 they change nothing.
+
+    sources_hash: SHA-256 (hex) of all sources of the package and of this one, and of numba's
+    version. folder: where its compiled kernels are kept; None: they cannot be kept.
+    """
+
+    def __init__(self, root: Path) -> None:
+        """Compile the package in the folder `root`."""
+        digest = hashlib.sha256(numba.__version__.encode())
+        for path in (*sorted(root.rglob("*.py")), Path(__file__)):
+            name = path.relative_to(root) if path.is_relative_to(root) else path.name
+            digest.update(str(name).encode() + b"\0" + path.read_bytes())
+        self.sources_hash = digest.hexdigest()
+        self.folder = cache_folder(self.sources_hash)
+
+    def compiled(self, function: Function) -> Function:
+        """Return `function` as a compiled kernel.
+
+        It can neither make arrays nor free any: what it works on belongs to its caller. One that
+        makes an array does not compile.
+        """
+        return self._compile(function)
+
+    def allocating(self, function: Function) -> Function:
+        """Return what `compiled` does, of a function that makes or owns arrays.
+
+        It has numba's counting of references (`_nrt`), which costs time at each call. A record of
+        an array does not keep it alive here, so arrays of records come from Python.
+        """
+        return self._compile(function, allocates=True)
+
+    def vectorised(self, function: Function) -> Function:
+        """Return what `compiled` does, free to reorder sums and blind to NaN: for array loops."""
+        return self._compile(function, fastmath=True)
+
+    def ordered(self, function: Function) -> Function:
+        """Return what `compiled` does, free to fuse a product with a sum; sums keep their order."""
+        return self._compile(function, fastmath={"contract"})
+
+    def inlined(self, function: Function) -> Function:
+        """Return what `ordered` does, always part of its callers: their loops can be vectorised."""
+        return self._compile(function, fastmath={"contract"}, inline=True)
+
+    def linked(self, function: Function, number: int) -> Function:
+        """Return what `compiled` does, of a function made within another.
+
+        `number` tells functions made in the same place apart: numba knows functions by their names,
+        in its cache and where it links code from there, and would take one for another. For the
+        same reason the function is kept in its callers' code alone.
+        """
+        function.__qualname__ = function.__name__ = f"{function.__name__}_{number}"
+        return self._compile(function, kept=False)
+
+    def _compile(
+        self,
+        function: Function,
+        *,
+        fastmath: Any = False,
+        kept: bool = True,
+        inline: bool = False,
+        allocates: bool = False,
+    ) -> Function:
+        jit: Any = numba.njit  # its types do not list `_nrt`
+        dispatcher = jit(
+            nogil=True, error_model="numpy", fastmath=fastmath, forceinline=inline, _nrt=allocates
+        )(function)
+        if kept and self.folder is not None and dispatcher is not function:
+            dispatcher._cache = KernelCache(self.folder, function)
+        return cast(Function, dispatcher)
+
+
+@functools.cache
+def precompile(kernel: Any, program: str) -> None:
+    """Compile `kernel` in another process, unless it is in the cache.
+
+    kernel: a compiled function. program: Python code that calls it. Where the kernel has no cache,
+    or no other process can be started, the calling process will compile. Processes that need it at
+    the same time wait for the first one's.
+    """
+    cache = getattr(kernel, "_cache", None)
+    if not isinstance(cache, KernelCache) or _COMPILES in os.environ or not sys.executable:
+        return
+    here = str(Path(__file__).resolve().parents[1])  # the same package, wherever it was found
+    paths = os.pathsep.join(filter(None, [here, os.environ.get("PYTHONPATH")]))
+    try:
+        with FileLock(cache.folder / "lock"):
+            if cache.is_kept():
+                return
+            discard(cache.folder)
+            done = subprocess.run(
+                [sys.executable, "-c", program],
+                env=os.environ | {_COMPILES: "1", "PYTHONPATH": paths},
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+        log.debug("kernels precompiled, exit code %s: %s", done.returncode, done.stderr)
+    except OSError as error:
+        log.debug("kernels cannot be precompiled: %s", error)
