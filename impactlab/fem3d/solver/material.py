@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.fem3d.solver.elements.hexahedron import Tensor, Vector, W
+from impactlab.fem3d.solver.elements.hexahedron import Tensor, Vector, W, load, store
 from impactlab.fem3d.solver.jit import Array, inlined
 
 Six = tuple[float, float, float, float, float, float]
@@ -23,10 +23,16 @@ Metal = tuple[float, float, float, float, float, float, float]
 
 
 @inlined
+def double_dot(a: Six, b: Six) -> float:
+    """Return a:b."""
+    shear = a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * shear
+
+
+@inlined
 def mises(s: Six) -> float:
     """Return sqrt(3/2 s:s) of a deviator."""
-    shear = s[3] * s[3] + s[4] * s[4] + s[5] * s[5]
-    return math.sqrt(1.5 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * shear))
+    return math.sqrt(1.5 * double_dot(s, s))
 
 
 @inlined
@@ -51,27 +57,6 @@ def less(a: Six, factor: float, b: Six) -> Six:
         a[4] - factor * b[4],
         a[5] - factor * b[5],
     )
-
-
-@inlined
-def deviatoric_rate(L: Tensor) -> Six:
-    """Return the deviator of the strain rate, in 1/s."""
-    third = (L[0][0] + L[1][1] + L[2][2]) / 3.0
-    return (
-        L[0][0] - third,
-        L[1][1] - third,
-        L[2][2] - third,
-        0.5 * (L[1][2] + L[2][1]),
-        0.5 * (L[2][0] + L[0][2]),
-        0.5 * (L[0][1] + L[1][0]),
-    )
-
-
-@inlined
-def spin(L: Tensor, dt: float) -> Vector:
-    """Return the angles in rad by which the material turns about x, y and z in a step."""
-    half = 0.5 * dt
-    return (half * (L[2][1] - L[1][2]), half * (L[0][2] - L[2][0]), half * (L[1][0] - L[0][1]))
 
 
 @inlined
@@ -108,7 +93,17 @@ def advance(
 
     L: dv/dx at the middle of the step, in 1/s. row: the point's first in `state`, which is updated.
     """
-    rate, turn = deviatoric_rate(L), spin(L, dt)
+    half, third = 0.5 * dt, (L[0][0] + L[1][1] + L[2][2]) / 3.0
+    rate = (  # the strain rate's deviator
+        L[0][0] - third,
+        L[1][1] - third,
+        L[2][2] - third,
+        0.5 * (L[1][2] + L[2][1]),
+        0.5 * (L[2][0] + L[0][2]),
+        0.5 * (L[0][1] + L[1][0]),
+    )
+    # Angles in rad by which the material turns about x, y and z in the step.
+    turn = (half * (L[2][1] - L[1][2]), half * (L[0][2] - L[2][0]), half * (L[1][0] - L[0][1]))
     before = turned(_load(state, row + STRESS, lane), turn)
     back = turned(_load(state, row + BACK, lane), turn)
     p = state[(row + PEEQ) * W + lane]
@@ -118,31 +113,16 @@ def advance(
     _store(state, row + BACK, lane, back)
     state[(row + PEEQ) * W + lane] = p + dp
     state[(row + ALONG) * W + lane] += along
-    work = 0.5 * dt * _double_dot(less(before, -1.0, S), rate)
+    work = 0.5 * dt * double_dot(less(before, -1.0, S), rate)
     return S, work, dp * (metal[4] + metal[5] * (p + 0.5 * dp))
 
 
 @inlined
 def _load(state: Array, row: int, lane: int) -> Six:
-    at = row * W + lane
-    return (
-        state[at],
-        state[at + W],
-        state[at + 2 * W],
-        state[at + 3 * W],
-        state[at + 4 * W],
-        state[at + 5 * W],
-    )
+    return load(state, row, lane) + load(state, row + 3, lane)
 
 
 @inlined
 def _store(state: Array, row: int, lane: int, s: Six) -> None:
-    at = row * W + lane
-    state[at], state[at + W], state[at + 2 * W] = s[0], s[1], s[2]
-    state[at + 3 * W], state[at + 4 * W], state[at + 5 * W] = s[3], s[4], s[5]
-
-
-@inlined
-def _double_dot(a: Six, b: Six) -> float:
-    shear = a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * shear
+    store(state, row, lane, (s[0], s[1], s[2]))
+    store(state, row + 3, lane, (s[3], s[4], s[5]))

@@ -25,12 +25,14 @@ from impactlab.fem3d.solver.elements.hexahedron import (
     dot,
     gather,
     gradient,
+    load,
     mean_gradient,
     midway,
     nodal,
     plus,
     scatter,
     shape,
+    store,
     times,
     volume,
 )
@@ -93,17 +95,9 @@ def _begin(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None:
     mean = before + metal[3] * dilation
     state[MEAN * W + lane] = mean
     state[WORK * W + lane] += size * 0.5 * (before + mean) * dilation
-    eighth = 0.125 * mean
-    forces = (
-        times(eighth, B[0]),
-        times(eighth, B[1]),
-        times(eighth, B[2]),
-        times(eighth, B[3]),
-        times(eighth, B[4]),
-        times(eighth, B[5]),
-        (0.0, 0.0, 0.0),
-    )
-    _store(s, _T, lane, forces)
+    for mode in range(6):
+        store(s, _T + 3 * mode, lane, times(0.125 * mean, B[mode]))
+    store(s, _T + 18, lane, (0.0, 0.0, 0.0))
 
 
 @inlined
@@ -111,22 +105,34 @@ def _point(
     s: Array, state: Array, row: int, lane: int, at: Vector, dt: float, metal: Metal
 ) -> None:
     """Update an integration point's deviator and its work; add its share to the modes' forces."""
+    xi, eta, zeta = at
     r, v = _slopes(_load(s, _C, lane), at), _slopes(_load(s, _W, lane), at)
-    C1, C2, C3 = cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1])
-    size = dot(r[0], C1)
-    L = midway(_velocity_gradient(v, (C1, C2, C3), 1.0 / size), dt)
-    S, work, dissipated = advance(state, row, lane, L, dt, metal)
+    C = (cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1]))  # cofactors of dx/dxi
+    size = dot(r[0], C[0])
+    share = 1.0 / size
+    gradient = (
+        times(share, combine(C, (v[0][0], v[1][0], v[2][0]))),
+        times(share, combine(C, (v[0][1], v[1][1], v[2][1]))),
+        times(share, combine(C, (v[0][2], v[1][2], v[2][2]))),
+    )
+    S, work, dissipated = advance(state, row, lane, midway(gradient, dt), dt, metal)
     state[WORK * W + lane] += size * work
     state[DISSIPATED * W + lane] += size * dissipated
     T = ((S[0], S[5], S[4]), (S[5], S[1], S[3]), (S[4], S[3], S[2]))
-    _add(
-        s,
-        lane,
-        at,
-        times(0.125, apply(T, C1)),
-        times(0.125, apply(T, C2)),
-        times(0.125, apply(T, C3)),
+    # Forces that work on the derivatives by xi, eta and zeta, and those of the modes.
+    t1, t2 = times(0.125, apply(T, C[0])), times(0.125, apply(T, C[1]))
+    t3 = times(0.125, apply(T, C[2]))
+    f1, f2, f3, f4, f5, f6, f7 = _load(s, _T, lane)
+    forces = (
+        add(f1, t1),
+        add(f2, t2),
+        add(f3, t3),
+        plus(plus(f4, zeta, t2), eta, t3),
+        plus(plus(f5, zeta, t1), xi, t3),
+        plus(plus(f6, eta, t1), xi, t2),
+        plus(plus(plus(f7, eta * zeta, t1), zeta * xi, t2), xi * eta, t3),
     )
+    _store(s, _T, lane, forces)
 
 
 @inlined
@@ -142,64 +148,20 @@ def _slopes(c: Shape, at: Vector) -> Tensor:
 
 
 @inlined
-def _velocity_gradient(v: Tensor, C: Tensor, share: float) -> Tensor:
-    """Return dv_i/dx_j by rows, from dv/dxi and the cofactors of dx/dxi."""
-    return (
-        times(share, combine(C, (v[0][0], v[1][0], v[2][0]))),
-        times(share, combine(C, (v[0][1], v[1][1], v[2][1]))),
-        times(share, combine(C, (v[0][2], v[1][2], v[2][2]))),
-    )
-
-
-@inlined
-def _add(s: Array, lane: int, at: Vector, t1: Vector, t2: Vector, t3: Vector) -> None:
-    """Add forces that work on derivatives by xi, eta and zeta to those of the modes."""
-    xi, eta, zeta = at
-    f1, f2, f3, f4, f5, f6, f7 = _load(s, _T, lane)
-    forces = (
-        add(f1, t1),
-        add(f2, t2),
-        add(f3, t3),
-        plus(plus(f4, zeta, t2), eta, t3),
-        plus(plus(f5, zeta, t1), xi, t3),
-        plus(plus(f6, eta, t1), xi, t2),
-        plus(plus(plus(f7, eta * zeta, t1), zeta * xi, t2), xi * eta, t3),
-    )
-    _store(s, _T, lane, forces)
-
-
-@inlined
 def _load(s: Array, row: int, lane: int) -> Shape:
-    """Return seven vectors, of rows row, row + 1, ..."""
-    at = row * W + lane
+    """Return the seven vectors in rows from `row` on."""
     return (
-        _vector(s, at),
-        _vector(s, at + 3 * W),
-        _vector(s, at + 6 * W),
-        _vector(s, at + 9 * W),
-        _vector(s, at + 12 * W),
-        _vector(s, at + 15 * W),
-        _vector(s, at + 18 * W),
+        load(s, row, lane),
+        load(s, row + 3, lane),
+        load(s, row + 6, lane),
+        load(s, row + 9, lane),
+        load(s, row + 12, lane),
+        load(s, row + 15, lane),
+        load(s, row + 18, lane),
     )
-
-
-@inlined
-def _vector(s: Array, at: int) -> Vector:
-    return (s[at], s[at + W], s[at + 2 * W])
 
 
 @inlined
 def _store(s: Array, row: int, lane: int, f: Shape) -> None:
-    at = row * W + lane
-    _put(s, at, f[0])
-    _put(s, at + 3 * W, f[1])
-    _put(s, at + 6 * W, f[2])
-    _put(s, at + 9 * W, f[3])
-    _put(s, at + 12 * W, f[4])
-    _put(s, at + 15 * W, f[5])
-    _put(s, at + 18 * W, f[6])
-
-
-@inlined
-def _put(s: Array, at: int, a: Vector) -> None:
-    s[at], s[at + W], s[at + 2 * W] = a[0], a[1], a[2]
+    for mode in range(7):
+        store(s, row + 3 * mode, lane, f[mode])

@@ -60,6 +60,20 @@ Tensor = tuple[Vector, Vector, Vector]
 
 
 @inlined
+def load(s: Array, row: int, lane: int) -> Vector:
+    """Return the numbers in three rows from `row` on."""
+    at = row * W + lane
+    return (s[at], s[at + W], s[at + 2 * W])
+
+
+@inlined
+def store(s: Array, row: int, lane: int, a: Vector) -> None:
+    """Store numbers in three rows from `row` on."""
+    at = row * W + lane
+    s[at], s[at + W], s[at + 2 * W] = a[0], a[1], a[2]
+
+
+@inlined
 def cross(a: Vector, b: Vector) -> Vector:
     """Return the vector product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
@@ -154,9 +168,6 @@ def put(s: Array, row: int, lane: int, F: Modes) -> None:
     s[at + 18 * W], s[at + 21 * W] = four + (d_high + e_high), four - (d_high + e_high)
 
 
-NONE: Vector = (0.0, 0.0, 0.0)
-
-
 @inlined
 def nodal(s: Array, lane: int, f: Shape) -> None:
     """Store the nodal forces (N) of the modes' forces f, an eighth included, in rows F of `s`."""
@@ -194,18 +205,17 @@ def volume(c: Shape, B: Gradient) -> float:
 def mean_gradient(w: Shape, B: Gradient, V: float) -> Tensor:
     """Return the mean of dv_i/dx_j over the element in 1/s, by rows."""
     share = 1.0 / V
-    w1, w2, w3, h1, h2, h3, _ = w
     return (
-        times(share, _row((w1[0], w2[0], w3[0]), (h1[0], h2[0], h3[0]), B)),
-        times(share, _row((w1[1], w2[1], w3[1]), (h1[1], h2[1], h3[1]), B)),
-        times(share, _row((w1[2], w2[2], w3[2]), (h1[2], h2[2], h3[2]), B)),
+        times(share, _mean_slope(w, B, 0)),
+        times(share, _mean_slope(w, B, 1)),
+        times(share, _mean_slope(w, B, 2)),
     )
 
 
 @inlined
-def _row(w: Vector, h: Vector, B: Gradient) -> Vector:
-    low = combine((B[0], B[1], B[2]), w)
-    return add(low, combine((B[3], B[4], B[5]), h))
+def _mean_slope(w: Shape, B: Gradient, axis: int) -> Vector:
+    low = combine((B[0], B[1], B[2]), (w[0][axis], w[1][axis], w[2][axis]))
+    return add(low, combine((B[3], B[4], B[5]), (w[3][axis], w[4][axis], w[5][axis])))
 
 
 @inlined

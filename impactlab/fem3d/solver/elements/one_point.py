@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 
 from impactlab.fem3d.solver.elements.hexahedron import (
-    Gradient,
     Shape,
     Tensor,
     V,
@@ -27,17 +26,19 @@ from impactlab.fem3d.solver.elements.hexahedron import (
     dot,
     gather,
     gradient,
+    load,
     mean_gradient,
     midway,
     nodal,
     plus,
     scatter,
     shape,
+    store,
     times,
     volume,
 )
 from impactlab.fem3d.solver.jit import Array, compiled, inlined
-from impactlab.fem3d.solver.material import POINT_ROWS, Metal, Six, advance
+from impactlab.fem3d.solver.material import POINT_ROWS, Metal, advance
 
 Four = tuple[Vector, Vector, Vector, Vector]
 
@@ -73,29 +74,21 @@ def one_point_forces(
     """
     for block in range(blocks[0], blocks[1]):
         gather(s, nodes[block], x, v)
-        held = state[block]
         for lane in range(W):
-            _element(s, held, lane, dt, metal)
+            _element(s, state[block], lane, dt, metal)
         scatter(s, rows[block], forces)
 
 
 @inlined
 def _element(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None:
+    """Update an element's stresses, and store its nodal forces in `s`."""
     c, w = shape(s, X, lane), shape(s, V, lane)
     B = gradient(c)
     size = volume(c, B)
     L = mean_gradient(w, B, size)
     Q, work = hourglass(state, _Q, lane, c, w, L, size, dt, metal)
     state[HOURGLASS_WORK * W + lane] += work
-    S, mean = _stress(state, lane, midway(L, dt), size, dt, metal)
-    nodal(s, lane, _answer(c, B, S, mean, Q, 1.0 / size))
-
-
-@inlined
-def _stress(
-    state: Array, lane: int, L: Tensor, size: float, dt: float, metal: Metal
-) -> tuple[Six, float]:
-    """Return deviator and mean of the stress (Pa) at the step's end; count energies."""
+    L = midway(L, dt)
     S, work, dissipated = advance(state, 0, lane, L, dt, metal)
     dilation = dt * (L[0][0] + L[1][1] + L[2][2])
     before = state[MEAN * W + lane]
@@ -103,20 +96,13 @@ def _stress(
     state[MEAN * W + lane] = mean
     state[WORK * W + lane] += size * (work + 0.5 * (before + mean) * dilation)
     state[DISSIPATED * W + lane] += size * dissipated
-    return S, mean
-
-
-@inlined
-def _answer(c: Shape, B: Gradient, S: Six, mean: float, Q: Four, share: float) -> Shape:
-    """Return the modes' forces (N), an eighth included; share: 1/volume."""
-    Q1, Q2, Q3, Q4 = Q
-    g = (c[3], c[4], c[5], c[6])
+    share, g = 1.0 / size, (c[3], c[4], c[5], c[6])
     T = (
-        _row((S[0] + mean, S[5], S[4]), g, (Q1[0], Q2[0], Q3[0], Q4[0]), share),
-        _row((S[5], S[1] + mean, S[3]), g, (Q1[1], Q2[1], Q3[1], Q4[1]), share),
-        _row((S[4], S[3], S[2] + mean), g, (Q1[2], Q2[2], Q3[2], Q4[2]), share),
+        _row((S[0] + mean, S[5], S[4]), g, Q, 0, share),
+        _row((S[5], S[1] + mean, S[3]), g, Q, 1, share),
+        _row((S[4], S[3], S[2] + mean), g, Q, 2, share),
     )
-    return (
+    forces = (
         times(0.125, apply(T, B[0])),
         times(0.125, apply(T, B[1])),
         times(0.125, apply(T, B[2])),
@@ -125,13 +111,14 @@ def _answer(c: Shape, B: Gradient, S: Six, mean: float, Q: Four, share: float) -
         times(0.125, plus(apply(T, B[5]), 1.0, Q[2])),
         times(0.125, Q[3]),
     )
+    nodal(s, lane, forces)
 
 
 @inlined
-def _row(stress: Vector, g: Four, Q: tuple[float, float, float, float], share: float) -> Vector:
+def _row(stress: Vector, g: Four, Q: Four, axis: int, share: float) -> Vector:
     """Return a row of the stress, minus the hourglass forces' part in the mean gradient."""
-    taken = combine((g[0], g[1], g[2]), (Q[0], Q[1], Q[2]))
-    return plus(stress, -share, plus(taken, Q[3], g[3]))
+    taken = combine((g[0], g[1], g[2]), (Q[0][axis], Q[1][axis], Q[2][axis]))
+    return plus(stress, -share, plus(taken, Q[3][axis], g[3]))
 
 
 @inlined
@@ -155,10 +142,10 @@ def hourglass(
     q1, q2 = _rate(e, c[3], w[3], L), _rate(e, c[4], w[4], L)
     q3, q4 = _rate(e, c[5], w[5], L), _rate(e, c[6], w[6], L)
     p1, p2, p3, p4 = _stiffness((q1, q2, q3, q4), half, V * dt, metal)
-    Q1, one = _load(state, row, lane, p1, q1)
-    Q2, two = _load(state, row + 3, lane, p2, q2)
-    Q3, three = _load(state, row + 6, lane, p3, q3)
-    Q4, four = _load(state, row + 9, lane, p4, q4)
+    Q1, one = _raised(state, row, lane, p1, q1)
+    Q2, two = _raised(state, row + 3, lane, p2, q2)
+    Q3, three = _raised(state, row + 6, lane, p3, q3)
+    Q4, four = _raised(state, row + 9, lane, p4, q4)
     work = dt * ((one + two) + (three + four))
     return (combine(e, Q1), combine(e, Q2), combine(e, Q3), combine(e, Q4)), work
 
@@ -206,10 +193,9 @@ def _pair(plate: float, nu: float, one: float, other: float) -> tuple[float, flo
 
 
 @inlined
-def _load(state: Array, row: int, lane: int, rise: Vector, q: Vector) -> tuple[Vector, float]:
-    """Raise three forces and store them; return them and the power of their mean in the step."""
-    at = row * W + lane
-    before = (state[at], state[at + W], state[at + 2 * W])
+def _raised(state: Array, row: int, lane: int, rise: Vector, q: Vector) -> tuple[Vector, float]:
+    """Raise three forces; return them and the power of their mean in the step."""
+    before = load(state, row, lane)
     after = plus(before, 1.0, rise)
-    state[at], state[at + W], state[at + 2 * W] = after[0], after[1], after[2]
+    store(state, row, lane, after)
     return after, dot(plus(before, 0.5, rise), q)
