@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 import impactlab as il
 from impactlab.fem3d import kratos
 from impactlab.fem3d import solver as solid
-from impactlab.fem3d.solver.stepping.system import System
+from impactlab.fem3d.solver.system import System
 from impactlab.figures import style
 
 ROOT = Path(__file__).parents[2]

@@ -203,7 +203,7 @@ PRESSED = """
 import os, signal
 import impactlab.fem3d.comparison.run as comparison
 from impactlab.cli import main
-from impactlab.fem3d.solver.stepping.march import March
+from impactlab.fem3d.solver.march import March
 comparison.draw_witness = lambda *_: None
 advance = March._advance
 def pressed(self, end):

@@ -71,23 +71,7 @@ _MODULE = "KratosMultiphysics.ContactStructuralMechanicsApplication"
 
 def settings(duration: float, time_step: float, penalty: float) -> str:
     """Return project parameters in Kratos' JSON; arguments in s, s and N/m3."""
-    return json.dumps(
-        {
-            "problem_data": {
-                "problem_name": "impact",
-                "parallel_type": "OpenMP",
-                "start_time": 0.0,
-                "end_time": duration - 0.5 * time_step,
-                "echo_level": 0,
-            },
-            "solver_settings": _solver(time_step),
-            "processes": {"contact_process_list": [_contact(penalty * N_PER_MM3)]},
-        }
-    )
-
-
-def _solver(time_step: float) -> dict[str, Any]:
-    return {
+    solver = {
         "solver_type": "Dynamic",
         "model_part_name": PART,
         "domain_size": 3,
@@ -114,11 +98,7 @@ def _solver(time_step: float) -> dict[str, Any]:
             "max_iteration": 300,
         },
     }
-
-
-def _contact(penalty: float) -> dict[str, Any]:
-    """Return the process that searches for contact; penalty in N/mm3."""
-    return {
+    contact = {
         "python_module": "penalty_contact_process",
         "kratos_module": _MODULE,
         "process_name": "PenaltyContactProcess",
@@ -127,6 +107,15 @@ def _contact(penalty: float) -> dict[str, Any]:
             "contact_model_part": {"0": [SPHERE_BOTTOM, BEAM_TOP]},
             "assume_master_slave": {"0": [SPHERE_BOTTOM]},
             "contact_type": "Frictionless",
-            "advance_ALM_parameters": {"manual_ALM": True, "penalty": penalty},
+            "advance_ALM_parameters": {"manual_ALM": True, "penalty": penalty * N_PER_MM3},
         },
     }
+    problem = {
+        "problem_name": "impact",
+        "parallel_type": "OpenMP",
+        "start_time": 0.0,
+        "end_time": duration - 0.5 * time_step,
+        "echo_level": 0,
+    }
+    processes = {"contact_process_list": [contact]}
+    return json.dumps({"problem_data": problem, "solver_settings": solver, "processes": processes})

@@ -12,7 +12,7 @@ import numpy as np
 from impactlab.fem3d.kratos.engine import BEAM_TOP, MM, MPA, SPHERE_BOTTOM, TONNES_PER_MM3, Engine
 from impactlab.fem3d.solver import Mesh
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
-from impactlab.fem3d.solver.mesh.mesh import Floats, Integers, element_volumes
+from impactlab.fem3d.solver.mesh.mesh import Floats, Integers, sphere_density
 from impactlab.model.impact import Impact, Material
 
 ELEMENT, LAW, FACE = "SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw", 4
@@ -27,7 +27,7 @@ def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
         part.CreateNewNode(number, *place)
     steels = {
         BEAM: _steel(engine, part, 1, impact.beam.material, impact.beam.material.density),
-        SPHERE: _steel(engine, part, 2, impact.sphere.material, _sphere_density(mesh, impact)),
+        SPHERE: _steel(engine, part, 2, impact.sphere.material, sphere_density(mesh, impact)),
     }
     of_element = zip((mesh.elements + 1).tolist(), mesh.body.tolist(), strict=True)
     for number, (nodes, body) in enumerate(of_element, 1):
@@ -37,7 +37,10 @@ def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
         (SPHERE_BOTTOM, _quads(mesh.pairs[:, 0])[:, ::-1], SPHERE),
         (BEAM_TOP, _quads(mesh.pairs[:, 1]), BEAM),
     ):
-        _surface(part.CreateSubModelPart(name), quads + 1, first, steels[body])
+        surface = part.CreateSubModelPart(name)
+        surface.AddNodes(np.unique(quads + 1).tolist())
+        for number, nodes in enumerate((quads + 1).tolist(), first):
+            surface.CreateNewCondition(f"SurfaceCondition3D{FACE}N", number, nodes, steels[body])
         first += len(quads)
 
 
@@ -84,24 +87,12 @@ def _steel(engine: Engine, part: Any, number: int, material: Material, density: 
     return result
 
 
-def _sphere_density(mesh: Mesh, impact: Impact) -> float:
-    """Return the density in kg/m3 that gives the meshed sphere the mass of the impact."""
-    quarter = float(element_volumes(mesh)[mesh.body == SPHERE].sum())
-    return impact.sphere.total_mass / (4.0 * quarter)
-
-
 def _quads(patch: Integers) -> Integers:
     """Return the faces (f, 4) of a square patch of nodes, y fastest; normals point upwards."""
     side = round(np.sqrt(patch.size))
     place = patch.reshape(side, side)
     corners = (place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:])
     return np.stack(corners, axis=-1).reshape(-1, FACE)
-
-
-def _surface(part: Any, quads: Integers, first: int, steel: Any) -> None:
-    part.AddNodes(np.unique(quads).tolist())
-    for number, nodes in enumerate(quads.tolist(), first):
-        part.CreateNewCondition(f"SurfaceCondition3D{FACE}N", number, nodes, steel)
 
 
 _TOUCHING = "ComputingContact"

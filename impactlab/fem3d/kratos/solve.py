@@ -1,24 +1,30 @@
-"""One impact on one mesh, solved by Kratos and returned as a dataset."""
+"""One impact on one mesh, solved by Kratos step by step and returned as a dataset."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import time
 
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.kratos.engine import engine
-from impactlab.fem3d.kratos.model_part import plastic_strains
-from impactlab.fem3d.kratos.run import Progress, Run
-from impactlab.fem3d.solver import Mesh, quarter_mesh
-from impactlab.fem3d.solver.mesh.mesh import Floats
-from impactlab.fem3d.solver.responses import contacts, peak, plastic_responses
+from impactlab.fem3d.kratos.engine import PART, RESIDUAL_RATIO, Engine, engine, settings
+from impactlab.fem3d.kratos.model_part import (
+    contact_force,
+    fill,
+    hold,
+    launch,
+    plastic_strains,
+    vectors,
+)
+from impactlab.fem3d.solver import Mesh, PatchTooSmallError, quarter_mesh
+from impactlab.fem3d.solver.march import History, Moment, Progress
+from impactlab.fem3d.solver.mesh import SPHERE
+from impactlab.fem3d.solver.mesh.mesh import nodal_masses
+from impactlab.fem3d.solver.responses import history_responses, plastic_responses
+from impactlab.fem3d.solver.solve import histories, named
 from impactlab.model.checks import integer, positive
 from impactlab.model.impact import Impact
-from impactlab.variables import described, provenance
-
-if TYPE_CHECKING:
-    import xarray as xr
+from impactlab.variables import provenance
 
 TIME_STEP, PENALTY = 8e-6, 1e15
 """s, and N/m3 (1e6 N/mm3)."""
@@ -94,19 +100,26 @@ _OWN = {
     "cpu_seconds": ("s", "processor time"),
 }
 """Units and long_name of variables that impactlab.variables does not have."""
+_RESPONSES = (
+    *("peak_force", "time_of_peak_force", "contact_duration", "number_of_contacts"),
+    *("maximum_indentation", "permanent_indentation", "maximum_deflection"),
+)
+"""Responses of the histories that take no energies and no forces between the steps."""
 
 
 def to_dataset(run: Run, impact: Impact, time_step: float, penalty: float) -> xr.Dataset:
     """Return all answers of a run, as described in solve_on."""
     strain = plastic_strains(run.engine, run.part)
     largest = strain.max(axis=1)
-    answers = _responses(run.history.table(), time_step)
-    answers |= plastic_responses(run.mesh, impact, largest)
-    answers["cpu_seconds"] = run.history.cpu_seconds
+    # A contact that pauses for less than two steps is one.
+    answers, _ = history_responses(run.history, 2.0 * time_step)
     dataset = xr.Dataset(
         {
-            **{name: ((), value) for name, value in answers.items()},
-            **_histories(run.history.table()),
+            **{name: answers[name] for name in _RESPONSES},
+            **plastic_responses(run.mesh, impact, largest),
+            "cpu_seconds": run.cpu_seconds,
+            **{name: ("time", values) for name, values in histories(run.history).items()},
+            "iterations": ("time", run.iterations),
             "equivalent_plastic_strain": ("element", strain.mean(axis=1)),
             "largest_equivalent_plastic_strain": ("element", largest),
         },
@@ -122,50 +135,110 @@ def to_dataset(run: Run, impact: Impact, time_step: float, penalty: float) -> xr
     )
     if run.history.stopped:
         dataset.attrs["stopped"] = run.history.stopped
-    return _named(dataset)
+    return named(dataset, _OWN)
 
 
-def _responses(table: Floats, time_step: float) -> dict[str, float]:
-    """Return responses by name, NaN where the run ends before they are known.
+_HALVINGS = 5
+"""Number of times that a step is cut in half if it does not converge."""
 
-    A contact that pauses for less than two steps is one.
+
+class Run:
+    """An impact on a mesh in Kratos.
+
+    history: at the start and at the end of each step so far, velocities included. iterations:
+    Newton's, in each.
     """
-    time, force, sphere, pole, axis, top, _, _ = table
-    touches = contacts(time, force, 2.0 * time_step)
-    at, largest = peak(time, force)
-    indented_at, indentation = peak(time, sphere - axis)
-    deflected_at, deflection = peak(time, axis)
-    first = touches[0] if len(touches) else np.full(2, np.nan)
-    end = touches[-1, 1] if len(touches) else np.nan
-    after = time > end
-    dent = (top - axis) + (sphere - pole)
-    growing = indented_at >= time[-1]
-    return {
-        "peak_force": np.nan if growing else largest,
-        "time_of_peak_force": np.nan if growing else at,
-        "contact_duration": float(first[1] - first[0]),
-        "number_of_contacts": float(len(touches)),
-        "maximum_indentation": np.nan if growing else indentation,
-        "permanent_indentation": float(dent[after].mean()) if after.any() else np.nan,
-        "maximum_deflection": np.nan if deflected_at >= time[-1] else deflection,
-    }
 
+    def __init__(
+        self,
+        engine: Engine,
+        mesh: Mesh,
+        impact: Impact,
+        *,
+        duration: float,
+        time_step: float,
+        penalty: float,
+    ) -> None:
+        """Take s, s and N/m3; raises ValueError for a material that Kratos' law cannot follow."""
+        self._started = time.process_time()
+        self.engine, self.mesh, self.duration = engine, mesh, duration
+        self.history = History([Moment(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, impact.velocity)])
+        self.iterations, self.cpu_seconds = [0.0], 0.0
+        model = engine.core.Model()
+        self.part = model.CreateModelPart(PART)
+        self.part.ProcessInfo[engine.variable("DOMAIN_SIZE")] = 3
+        parameters = engine.core.Parameters(settings(duration, time_step, penalty))
+        self._analysis = engine.analysis(model, parameters)
+        fill(engine, self.part, mesh, impact)
+        self._analysis.Initialize()
+        hold(engine, self.part, mesh)
+        launch(engine, self.part, mesh, impact)
+        mass = nodal_masses(mesh, impact)
+        mass[np.setdiff1d(np.arange(mass.size), mesh.elements[mesh.body == SPHERE])] = 0.0
+        self._sphere = mass / mass.sum()  # each node's share
 
-def _histories(table: Floats) -> dict[str, Any]:
-    _, force, sphere, _, axis, _, _, iterations = table
-    given = {
-        "contact_force": force,
-        "midspan_deflection": axis,
-        "sphere_displacement": sphere,
-        "indentation": sphere - axis,
-        "iterations": iterations,
-    }
-    return {name: ("time", values) for name, values in given.items()}
+    def go(self, progress: Progress | None) -> None:
+        """Step on to the end, or until a step does not converge or Ctrl-C is pressed.
 
+        Raises PatchTooSmallError when the contact leaves the matched patch.
+        """
+        analysis = self._analysis
+        try:
+            while analysis.KeepAdvancingSolutionLoop() and not self.history.stopped:
+                self._take()
+                if progress:
+                    progress(analysis.time, min(analysis.time / self.duration, 1.0))
+        except KeyboardInterrupt:
+            self.history.stopped = f"interrupted at {analysis.time:.4g} s"
+        self.cpu_seconds = time.process_time() - self._started
 
-def _named(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset with attributes on all variables."""
-    dataset = described(dataset)
-    for name, (units, long_name) in _OWN.items():
-        dataset[name].attrs |= {"units": units, "long_name": long_name}
-    return dataset
+    def _take(self) -> None:
+        """Take one step, or as much of it as converges; the following steps take the rest."""
+        analysis, before = self._analysis, self._analysis.time
+        analysis.time = analysis._GetSolver().AdvanceInTime(before)
+        for _ in range(1 + _HALVINGS):
+            analysis.InitializeSolutionStep()
+            if analysis.SolveSolutionStep() or self._balanced():
+                analysis.FinalizeSolutionStep()
+                self._keep()
+                return
+            analysis.time = 0.5 * (before + analysis.time)
+            # Back to where the step began.
+            self.part.OverwriteSolutionStepData(1, 0)
+            self.part.ReduceTimeStep(self.part, analysis.time)
+            displacement = self.engine.variable("DISPLACEMENT")
+            self.engine.core.VariableUtils().UpdateCurrentPosition(self.part.Nodes, displacement)
+        self.history.stopped = f"Newton's iterations did not converge after {before:.4g} s"
+
+    def _balanced(self) -> bool:
+        """Return whether forces balance although Kratos' set of touching nodes does not settle.
+
+        A node that barely touches may change sides with each iteration, and no force with it.
+        """
+        ratio = self.part.ProcessInfo[self.engine.variable("CONVERGENCE_RATIO")]
+        return bool(ratio <= RESIDUAL_RATIO)
+
+    def _keep(self) -> None:
+        """Add this step to the history, unless its contact has left the patch."""
+        mesh = self.mesh
+        down = -vectors(self.engine, self.part, "DISPLACEMENT")[:, 2]
+        speed = -vectors(self.engine, self.part, "VELOCITY")[:, 2]
+        upper, lower = mesh.pairs[mesh.rim].T
+        if np.any(mesh.gaps[mesh.rim] < down[upper] - down[lower]):
+            raise PatchTooSmallError(
+                f"the contact reaches the rim of the patch of matched nodes: patch must be above "
+                f"{mesh.patch:.4g} m",
+                mesh.patch,
+            )
+        moment = Moment(
+            time=self._analysis.time,
+            force=contact_force(self.engine, self.part),
+            sphere=float(self._sphere @ down),
+            pole=float(down[mesh.pole]),
+            axis=float(down[mesh.axis_node]),
+            top=float(down[mesh.top_node]),
+            velocity=float(self._sphere @ speed),
+        )
+        self.history.moments.append(moment)
+        iterations = self.engine.variable("NL_ITERATION_NUMBER")
+        self.iterations.append(float(self.part.ProcessInfo[iterations]))

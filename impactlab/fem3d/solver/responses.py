@@ -5,38 +5,15 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from impactlab.fem3d.solver.assembly import Group
+from impactlab.fem3d.solver.march import History
 from impactlab.fem3d.solver.material import ALONG, PEEQ, STRESS
 from impactlab.fem3d.solver.mesh.mesh import BEAM, Floats, Mesh
-from impactlab.fem3d.solver.stepping.assembly import Group
-from impactlab.fem3d.solver.stepping.march import Energies, History
 from impactlab.model.impact import Impact
 from impactlab.variables import STATUS_FLAGS
 
 _IMBALANCE = 0.05
 """Largest imbalance of energy, over the initial kinetic energy, at which answers are given."""
-
-
-def responses(history: History, impact: Impact, pause: float) -> tuple[dict[str, float], int]:
-    """Return the responses of the histories by name, NaN where missing, and their status.
-
-    pause: see contacts. Those of the fields are in plastic_responses.
-    """
-    time, force, sphere, pole, axis, top, velocity = history.table()
-    touches = contacts(time, force, pause)
-    error = energy_error(history.energies, impact)
-    answers = _of_contact(time, force, touches)
-    answers |= _of_indentation(time, sphere - axis)
-    answers |= _of_deflection(time, axis)
-    answers |= _of_rebound(touches, time, velocity, axis, impact)
-    answers["permanent_indentation"] = _left(touches, time, (top - axis) + (sphere - pole))
-    if np.isnan(answers["maximum_indentation"]):  # the force may go on rising with it
-        answers["peak_force"] = answers["time_of_peak_force"] = np.nan
-    reasons = [name for name, value in _CAUSES.items() if np.isnan(answers[value])]
-    if not error <= _IMBALANCE:
-        reasons = ["diverged" if np.isnan(error) else "energy_out_of_balance"]
-        answers = dict.fromkeys(answers, np.nan)
-    bits = sum(STATUS_FLAGS[name][0] for name in reasons)
-    return answers | {"energy_error": error}, bits
 
 
 _CAUSES = {
@@ -49,62 +26,57 @@ _CAUSES = {
 """Flags of status, and a response that is missing because of each."""
 
 
-def energy_error(energies: list[Energies], impact: Impact) -> float:
-    """Return the largest energy imbalance over the initial kinetic energy; NaN if not finite."""
+def responses(history: History, impact: Impact, pause: float) -> tuple[dict[str, float], int]:
+    """Return the responses of the histories by name, NaN where missing, and their status.
+
+    pause: see contacts. Those of the fields are in plastic_responses.
+    """
+    time, _, _, _, axis, _, velocity = history.table()
+    answers, end = history_responses(history, pause)
+    rebound = np.nan
+    # The sphere moves upwards, and away from the beam.
+    if velocity[-1] < min(0.0, (axis[-1] - axis[-2]) / (time[-1] - time[-2])):
+        rebound = -float(np.interp(end, time, velocity))
+    answers |= {"rebound_velocity": rebound, "restitution": rebound / impact.velocity}
+    reasons = [name for name, value in _CAUSES.items() if np.isnan(answers[value])]
     first = 0.5 * impact.sphere.total_mass * impact.velocity**2
-    balances = np.array([entry.balance for entry in energies] or [np.nan])
+    balances = np.array([entry.balance for entry in history.energies] or [np.nan])
     error = float(np.max(np.abs(balances - first)) / first)
-    return error if np.isfinite(error) else np.nan
+    if not error <= _IMBALANCE:
+        reasons = ["energy_out_of_balance" if np.isfinite(error) else "diverged"]
+        answers = dict.fromkeys(answers, np.nan)
+    answers["energy_error"] = error if np.isfinite(error) else np.nan
+    return answers, sum(STATUS_FLAGS[name][0] for name in reasons)
 
 
-def _of_contact(time: Floats, force: Floats, touches: Floats) -> dict[str, float]:
+def history_responses(history: History, pause: float) -> tuple[dict[str, float], float]:
+    """Return the responses of contact, indentation and deflection by name, NaN where missing.
+
+    Also returns the end of the last contact in s, NaN where there is none. pause: see contacts.
+    """
+    time, force, sphere, pole, axis, top, _ = history.table()
+    touches = contacts(time, force, pause)
+    lasting = touches[:, 1] - touches[:, 0] if len(touches) else np.array([np.nan])
+    end = float(touches[-1, 1]) if len(touches) else np.nan
     at, largest = peak(time, force)
-    first = float(touches[0, 1] - touches[0, 0]) if len(touches) else np.nan
-    total = float(np.sum(touches[:, 1] - touches[:, 0])) if len(touches) else np.nan
-    return {
-        "peak_force": largest,
-        "time_of_peak_force": at,
-        "contact_duration": first,
-        "number_of_contacts": float(len(touches)),
-        "total_contact_time": total,
-        "impulse": np.nan if np.isnan(total) else float(_impulse(time, force)),
-    }
-
-
-def _impulse(time: Floats, force: Floats) -> float:
-    """Return the impulse in N s: each force acts from mid-step to mid-step."""
+    indented_at, indentation = peak(time, sphere - axis)
+    deflected_at, deflection = peak(time, axis)
+    # Each force acts from mid-step to mid-step.
     middles = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])
-    return float(np.sum(force * np.diff(middles)))
-
-
-def _of_indentation(time: Floats, indentation: Floats) -> dict[str, float]:
-    at, largest = peak(time, indentation)
-    return {"maximum_indentation": np.nan if at >= time[-1] else largest}
-
-
-def _of_deflection(time: Floats, axis: Floats) -> dict[str, float]:
-    at, largest = peak(time, axis)
-    return {"maximum_deflection": np.nan if at >= time[-1] else largest}
-
-
-def _of_rebound(
-    touches: Floats, time: Floats, velocity: Floats, axis: Floats, impact: Impact
-) -> dict[str, float]:
-    """Return the responses of the rebound, once the sphere moves upwards and away from the beam."""
-    missing = {"rebound_velocity": np.nan, "restitution": np.nan}
-    if len(touches) == 0 or np.isnan(touches[-1, 1]) or velocity[-1] >= 0.0:
-        return missing
-    if velocity[-1] >= (axis[-1] - axis[-2]) / (time[-1] - time[-2]):
-        return missing
-    rebound = -float(np.interp(touches[-1, 1], time, velocity))
-    return {"rebound_velocity": rebound, "restitution": rebound / impact.velocity}
-
-
-def _left(touches: Floats, time: Floats, dent: Floats) -> float:
-    """Return the mean of the surfaces' dents in m since the last contact: vibrations cancel."""
-    if len(touches) == 0 or np.isnan(touches[-1, 1]):
-        return float(np.nan)
-    return float(np.mean(dent[time > touches[-1, 1]]))
+    impulse = float(np.sum(force * np.diff(middles)))
+    dents = ((top - axis) + (sphere - pole))[time > end]
+    growing = indented_at >= time[-1]  # the force may go on rising with it
+    return {
+        "peak_force": np.nan if growing else largest,
+        "time_of_peak_force": np.nan if growing else at,
+        "contact_duration": float(lasting[0]),
+        "number_of_contacts": float(len(touches)),
+        "total_contact_time": float(np.sum(lasting)),
+        "impulse": np.nan if np.isnan(end) else impulse,
+        "maximum_indentation": np.nan if growing else indentation,
+        "permanent_indentation": float(np.mean(dents)) if dents.size else np.nan,
+        "maximum_deflection": np.nan if deflected_at >= time[-1] else deflection,
+    }, end
 
 
 def contacts(time: Floats, force: Floats, pause: float) -> Floats:
@@ -164,15 +136,10 @@ def fields(groups: list[Group], count: int) -> dict[str, Floats]:
         result[names[0]][group.elements] = strain.mean(axis=0)
         result[names[1]][group.elements] = strain.max(axis=0)
         result[names[2]][group.elements] = group.points(ALONG).mean(axis=0)
-        result["von_mises_stress"][group.elements] = _mises(group)
+        s = np.stack([group.points(STRESS + row) for row in range(6)])
+        squares = np.sum(s[:3] ** 2, axis=0) + 2.0 * np.sum(s[3:] ** 2, axis=0)
+        result["von_mises_stress"][group.elements] = np.sqrt(1.5 * squares).mean(axis=0)
     return result
-
-
-def _mises(group: Group) -> Floats:
-    """Return the von Mises stress in Pa, mean over the integration points."""
-    s = np.stack([group.points(STRESS + row) for row in range(6)])
-    squares = np.sum(s[:3] ** 2, axis=0) + 2.0 * np.sum(s[3:] ** 2, axis=0)
-    return np.asarray(np.sqrt(1.5 * squares).mean(axis=0))
 
 
 def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, float]:
@@ -185,19 +152,16 @@ def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, f
     beam = mesh.body == BEAM
     coarse = strain[~mesh.full]
     remote = beam & (points.mean(axis=1) > impact.beam.depth)
+    plastic = points[beam & (strain > PLASTIC_ZONE_STRAIN)]
+    ends = np.stack([plastic.min(axis=1), plastic.max(axis=1)], axis=1)  # of lengths of the beam
+    ends = np.unique(np.round(ends, 12), axis=0)
     return {
         "peak_plastic_strain": float(strain[beam].max()),
         "remote_plastic_strain": float(strain[remote].max(initial=0.0)),
         "sphere_plastic_strain": float(strain[~beam].max(initial=0.0)),
         "one_point_plastic_strain": float(coarse.max(initial=0.0)),
-        "plastic_zone_length": _length(points[beam & (strain > PLASTIC_ZONE_STRAIN)]),
+        "plastic_zone_length": float(2.0 * np.sum(ends[:, 1] - ends[:, 0])),
     }
-
-
-def _length(along: Floats) -> float:
-    """Return the length in m of whole beam that elements occupy. along: x of nodes, (e, 8)."""
-    cuts = np.unique(np.round(np.stack([along.min(axis=1), along.max(axis=1)], axis=1), 12), axis=0)
-    return float(2.0 * np.sum(cuts[:, 1] - cuts[:, 0]))
 
 
 LIMIT = 0.002

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
 
+from impactlab.fem3d.solver.march import History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, quarter_mesh
+from impactlab.fem3d.solver.mesh.mesh import Floats
 from impactlab.fem3d.solver.responses import fields, plastic_responses, responses
-from impactlab.fem3d.solver.stepping.march import Energies, History, March
-from impactlab.fem3d.solver.stepping.system import System, ThreadPool
+from impactlab.fem3d.solver.system import System, ThreadPool
 from impactlab.model.checks import integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.variables import described, provenance
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def solve(
@@ -30,7 +27,7 @@ def solve(
     patch: float | None = None,
     samples: int = 2001,
     threads: int = 1,
-    progress: Callable[[float, float], None] | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Solve one impact on the mesh that quarter_mesh makes of element_size and patch (m).
 
@@ -49,7 +46,7 @@ def solve_on(
     duration: float,
     samples: int = 2001,
     threads: int = 1,
-    progress: Callable[[float, float], None] | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Solve one impact on `mesh`; contact law and model of the beam in `impact` play no part.
 
@@ -109,97 +106,90 @@ _COMMENTS = {
     "sphere_displacement": "of the sphere's centre of mass",
     "midspan_deflection": "of the axis, at mid-depth and mid-width",
 }
-_BEAM_MODELS_ONLY = ("contact", "beam_model", "shear_coefficient")
+IMPACT_PARAMETERS = [
+    name
+    for name, entry in PARAMETERS.items()
+    if entry.path[0] == "impact" and name not in ("contact", "beam_model", "shear_coefficient")
+]
+"""Parameters of an impact, without those of the beam models alone."""
 _ENERGIES = (
     *("kinetic_energy", "strain_work", "plastic_work"),
     *("hourglass_work", "contact_loss", "gravity_work"),
 )
-"""In the order of stepping.march.Energies."""
+"""In the order of march.Energies."""
 
 
 def to_dataset(system: System, impact: Impact, history: History, samples: int) -> xr.Dataset:
     """Return all answers of a run, as described in solve_on."""
-    mesh = system.mesh
+    mesh, steel = system.mesh, impact.beam.material
     own = fields(system.groups, len(mesh.elements))
-    answers, status = responses(history, impact, _pause(mesh, impact))
+    # A pause in which a wave crosses the patch twice there and back parts contacts.
+    pause = 4.0 * mesh.patch / float(np.sqrt(steel.youngs_modulus / steel.density))
+    answers, status = responses(history, impact, pause)
     answers |= plastic_responses(mesh, impact, own["largest_equivalent_plastic_strain"])
     answers["plastic_dissipation"] = history.energies[-1].plastic if history.energies else np.nan
-    variables = {
-        **{name: ((), value) for name, value in answers.items()},
-        "status": ((), np.int32(status)),
-        "node_offset": ((), history.offset),
-        **_histories(history, samples),
-        **_energies(history.energies),
-        **{name: (("element",), values) for name, values in own.items()},
-        "displacement": (("node", "axis"), system.x - mesh.nodes),
-    }
-    dataset = xr.Dataset(variables, coords=_coordinates(mesh, impact, history, samples))
-    dataset.attrs = provenance() | {"model": "3-D finite elements"}
+    last = history.moments[-1].time
+    even = np.linspace(0.0, last, samples)
+    times, *energies = np.array(history.energies).reshape(-1, 7).T
+    given = flatten(impact, Discretisation()) | {"sphere_mass": impact.sphere.total_mass}
+    dataset = xr.Dataset(
+        {
+            **answers,
+            "status": np.int32(status),
+            "node_offset": history.offset,
+            **{
+                name: ("time", np.interp(even, history.table()[0], values))
+                for name, values in histories(history).items()
+            },
+            **{
+                name: ("checkpoint", values)
+                for name, values in zip(_ENERGIES, energies, strict=True)
+            },
+            **{name: ("element", values) for name, values in own.items()},
+            "displacement": (("node", "axis"), system.x - mesh.nodes),
+        },
+        coords={
+            **{name: given[name] for name in IMPACT_PARAMETERS if name in given},
+            "time": even,
+            "checkpoint_time": ("checkpoint", times),
+            "node_position": (("node", "axis"), mesh.nodes),
+            "axis": ["x", "y", "z"],
+            "element_nodes": (("element", "corner"), mesh.elements),
+            "body": ("element", mesh.body),
+            "fully_integrated": ("element", mesh.full),
+            "element_size": mesh.element_size,
+            "patch": mesh.patch,
+            "number_of_elements": len(mesh.elements),
+            "number_of_steps": len(history.moments),
+            "time_step": history.moments[1].time - history.moments[0].time,
+            "duration": last,
+        },
+        attrs=provenance() | {"model": "3-D finite elements"},
+    )
     if history.stopped:
         dataset.attrs["stopped"] = history.stopped
     if history.patch_needed:
-        dataset = dataset.assign_attrs(patch_needed=history.patch_needed)
-    return _named(dataset)
+        dataset.attrs["patch_needed"] = history.patch_needed
+    for name, comment in _COMMENTS.items():
+        dataset[name].attrs["comment"] = comment
+    return named(dataset, _OWN)
 
 
-def _pause(mesh: Mesh, impact: Impact) -> float:
-    """Return the time in s in which a wave crosses the patch twice there and back."""
-    steel = impact.beam.material
-    return 4.0 * mesh.patch / float(np.sqrt(steel.youngs_modulus / steel.density))
-
-
-def _histories(history: History, samples: int) -> dict[str, Any]:
-    time, force, sphere, _, axis, _, _ = history.table()
-    given = {
+def histories(history: History) -> dict[str, Floats]:
+    """Return the histories by name, at the history's times."""
+    _, force, sphere, _, axis, _, _ = history.table()
+    return {
         "contact_force": force,
         "midspan_deflection": axis,
         "sphere_displacement": sphere,
         "indentation": sphere - axis,
     }
-    even = np.linspace(0.0, time[-1], samples)
-    return {name: (("time",), np.interp(even, time, values)) for name, values in given.items()}
 
 
-def _energies(energies: list[Energies]) -> dict[str, Any]:
-    columns = np.array(energies).reshape(-1, 7).T[1:]
-    return {
-        name: (("checkpoint",), values) for name, values in zip(_ENERGIES, columns, strict=True)
-    }
-
-
-def _coordinates(mesh: Mesh, impact: Impact, history: History, samples: int) -> dict[str, Any]:
-    """Return the parameters, the times, and the mesh."""
-    last = history.moments[-1].time
-    return _given(impact) | {
-        "time": np.linspace(0.0, last, samples),
-        "checkpoint_time": ("checkpoint", [entry.time for entry in history.energies]),
-        "node_position": (("node", "axis"), mesh.nodes),
-        "axis": ["x", "y", "z"],
-        "element_nodes": (("element", "corner"), mesh.elements),
-        "body": ("element", mesh.body),
-        "fully_integrated": ("element", mesh.full),
-        "element_size": mesh.element_size,
-        "patch": mesh.patch,
-        "number_of_elements": len(mesh.elements),
-        "number_of_steps": len(history.moments),
-        "time_step": history.moments[1].time - history.moments[0].time,
-        "duration": last,
-    }
-
-
-def _given(impact: Impact) -> dict[str, Any]:
-    """Return the impact's parameters, without those of the beam models alone."""
-    values = flatten(impact, Discretisation()) | {"sphere_mass": impact.sphere.total_mass}
-    mine = [name for name in values if PARAMETERS[name].path[0] == "impact"]
-    return {name: values[name] for name in mine if name not in _BEAM_MODELS_ONLY}
-
-
-def _named(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset with attributes on all variables."""
+def named(dataset: xr.Dataset, own: Mapping[str, tuple[str, str]]) -> xr.Dataset:
+    """Return the dataset with attributes on all variables; own: units and long_name of more."""
     dataset = described(dataset)
-    for name, (units, long_name) in _OWN.items():
+    for name, (units, long_name) in own.items():
         if name in dataset.variables:
             dataset[name].attrs |= {"units": units, "long_name": long_name}
-    for name, comment in _COMMENTS.items():
-        dataset[name].attrs["comment"] = comment
     return dataset

@@ -42,25 +42,12 @@ def contact_radius(impact: Impact) -> float:
     a^4 = 2 R m v^2/(pi p), p = 2.8 of the softer body's yield stress. A beam gives way and stays
     below the larger one.
     """
-    radius, mass = hertz.effective_radius(impact), impact.sphere.total_mass
-    modulus = hertz.effective_modulus(impact)
-    depth = hertz.maximum_indentation(mass, impact.velocity, modulus, radius)
+    mass, velocity, _, radius = hertz.arguments(impact)
+    depth = hertz.maximum_indentation(*hertz.arguments(impact))
     softer = min(impact.sphere.material.yield_stress, impact.beam.material.yield_stress)
     pressure = _HARDNESS * softer
-    plastic = math.pow(2.0 * radius * mass * impact.velocity**2 / (math.pi * pressure), 0.25)
+    plastic = math.pow(2.0 * radius * mass * velocity**2 / (math.pi * pressure), 0.25)
     return max(math.sqrt(radius * depth), plastic)
-
-
-def patch_size(impact: Impact, element_size: float) -> float:
-    """Return half the side of the square of matched nodes in m: whole elements, at least 3.
-
-    Its margin is cut where the bodies end, down to the contact radius to expect.
-    """
-    radius = contact_radius(impact)
-    half = element_size * max(math.ceil(_MARGIN * radius / element_size), 3)
-    least = max(radius, 3.0 * element_size)
-    fits = element_size * math.floor(largest_patch(impact) / element_size)
-    return min(half, fits) if fits >= least else half
 
 
 def largest_patch(impact: Impact) -> float:
@@ -70,15 +57,22 @@ def largest_patch(impact: Impact) -> float:
 
 
 def checked_patch(impact: Impact, element_size: float, patch: float | None) -> float:
-    """Return the patch in m, rounded up to whole elements (None: estimated).
+    """Return half the side of the square of matched nodes in m, rounded up to whole elements.
 
-    Raises ValueError where it is not positive, or does not fit on beam and sphere.
+    patch: None for an estimate of at least 3 elements, whose margin is cut where the bodies end,
+    down to the contact radius to expect. Raises ValueError where it is not positive, or does not
+    fit on beam and sphere.
     """
+    room = largest_patch(impact)
     if patch is None:
-        half = patch_size(impact, element_size)
+        radius = contact_radius(impact)
+        half = element_size * max(math.ceil(_MARGIN * radius / element_size), 3)
+        fits = element_size * math.floor(room / element_size)
+        if fits >= max(radius, 3.0 * element_size):
+            half = min(half, fits)
     else:
         half = element_size * uniform(element_size, positive("mesh", "patch", patch))
-    if half > (room := largest_patch(impact)):
+    if half > room:
         raise ValueError(
             f"mesh.patch = {half:.4g} m, of whole elements: must be at most {room:.4g} m to fit on "
             "beam and sphere; a smaller patch, element_size or velocity may"

@@ -24,6 +24,10 @@ BEAM, SPHERE = 0, 1
 _RING = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 CORNERS = np.array([(*place, level) for level in (-1.0, 1.0) for place in _RING])
 """Natural coordinates of a hexahedron's nodes, (8, 3), in VTK's order."""
+NEIGHBOURS = np.array(
+    [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
+)
+"""The three corners that share an edge with each corner, turning right-handed."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -58,8 +62,9 @@ class Mesh:
     patch: float
 
     def __post_init__(self) -> None:
-        corners = corner_volumes(self.nodes, self.elements)
-        if np.any(wrong := np.min(corners, axis=1) <= 0.0):
+        points = self.nodes[self.elements]
+        edges = points[:, NEIGHBOURS] - points[:, :, None]
+        if np.any(wrong := np.linalg.det(edges).min(axis=1) <= 0.0):
             first = int(np.flatnonzero(wrong)[0])
             where = self.nodes[self.elements[first]].mean(axis=0)
             raise ValueError(
@@ -78,36 +83,22 @@ class Mesh:
         return int(self.pairs[np.argmin(self.gaps), 1])
 
 
-def corner_volumes(nodes: Floats, elements: Integers) -> Floats:
-    """Return the Jacobian determinant at each corner, (e, 8), in m3: 0 where flat."""
-    points = nodes[elements]
-    result = np.empty(elements.shape)
-    for corner, place in enumerate(CORNERS):
-        edges = []
-        for axis in range(3):
-            along = np.delete(CORNERS - place, axis, axis=1)
-            (other,) = [n for n in np.flatnonzero(~along.any(axis=1)) if n != corner]
-            edges.append(0.5 * (points[:, other] - points[:, corner]) * -place[axis])
-        result[:, corner] = np.linalg.det(np.stack(edges, axis=1))
-    return result
-
-
 def nodal_masses(mesh: Mesh, impact: Impact) -> Floats:
     """Return the lumped mass of each node in kg, (n,): an eighth of each of its elements.
 
-    The sphere's density is scaled so that all four quarters weigh what the impact says.
+    The sphere's density is that of sphere_density.
     """
-    volumes = element_volumes(mesh)
-    ball = volumes[mesh.body == SPHERE].sum()
-    density = np.where(
-        mesh.body == BEAM,
-        impact.beam.material.density,
-        impact.sphere.total_mass / 4.0 / ball if ball > 0.0 else 0.0,
-    )
-    each = np.repeat(density * volumes / 8.0, 8)
+    beam, sphere = impact.beam.material.density, sphere_density(mesh, impact)
+    each = np.repeat(np.where(mesh.body == BEAM, beam, sphere) * element_volumes(mesh) / 8.0, 8)
     return np.asarray(
         np.bincount(mesh.elements.ravel(), weights=each, minlength=len(mesh.nodes)), dtype=float
     )
+
+
+def sphere_density(mesh: Mesh, impact: Impact) -> float:
+    """Return the density in kg/m3 with which all four quarters weigh what the impact says."""
+    quarter = element_volumes(mesh)[mesh.body == SPHERE].sum()
+    return float(impact.sphere.total_mass / 4.0 / quarter)
 
 
 def element_volumes(mesh: Mesh) -> Floats:
@@ -134,27 +125,22 @@ def graded(size: float, fine: float, length: float, ratio: float, largest: float
     """
     if fine >= length * (1.0 - 1e-9):
         return np.linspace(0.0, length, uniform(size, length) + 1)
+
+    def intervals(ratio: float) -> Floats:
+        return np.asarray(np.minimum(size * ratio ** np.arange(1.0, count + 1), max(largest, size)))
+
     start = size * np.arange(round(fine / size) + 1)
-    points = np.concatenate([start, start[-1] + _grown(size, length - start[-1], ratio, largest)])
+    rest, count = length - start[-1], 1
+    while intervals(ratio).sum() < rest:
+        count += 1
+    if count * size >= rest:  # none much smaller than `size`
+        ends = np.linspace(0.0, rest, max(count - 1, 1) + 1)[1:]
+    else:
+        fits = brentq(lambda ratio: intervals(ratio).sum() - rest, 1.0, ratio, xtol=1e-14)
+        ends = np.cumsum(intervals(fits))
+    points = np.concatenate([start, start[-1] + ends])
     points[-1] = length
     return points
-
-
-def _grown(size: float, rest: float, ratio: float, largest: float) -> Floats:
-    """Return the ends of intervals that fill `rest` (m), none much smaller than `size`."""
-    count = 1
-    while _intervals(size, count, ratio, largest).sum() < rest:
-        count += 1
-    if count * size >= rest:
-        return np.linspace(0.0, rest, max(count - 1, 1) + 1)[1:]
-    fits = brentq(
-        lambda r: _intervals(size, count, r, largest).sum() - rest, 1.0, ratio, xtol=1e-14
-    )
-    return np.cumsum(_intervals(size, count, fits, largest))
-
-
-def _intervals(size: float, count: int, ratio: float, largest: float) -> Floats:
-    return np.asarray(np.minimum(size * ratio ** np.arange(1.0, count + 1), max(largest, size)))
 
 
 def brick(x: Floats, y: Floats, z: Floats) -> tuple[Floats, Integers]:

@@ -1,23 +1,41 @@
-"""The mesh of an impact: a quarter of the beam and one of the sphere, matched where they touch."""
+"""The mesh of an impact: a quarter of the beam and one of the sphere, matched where they touch.
+
+The sphere is a core of hexahedra with shells around it, out to the surface. The core is a lattice
+(i, j, k) with i and j from 0 to `sides` and k from -height to height; each of its boundary nodes
+sends a line out to the sphere's surface, cut by the layers. Surface nodes near the pole have the x
+and y of the beam's; from there the lines flare out into an evenly cut core.
+"""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
-from numpy.typing import NDArray
 
 from impactlab.fem3d.solver.mesh.estimates import bending_yields, checked_patch, checked_size
-from impactlab.fem3d.solver.mesh.mesh import BEAM, SPHERE, Mesh, brick, graded
-from impactlab.fem3d.solver.mesh.sphere import Sphere, quarter_sphere
+from impactlab.fem3d.solver.mesh.mesh import (
+    BEAM,
+    SPHERE,
+    Floats,
+    Integers,
+    Mesh,
+    Truths,
+    brick,
+    cells,
+    graded,
+    uniform,
+)
 from impactlab.model.checks import positive
-from impactlab.model.impact import Beam, Impact
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int32]
+from impactlab.model.impact import Impact
 
 _BENT = 2.5
 """Length of beam beside the impact, over its depth, that is fully integrated where it may yield."""
 _THINNEST = 0.7
 """Thickness of a layer of elements at least, over their size in the contact."""
+_CORE = 0.45
+"""Half the height of the sphere's core, over the radius."""
+_ROUND = 0.5
+"""Shape of the core between a cube (0) and a ball (1)."""
 
 
 def quarter_mesh(
@@ -38,79 +56,144 @@ def quarter_mesh(
     Raises ValueError when a length is not positive, the ratio not above 1, the element size beyond
     reason, or the patch does not fit on beam and sphere.
     """
-    size = checked_size(impact, element_size)
+    size, beam = checked_size(impact, element_size), impact.beam
     if positive("mesh", "ratio", ratio) <= 1.0:
         raise ValueError(f"mesh.ratio = {ratio!r}: must be above 1")
-    given = impact.beam.depth / 6.0 if coarsest is None else coarsest
+    given = beam.depth / 6.0 if coarsest is None else coarsest
     largest = max(positive("mesh", "coarsest", given), size)
     half = checked_patch(impact, size, patch)
     depth = size * max(round(half / size), 2)
-    sphere = quarter_sphere(impact.sphere.radius, size, half, depth, ratio, largest)
-    x, y, z = _cuts(impact.beam, size, half, depth, ratio, largest)
-    return _joined(impact, (x, y, z), sphere, size, half)
+    x, y = (graded(size, half, side / 2, ratio, largest) for side in (beam.span, beam.width))
+    z = _heights(beam.depth / 2, size, depth, ratio, largest)
+    axis = int(np.argmin(np.abs(z + beam.depth / 2)))
 
-
-def _cuts(
-    beam: Beam, size: float, half: float, depth: float, ratio: float, largest: float
-) -> tuple[Floats, Floats, Floats]:
-    """Return the cuts of the beam along x, y and z (ascending); z holds its axis.
-
-    A last layer above the axis would be thin where little is left for it: then all are alike.
-    """
-    x = graded(size, half, beam.span / 2, ratio, largest)
-    y = graded(size, half, beam.width / 2, ratio, largest)
-    fine = depth if beam.depth / 2 - depth > _THINNEST * size else beam.depth / 2
-    upper = graded(size, fine, beam.depth / 2, ratio, largest)
-    last = upper[-1] - upper[-2]
-    lower = beam.depth / 2 + graded(last, last, beam.depth / 2, ratio, largest)
-    return x, y, -np.concatenate([upper, lower[1:]])[::-1]
-
-
-def _joined(
-    impact: Impact,
-    cuts: tuple[Floats, Floats, Floats],
-    sphere: Sphere,
-    size: float,
-    half: float,
-) -> Mesh:
-    x, y, z = cuts
-    nodes, elements = brick(*cuts)
-    count = round(half / size) + 1
-    place = np.arange(nodes.shape[0]).reshape(x.size, y.size, z.size)
-    above = sphere.surface[:count, :count] + nodes.shape[0]
-    pairs = np.stack([above, place[:count, :count, -1]], axis=-1)
+    beam_nodes, beam_elements = brick(x, y, z)
+    sphere_nodes, sphere_elements, surface = quarter_sphere(
+        impact.sphere.radius, size, half, depth, ratio, largest
+    )
+    first, count = len(beam_nodes), round(half / size) + 1
+    place = np.arange(first, dtype=np.int32).reshape(x.size, y.size, z.size)
+    above = surface[:count, :count] + np.int32(first)
+    pairs = np.stack([above, place[:count, :count, -1]], axis=-1).reshape(-1, 2)
     rim = np.zeros((count, count), dtype=bool)
     rim[-1], rim[:, -1] = True, True
-    every = np.concatenate([nodes, sphere.nodes])
-    every[above, :2] = nodes[pairs[..., 1], :2]  # the same to the last bit
-    joined = np.concatenate([elements, sphere.elements + nodes.shape[0]]).astype(np.int32)
-    body = np.repeat(np.array([BEAM, SPHERE], np.int32), [len(elements), len(sphere.elements)])
-    axis = int(np.argmin(np.abs(z + impact.beam.depth / 2)))
-    pairs = pairs.reshape(-1, 2).astype(np.int32)
+    nodes = np.concatenate([beam_nodes, sphere_nodes])
+    nodes[pairs[:, 0], :2] = nodes[pairs[:, 1], :2]  # the same to the last bit
+    elements = np.concatenate([beam_elements, sphere_elements + np.int32(first)])
+    body = np.repeat(np.array([BEAM, SPHERE], np.int32), [len(beam_elements), len(sphere_elements)])
+    centres = nodes[elements].mean(axis=1)
+    full = np.all(np.abs(centres) < 1.5 * half, axis=1)
+    if bending_yields(impact):
+        full |= (body == BEAM) & (centres[:, 0] < _BENT * beam.depth)
+    on_plane = np.abs(nodes[:, :2]) < 1e-6 * size
+    symmetry_x, symmetry_y = (np.flatnonzero(on).astype(np.int32) for on in on_plane.T)
     return Mesh(
-        nodes=every,
-        elements=joined,
+        nodes=nodes,
+        elements=elements,
         body=body,
-        full=_full(impact, every[joined].mean(axis=1), body, half),
+        full=full,
         pairs=pairs,
-        gaps=every[pairs[:, 0], 2] - every[pairs[:, 1], 2],
+        gaps=nodes[pairs[:, 0], 2] - nodes[pairs[:, 1], 2],
         rim=rim.ravel(),
-        symmetry_x=_plane(every, 0, size),
-        symmetry_y=_plane(every, 1, size),
-        support=place[-1, :, axis].astype(np.int32),
+        symmetry_x=symmetry_x,
+        symmetry_y=symmetry_y,
+        support=place[-1, :, axis],
         axis_node=int(place[0, 0, axis]),
         element_size=size,
         patch=half,
     )
 
 
-def _plane(nodes: Floats, axis: int, size: float) -> Integers:
-    """Return the nodes on the plane of symmetry across `axis`."""
-    return np.flatnonzero(np.abs(nodes[:, axis]) < 1e-6 * size).astype(np.int32)
+def _heights(middle: float, size: float, depth: float, ratio: float, largest: float) -> Floats:
+    """Return the beam's cuts along z, ascending, of which one is its axis at -middle (m).
+
+    A last layer above the axis would be thin where little is left for it: then all are alike.
+    """
+    fine = depth if middle - depth > _THINNEST * size else middle
+    upper = graded(size, fine, middle, ratio, largest)
+    last = upper[-1] - upper[-2]
+    lower = middle + graded(last, last, middle, ratio, largest)
+    return -np.concatenate([upper, lower[1:]])[::-1]
 
 
-def _full(impact: Impact, centres: Floats, body: Integers, half: float) -> NDArray[np.bool_]:
-    """Return which elements to integrate fully: near the contact, and mid-beam if it yields."""
-    near = np.all(np.abs(centres) < 1.5 * half, axis=1)
-    bent = (body == BEAM) & (centres[:, 0] < _BENT * impact.beam.depth)
-    return np.asarray(near | bent if bending_yields(impact) else near)
+def quarter_sphere(
+    radius: float, size: float, patch: float, depth: float, ratio: float, largest: float
+) -> tuple[Floats, Integers, Integers]:
+    """Return nodes (n, 3) in m and elements (e, 8) of the quarter x >= 0, y >= 0 of a sphere.
+
+    It touches z = 0 from above, at the origin. Also returns the lower surface's nodes by their
+    place along x and y, (sides + 1, sides + 1). size: of the elements from the pole to x, y = patch
+    and to `depth` into the sphere; beyond, they grow by `ratio` up to `largest`. Lengths in m.
+    """
+    lines = graded(size, patch, radius / math.sqrt(2.0), ratio, largest)
+    shell = radius * (1.0 - _CORE)
+    layers = 1.0 - graded(size, depth, shell, ratio, largest)[::-1] / shell
+    sides, height = lines.size - 1, uniform(largest, radius * _CORE)
+    count = round(patch / size)
+    i, k = np.arange(sides + 1), np.arange(-height, height + 1)
+    lattice = np.stack(np.meshgrid(i, i, k, indexing="ij"), axis=-1).reshape(-1, 3).astype(np.int32)
+    most = np.array([sides, sides, height])
+    border = np.any(np.abs(lattice) == most, axis=1)
+    inner = radius * _core(lattice / most)
+    outer = radius * _surface(lattice[border], lines / radius, count, height)
+    # The share of the way out, (layers, border places): fine at the pole, even elsewhere.
+    i, j, k = lattice[border].T
+    blend = np.where(k == -height, _away(i, j, count, sides), 1.0)
+    even = np.linspace(0.0, 1.0, layers.size)
+    along = layers[:, None] * (1.0 - blend) + even[:, None] * blend
+    shells = inner[border] + along[1:, :, None] * (outer - inner[border])
+    nodes = np.concatenate([inner, shells.reshape(-1, 3)]) + np.array([0.0, 0.0, radius])
+    elements, surface = _cells(border.reshape(sides + 1, sides + 1, -1), layers.size - 1)
+    # Heights above the pole, without loss of digits.
+    squares = nodes[surface, 0] ** 2 + nodes[surface, 1] ** 2
+    nodes[surface, 2] = squares / (radius + np.sqrt(radius**2 - squares))
+    return nodes, elements, surface
+
+
+def _core(place: Floats) -> Floats:
+    """Return a rounded box over the radius, from places in -1 to 1: a cube blended with a ball."""
+    squares = place**2
+    one, two = np.roll(squares, -1, axis=1), np.roll(squares, -2, axis=1)
+    ball = place * np.sqrt(1.0 - one / 2.0 - two / 2.0 + one * two / 3.0)
+    return np.asarray(_CORE * ((1.0 - _ROUND) * place + _ROUND * ball))
+
+
+def _surface(lattice: Integers, lines: Floats, patch: int, height: int) -> Floats:
+    """Return points of the unit sphere for border places: even rays through a cube but the patch.
+
+    There, and smoothly less beyond, x and y are those of the lines.
+    """
+    sides = lines.size - 1
+    rays = np.tan(math.pi / 4 * lattice / np.array([sides, sides, height]))
+    points = rays / np.linalg.norm(rays, axis=1, keepdims=True)
+    low = lattice[:, 2] == -height
+    i, j = lattice[low, 0], lattice[low, 1]
+    blend = _away(i, j, patch, sides)
+    for axis, at in enumerate((i, j)):
+        points[low, axis] = (1.0 - blend) * lines[at] + blend * points[low, axis]
+    points[low, 2] = -np.sqrt(1.0 - points[low, 0] ** 2 - points[low, 1] ** 2)
+    return np.asarray(points)
+
+
+def _away(i: Integers, j: Integers, patch: int, sides: int) -> Floats:
+    """Return 0 in the patch, rising smoothly to 1 at the lower surface's edges."""
+    t = np.clip((np.maximum(i, j) - patch) / (sides - patch), 0.0, 1.0)
+    return np.asarray(t**2 * (3.0 - 2.0 * t))
+
+
+def _cells(border: Truths, layers: int) -> tuple[Integers, Integers]:
+    """Return the elements of core and shells, and the node numbers of the lower surface.
+
+    border: which places of the core's lattice lie on its boundary, (i, j, k).
+    """
+    number = np.arange(border.size, dtype=np.int32).reshape(border.shape)
+    shell = np.full((layers + 1, *border.shape), -1, dtype=np.int32)
+    shell[0] = number
+    shell[1:, border] = border.size + np.arange(layers * border.sum()).reshape(layers, -1)
+    faces = (  # each a lattice (a, b, layer) whose axes turn right-handed
+        shell[:, :, :, 0].transpose(2, 1, 0),
+        shell[:, :, :, -1].transpose(1, 2, 0),
+        shell[:, -1].transpose(1, 2, 0),
+        shell[:, :, -1].transpose(2, 1, 0),
+    )
+    return np.concatenate([cells(number), *map(cells, faces)]), shell[-1, :, :, 0]

@@ -10,8 +10,9 @@ import pytest
 
 from impactlab.fem3d import kratos
 from impactlab.fem3d.kratos.engine import Engine, engine
-from impactlab.fem3d.kratos.run import History, Run
+from impactlab.fem3d.kratos.solve import Run
 from impactlab.fem3d.solver import Mesh, quarter_mesh
+from impactlab.fem3d.solver.march import History
 from impactlab.model.impact import Impact
 
 pytestmark = pytest.mark.kratos
@@ -84,7 +85,9 @@ def stubborn(kratos: Engine, failures: set[int]) -> Engine:
 def history(impact: Impact, failures: set[int], duration: float = 26e-6) -> History:
     mesh = quarter_mesh(impact, element_size=2e-3, ratio=2.0, coarsest=30e-3)
     kratos = stubborn(engine(1), failures)
-    return Run(kratos, mesh, impact, duration=duration, time_step=8e-6, penalty=1e15).go()
+    run = Run(kratos, mesh, impact, duration=duration, time_step=8e-6, penalty=1e15)
+    run.go(None)
+    return run.history
 
 
 @pytest.fixture

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from impactlab.fem3d.solver.assembly import force_assembly, make_group, metal
 from impactlab.fem3d.solver.elements import full, one_point
 from impactlab.fem3d.solver.elements.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.material import STRESS
 from impactlab.fem3d.solver.mesh.mesh import brick
-from impactlab.fem3d.solver.stepping.assembly import _group, force_assembly, metal
 from impactlab.model.impact import Material
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
@@ -23,7 +23,7 @@ class Body:
         self.x, self.elements = nodes.copy(), elements
         self.kind = KINDS[kind]
         whole = kind == "full"
-        self.group = _group(elements, np.arange(len(elements)), whole, metal(steel))
+        self.group = make_group(elements, np.arange(len(elements)), whole, metal(steel))
         self._rows = force_assembly([self.group], len(nodes))
         self._forces = np.zeros((self._rows.count, 3))
         self._scratch = np.zeros(SCRATCH * W)

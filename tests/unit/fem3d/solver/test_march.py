@@ -7,12 +7,12 @@ from dataclasses import replace
 import numba
 import numpy as np
 import pytest
+from impactlab.model.paper import paper_impact
 
 from impactlab.fem3d.solver import quarter_mesh, solve_on
+from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
-from impactlab.fem3d.solver.stepping.march import March
-from impactlab.fem3d.solver.stepping.system import System, ThreadPool
-from impactlab.model.impact import paper_impact
+from impactlab.fem3d.solver.system import System, ThreadPool
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
 IMPACT = paper_impact()
@@ -113,7 +113,7 @@ def test_a_run_that_diverges_says_so_and_answers_nothing(mesh):
 
 
 def test_nodes_that_slide_from_each_other_stop_the_run(mesh, monkeypatch):
-    monkeypatch.setattr("impactlab.fem3d.solver.stepping.march._SLID", 1e-4)
+    monkeypatch.setattr("impactlab.fem3d.solver.march._SLID", 1e-4)
     fast = paper_impact(5.0)
     with ThreadPool(1) as pool:
         history = March(System(mesh, fast, pool), fast).run(50e-6)

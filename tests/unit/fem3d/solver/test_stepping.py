@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from impactlab.fem3d.solver.assembly import MOST_THREADS, blocks_of, force_assembly, make_group
 from impactlab.fem3d.solver.elements.hexahedron import W
+from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
 from impactlab.fem3d.solver.mesh.mesh import brick
-from impactlab.fem3d.solver.stepping.assembly import MOST_THREADS, _group, blocks_of, force_assembly
-from impactlab.fem3d.solver.stepping.march import March
-from impactlab.fem3d.solver.stepping.system import System, ThreadPool
+from impactlab.fem3d.solver.system import System, ThreadPool
 from impactlab.model.impact import Beam, Impact, Material, Sphere
 
 METAL = (210e9, 0.3, 80e9, 175e9, 345e6, 0.0, 0.0)
@@ -21,7 +21,7 @@ def two_groups():
     nodes, elements = brick(np.arange(11.0), np.arange(12.0), np.arange(10.0))
     numbers = np.split(np.arange(len(elements)), [11])
     groups = [
-        _group(elements, which, whole, METAL)
+        make_group(elements, which, whole, METAL)
         for which, whole in zip(numbers, (True, False), strict=True)
     ]
     return len(nodes), groups

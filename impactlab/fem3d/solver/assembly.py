@@ -53,19 +53,26 @@ class Group:
         starts = POINT_ROWS * np.arange(self.kind.POINTS)
         return np.stack([self.row(start + row) for start in starts])
 
+    def works(self) -> Array:
+        """Return the works in J of all elements: of stresses, dissipated, against hourglassing."""
+        kind = self.kind
+        rows = (kind.WORK, kind.DISSIPATED, kind.HOURGLASS_WORK)
+        return np.array([self.row(row).sum() for row in rows])
+
 
 def make_groups(mesh: Mesh, impact: Impact) -> list[Group]:
     """Return the groups at rest, without empty ones."""
     metals = {BEAM: metal(impact.beam.material), SPHERE: metal(impact.sphere.material)}
     return [
-        _group(mesh.elements, np.flatnonzero(chosen), whole, metals[body])
+        make_group(mesh.elements, np.flatnonzero(chosen), whole, metals[body])
         for body in (BEAM, SPHERE)
         for whole in (True, False)
         if np.any(chosen := (mesh.body == body) & (mesh.full == whole))
     ]
 
 
-def _group(elements: Array, numbers: Array, whole: bool, steel: Metal) -> Group:
+def make_group(elements: Array, numbers: Array, whole: bool, steel: Metal) -> Group:
+    """Return a group at rest of these numbers of the elements; whole: fully integrated."""
     blocks = -(-numbers.size // W)
     filled = np.append(numbers, np.repeat(numbers[-1], blocks * W - numbers.size))
     nodes = elements[filled].reshape(blocks, W, 8).transpose(0, 2, 1).reshape(blocks, 8 * W)

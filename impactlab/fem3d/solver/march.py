@@ -11,8 +11,7 @@ import numpy as np
 
 from impactlab.fem3d.solver.mesh.estimates import largest_patch
 from impactlab.fem3d.solver.mesh.mesh import Floats
-from impactlab.fem3d.solver.stepping.stability import corner_volumes, critical_step
-from impactlab.fem3d.solver.stepping.system import System
+from impactlab.fem3d.solver.system import System, corner_volumes, critical_step
 from impactlab.model.impact import Impact
 
 
@@ -74,7 +73,7 @@ class History:
 
 
 Progress = Callable[[float, float], None]
-"""Called at checkpoints with the simulated time in s and the share done."""
+"""Called with the simulated time in s and the share done."""
 
 SAFETY = 0.9
 """Time step over the largest stable one."""
@@ -119,7 +118,12 @@ class March:
                 f"solve.duration = {duration!r} s: must be longer than a step of {self._dt:.3g} s"
             )
         try:
-            self._to(duration, progress)
+            for checkpoint in range(1, CHECKPOINTS + 1):
+                self._advance(duration * checkpoint / CHECKPOINTS)
+                if self.history.stopped:
+                    break
+                if progress:
+                    progress(self._time, checkpoint / CHECKPOINTS)
         except (PatchTooSmallError, KeyboardInterrupt) as reason:
             if len(self.history.moments) < 2:
                 raise  # there is nothing to keep
@@ -127,28 +131,31 @@ class March:
             self.history.patch_needed = getattr(reason, "needed", 0.0)
         return self.history
 
-    def _to(self, duration: float, progress: Progress | None) -> None:
-        """March from checkpoint to checkpoint."""
-        for checkpoint in range(1, CHECKPOINTS + 1):
-            self._advance(duration * checkpoint / CHECKPOINTS)
-            if self.history.stopped:
-                break
-            if progress:
-                progress(self._time, checkpoint / CHECKPOINTS)
-
     def _advance(self, end: float) -> None:
-        """Take steps until `end` (s), then a checkpoint."""
+        """Take steps until `end` (s), then a checkpoint: energies, slide, and reasons to stop."""
         steps = math.ceil((end - self._time) / self._dt)
         if steps <= 0:
             return
         for _ in range(steps - 1):
             self._take()
-        before = self.system.v.copy()
-        worked = self._works()
+        system, mesh, history = self.system, self.system.mesh, self.history
+        before = system.v.copy()
+        worked = 4.0 * np.sum([group.works() for group in system.groups], axis=0)
         self._take()
-        self.history.energies.append(self._energies(before, worked))
-        self.history.offset = max(self.history.offset, self._offset())
-        self.history.stopped = self._wrong()
+        # Energies at the start of this step, kinetic by the velocities around it.
+        moment = history.moments[-1]
+        kinetic = 2.0 * float(np.sum(system.mass[:, None] * before * system.v))
+        gravity = self.impact.sphere.total_mass * self.impact.gravity * moment.sphere
+        work, plastic, hourglass = worked.tolist()
+        lost = 4.0 * self._lost
+        history.energies.append(
+            Energies(moment.time, kinetic, work, plastic, hourglass, lost, gravity)
+        )
+        apart = system.x[mesh.pairs[:, 0]] - system.x[mesh.pairs[:, 1]]
+        slid = np.hypot(*apart[apart[:, 2] <= 0.0, :2].T)
+        slide = float(np.max(slid, initial=0.0)) / mesh.element_size
+        history.offset = max(history.offset, slide)
+        history.stopped = self._wrong()
 
     def _take(self) -> None:
         """Take one step, from positions at its beginning to those at its end."""
@@ -168,34 +175,6 @@ class March:
         self._time += self._dt
         system.strain(self._dt)
         self._velocity_dt = self._dt
-
-    def _works(self) -> Floats:
-        """Return sums over the elements: work, dissipated, against hourglassing (J)."""
-        return np.sum(
-            [
-                [group.row(row).sum() for row in (kind.WORK, kind.DISSIPATED, kind.HOURGLASS_WORK)]
-                for group in self.system.groups
-                for kind in [group.kind]
-            ],
-            axis=0,
-        )
-
-    def _energies(self, before: Floats, worked: Floats) -> Energies:
-        """Return energies at the start of the last step; kinetic by velocities around it."""
-        moment, system = self.history.moments[-1], self.system
-        kinetic = 0.5 * float(np.sum(system.mass[:, None] * before * system.v))
-        gravity = self.impact.sphere.total_mass * self.impact.gravity * moment.sphere
-        work, plastic, hourglass = (4.0 * worked).tolist()
-        return Energies(
-            moment.time, 4.0 * kinetic, work, plastic, hourglass, 4.0 * self._lost, gravity
-        )
-
-    def _offset(self) -> float:
-        """Return the largest distance across z of nodes that touch, over the element size."""
-        mesh = self.system.mesh
-        apart = self.system.x[mesh.pairs[:, 0]] - self.system.x[mesh.pairs[:, 1]]
-        touching = apart[apart[:, 2] <= 0.0, :2]
-        return float(np.max(np.hypot(*touching.T), initial=0.0)) / mesh.element_size
 
     def _wrong(self) -> str:
         """Return a reason to stop here, or ""; shorten the steps with the elements."""
