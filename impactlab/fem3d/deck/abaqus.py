@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from impactlab.fem3d.deck.cards import curve, gravity
-from impactlab.fem3d.deck.case import STRESS, Case, Flavour, values
+from impactlab.fem3d.deck.case import STRESS, Case, Flavour, curve, gravity, values
 from impactlab.fem3d.deck.mesh import BEAM_SURFACE, SPHERE_SURFACE, TRACKED, element_groups
 from impactlab.model.impact import Material
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from impactlab.fem3d.deck.cards import curve, gravity
-from impactlab.fem3d.deck.case import LENGTH, STRESS, Case, Flavour, values
+from impactlab.fem3d.deck.case import LENGTH, STRESS, Case, Flavour, curve, gravity, values
 from impactlab.fem3d.deck.mesh import BEAM_SURFACE, BODIES, SPHERE_SURFACE, TRACKED
 from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.model.impact import Material
@@ -40,18 +39,12 @@ def _sections(_: Case) -> Iterator[str]:
 def _contact(case: Case) -> Iterator[str]:
     yield "*SURFACE INTERACTION, NAME=FRICTIONLESS"
     yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
-    yield values(_slope(case) * STRESS / LENGTH)
+    # Hertz's largest pressure is 2 E* a/(pi R), his indentation a^2/R.
+    modulus, radius = hertz.effective_modulus(case.impact), contact_radius(case.impact)
+    slope = 2.0 * modulus / (math.pi * radius * _OVERCLOSURE)  # over overclosure, in Pa/m
+    yield values(slope * STRESS / LENGTH)
     yield "*CONTACT PAIR, INTERACTION=FRICTIONLESS, TYPE=SURFACE TO SURFACE"
     yield f"{SPHERE_SURFACE}, {BEAM_SURFACE}"
-
-
-def _slope(case: Case) -> float:
-    """Return the slope of pressure over overclosure in Pa/m.
-
-    Hertz's largest pressure is 2 E* a/(pi R), his indentation a^2/R.
-    """
-    modulus, radius = hertz.effective_modulus(case.impact), contact_radius(case.impact)
-    return 2.0 * modulus / (math.pi * radius * _OVERCLOSURE)
 
 
 def _step(case: Case) -> Iterator[str]:

@@ -1,13 +1,10 @@
-"""A deck's case and flavour, its units, and the format of its numbers."""
+"""A deck's case and flavour, its units and numbers, and the cards that both programs share."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
 
 from impactlab.fem3d.solver.mesh import Mesh
 from impactlab.model.checks import instance, positive
@@ -27,25 +24,9 @@ DENSITY = 1e-12
 """t/mm3 per kg/m3."""
 
 
-PER_LINE = 16
-"""Entries that a data line may hold in both programs."""
-
-
-def number(value: float) -> str:
-    """Return at most 19 characters, of the 20 that CalculiX reads, with 13 digits."""
-    return f"{value:.12e}"
-
-
 def values(*entries: float) -> str:
     """Return one data line."""
     return ", ".join(f"{entry:.9g}" for entry in entries)
-
-
-def listed(numbers: Iterable[int] | NDArray[np.integer]) -> Iterator[str]:
-    """Yield data lines of whole numbers, as many per line as allowed."""
-    words = [str(entry) for entry in np.asarray(numbers).tolist()]
-    for start in range(0, len(words), PER_LINE):
-        yield ", ".join(words[start : start + PER_LINE])
 
 
 _SAME = 1e-9
@@ -75,7 +56,13 @@ class Case:
         instance("deck", "impact", self.impact, Impact)
         instance("deck", "mesh", self.mesh, Mesh)
         positive("deck", "duration", self.duration)
-        self._check_interval()
+        if self.interval is not None:
+            positive("deck", "interval", self.interval)
+            if self.interval > self.duration:
+                raise ValueError(
+                    f"deck.interval = {self.interval!r} s: must not be above the duration "
+                    f"({self.duration!r} s)"
+                )
         self._check_sizes()
 
     @property
@@ -83,22 +70,8 @@ class Case:
         """Return the time between results, in s."""
         if self.interval is not None:
             return self.interval
-        contact = hertz.contact_duration(
-            self.impact.sphere.total_mass,
-            self.impact.velocity,
-            hertz.effective_modulus(self.impact),
-            hertz.effective_radius(self.impact),
-        )
+        contact = hertz.contact_duration(*hertz.arguments(self.impact))
         return min(contact / _SAMPLES, self.duration)
-
-    def _check_interval(self) -> None:
-        if self.interval is None:
-            return
-        if positive("deck", "interval", self.interval) > self.duration:
-            raise ValueError(
-                f"deck.interval = {self.interval!r} s: must not be above the duration "
-                f"({self.duration!r} s)"
-            )
 
     def _check_sizes(self) -> None:
         """Raise ValueError unless the mesh's extents are those of the impact's bodies."""
@@ -116,10 +89,6 @@ class Case:
                 )
 
 
-Hardening = Callable[[Material], Iterable[str]]
-"""The cards that follow *ELASTIC where a material yields."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Flavour:
     """One program's part of a deck.
@@ -131,8 +100,26 @@ class Flavour:
 
     program: str
     elements: Mapping[bool, str]
-    hardening: Hardening
+    hardening: Callable[[Material], Iterable[str]]
     sections: Callable[[Case], Iterable[str]]
     contact: Callable[[Case], Iterable[str]]
     step: Callable[[Case], Iterable[str]]
     limits: tuple[str, ...]
+
+
+_LONGEST = 10.0
+"""Plastic strain at which the tables end; both programs keep the stress from there on."""
+
+
+def curve(material: Material, modulus: float) -> Iterator[str]:
+    """Yield stress against equivalent plastic strain, rising by `modulus` (Pa): one point if 0."""
+    yield values(material.yield_stress * STRESS, 0.0)
+    if modulus > 0.0:
+        yield values((material.yield_stress + modulus * _LONGEST) * STRESS, _LONGEST)
+
+
+def gravity(case: Case) -> Iterator[str]:
+    """Yield gravity on the sphere alone, as in the beam models."""
+    if case.impact.gravity > 0.0:
+        yield "*DLOAD"
+        yield f"SPHERE, GRAV, {values(case.impact.gravity * ACCELERATION, 0.0, 0.0, -1.0)}"

@@ -7,10 +7,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.fem3d.deck.case import LENGTH, Case, listed, number
+from impactlab.fem3d.deck.case import LENGTH, Case
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
 from impactlab.fem3d.solver.mesh.mesh import Integers, Truths
-from impactlab.model.impact import Impact
 
 SPHERE_NODES = "SPHERE_NODES"
 SYMMETRY_X, SYMMETRY_Y, SUPPORT = "SYMMETRY_X", "SYMMETRY_Y", "SUPPORT"
@@ -19,25 +18,6 @@ TRACKED = "TRACKED"
 """Name of the set of these four nodes together."""
 BODIES = {"BEAM": BEAM, "SPHERE": SPHERE}
 SPHERE_SURFACE, BEAM_SURFACE = "SPHERE_SURFACE", "BEAM_SURFACE"
-
-
-def node_sets(impact: Impact, mesh: Mesh) -> dict[str, Integers]:
-    """Return node numbers, from 0, by the name of the set."""
-    centre = np.array([0.0, 0.0, impact.sphere.radius])
-    single = {
-        MIDSPAN: mesh.axis_node,
-        CENTRE: int(np.argmin(np.linalg.norm(mesh.nodes - centre, axis=1))),
-        POLE: mesh.pole,
-        TOP: mesh.top_node,
-    }
-    return {
-        SPHERE_NODES: np.unique(mesh.elements[mesh.body == SPHERE]),
-        SYMMETRY_X: mesh.symmetry_x,
-        SYMMETRY_Y: mesh.symmetry_y,
-        SUPPORT: mesh.support,
-        **{name: np.array([node], np.int32) for name, node in single.items()},
-        TRACKED: np.array(list(single.values()), np.int32),
-    }
 
 
 def element_groups(mesh: Mesh) -> dict[str, tuple[bool, Truths]]:
@@ -57,6 +37,8 @@ _CORNERS = np.array(
     [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]]
 )
 """An element's nodes on its faces S1 to S6."""
+_PER_LINE = 16
+"""Entries that a data line may hold in both programs."""
 _NEAR = 1e-6
 """Distance from a plane at which a node is on it, over the size of an element."""
 
@@ -64,19 +46,17 @@ Faces = NDArray[np.int64]
 """(f, 2): element (from 0) and face (from 1)."""
 
 
-def top_of_beam(mesh: Mesh) -> Faces:
-    """Return all faces of the beam that face the sphere."""
-    faces, nodes = _outer(mesh, BEAM)
-    return np.asarray(faces[_on(mesh, nodes, 2)])
-
-
-def lower_sphere(mesh: Mesh) -> Faces:
-    """Return the faces of the sphere's surface below its centre."""
-    faces, nodes = _outer(mesh, SPHERE)
+def _surfaces(mesh: Mesh) -> dict[str, Faces]:
+    """Return the faces of the sphere's surface below its centre, and those of the beam's top."""
+    ball, nodes = _outer(mesh, SPHERE)
     middle = mesh.nodes[nodes, 2].mean(axis=1)
     height = 0.5 * np.ptp(mesh.nodes[np.unique(nodes), 2])
     cut = _on(mesh, nodes, 0) | _on(mesh, nodes, 1)
-    return np.asarray(faces[~cut & (middle < height)])
+    beam, corners = _outer(mesh, BEAM)
+    return {
+        SPHERE_SURFACE: ball[~cut & (middle < height)],
+        BEAM_SURFACE: beam[_on(mesh, corners, 2)],
+    }
 
 
 def _on(mesh: Mesh, nodes: Integers, axis: int) -> Truths:
@@ -98,25 +78,34 @@ def _outer(mesh: Mesh, body: int) -> tuple[Faces, Integers]:
 
 def geometry(case: Case, kinds: Mapping[bool, str]) -> Iterator[str]:
     """Yield the mesh. kinds: element types, fully integrated (True) and not."""
+    mesh, radius = case.mesh, case.impact.sphere.radius
     yield "*NODE, NSET=ALL_NODES"
-    for place, (x, y, z) in enumerate((LENGTH * case.mesh.nodes).tolist(), start=1):
-        yield f"{place}, {number(x)}, {number(y)}, {number(z)}"
-    groups = element_groups(case.mesh)
+    for place, (x, y, z) in enumerate((LENGTH * mesh.nodes).tolist(), start=1):
+        # 19 characters at most, of the 20 that CalculiX reads, with 13 digits.
+        yield f"{place}, {x:.12e}, {y:.12e}, {z:.12e}"
+    groups = element_groups(mesh)
     for name, (full, chosen) in groups.items():
         yield f"*ELEMENT, TYPE={kinds[full]}, ELSET={name}"
         numbers = np.flatnonzero(chosen)
-        rows = np.column_stack([numbers, case.mesh.elements[numbers]]) + 1
+        rows = np.column_stack([numbers, mesh.elements[numbers]]) + 1
         yield from (", ".join(map(str, row)) for row in rows.tolist())
     for body in BODIES:
         yield f"*ELSET, ELSET={body}"
         yield from (name for name in groups if name.startswith(f"{body}_"))
-    for name, members in node_sets(case.impact, case.mesh).items():
+    centre = np.linalg.norm(mesh.nodes - np.array([0.0, 0.0, radius]), axis=1).argmin()
+    tracked = {MIDSPAN: mesh.axis_node, CENTRE: int(centre), POLE: mesh.pole, TOP: mesh.top_node}
+    sets: dict[str, list[int]] = {
+        SPHERE_NODES: np.unique(mesh.elements[mesh.body == SPHERE]).tolist(),
+        SYMMETRY_X: mesh.symmetry_x.tolist(),
+        SYMMETRY_Y: mesh.symmetry_y.tolist(),
+        SUPPORT: mesh.support.tolist(),
+        **{name: [node] for name, node in tracked.items()},
+        TRACKED: list(tracked.values()),
+    }
+    for name, members in sets.items():
         yield f"*NSET, NSET={name}"
-        yield from listed(members + 1)
-    yield from _surface(SPHERE_SURFACE, lower_sphere(case.mesh))
-    yield from _surface(BEAM_SURFACE, top_of_beam(case.mesh))
-
-
-def _surface(name: str, faces: Faces) -> Iterator[str]:
-    yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
-    yield from (f"{element + 1}, S{face}" for element, face in faces.tolist())
+        for at in range(0, len(members), _PER_LINE):
+            yield ", ".join(str(node + 1) for node in members[at : at + _PER_LINE])
+    for name, faces in _surfaces(mesh).items():
+        yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
+        yield from (f"{element + 1}, S{face}" for element, face in faces.tolist())

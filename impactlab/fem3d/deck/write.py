@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
+from importlib.metadata import version
 from pathlib import Path
 
 from impactlab.fem3d.deck.abaqus import ABAQUS
 from impactlab.fem3d.deck.calculix import CALCULIX
-from impactlab.fem3d.deck.cards import header, materials, start, supports
-from impactlab.fem3d.deck.case import Case, Flavour
-from impactlab.fem3d.deck.mesh import geometry
+from impactlab.fem3d.deck.case import DENSITY, NAMES, STRESS, VELOCITY, Case, Flavour, values
+from impactlab.fem3d.deck.mesh import SPHERE_NODES, SUPPORT, SYMMETRY_X, SYMMETRY_Y, geometry
 from impactlab.fem3d.solver.mesh import Mesh
+from impactlab.fem3d.solver.mesh.mesh import sphere_density
+from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.model.checks import one_of
+from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
+from impactlab.model.parameters import PARAMETERS, flatten
 
 FLAVOURS = {"abaqus": ABAQUS, "calculix": CALCULIX}
 """Programs that a deck can be written for."""
@@ -52,11 +57,60 @@ def write_deck(
 def _lines(case: Case, flavour: Flavour) -> Iterator[str]:
     yield "*HEADING"
     yield f"impactlab: a sphere strikes a beam ({flavour.program})"
-    yield from header(case, flavour)
+    for words in _comment(case, flavour):
+        yield from textwrap.wrap(
+            words, _WIDTH, initial_indent="** ", subsequent_indent="**   ", drop_whitespace=True
+        )
     yield from geometry(case, flavour.elements)
-    yield from materials(case, flavour.hardening)
+    beam, ball = case.impact.beam.material, case.impact.sphere.material
+    for name, material, density in (
+        ("BEAM", beam, beam.density),
+        ("SPHERE", ball, sphere_density(case.mesh, case.impact)),
+    ):
+        yield f"*MATERIAL, NAME={name}_STEEL"
+        yield "*DENSITY"
+        yield values(density * DENSITY)
+        yield "*ELASTIC"
+        yield values(material.youngs_modulus * STRESS, material.poissons_ratio)
+        if case.plastic:
+            yield from flavour.hardening(material)
     yield from flavour.sections(case)
-    yield from supports()
-    yield from start(case)
+    yield "*BOUNDARY"
+    yield f"{SYMMETRY_X}, 1, 1"
+    yield f"{SYMMETRY_Y}, 2, 2"
+    yield f"{SUPPORT}, 3, 3"
+    yield "*INITIAL CONDITIONS, TYPE=VELOCITY"
+    yield f"{SPHERE_NODES}, 3, {values(-case.impact.velocity * VELOCITY)}"
     yield from flavour.contact(case)
     yield from flavour.step(case)
+
+
+_WIDTH = 96
+
+_LIMITS = (
+    "A quarter: x = 0 and y = 0 are planes of symmetry, z points upwards; contact forces are a "
+    "quarter of the whole.",
+    "Frictionless; the sphere touches the beam's top at the origin when time begins; gravity acts "
+    "on the sphere alone; the beam's ends are held at mid-depth.",
+)
+
+
+def _comment(case: Case, flavour: Flavour) -> Iterator[str]:
+    """Yield the paragraphs of the comment at the top."""
+    mesh = case.mesh
+    yield f"impactlab {version('impactlab')}: a sphere strikes a beam, for {flavour.program}"
+    yield f"Units: {NAMES}"
+    yield (
+        f"Mesh: {len(mesh.nodes)} nodes, {len(mesh.elements)} elements, "
+        f"{mesh.element_size * 1e3:.9g} mm in the contact"
+    )
+    yield f"Materials: {'elastic-plastic' if case.plastic else 'elastic'}"
+    yield "Case, in SI units:"
+    given = flatten(case.impact, Discretisation())
+    for name in IMPACT_PARAMETERS:
+        if name in given:
+            entry = PARAMETERS[name]
+            units = "" if entry.units == "1" else f" {entry.units}"
+            yield f"  {entry.long_name}: {given[name]!r}{units}"
+    yield "Limits:"
+    yield from (f"- {limit}" for limit in (*_LIMITS, *flavour.limits))

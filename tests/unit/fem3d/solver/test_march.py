@@ -7,12 +7,12 @@ from dataclasses import replace
 import numba
 import numpy as np
 import pytest
-from impactlab.model.paper import paper_impact
 
 from impactlab.fem3d.solver import quarter_mesh, solve_on
 from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
 from impactlab.fem3d.solver.system import System, ThreadPool
+from impactlab.model.impact import paper_impact
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
 IMPACT = paper_impact()

@@ -8,13 +8,13 @@ import numba
 import numpy as np
 import pytest
 import xarray as xr
-from impactlab.model.paper import paper_impact
 
 from impactlab.fem3d.solver import estimate, quarter_mesh, solve_on
 from impactlab.fem3d.solver.march import SAFETY
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
 from impactlab.fem3d.solver.mesh.mesh import nodal_masses
 from impactlab.fem3d.solver.system import System, ThreadPool, critical_step
+from impactlab.model.impact import paper_impact
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
 IMPACT = paper_impact()
