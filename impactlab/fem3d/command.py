@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from impactlab.fem3d.comparison.plan import Case, Plan
-    from impactlab.fem3d.comparison.run import Progress
+    from impactlab.fem3d.solver.march import Progress
 
 
 def witness(
@@ -79,11 +79,21 @@ def witness(
     A table compares their answers; fields, histories and figures are kept. Ctrl-C keeps what was
     computed until then.
     """
+    from impactlab.fem3d.comparison.plan import planned
     from impactlab.fem3d.comparison.terminal import print_comparison, print_plan, print_yielding
+    from impactlab.fem3d.deck import FLAVOURS
 
-    _check_deck(deck, elastic=elastic)
+    if deck and deck not in FLAVOURS:
+        raise ValueError(f"--deck {deck}: must be one of {', '.join(FLAVOURS)}")
+    if elastic and not deck:
+        raise ValueError("--elastic: applies to a deck only; select one with --deck")
     case = _case(study, velocity, contact)
-    plan = _plan(case, element_size, patch, duration)
+    plan = planned(
+        case,
+        element_size=given("--element-size", element_size, "m") if element_size else None,
+        patch=given("--patch", patch, "m") if patch else None,
+        duration=given("--duration", duration, "s") if duration else None,
+    )
     options = {
         "velocity": velocity,
         "contact": contact,
@@ -91,29 +101,26 @@ def witness(
         "patch": patch,
         "duration": duration,
     }
-    folder = output or results_file(case.name, _folder_name(options))
-    problems = [] if deck and plan.mesh else plan.problems(workers)
-    if dry_run or not problems or force:
-        print_plan(plan, None if deck else workers, problems)
+    given_here = [f"{name}-{text}" for name, text in options.items() if text]
+    # So that no answers to other options are overwritten.
+    name = "_".join([WITNESS, *(re.sub(r"[^\w.]+", "-", each) for each in given_here)])
+    folder = output or results_file(case.name, name)
+    problem = "" if deck and plan.mesh else plan.problem(workers)
+    if dry_run or force or not problem:
+        print_plan(plan, None if deck else workers, problem)
+    else:
+        raise ValueError(problem)
     if dry_run:
         return
-    if problems and not force:
-        raise ValueError("\n".join(problems))
     if deck:
         _write_deck(plan, deck, folder, plastic=not elastic)
         return
     from impactlab.fem3d.comparison.run import compare
 
-    found = compare(plan, folder, workers=workers, watched=_watched())
-    print_comparison(found.responses)
-    print_yielding(found.solid)
-    _end(found.solid, found.folder)
-
-
-def _folder_name(options: Mapping[str, str]) -> str:
-    """Return a folder name for the answers to these options, so that none are overwritten."""
-    parts = [f"{name}-{text}" for name, text in options.items() if text]
-    return "_".join((WITNESS, *(re.sub(r"[^\w.]+", "-", each) for each in parts)))
+    solid, responses, folder = compare(plan, folder, workers=workers, watched=_watched())
+    print_comparison(responses)
+    print_yielding(solid)
+    _end(solid, folder)
 
 
 def _case(study: Path | None, velocity: str, contact: str) -> Case:
@@ -130,26 +137,6 @@ def _case(study: Path | None, velocity: str, contact: str) -> Case:
             "%s varies parameters of which this command takes one value: %s", case.file, values
         )
     return case
-
-
-def _plan(case: Case, element_size: str, patch: str, duration: str) -> Plan:
-    from impactlab.fem3d.comparison.plan import planned
-
-    return planned(
-        case,
-        element_size=given("--element-size", element_size, "m") if element_size else None,
-        patch=given("--patch", patch, "m") if patch else None,
-        duration=given("--duration", duration, "s") if duration else None,
-    )
-
-
-def _check_deck(deck: str, *, elastic: bool) -> None:
-    from impactlab.fem3d.deck import FLAVOURS
-
-    if deck and deck not in FLAVOURS:
-        raise ValueError(f"--deck {deck}: must be one of {', '.join(FLAVOURS)}")
-    if elastic and not deck:
-        raise ValueError("--elastic: applies to a deck only; select one with --deck")
 
 
 def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:

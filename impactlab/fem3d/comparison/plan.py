@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from itertools import takewhile
 
 from dask.system import CPU_COUNT
 from distributed.system import MEMORY_LIMIT
 
-from impactlab.fem3d.comparison.comparison import beam_seconds, first_contact
 from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver.mesh.estimates import checked_patch, contact_radius
+from impactlab.model import cost
 from impactlab.model.checks import positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import Value, flatten, with_values
+from impactlab.simulate import case_table, solve
 from impactlab.study.quantities import amount, time
 from impactlab.study.schema.study import Study
 
+MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")
+"""Models of the beam, in the order of tables and figures."""
+_COARSE = 101
+"""Nodes that resolve the duration of a contact within some percent."""
 _LONGEST = 5e-3
 """Simulated time of the paper's case in s, within which its first contact ends at any velocity."""
 
@@ -44,7 +47,8 @@ class Case:
         changed = {"velocity": velocity, "contact": contact}
         given = {name: value for name, value in changed.items() if value is not None}
         held = {name: value for name, value in self.held.items() if name not in given}
-        return replace(self, impact=_replaced(self.impact, given), held=held)
+        impact: Impact = replace(self.impact, **given)  # type: ignore[arg-type]
+        return replace(self, impact=impact, held=held)
 
 
 def paper_case() -> Case:
@@ -59,11 +63,6 @@ def case_of(study: Study) -> Case:
     values = flatten(*base) | {"sphere_mass": base[0].sphere.total_mass}
     held = {name: values[name] for name in study.sampling.varied if name in values}
     return Case(study.name, str(study.path), *base, study.duration, held)
-
-
-def _replaced(impact: Impact, values: dict[str, float | str]) -> Impact:
-    changed: Impact = replace(impact, **values)  # type: ignore[arg-type]
-    return changed
 
 
 USUAL_TIME = 120.0
@@ -104,30 +103,27 @@ class Plan:
         busy: int = min(workers, CPU_COUNT, MOST_THREADS)
         return self.cost.cpu_seconds / busy + self.beam_seconds
 
-    def problems(self, workers: int) -> list[str]:
-        """Return the reasons not to start, one line each, naming the option that drives it."""
-        return [
-            f"{self.case.file}: {option}: {reason}; see --dry-run, and --force runs it all the same"
-            for option, reason in self._beyond(workers)
-        ]
+    def problem(self, workers: int) -> str:
+        """Return the reason not to start, naming the option that drives it, or ""."""
+        option = f"--element-size {1e3 * self.element_size:g} mm"
+        elements = f"{self.cost.elements:,} elements"
+        if self.cost.memory_bytes > MEMORY_LIMIT:
+            needed = f"{amount(self.cost.memory_bytes)} of memory, of {amount(MEMORY_LIMIT)}"
+            reason = f"about {needed}, for {elements}"
+        elif self.seconds(workers) > MOST_TIME:
+            if self.duration > _LONG * self.usual_duration:
+                option = f"--duration {1e3 * self.duration:g} ms"
+            long, work = time(self.seconds(workers)), f"{self.cost.steps:,} steps of {elements}"
+            reason = f"about {long}, which exceeds the limit of one hour per run, for {work}"
+        else:
+            return ""
+        hint = "see --dry-run, and --force runs it all the same"
+        return f"{self.case.file}: {option}: {reason}; {hint}"
 
     def solved_mesh(self) -> Mesh:
         """Return the mesh, even if it may not fit memory."""
         size = self.element_size
         return self.mesh or quarter_mesh(self.case.impact, element_size=size, patch=self.patch)
-
-    def _beyond(self, workers: int) -> Iterator[tuple[str, str]]:
-        size = f"--element-size {1e3 * self.element_size:g} mm"
-        elements = f"{self.cost.elements:,} elements"
-        if self.cost.memory_bytes > MEMORY_LIMIT:
-            needed = f"{amount(self.cost.memory_bytes)} of memory, of {amount(MEMORY_LIMIT)}"
-            yield size, f"about {needed}, for {elements}"
-        elif self.seconds(workers) > MOST_TIME:
-            lasting = self.duration > _LONG * self.usual_duration
-            option = f"--duration {1e3 * self.duration:g} ms" if lasting else size
-            work = f"{self.cost.steps:,} steps of {elements}"
-            long = time(self.seconds(workers))
-            yield option, f"about {long}, which exceeds the limit of one hour per run, for {work}"
 
 
 def planned(
@@ -146,15 +142,31 @@ def planned(
     for name, value in (("element_size", element_size), ("patch", patch), ("duration", duration)):
         if value is not None:
             positive("witness", name, value)
-    first = first_contact(case.impact, case.discretisation, case.longest)
-    usual = case.longest if math.isnan(first) else min(_two_digits(_CONTACTS * first), case.longest)
+    first = _first_contact(case)
+    usual = case.longest
+    if not math.isnan(first):
+        usual = min(float(f"{_CONTACTS * first:.2g}"), usual)
     simulated = usual if duration is None else duration
     size = _usual_size(case.impact, patch, simulated) if element_size is None else element_size
-    cost, mesh = _cost(case.impact, size, patch, simulated)
+    solid, mesh = _cost(case.impact, size, patch, simulated)
     half = mesh.patch if mesh else checked_patch(case.impact, size, patch)
     radius = contact_radius(case.impact)
-    beside = beam_seconds(case.impact, case.discretisation, simulated)
-    return Plan(case, size, half, simulated, first, usual, radius, beside, cost, mesh)
+    grid = replace(case.discretisation, scheme="leapfrog")
+    beams = case_table(case.impact, grid, duration=simulated, varied={"beam_model": MODELS})
+    beside = float(cost.work(beams).sum() / cost.A_SECOND)
+    return Plan(case, size, half, simulated, first, usual, radius, beside, solid, mesh)
+
+
+def _first_contact(case: Case) -> float:
+    """Return the duration of the Euler-Bernoulli beam's first contact in s; NaN beyond the study.
+
+    Roughly: on a coarse grid, which is quick for any duration.
+    """
+    nodes = min(case.discretisation.nodes, _COARSE)
+    grid = replace(case.discretisation, nodes=nodes, scheme="leapfrog")
+    plain = replace(case.impact, beam_model=MODELS[0])
+    answers = solve(case_table(plain, grid, duration=case.longest))
+    return float(answers.responses[0]["contact_duration"])
 
 
 def _cost(
@@ -169,27 +181,20 @@ def _cost(
 
 
 def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
-    """Return the finest size within USUAL_TIME and _MOST_ELEMENTS, else the coarsest one."""
-    beam = impact.beam
-    fits = min(impact.sphere.radius, beam.width, beam.span) / 10.0
-    coarsest, *finer = _sizes(min(contact_radius(impact) / _FEWEST, fits))
-    within = takewhile(lambda size: _quick(impact, size, patch, duration), finer)
-    return min([coarsest, *within])
+    """Return the finest size within USUAL_TIME and _MOST_ELEMENTS, else the coarsest one.
 
-
-def _quick(impact: Impact, size: float, patch: float | None, duration: float) -> bool:
-    least = least_cost(impact, element_size=size, duration=duration, patch=patch)
-    if least.cpu_seconds > USUAL_TIME or least.elements > _MOST_ELEMENTS:
-        return False  # no mesh is made of what is known to be large
-    return _cost(impact, size, patch, duration)[0].cpu_seconds <= USUAL_TIME
-
-
-def _sizes(largest: float) -> list[float]:
-    """Return 1, 2 and 5 times powers of ten in m, from `largest` down over three decades."""
+    Sizes are 1, 2 and 5 times powers of ten in m, over three decades.
+    """
+    fits = min(impact.sphere.radius, impact.beam.width, impact.beam.span) / 10.0
+    largest = min(contact_radius(impact) / _FEWEST, fits)
     first = math.floor(math.log10(largest))
     sizes = [float(f"{digit}e{first - down}") for down in range(4) for digit in (5, 2, 1)]
-    return [size for size in sizes if size <= largest]
-
-
-def _two_digits(value: float) -> float:
-    return float(f"{value:.2g}")
+    usual, *finer = [size for size in sizes if size <= largest]
+    for size in finer:
+        least = least_cost(impact, element_size=size, duration=duration, patch=patch)
+        if least.cpu_seconds > USUAL_TIME or least.elements > _MOST_ELEMENTS:
+            break  # no mesh is made of what is known to be large
+        if _cost(impact, size, patch, duration)[0].cpu_seconds > USUAL_TIME:
+            break
+        usual = size
+    return usual

@@ -4,46 +4,31 @@ from __future__ import annotations
 
 import csv
 import tempfile
-from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from pyevtk.hl import unstructuredGridToVTK
 from pyevtk.vtk import VtkHexahedron
 
-from impactlab.fem3d.comparison.comparison import compared, simulate_beams
-from impactlab.fem3d.comparison.plan import Plan
+from impactlab.fem3d.comparison.plan import MODELS, Plan
 from impactlab.fem3d.figures.run import draw_witness
 from impactlab.fem3d.solver import solve_on
+from impactlab.fem3d.solver.march import Progress
 from impactlab.files import replaced
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import SOLID, Impact
+from impactlab.simulate import simulate
 from impactlab.study.netcdf import read_netcdf, write_netcdf
-from impactlab.variables import reasons
-
-Array = np.ndarray[Any, Any]
-Progress = Callable[[float, float], None]
-"""Called with the simulated time in s and the share done; see solve_on."""
+from impactlab.variables import RESPONSES, UNLIKE, attributes, reasons, status_bits
 
 _NUMBER = 8
 """Bytes of a number."""
 _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Answers of one case.
-
-    solid: of fem3d.solver. beams: of the beam models. responses: of both, see compared. folder:
-    where they lie.
-    """
-
-    solid: xr.Dataset
-    beams: xr.Dataset
-    responses: xr.Dataset
-    folder: Path
+COUNTS = ("number_of_contacts",)
+"""Responses of which a relative difference tells nothing."""
 
 
 def compare(
@@ -52,8 +37,11 @@ def compare(
     *,
     workers: int = 1,
     watched: AbstractContextManager[Progress | None] | None = None,
-) -> Comparison:
+) -> tuple[xr.Dataset, xr.Dataset, Path]:
     """Solve a planned case by the 3-D FE model and the beam models; write and draw the answers.
+
+    Returns the answers of the 3-D FE model, the responses of all models (see compared), and the
+    folder where the files lie.
 
     folder: gets witness.nc, witness.vtu, beams.nc, comparison.csv and figures/. If the 3-D run
     stopped before its end, and the folder holds a complete run, FOLDER_stopped gets them instead.
@@ -63,8 +51,10 @@ def compare(
     Raises OSError where the folder cannot be written to, before anything is solved.
     """
     check_writable(folder)
-    spare = folder.parent / f"{folder.resolve().name}_stopped"
-    complete = _is_complete(folder / "witness.nc")
+    try:
+        complete = "stopped" not in read_netcdf(folder / "witness.nc").attrs
+    except OSError:
+        complete = False
     with watched or nullcontext() as progress:
         solid = solve_on(
             plan.solved_mesh(),
@@ -74,7 +64,7 @@ def compare(
             progress=progress,
         )
     if "stopped" in solid.attrs and complete:
-        folder = spare
+        folder = folder.parent / f"{folder.resolve().name}_stopped"
     write_netcdf(solid, folder / "witness.nc")
     write_vtu(solid, folder / "witness.vtu")
     beams = simulate_beams(plan.case.impact, plan.case.discretisation, float(solid["duration"]))
@@ -82,7 +72,7 @@ def compare(
     responses = compared(solid, beams)
     write_csv(responses, folder / "comparison.csv")
     draw_witness(solid, beams, folder / "figures", plan.case.name)
-    return Comparison(solid, beams, responses, folder)
+    return solid, responses, folder
 
 
 def check_writable(folder: Path) -> None:
@@ -96,12 +86,53 @@ def check_writable(folder: Path) -> None:
         ) from None
 
 
-def _is_complete(file: Path) -> bool:
-    """Return whether a file holds a run that reached its end; an unreadable one does not."""
-    try:
-        return "stopped" not in read_netcdf(file).attrs
-    except OSError:
-        return False
+def simulate_beams(impact: Impact, discretisation: Discretisation, duration: float) -> xr.Dataset:
+    """Return the answers of `simulate` for each of MODELS, on the dimension `beam_model`.
+
+    All take the leapfrog scheme, the only one that they share. duration: in s.
+    """
+    grid = replace(discretisation, scheme="leapfrog")
+    runs = [
+        simulate(replace(impact, beam_model=model), grid, duration=duration) for model in MODELS
+    ]
+    return xr.concat(runs, "beam_model", combine_attrs="override")
+
+
+def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
+    """Return `value` and `difference` on (response, model), and `status` on (model).
+
+    value: in SI units, as `units` (response) has them; NaN where a model gives none, and `status`
+    says why. difference: relative to the 3-D FE model; NaN for responses that are UNLIKE and for
+    COUNTS.
+    """
+    names = [name for name in RESPONSES if name in solid]
+    models = [SOLID, *beams["beam_model"].values.tolist()]
+    value = np.array([[*_valid(solid, name), *_valid(beams, name)] for name in names])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        difference = value / value[:, :1] - 1.0
+    difference[~np.isfinite(difference)] = np.nan
+    difference[:, 0] = np.nan
+    difference[[name in UNLIKE or name in COUNTS for name in names]] = np.nan
+    status = [*np.atleast_1d(solid["status"]), *beams["status"].values]
+    return xr.Dataset(
+        {
+            "value": (("response", "model"), value),
+            "difference": (("response", "model"), difference),
+            "status": ("model", np.array(status, dtype=np.int32)),
+        },
+        coords={
+            "response": names,
+            "model": models,
+            "units": ("response", [attributes(name)["units"] for name in names]),
+        },
+    )
+
+
+def _valid(runs: xr.Dataset, name: str) -> list[float]:
+    """Return a response of each run, NaN where the status says that it does not hold."""
+    sound = (runs["status"] & status_bits([name])) == 0
+    values: list[float] = np.atleast_1d(runs[name].where(sound).values).astype(float).tolist()
+    return values
 
 
 def write_csv(found: xr.Dataset, path: Path) -> None:
@@ -113,15 +144,17 @@ def write_csv(found: xr.Dataset, path: Path) -> None:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(_HEAD)
         for at in np.ndindex(found["value"].shape):
-            writer.writerow(_row(found.isel(response=at[0], model=at[1])))
-
-
-def _row(one: xr.Dataset) -> list[str]:
-    value, difference = one["value"].item(), one["difference"].item()
-    why = "; ".join(reasons(one["status"].item())) if np.isnan(value) else ""
-    name, units, model = (str(one[key].item()) for key in ("response", "units", "model"))
-    share = "" if np.isnan(difference) else f"{100.0 * difference:.6g}"
-    return [name, units, model, "" if np.isnan(value) else f"{value:.9g}", share, why]
+            one = found.isel(response=at[0], model=at[1])
+            value, share = one["value"].item(), 100.0 * one["difference"].item()
+            missing = np.isnan(value)
+            writer.writerow(
+                [
+                    *(one[key].item() for key in _HEAD[:3]),
+                    "" if missing else f"{value:.9g}",
+                    "" if np.isnan(share) else f"{share:.6g}",
+                    "; ".join(reasons(one["status"].item())) if missing else "",
+                ]
+            )
 
 
 def write_vtu(dataset: xr.Dataset, path: Path) -> None:
@@ -131,11 +164,15 @@ def write_vtu(dataset: xr.Dataset, path: Path) -> None:
     `axis` vectors of the points, in SI units; points are where they were at first touch.
     Raises OSError: see whole.
     """
-    elements = dataset["element_nodes"].values
-    cells = {name: _plain(dataset[name].values) for name in _on(dataset, ("element",))}
-    points = {name: _columns(dataset[name].values) for name in _on(dataset, ("node", "axis"))}
+    elements, count = dataset["element_nodes"].values, dataset.sizes["element"]
+    cells, points = {}, {}
+    for name, variable in dataset.variables.items():
+        values = variable.values
+        if variable.dims == ("element",):  # VTK has no booleans
+            cells[name] = values.astype(np.int8) if values.dtype == bool else values
+        elif variable.dims == ("node", "axis"):
+            points[name] = tuple(np.ascontiguousarray(column) for column in values.T)
     place = points.pop("node_position")
-    count = len(elements)
     with (
         replaced(path, dataset.nbytes) as unfinished,
         tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder,
@@ -150,16 +187,3 @@ def write_vtu(dataset: xr.Dataset, path: Path) -> None:
             pointData=points,
         )
         Path(written).replace(unfinished)
-
-
-def _on(dataset: xr.Dataset, dims: tuple[str, ...]) -> list[str]:
-    return [str(name) for name, values in dataset.variables.items() if values.dims == dims]
-
-
-def _columns(vectors: Array) -> tuple[Array, ...]:
-    return tuple(np.ascontiguousarray(column) for column in vectors.T)
-
-
-def _plain(values: Array) -> Array:
-    """Return the values without booleans, which VTK does not have."""
-    return values.astype(np.int8) if values.dtype == bool else np.ascontiguousarray(values)

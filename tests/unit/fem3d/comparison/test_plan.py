@@ -76,7 +76,7 @@ def test_the_papers_case_takes_its_duration_and_about_a_minute(quick):
     assert found.cost.cpu_seconds <= USUAL_TIME
     finer = quarter_mesh(quick.impact, element_size=found.element_size / 2.5)
     assert estimate(finer, quick.impact, duration=found.duration).cpu_seconds > USUAL_TIME
-    assert not found.problems(workers=1)
+    assert not found.problem(workers=1)
 
 
 def test_a_moment_is_no_reason_for_a_mesh_without_bounds(quick):
@@ -104,7 +104,7 @@ def test_duration_ends_with_the_study_at_the_latest(quick):
 def test_what_does_not_fit_memory_is_told_without_a_mesh(quick, monkeypatch):
     monkeypatch.setattr(plans, "quarter_mesh", None)
     found = planned(quick, element_size=1e-6)
-    (problem,) = found.problems(workers=2)
+    problem = found.problem(workers=2)
     assert "--element-size 0.001 mm: about" in problem
     assert "of memory" in problem
     assert "--force" in problem
@@ -128,10 +128,10 @@ def test_the_floor_of_the_cost_lies_below_the_cost(quick):
 )
 def test_hours_are_told_at_what_drives_them(quick, given, option, monkeypatch):
     monkeypatch.setattr(plans, "MOST_TIME", 100.0)
-    (problem,) = planned(quick, **({"element_size": 2e-3} | given)).problems(workers=1)
+    problem = planned(quick, **({"element_size": 2e-3} | given)).problem(workers=1)
     assert option in problem
     assert "steps of" in problem
-    assert not planned(quick, element_size=2e-3).problems(workers=1)
+    assert not planned(quick, element_size=2e-3).problem(workers=1)
 
 
 @pytest.mark.parametrize("name", ["element_size", "patch", "duration"])
