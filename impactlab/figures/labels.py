@@ -150,6 +150,11 @@ def number(value: float, digits: int = 4, plain: tuple[float, float] = (1e-4, 1e
     return power if text == "1" else f"{text}×{power}"
 
 
+def percent(share: float, digits: int = 2) -> str:
+    """Return a share in per cent: "1.5 %"; NaN is a dash."""
+    return "–" if math.isnan(share) else f"{number(100 * share, digits)} %"
+
+
 def counted(number: int, what: str) -> str:
     """Return a number of things: "1 check", "1,024 checks"."""
     return f"{number:,} {what}" if number == 1 else f"{number:,} {what}s"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import logging
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,32 +14,32 @@ import xarray as xr
 
 from impactlab.figures import labels
 from impactlab.figures.access import count
+from impactlab.figures.catalogue import applicable
+from impactlab.figures.draw import Drawing, draw
 from impactlab.figures.labels import Display, display
+from impactlab.figures.record import Figure
 from impactlab.files import replaced
-from impactlab.paper.figures import Stored, draw_paper
 from impactlab.paper.statements import judge_all
-from impactlab.paper.statements.statement import (
-    Data,
-    JudgedStatement,
-    Judgement,
-    Number,
-    Statement,
-    Verdict,
-)
-from impactlab.report.page import Cell, Table, provenance, write_page
-from impactlab.report.pictures import pictures
+from impactlab.paper.statements.statement import Judgement, Number, Statement, Verdict
+from impactlab.report.page import Cell, Row, Table, pictures, provenance, write_page
 from impactlab.study.netcdf import read_netcdf
 from impactlab.variables import provenance as made_now
 
 log = logging.getLogger(__name__)
 
-
-@dataclass(frozen=True)
-class Section:
-    """One statement on the page."""
-
-    statement: Statement
-    table: Table
+Judged = Sequence[tuple[Statement, list[Judgement]]]
+FIGURES = (
+    ("05a", "fig05", "first_contact"),
+    ("05b", "fig05", "force_history"),
+    ("05c", "fig05", "displacement_history"),
+    ("06a", "fig06_nodes", "nodes_convergence"),
+    ("06b", "fig06_points", "points_convergence"),
+    ("07", "fig07", "force_indentation_by_law"),
+    ("08", "fig08", "contact_duration"),
+    ("10a", "fig10", "plastic_strain"),
+    ("10b", "fig10", "plastic_strain_depth"),
+)
+"""The number in the paper with a letter of ours, the study, and the name of our figure."""
 
 
 def write_paper(folders: Sequence[Path], output: Path) -> None:
@@ -48,148 +48,123 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
     folders: runs.nc and analysis.nc of one study each, under the study's name. Raises OSError
     where a file cannot be read or written.
     """
-    stored = _read_studies(folders)
-    runs = {name: runs for name, (runs, _) in stored.items()}
-    judged = judge_all(runs)
-    statements = [entry for entry in judged if not entry.statement.holds]
-    misprints = [entry for entry in judged if entry.statement.holds]
-    draw_paper(stored, output / "figures")
-    _write_claims(judged, output / "claims.csv")
-    _write_numbers(judged, output / "numbers.csv")
-    write_page(
-        "claims.html.j2",
-        output / "claims.html",
-        overviews=[_overview(statements), _misprints(misprints)],
-        statements=[_section(entry) for entry in statements],
-        misprints=[_section(entry) for entry in misprints],
-        pictures=pictures(output / "figures"),
-        tally=_tally(statements),
-        solved=_solved(runs),
-        provenance=provenance(xr.Dataset(attrs=made_now()), "page"),
-    )
-
-
-def _read_studies(folders: Sequence[Path]) -> Stored:
-    stored: dict[str, tuple[xr.Dataset, xr.Dataset]] = {}
+    stored = {}
     for folder in folders:
         paths = folder / "runs.nc", folder / "analysis.nc"
         if all(path.exists() for path in paths):
             stored[folder.name] = (read_netcdf(paths[0]), read_netcdf(paths[1]))
         else:
             log.warning("%s holds no runs.nc with an analysis.nc: it is left out", folder)
-    return stored
+    runs = {name: pair[0] for name, pair in stored.items()}
+    judged = judge_all(runs)
+    statements = [entry for entry in judged if not entry[0].holds]
+    misprints = [entry for entry in judged if entry[0].holds]
+    tally = Counter(each.verdict for _, judgements in statements for each in judgements)
+    draw_paper(stored, output / "figures")
+    _write_tables(judged, output)
+    write_page(
+        "statements.html.j2",
+        output / "claims.html",
+        package="impactlab.paper",
+        tally=[(tally[verdict], str(verdict)) for verdict in Verdict],
+        overviews=[_overview(statements), _misprints(misprints)],
+        statements=[(statement, _cases(judgements)) for statement, judgements in statements],
+        misprints=[(statement, _cases(judgements)) for statement, judgements in misprints],
+        pictures=pictures(output / "figures").values(),
+        solved=_solved(runs),
+        provenance=provenance(xr.Dataset(attrs=made_now()), "page"),
+    )
 
 
-def _section(entry: JudgedStatement) -> Section:
-    """Return a statement with one row per case."""
-    head = ["Case or reading", "Our number", "Verdict", "Why"]
-    rows = [
-        [
-            Cell(judgement.case),
-            Cell(_numbers_text(judgement) or "–"),
-            Cell(str(judgement.verdict), _class(judgement.verdict)),
-            Cell(judgement.why),
-        ]
-        for judgement in entry.judgements
-    ]
-    return Section(entry.statement, Table("Judged cases", head, rows))
+def draw_paper(stored: Mapping[str, tuple[xr.Dataset, xr.Dataset]], folder: Path) -> list[Path]:
+    """Draw the figures whose studies are stored, as figure_05a and so on; see `draw`.
+
+    stored: runs and analysis of each study by its name.
+    """
+    drawings = []
+    for number, study, name in FIGURES:
+        figure = applicable(*stored[study]).get(name) if study in stored else None
+        if figure:
+            title = f"{number.lstrip('0')}. {figure.title}"
+            plot = partial(figure.plot, *stored[study])
+            caption = partial(_caption, study, figure, *stored[study])
+            drawings.append(Drawing(f"figure_{number}", title, plot, caption))
+    return draw(drawings, folder, study="paper")
 
 
-def _class(verdict: Verdict) -> str:
-    return "warning" if verdict in (Verdict.FAILS, Verdict.UNKNOWN) else ""
+def _caption(study: str, figure: Figure, runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    """Return what is plotted, what all runs share, and why these runs."""
+    shown = figure.caption(runs, analysis)
+    why = str(runs.attrs.get("description", ""))
+    return " ".join(filter(None, (shown, labels.fixed(runs), why, f"Study: {study}.")))
 
 
-def _overview(judged: Sequence[JudgedStatement]) -> Table:
+def _overview(judged: Judged) -> Table:
     """Return one row per statement: the number of its cases with each verdict."""
     head = ["Statement of the paper", *(labels.sentence(verdict) for verdict in Verdict)]
-    rows = []
-    for entry in judged:
-        counts = Counter(judgement.verdict for judgement in entry.judgements)
-        cells = (Cell(str(counts[verdict] or "–"), "number") for verdict in Verdict)
-        rows.append([Cell(entry.statement.text), *cells])
+    rows: list[Row] = []
+    for statement, judgements in judged:
+        counts = Counter(judgement.verdict for judgement in judgements)
+        cells = [Cell(str(counts[verdict] or "–"), "number") for verdict in Verdict]
+        rows.append([statement.text, *cells])
     return Table("Statements: number of cases or readings with each verdict", head, rows)
 
 
-def _misprints(judged: Sequence[JudgedStatement]) -> Table:
+def _misprints(judged: Judged) -> Table:
     """Return one row per misprint: the print, what holds, and the verdict on the print."""
     head = ["Printed, or left open", "What holds", "Verdict on the print"]
-    rows = [
-        [
-            Cell(entry.statement.text),
-            Cell(entry.statement.holds),
-            Cell(entry.judgements[0].verdict, detail=entry.statement.name),
-        ]
-        for entry in judged
+    rows: list[Row] = [
+        [statement.text, statement.holds, Cell(first.verdict, detail=statement.name)]
+        for statement, (first, *_) in judged
     ]
     return Table("Misprints and open points of the paper", head, rows)
 
 
-def _tally(judged: Iterable[JudgedStatement]) -> list[tuple[int, str]]:
-    """Return the number of cases with each verdict."""
-    counts = Counter(judgement.verdict for entry in judged for judgement in entry.judgements)
-    return [(counts[verdict], str(verdict)) for verdict in Verdict]
-
-
-def _solved(data: Data) -> Table:
-    """Return one row per study: its runs, and where they come from."""
-    head = ["Study", "Title", "Runs", "Solved", "Source revision"]
-    rows = [
+def _cases(judgements: Iterable[Judgement]) -> Table:
+    """Return one row per case."""
+    kinds = {Verdict.FAILS: "warning", Verdict.UNKNOWN: "warning"}
+    rows: list[Row] = [
         [
-            Cell(name),
-            Cell(str(runs.attrs.get("title", ""))),
-            Cell(str(count(runs)), "number"),
-            Cell(str(runs.attrs.get("created", ""))),
-            Cell(str(runs.attrs.get("source_revision", ""))),
+            judgement.case,
+            _numbers_text(judgement) or "–",
+            Cell(judgement.verdict, kinds.get(judgement.verdict, "")),
+            judgement.why,
         ]
-        for name, runs in data.items()
+        for judgement in judgements
     ]
+    return Table("Judged cases", ["Case or reading", "Our number", "Verdict", "Why"], rows)
+
+
+def _solved(data: Mapping[str, xr.Dataset]) -> Table:
+    """Return one row per study: its runs, and where they come from."""
+    rows: list[Row] = []
+    for name, runs in data.items():
+        title, created, revision = (
+            str(runs.attrs.get(key, "")) for key in ("title", "created", "source_revision")
+        )
+        rows.append([name, title, Cell(str(count(runs)), "number"), created, revision])
+    head = ["Study", "Title", "Runs", "Solved", "Source revision"]
     return Table("Studies that the verdicts are computed from", head, rows)
 
 
-def _write_claims(judged: Iterable[JudgedStatement], path: Path) -> None:
-    """Write one row per judgement, with its numbers as text."""
-    head = ["claim", "statement", "case", "test", "numbers", "verdict", "why"]
-    rows = (
-        [
-            entry.statement.name,
-            entry.statement.text,
-            judgement.case,
-            entry.statement.test,
-            _numbers_text(judgement),
-            str(judgement.verdict),
-            judgement.why,
-        ]
-        for entry in judged
-        for judgement in entry.judgements
-    )
-    _write(path, head, rows)
+def _write_tables(judged: Judged, output: Path) -> None:
+    """Write claims.csv, one row per judgement, and numbers.csv, one row per number in SI units.
 
-
-def _write_numbers(judged: Iterable[JudgedStatement], path: Path) -> None:
-    """Write one row per number, in SI units; an unknown uncertainty is "nan"."""
-    head = ["claim", "case", "number", "value", "uncertainty", "units"]
-    rows = (
-        [
-            entry.statement.name,
-            judgement.case,
-            number.name,
-            f"{number.value:.9g}",
-            f"{number.uncertainty:.3g}",
-            number.units,
-        ]
-        for entry in judged
-        for judgement in entry.judgements
-        for number in judgement.numbers
-    )
-    _write(path, head, rows)
-
-
-def _write(path: Path, head: list[str], rows: Iterable[list[str]]) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with replaced(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(head)
-        writer.writerows(rows)
+    An unknown uncertainty is "nan".
+    """
+    claims = [["claim", "statement", "case", "test", "numbers", "verdict", "why"]]
+    numbers = [["claim", "case", "number", "value", "uncertainty", "units"]]
+    for statement, judgements in judged:
+        for each in judgements:
+            about = [statement.name, statement.text, each.case, statement.test]
+            claims.append([*about, _numbers_text(each), str(each.verdict), each.why])
+            for one in each.numbers:
+                values = [f"{one.value:.9g}", f"{one.uncertainty:.3g}"]
+                numbers.append([statement.name, each.case, one.name, *values, one.units])
+    output.mkdir(parents=True, exist_ok=True)
+    for name, rows in (("claims.csv", claims), ("numbers.csv", numbers)):
+        with replaced(output / name) as path, path.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
 
 
 def _numbers_text(judgement: Judgement) -> str:
@@ -197,24 +172,19 @@ def _numbers_text(judgement: Judgement) -> str:
 
 
 def _number_text(number: Number) -> str:
-    """Return name, value and uncertainty: "peak force: 12.34 ± 0.11 kN"."""
-    unit = _unit(number)
+    """Return name, value and uncertainty: "peak force: 12.34 ± 0.11 kN".
+
+    The value has the significant digits down to the second of the uncertainty, 2 to 5.
+    """
+    unit = display(xr.DataArray([number.value], attrs={"units": number.units}))
+    if number.percent:
+        unit = Display(100.0, "%")
     value, width = float(unit(number.value)), float(unit(number.uncertainty))
-    text = labels.number(value, _digits(value, width))
+    digits = 5
+    if value and width and np.isfinite(value) and np.isfinite(width):
+        value_power, width_power = np.floor(np.log10([abs(value), width]))
+        digits = int(np.clip(value_power - width_power + 2, 2, 5))
+    text = labels.number(value, digits)
     if width:
         text = f"{text} ± {labels.number(width, 2) if np.isfinite(width) else 'unknown'}"
     return f"{number.name}: {text} {unit.symbol}".strip()
-
-
-def _unit(number: Number) -> Display:
-    if number.percent:
-        return Display(100.0, "%")
-    return display(xr.DataArray([number.value], attrs={"units": number.units}))
-
-
-def _digits(value: float, width: float) -> int:
-    """Return the significant digits down to the second of the uncertainty, 2 to 5."""
-    if not (value and width and np.isfinite(value) and np.isfinite(width)):
-        return 5
-    value_power, width_power = np.floor(np.log10([abs(value), width]))
-    return int(np.clip(value_power - width_power + 2, 2, 5))

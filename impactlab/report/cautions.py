@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,41 +33,29 @@ _ENERGY_LIMIT = 1e-3
 
 def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """Return sentences, the gravest first; none when there is nothing to warn of."""
-    found = (
-        _stale(runs, analysis),
-        _failures(runs),
-        _outside(runs),
-        _verdicts(runs, analysis),
-        _imputed(runs, analysis),
-        _numerical(runs, analysis),
-        _strain(runs, analysis),
-        _values(runs),
-        _remarks(runs),
-    )
-    return [sentence for sentences in found for sentence in sentences]
+    return [
+        *_failures(runs, analysis),
+        *_verdicts(runs, analysis),
+        *_reliance(runs, analysis),
+        *_values(runs),
+    ]
 
 
-def _stale(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """Compare the times of solving: an analysis carries the attributes of its runs."""
-    if analysis.attrs.get("created", runs.attrs.get("created")) != runs.attrs.get("created"):
+def _failures(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+    """Yield sentences on an analysis of other runs, failed runs, and laws beyond their range."""
+    solved = runs.attrs.get("created")
+    if analysis.attrs.get("created", solved) != solved:
         yield (
             "The analysis does not belong to these runs: it was made from runs that were solved at "
             "another time. The verdicts and indices below may be wrong; repeat the analysis "
             "(impactlab analyse)."
         )
-
-
-def _failures(runs: xr.Dataset) -> Iterator[str]:
     if failed := int(access.failed(runs).sum()):
         yield (
             f"{failed} of {count(runs)} runs failed: each lacks at least one response and is left "
             "out of the figures and tables of that response. The failed runs are listed below with "
             "the reason."
         )
-
-
-def _outside(runs: xr.Dataset) -> Iterator[str]:
-    """Yield one sentence per contact law that was used beyond its range."""
     if "status" not in runs or "contact" not in runs.coords:
         return
     beyond = (runs["status"] & MARKS["outside_contact_law"][0]) != 0
@@ -92,29 +81,23 @@ def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
             yield f"{text}: {labels.listing(names)} ({flag})."
 
 
-def _imputed(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+def _reliance(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+    """Yield sentences on numbers that rest on a surrogate or on the discretisation."""
     if "imputed_share" in analysis and bool((analysis["imputed_share"] > 0).any()):
-        worst = labels.number(100 * float(analysis["imputed_share"].max()), 2)
+        worst = labels.percent(float(analysis["imputed_share"].max()))
         yield (
             "A surrogate fitted to the successful runs supplied the values of failed runs, up to "
-            f"{worst} % of the runs per response; the indices of these responses depend on it."
+            f"{worst} of the runs per response; the indices of these responses depend on it."
         )
-
-
-def _numerical(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
     if number := len(numerical_warnings(runs, analysis)):
         yield (
             "Some indices are smaller than the change that the numerical error could cause; see "
             f"“Numerical uncertainty” ({labels.counted(number, 'warning')})."
         )
-
-
-def _strain(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """Warn of PEEQ without a verdict of its own, which it needs with hardening, too."""
-    name = "peak_plastic_strain"
-    if name not in runs or access.verdict(analysis, "nodes_summary", name):
+    strain = "peak_plastic_strain"
+    if strain not in runs or access.verdict(analysis, "nodes_summary", strain):
         return
-    if bool((usable(runs, name) > 0).any()):
+    if bool((usable(runs, strain) > 0).any()):  # hardening does not make it converge
         yield (
             "The peak plastic strain depends on the number of nodes, which this study does not "
             "vary: compare it between runs, but do not treat it as a converged value."
@@ -122,7 +105,7 @@ def _strain(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
 
 
 def _values(runs: xr.Dataset) -> Iterator[str]:
-    """Warn of numbers that physics or numerics should not give."""
+    """Yield sentences on numbers that physics or numerics should not give, and on remarks."""
     if "energy_error" in runs:
         error = usable(runs, "energy_error")
         if number := int((error > _ENERGY_LIMIT).sum()):
@@ -133,12 +116,7 @@ def _values(runs: xr.Dataset) -> Iterator[str]:
             )
     if "restitution" in runs and (number := int((usable(runs, "restitution") > 1).sum())):
         yield f"The coefficient of restitution is above 1 in {number} of {count(runs)} runs."
-
-
-def _remarks(runs: xr.Dataset) -> Iterator[str]:
-    if "remarks" not in runs:
-        return
-    for bit, text in WARNINGS.values():
+    for bit, text in WARNINGS.values() if "remarks" in runs else ():
         if number := int(((runs["remarks"] & bit) != 0).sum()):
             yield f"In {number} of {count(runs)} runs {text}."
 
@@ -156,14 +134,9 @@ def notes(runs: xr.Dataset) -> list[str]:
     return [note.text for note in NOTES if note.applies(runs)]
 
 
-def _holds(runs: xr.Dataset, name: str, value: Any) -> bool:
-    """Return whether a parameter has this value in some run."""
-    return name in runs.coords and value in np.ravel(runs[name].values).tolist()
-
-
-def _few_lobatto_points(runs: xr.Dataset) -> bool:
-    few = _holds(runs, "points", 2) or _holds(runs, "points", 3)
-    return few and _holds(runs, "rule", "lobatto")
+def _holds(runs: xr.Dataset, name: str, values: list[Any]) -> bool:
+    """Return whether a parameter has one of these values in some run."""
+    return name in runs.coords and bool(runs[name].isin(values).any())
 
 
 def _about(law: str) -> str:
@@ -193,7 +166,7 @@ NOTES = (
         "contact within the simulated time and do not include a later contact.",
     ),
     *(
-        Note(lambda runs, law=law: _holds(runs, "contact", law), _about(law))  # type: ignore[misc]
+        Note(partial(_holds, name="contact", values=[law]), _about(law))
         for law in LAWS
         if CONTACT_LAWS[law].flaws or CONTACT_LAWS[law].unconfirmed
     ),
@@ -204,7 +177,7 @@ NOTES = (
         "the spacing, with 5 it still grows, and with 9 or more it grows slowly.",
     ),
     Note(
-        lambda runs: _holds(runs, "scheme", "semi_implicit"),
+        lambda runs: _holds(runs, "scheme", ["semi_implicit"]),
         "The semi-implicit scheme takes time steps of half the time that a bar wave needs to cross "
         "one spacing: with many nodes they are longer than those of leapfrog, with few they are "
         "shorter. It converges to the same answers, with errors of about the same size for the "
@@ -212,7 +185,7 @@ NOTES = (
         "the two schemes, because it does not converge.",
     ),
     Note(
-        _few_lobatto_points,
+        lambda runs: _holds(runs, "points", [2, 3]) and _holds(runs, "rule", ["lobatto"]),
         "Few Lobatto points change the beam itself: 2 points make it 3 times too stiff, and "
         "with 3 points its full plastic moment equals the yield moment.",
     ),

@@ -31,14 +31,13 @@ def print_responses(run: Any) -> None:
 
     run: a dataset of simulate, or one record of solver.outputs.RESPONSE.
     """
-    table = Table("response", "value", "unit", "meaning")
+    rows = []
     for name, entry in RESPONSES.items():
         value = run[name].item()
-        table.add_row(
-            name, "missing" if value != value else f"{value:.6g}", entry.units, entry.long_name
-        )
+        text = "missing" if math.isnan(value) else f"{value:.6g}"
+        rows.append((name, text, entry.units, entry.long_name))
+    _print_table(("response", "value", "unit", "meaning"), rows)
     console = Console()
-    console.print(table)
     for reason in reasons(run["status"].item()):
         console.print(
             f"A response is missing because {reason}; a longer duration may help.", markup=False
@@ -52,27 +51,19 @@ def print_predictions(predicted: Any) -> None:
 
     predicted: a dataset of Surrogate.predict at one point.
     """
-    table = Table("response", "prediction", "unit", "rms error", "Q2", "verdict")
+    rows = []
     for name, found in predicted.data_vars.items():
         value, attrs = found.item(), found.attrs
-        gap = value != value
-        table.add_row(
-            str(name),
-            "none" if gap else f"{value:.6g}",
-            attrs["units"],
-            "–" if gap else f"{attrs['rmse']:.2g}",
-            "–" if gap else f"{attrs['q2']:.4f}",
-            attrs["verdict"].replace("_", " "),
-        )
-    Console().print(table)
+        numbers = ("none", attrs["units"], "–", "–")
+        if not math.isnan(value):
+            numbers = (f"{value:.6g}", attrs["units"], f"{attrs['rmse']:.2g}", f"{attrs['q2']:.4f}")
+        rows.append((str(name), *numbers, attrs["verdict"].replace("_", " ")))
+    _print_table(("response", "prediction", "unit", "rms error", "Q2", "verdict"), rows)
 
 
 def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
     """Print one line per study: name, number of runs or checks, title."""
-    table = Table("study", "size", "title")
-    for row in rows:
-        table.add_row(*map(escape, row))
-    Console().print(table)
+    _print_table(("study", "size", "title"), [map(escape, row) for row in rows])
 
 
 def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable[Problem]) -> None:
@@ -80,7 +71,10 @@ def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable
 
     room: bytes of disk that it may use.
     """
-    at = ", ".join(f"{name} = {_short(value)}" for name, value in cost.largest_run.items())
+    at = ", ".join(
+        f"{name} = {value if isinstance(value, str) else f'{value:.4g}'}"
+        for name, value in cost.largest_run.items()
+    )
     lines = {
         "runs": f"{cost.runs:,}",
         "cost": f"about {time(cost.seconds)} of one core, most of it by {cost.slow}",
@@ -102,17 +96,14 @@ def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable
 
 def print_outcomes(outcomes: Iterable[Outcome]) -> None:
     """Print one line per check: verdict, comparisons passed, largest error over tolerance."""
-    table = Table("check", "verdict", "passed", "worst error / tolerance", "seconds")
+    rows = []
     for outcome in gravest_first(outcomes):
         total, worst = len(outcome.finding.comparisons), outcome.worst
-        table.add_row(
-            escape(outcome.name),
-            outcome.verdict.upper() if outcome.verdict != "passed" else "passed",
-            f"{total - len(outcome.failures)} of {total}",
-            f"{worst.ratio:.2g}" if worst else "–",
-            f"{outcome.seconds:.1f}",
-        )
-    Console().print(table)
+        passed = f"{total - len(outcome.failures)} of {total}"
+        verdict = outcome.verdict if outcome.verdict == "passed" else outcome.verdict.upper()
+        ratio = f"{worst.ratio:.2g}" if worst else "–"
+        rows.append((escape(outcome.name), verdict, passed, ratio, f"{outcome.seconds:.1f}"))
+    _print_table(("check", "verdict", "passed", "worst error / tolerance", "seconds"), rows)
 
 
 def print_status(name: str, found: Status) -> None:
@@ -122,19 +113,17 @@ def print_status(name: str, found: Status) -> None:
     if found.failed:
         print(f"failed: {found.failed:,} lack a requested response")
     if found.age is not None:
-        print(f"on disk: {decimal(found.size)}, last written {_age(found.age)} ago")
+        print(f"on disk: {decimal(found.size)}, last written {time(found.age)} ago")
     print(f"at work: {found.holder or 'nobody'}")
 
 
 def print_files(reasons_of: Mapping[Path, str]) -> None:
     """Print one line per file that can be removed, with size and reason; then the total size."""
-    table = Table(Column("file", overflow="fold"), "size", "why")
-    for path, reason in reasons_of.items():
-        table.add_row(escape(str(path)), decimal(path.stat().st_size), reason)
-    Console().print(table)
-    total = sum(path.stat().st_size for path in reasons_of)
-    files = "1 file" if len(reasons_of) == 1 else f"{len(reasons_of)} files"
-    print(f"{files}, {decimal(total)}")
+    sizes = {path: path.stat().st_size for path in reasons_of}
+    rows = [(escape(str(path)), decimal(sizes[path]), why) for path, why in reasons_of.items()]
+    _print_table((Column("file", overflow="fold"), "size", "why"), rows)
+    files = "1 file" if len(sizes) == 1 else f"{len(sizes)} files"
+    print(f"{files}, {decimal(sum(sizes.values()))}")
 
 
 def print_recommendation(found: xr.Dataset) -> None:
@@ -142,16 +131,31 @@ def print_recommendation(found: xr.Dataset) -> None:
 
     found: the dataset of study.adaptive.recommendation.
     """
+    best, tolerance = int(found["recommended"]), f"{100 * found.attrs['tolerance']:g} %"
+    if best < 0:
+        most = int(found["nodes"].max())
+        head = f"No discretisation up to {most} nodes meets {tolerance} for any requested response."
+    else:
+        chosen = found.isel(candidate=best)
+        grid = ", ".join(f"{axis} = {chosen[f'candidate_{axis}'].item():g}" for axis in _AXES)
+        head = (
+            f"The cheapest discretisation for {tolerance} is {grid}; it costs "
+            f"{chosen['candidate_cost'].item():.2g} times as much as the study's own."
+        )
     console = Console()
-    best = int(found["recommended"])
-    console.print(_headline(found, best), markup=False)
-    table = Table(Column("response", no_wrap=True), "total", *_AXES, "checked", "")
+    console.print(head, markup=False)
     evidence = _evidence(found, best)
+    rows = []
     for name in found["response"].values:
-        shares = [_percent(column.sel(response=name)) for column in evidence.values()]
-        remark = _remark(found.sel(response=name))
-        table.add_row(str(name), *shares, *[""] * (len(table.columns) - 2 - len(shares)), remark)
-    console.print(table)
+        shares = [float(column.sel(response=name)) for column in evidence]
+        texts = [
+            f"{float(f'{100 * one:.2g}'):g} %" if math.isfinite(one) else "no bound"
+            for one in shares
+        ]
+        own = found.sel(response=name)
+        remark = ("" if own["reached"] else "not reached") if own["asked"] else "not asked"
+        rows.append((str(name), *texts, *[""] * (len(_AXES) + 2 - len(texts)), remark))
+    _print_table((Column("response", no_wrap=True), "total", *_AXES, "checked", ""), rows)
     console.print(
         "The table gives the largest relative uncertainty over the "
         f"{found.sizes['case']} corner cases, in total and per axis. The check is the difference "
@@ -160,61 +164,27 @@ def print_recommendation(found: xr.Dataset) -> None:
     )
 
 
-def _age(seconds: float) -> str:
-    """Return a time span in its largest unit: 3 minutes."""
-    for unit, length in (("day", 86_400), ("hour", 3600), ("minute", 60)):
-        if seconds >= length:
-            count = int(seconds // length)
-            return f"{count} {unit}{'s' if count > 1 else ''}"
-    return f"{int(seconds)} s"
-
-
-def _short(value: Any) -> str:
-    return value if isinstance(value, str) else f"{value:.4g}"
-
-
-def _headline(found: xr.Dataset, best: int) -> str:
-    tolerance = f"{100 * found.attrs['tolerance']:g} %"
-    if best < 0:
-        most = int(found["nodes"].max())
-        return f"No discretisation up to {most} nodes meets {tolerance} for any requested response."
-    chosen = found.isel(candidate=best)
-    grid = ", ".join(f"{axis} = {chosen[f'candidate_{axis}'].item():g}" for axis in _AXES)
-    cost = chosen["candidate_cost"].item()
-    return (
-        f"The cheapest discretisation for {tolerance} is {grid}; it costs {cost:.2g} times as much "
-        "as the study's own."
-    )
-
-
-def _evidence(found: xr.Dataset, best: int) -> dict[str, xr.DataArray]:
+def _evidence(found: xr.Dataset, best: int) -> list[xr.DataArray]:
     """Return columns on (response): the uncertainty, its parts per axis, and the check.
 
     best: the recommended candidate; without one (-1), the least uncertainty of all candidates.
     """
     if best < 0:
-        return {"all": found["candidate_uncertainty"].min("candidate")}
+        return [found["candidate_uncertainty"].min("candidate")]
     from impactlab.study.adaptive.levels import relative  # late: it loads the solver
 
     chosen = found.isel(candidate=best)
     last = found["nodes_value"].isel(nodes=-1, drop=True)
-    parts = {
-        axis: found[f"{axis}_uncertainty"].sel(
-            {axis: chosen[f"candidate_{axis}"].item()}, drop=True
-        )
+    parts = [
+        found[f"{axis}_uncertainty"].sel({axis: chosen[f"candidate_{axis}"].item()}, drop=True)
         for axis in _AXES
-    }
-    parts["checked"] = found["check_difference"]
-    shares = {name: relative(amount, last).max("case") for name, amount in parts.items()}
-    return {"all": chosen["candidate_uncertainty"]} | shares
+    ]
+    shares = [relative(part, last).max("case") for part in (*parts, found["check_difference"])]
+    return [chosen["candidate_uncertainty"], *shares]
 
 
-def _remark(found: xr.Dataset) -> str:
-    if not found["asked"]:
-        return "not asked"
-    return "" if found["reached"] else "not reached"
-
-
-def _percent(share: xr.DataArray) -> str:
-    value = float(share)
-    return f"{float(f'{100 * value:.2g}'):g} %" if math.isfinite(value) else "no bound"
+def _print_table(head: Iterable[str | Column], rows: Iterable[Iterable[str]]) -> None:
+    table = Table(*head)
+    for row in rows:
+        table.add_row(*row)
+    Console().print(table)

@@ -2,116 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
 from impactlab.figures import access, labels
-from impactlab.figures.access import known, responses
-from impactlab.report.page import Cell, Table
-
-
-@dataclass(frozen=True)
-class Refinement:
-    """One refined axis.
-
-    table: one row per response. remarks: how to read it. meanings: verdicts and behaviours that
-    occur, each with its meaning.
-    """
-
-    table: Table
-    remarks: list[str]
-    meanings: list[tuple[str, str]]
-
-
-def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Refinement]:
-    """Return the axes that the analysis has, in the order space, time, depth."""
-    return [
-        Refinement(
-            table(runs, analysis, axis, caption),
-            [reading, *_remarks(analysis, axis)],
-            _meanings(analysis, axis),
-        )
-        for axis, (caption, table, reading) in _AXES.items()
-        if f"{axis}_summary" in analysis
-    ]
-
-
-def _meanings(analysis: xr.Dataset, axis: str) -> list[tuple[str, str]]:
-    """Return each behaviour and verdict that occurs, in words, with its meaning."""
-    found: dict[str, str] = {}
-    for kind in ("behaviour", "summary", "verdict"):
-        if f"{axis}_{kind}" in analysis:
-            flags = access.occurring(analysis[f"{axis}_{kind}"])
-            found |= {flag.words: flag.meaning for flag in flags if flag.meaning}
-    return sorted(found.items())
-
-
-def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:
-    """Return what is refined along with the axis, and which responses have no limit by design."""
-    summary = analysis[f"{axis}_summary"]
-    without = [line.partition(": ") for line in summary.attrs.get("without_limit", "").splitlines()]
-    reasons = [
-        f"The {labels.response(name)} is not convergent by design: {reason}."
-        for name, _, reason in without
-        if _counts(analysis, f"{axis}_behaviour", name).get("not convergent by design")
-    ]
-    return [*filter(None, [str(summary.attrs.get("comment", ""))]), *reasons]
-
-
-def _refined(runs: xr.Dataset, analysis: xr.Dataset, axis: str, caption: str) -> Table:
-    """Return the table of an axis with an order of convergence: nodes, time step."""
-    head = [
-        "Response",
-        "Worst verdict",
-        "Verdicts over the grid",
-        "Observed order",
-        "Largest GCI",
-        "Order of the fit",
-        "Uncertainty by the fit",
-        "Numerical uncertainty",
-    ]
-    rows = [
-        [
-            *_verdicts(analysis, axis, name),
-            Cell(_spread(analysis, f"{axis}_observed_order", name), "number"),
-            _gci(analysis, axis, name),
-            Cell(_spread(analysis, f"{axis}_fit_order", name), "number"),
-            Cell(_percent(_largest(analysis, f"{axis}_fit_uncertainty", name)), "number"),
-            Cell(_percent(_largest(analysis, f"{axis}_uncertainty", name)), "number"),
-        ]
-        for name in responses(runs)
-        if known(analysis, name)
-    ]
-    return Table(caption, head, rows)
-
-
-def _points(runs: xr.Dataset, analysis: xr.Dataset, axis: str, caption: str) -> Table:
-    """Return the table of integration points: how many each rule needs."""
-    rules = _rules(analysis)
-    head = ["Response", "Worst verdict", "Verdicts over the grid"]
-    head += [f"Points needed for 1 %{f', {rule}' if rule else ''}" for rule in rules]
-    rows = [
-        [
-            *_verdicts(analysis, axis, name),
-            *(_needed(analysis, name, where) for where in rules.values()),
-            Cell(_percent(_largest(analysis, "points_uncertainty", name)), "number"),
-        ]
-        for name in responses(runs)
-        if known(analysis, name)
-    ]
-    return Table(caption, [*head, "Numerical uncertainty with the most points"], rows)
-
-
-def _rules(analysis: xr.Dataset) -> dict[str, dict[str, int]]:
-    """Return the index of each integration rule; {"": {}} where the rule is not varied."""
-    if "points_needed" not in analysis or "rule" not in analysis["points_needed"].dims:
-        return {"": {}}
-    names = labels.values(analysis["rule"], range(analysis.sizes["rule"]))
-    return {name: {"rule": at} for at, name in enumerate(names)}
-
+from impactlab.figures.measures import analysed
+from impactlab.report.page import Cell, Refinement, Row, Section, Table, largest
 
 _ORDERS = (
     "The observed order, the grid convergence index (GCI) and the asymptotic ratio come from the "
@@ -125,101 +25,142 @@ _RULES = (
     "three times the difference from the next smaller number, because the error need not follow a "
     "power of the number of points."
 )
-_AXES: dict[str, tuple[str, Callable[[xr.Dataset, xr.Dataset, str, str], Table], str]] = {
-    "nodes": ("Convergence in nodes along the span", _refined, _ORDERS),
-    "time_step": ("Convergence in the time step at fixed nodes", _refined, _ORDERS),
-    "element_size": ("Convergence in the size of the solid elements", _refined, _ORDERS),
-    "points": ("Convergence in integration points over the depth", _points, _RULES),
+_AXES = {
+    "nodes": ("Convergence in nodes along the span", _ORDERS),
+    "time_step": ("Convergence in the time step at fixed nodes", _ORDERS),
+    "element_size": ("Convergence in the size of the solid elements", _ORDERS),
+    "points": ("Convergence in integration points over the depth", _RULES),
 }
-"""Caption, table and explanation of each axis."""
+"""Caption and explanation of each axis, in the order space, time, depth."""
+Columns = dict[str, Callable[[xr.Dataset], Cell]]
+"""Heads, and functions from the analysis of one response to its cell."""
 
 
-def _verdicts(analysis: xr.Dataset, axis: str, name: str) -> list[Cell]:
-    verdict = access.verdict(analysis, f"{axis}_summary", name)
-    text = verdict.words if verdict else "not judged"
-    kind = "" if verdict and verdict.sound else "warning"
-    return [
-        Cell(labels.sentence(labels.response(name))),
-        Cell(text, kind),
-        Cell(_tally(analysis, axis, name), detail=_behaviours(analysis, axis, name)),
-    ]
+def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
+    """Return the section on the axes that the analysis has, or none."""
+    refinements = []
+    for axis, (caption, explanation) in _AXES.items():
+        if f"{axis}_summary" not in analysis:
+            continue
+        columns = _points_columns(analysis) if axis == "points" else _refined_columns(axis)
+        rows: list[Row] = []
+        for name in analysed(runs, analysis):
+            found = analysis.sel(response=name)
+            verdict = access.verdict(analysis, f"{axis}_summary", name)
+            kind = "" if verdict and verdict.sound else "warning"
+            rows.append(
+                [
+                    labels.sentence(labels.response(name)),
+                    Cell(verdict.words if verdict else "not judged", kind),
+                    _over_the_grid(found, axis),
+                    *(cell(found) for cell in columns.values()),
+                ]
+            )
+        head = ["Response", "Worst verdict", "Verdicts over the grid", *columns]
+        remarks = [explanation, *_remarks(analysis, axis)]
+        meanings: dict[str, str] = {}
+        for kind in ("behaviour", "summary", "verdict"):
+            if f"{axis}_{kind}" in analysis:
+                flags = access.occurring(analysis[f"{axis}_{kind}"])
+                meanings |= {flag.words: flag.meaning for flag in flags if flag.meaning}
+        refinements.append(
+            Refinement(Table(caption, head, rows), remarks, sorted(meanings.items()))
+        )
+    return [Section("convergence", "Convergence", refinements=refinements)] if refinements else []
 
 
-def _tally(analysis: xr.Dataset, axis: str, name: str) -> str:
-    """Count each verdict over the rest of the grid: "converged 22, divergent 2"."""
-    if f"{axis}_tally" not in analysis:
-        return "–"
-    tally = analysis[f"{axis}_tally"].sel(response=name)
-    outcomes = tally[f"{axis}_outcome"].values
-    pairs = zip(outcomes, tally.values, strict=True)
-    return _listed({str(flag).replace("_", " "): int(n) for flag, n in pairs if n})
+def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:
+    """Return what is refined along with the axis, and which responses have no limit by design."""
+    attrs = analysis[f"{axis}_summary"].attrs
+    remarks = [str(attrs["comment"])] if attrs.get("comment") else []
+    for line in attrs.get("without_limit", "").splitlines():
+        name, _, reason = line.partition(": ")
+        if "not convergent by design" in _behaviours(analysis.sel(response=name), axis):
+            response = labels.response(name)
+            remarks.append(f"The {response} is not convergent by design: {reason}.")
+    return remarks
 
 
-def _behaviours(analysis: xr.Dataset, axis: str, name: str) -> str:
-    """Return how the three finest grids behave; "" for an axis without an order."""
-    counts = _counts(analysis, f"{axis}_behaviour", name)
-    return f"behaviour: {_listed(counts)}" if counts else ""
+def _refined_columns(axis: str) -> Columns:
+    """Return the columns of an axis with an order of convergence."""
+    return {
+        "Observed order": partial(_spread, variable=f"{axis}_observed_order"),
+        "Largest GCI": partial(_gci, axis=axis),
+        "Order of the fit": partial(_spread, variable=f"{axis}_fit_order"),
+        "Uncertainty by the fit": partial(largest, variable=f"{axis}_fit_uncertainty"),
+        "Numerical uncertainty": partial(largest, variable=f"{axis}_uncertainty"),
+    }
 
 
-def _gci(analysis: xr.Dataset, axis: str, name: str) -> Cell:
-    """Return the largest index, with the range of asymptotic ratios where there is one."""
-    ratio = _spread(analysis, f"{axis}_asymptotic_ratio", name)
-    detail = "" if ratio == "–" else f"asymptotic ratio {ratio}"
-    return Cell(_percent(_largest(analysis, f"{axis}_gci", name)), "number", detail)
+def _points_columns(analysis: xr.Dataset) -> Columns:
+    """Return the columns of integration points: how many each rule needs, where it is varied."""
+    columns: Columns = {}
+    needed = analysis.get("points_needed")
+    if needed is None or "rule" not in needed.dims:
+        columns["Points needed for 1 %"] = _needed
+    else:
+        for at, rule in enumerate(labels.values(analysis["rule"], range(analysis.sizes["rule"]))):
+            columns[f"Points needed for 1 %, {rule}"] = partial(_needed, rule=at)
+    head = "Numerical uncertainty with the most points"
+    return columns | {head: partial(largest, variable="points_uncertainty")}
 
 
-def _counts(analysis: xr.Dataset, variable: str, name: str) -> dict[str, int]:
-    """Count each flag, in words, over the rest of the grid."""
-    if variable not in analysis:
-        return {}
-    flags = analysis[variable].sel(response=name)
-    found = access.occurring(flags)
-    return {flag.words: int((flags == flag.value).sum()) for flag in found}
+def _over_the_grid(found: xr.Dataset, axis: str) -> Cell:
+    """Return the number of each verdict, and how the three finest grids behave where it is known.
+
+    The text is such as "converged 22, divergent 2".
+    """
+    verdicts = {}
+    if f"{axis}_tally" in found:
+        tally = found[f"{axis}_tally"]
+        pairs = zip(tally[f"{axis}_outcome"].values, tally.values, strict=True)
+        verdicts = {str(flag).replace("_", " "): int(number) for flag, number in pairs if number}
+    behaviours = _behaviours(found, axis)
+    detail = f"behaviour: {_listed(behaviours)}" if behaviours else ""
+    return Cell(_listed(verdicts) or "–", detail=detail)
+
+
+def _behaviours(found: xr.Dataset, axis: str) -> Counter[str]:
+    """Count each behaviour, in words, over the rest of the grid."""
+    if f"{axis}_behaviour" not in found:
+        return Counter()
+    flags = found[f"{axis}_behaviour"]
+    return Counter(
+        {flag.words: int((flags == flag.value).sum()) for flag in access.occurring(flags)}
+    )
 
 
 def _listed(counts: dict[str, int]) -> str:
-    return ", ".join(f"{flag} {number}" for flag, number in counts.items()) or "–"
+    return ", ".join(f"{flag} {number}" for flag, number in counts.items())
 
 
-def _needed(analysis: xr.Dataset, name: str, where: dict[str, int]) -> Cell:
-    """Return the range over the grid; say where not even the second most points stay within 1 %."""
-    if "points_needed" not in analysis:
+def _spread(found: xr.Dataset, variable: str) -> Cell:
+    """Return the range of the finite values over the rest of the grid."""
+    values = found[variable].values if variable in found else np.array([])
+    finite = values[np.isfinite(values)]
+    if not finite.size:
         return Cell("–", "number")
-    needed = analysis["points_needed"].sel(response=name).isel(where).values
+    low, high = (labels.number(float(end), digits=3) for end in (finite.min(), finite.max()))
+    return Cell(low if low == high else f"{low} to {high}", "number")
+
+
+def _gci(found: xr.Dataset, axis: str) -> Cell:
+    """Return the largest index, with the range of asymptotic ratios where there is one."""
+    ratio = _spread(found, f"{axis}_asymptotic_ratio").text
+    detail = "" if ratio == "–" else f"asymptotic ratio {ratio}"
+    return Cell(largest(found, f"{axis}_gci").text, "number", detail)
+
+
+def _needed(found: xr.Dataset, rule: int | None = None) -> Cell:
+    """Return the range over the grid; say where not even the second most points stay within 1 %."""
+    if "points_needed" not in found:
+        return Cell("–", "number")
+    needed = found["points_needed"].isel({} if rule is None else {"rule": rule}).values
     if np.isnan(needed).all():
         return Cell("none below the largest", "warning")
     text = f"{np.nanmin(needed):.0f}"
     if np.nanmax(needed) > np.nanmin(needed):
         text += f" to {np.nanmax(needed):.0f}"
     gaps = int(np.isnan(needed).sum())
-    return Cell(
-        text, "number", f"none below the largest at {gaps} of {needed.size} points" if gaps else ""
-    )
-
-
-def _finite(analysis: xr.Dataset, variable: str, name: str) -> np.ndarray:
-    if variable not in analysis:
-        return np.array([])
-    values = analysis[variable].sel(response=name).values
-    return np.asarray(values[np.isfinite(values)], dtype=float)
-
-
-def _spread(analysis: xr.Dataset, variable: str, name: str) -> str:
-    values = _finite(analysis, variable, name)
-    if not values.size:
-        return "–"
-    low, high = (labels.number(float(end), digits=3) for end in (values.min(), values.max()))
-    return low if low == high else f"{low} to {high}"
-
-
-def _largest(analysis: xr.Dataset, variable: str, name: str) -> float:
-    """Return the largest value; infinite where one is, NaN where there is none."""
-    if variable not in analysis:
-        return float("nan")
-    values = np.ravel(analysis[variable].sel(response=name).values)
-    values = values[~np.isnan(values)]
-    return float(values.max()) if values.size else float("nan")
-
-
-def _percent(share: float) -> str:
-    return "–" if np.isnan(share) else f"{labels.number(100 * share, digits=2)} %"
+    detail = f"none below the largest at {gaps} of {needed.size} points" if gaps else ""
+    return Cell(text, "number", detail)

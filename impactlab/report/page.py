@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import base64
+import csv
+import json
+import math
+import re
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cache
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
+from impactlab.figures import labels
+from impactlab.figures.draw import CAPTIONS
 from impactlab.files import replaced
 
 _PROVENANCE = {
@@ -28,6 +39,18 @@ _PROVENANCE = {
     "resamples": "Bootstrap resamples",
     "failed_runs": "Policy for failed runs",
 }
+_SCREEN = 1.3
+"""Figures are 8 pt at the width of a paper; on a screen that is small."""
+_FILES = {".csv": "CSV", ".nc": "netCDF", ".svg": "SVG", ".png": "PNG"}
+_MOST = 80
+"""Largest number of curve points in a table; bars with names are all listed."""
+_COLUMNS = {
+    "panel": "Panel",
+    "curve": "Curve",
+    "category": "Of",
+    "x_label": "Horizontal axis (x)",
+    "y_label": "Vertical axis (y)",
+}
 
 
 @dataclass(frozen=True)
@@ -39,22 +62,40 @@ class Cell:
     detail: str = ""
 
 
+Row = Sequence[Cell | str]
+"""Cells, of which those with plain text alone need no record; the first one heads the row."""
+
+
 @dataclass(frozen=True)
 class Table:
-    """A caption, the column heads, and rows as wide as the head; the first cell heads its row."""
+    """A caption, the column heads, and rows as wide as the head."""
 
     caption: str
     head: list[str]
-    rows: list[list[Cell]] = field(default_factory=list)
+    rows: Sequence[Row] = ()
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """One refined axis.
+
+    table: one row per response. remarks: how to read it. meanings: verdicts and behaviours that
+    occur, each with its meaning.
+    """
+
+    table: Table
+    remarks: list[str]
+    meanings: list[tuple[str, str]]
 
 
 @dataclass(frozen=True)
 class Section:
     """A heading and its content, in this order.
 
-    name: the anchor. lead: a paragraph. sentences: a list. tables: shown in full. figures: names of
-    figures (those that were not drawn are left out). folded: tables that the reader opens.
-    files: names of files beside the page.
+    name: the anchor. lead: a paragraph. sentences: a list. tables: shown in full. files: names of
+    files beside the page. figures: names of figures (those that were not drawn are left out).
+    folded: tables that the reader opens. refinements: of a convergence study. grave: it stands
+    out as a warning.
     """
 
     name: str
@@ -62,49 +103,50 @@ class Section:
     lead: str = ""
     sentences: list[str] = field(default_factory=list)
     tables: list[Table] = field(default_factory=list)
-    figures: list[str] = field(default_factory=list)
+    figures: Sequence[str] = ()
     folded: list[Table] = field(default_factory=list)
     files: list[str] = field(default_factory=list)
+    refinements: list[Refinement] = field(default_factory=list)
+    grave: bool = False
 
 
-def write_page(template: str, path: Path, **context: Any) -> None:
-    """Render a template of this package into a file, whole or not at all.
+@dataclass(frozen=True)
+class Picture:
+    """A numbered figure, as an image of its own, so that names inside SVGs cannot clash.
 
-    Raises OSError where the folder cannot be written.
+    alt: what it shows, in words. uri: the whole SVG as a data URI. width: on a screen, in CSS
+    pixels. data: its numbers, thinned; None for maps. files: (kind, name) of those in its folder.
     """
-    text = _environment().get_template(template).render(context)
+
+    number: int
+    name: str
+    title: str
+    caption: str
+    alt: str
+    uri: str
+    width: int
+    data: Table | None
+    files: list[tuple[str, str]]
+
+
+def write_page(
+    template: str, path: Path, package: str = "impactlab.report", **context: Any
+) -> None:
+    """Render a template of a package, which may use those of this one, into a file.
+
+    The file is written whole or not at all. Raises OSError where the folder cannot be written.
+    """
+    text = _environment(package).get_template(template).render(context)
     path.parent.mkdir(parents=True, exist_ok=True)
     with replaced(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
-def provenance(stored: xr.Dataset, what: str = "runs") -> Table:
-    """Return one row per attribute of provenance that a stored dataset has."""
-    rows = [
-        [Cell(label), Cell(_shown(key, str(stored.attrs[key])))]
-        for key, label in _PROVENANCE.items()
-        if key in stored.attrs
-    ]
-    return Table(f"Provenance of the {what}", ["What", "Value"], rows)
-
-
-def commands(
-    stored: xr.Dataset, command: str = "run", purpose: str = "solves this study again"
-) -> list[tuple[str, str]]:
-    """Return pairs (command, what it does) that reproduce the runs, or everything."""
-    name = stored.attrs.get("study", "NAME")
-    return [
-        (f"impactlab {command} studies/{name}.yaml", purpose),
-        (f"make study STUDIES={name}", "reproduces its results, figures and this report"),
-        ("make study", "reproduces all results, figures and reports"),
-    ]
-
-
 @cache
-def _environment() -> Environment:
+def _environment(package: str) -> Environment:
     """Return an environment that escapes every value and rejects misspelled names."""
     return Environment(
-        loader=PackageLoader("impactlab.report"),
+        loader=ChoiceLoader([PackageLoader(package), PackageLoader("impactlab.report")]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -113,11 +155,110 @@ def _environment() -> Environment:
     )
 
 
-def _shown(key: str, text: str) -> str:
-    """Return a time in readable form; other texts, and times that are not ISO, unchanged."""
-    if key != "created":  # a hash may look like a time
-        return text
+def described(
+    stored: xr.Dataset,
+    what: str = "runs",
+    command: str = "run",
+    purpose: str = "solves this study again",
+) -> dict[str, Any]:
+    """Return what the page of a study says of it: title, description, and how to reproduce it.
+
+    what: the contents of the dataset. command: makes them, for this purpose.
+    """
+    attrs = stored.attrs
+    name = attrs.get("study", "study")
+    return {
+        "title": str(attrs.get("title") or name),
+        "description": str(attrs.get("description", "")),
+        "provenance": provenance(stored, what),
+        "commands": (
+            (f"impactlab {command} studies/{name}.yaml", purpose),
+            (f"make study STUDIES={name}", "reproduces its results, figures and this report"),
+            ("make study", "reproduces all results, figures and reports"),
+        ),
+        "study_text": str(attrs.get("study_text", "")),
+    }
+
+
+def provenance(stored: xr.Dataset, what: str = "runs") -> Table:
+    """Return one row per attribute of provenance that a stored dataset has."""
+    shown = {key: str(stored.attrs[key]) for key in _PROVENANCE if key in stored.attrs}
+    with suppress(KeyError, ValueError):  # a time that is not ISO stays as it is
+        created = datetime.fromisoformat(shown["created"])
+        shown["created"] = created.strftime("%Y-%m-%d %H:%M:%S %Z").strip()
+    rows: list[Row] = [[_PROVENANCE[key], text] for key, text in shown.items()]
+    return Table(f"Provenance of the {what}", ["What", "Value"], rows)
+
+
+def largest(found: xr.Dataset, variable: str, text: Any = labels.percent) -> Cell:
+    """Return the largest number of a variable as text; a dash where it is not given."""
+    value = float(found[variable].max()) if variable in found else np.nan
+    return Cell("–" if np.isnan(value) else text(value), "number")
+
+
+def pictures(folder: Path, placed: Sequence[str] = ()) -> dict[str, Picture]:
+    """Return the figures that captions.json lists by name, numbered in its order.
+
+    placed: names in the order of the page; these come first. Raises FileNotFoundError, saying what
+    to do, when captions.json or a figure is not in the folder.
+    """
+    entries = json.loads(_read(folder / CAPTIONS))
+    order = {name: at for at, name in enumerate(placed)}
+    names = sorted(entries, key=lambda name: order.get(name, len(order)))
+    found = {}
+    for number, name in enumerate(names, 1):
+        entry, svg = entries[name], _read(folder / f"{name}.svg")
+        root = re.search(rb'<svg [^>]*?\bwidth="([\d.]+)pt"', svg)  # as matplotlib writes it
+        numbers = folder / f"{name}.csv"
+        found[name] = Picture(
+            number,
+            name,
+            entry["title"],
+            entry["caption"],
+            f"{entry['title']}. {entry['alt']}".strip(),
+            f"data:image/svg+xml;base64,{base64.b64encode(svg).decode('ascii')}",
+            round(float(root.group(1)) * 96 / 72 * _SCREEN) if root else 0,
+            drawn_data(numbers) if numbers.exists() else None,
+            [(kind, f"{name}{suffix}") for suffix, kind in _FILES.items()],
+        )
+    return found
+
+
+def _read(path: Path) -> bytes:
     try:
-        return datetime.fromisoformat(text).strftime("%Y-%m-%d %H:%M:%S %Z").strip()
-    except ValueError:
-        return text
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise FileNotFoundError(
+            f"{path} is missing: draw the figures again (impactlab figures)"
+        ) from None
+
+
+def drawn_data(path: Path) -> Table:
+    """Return one row per point: panel, curve, category and numbers; curves are thinned evenly.
+
+    path: NAME.csv as written by figures/data.py. Raises OSError where it cannot be read.
+    """
+    with path.open(encoding="utf-8", newline="") as file:
+        points = list(csv.DictReader(file))
+    named = any(row["category"] for row in points)
+    shown, axes = points, ["x"]
+    if not named:
+        step, axes = math.ceil(len(points) / _MOST), ["x", "y"]
+        curves = groupby(points, key=lambda row: (row["panel"], row["curve"]))
+        shown = [row for _, curve in curves for row in list(curve)[::step]]
+    differ = {key: {row[key] for row in shown} for key in _COLUMNS}
+    columns = [key for key in ("panel", "curve", "category") if differ[key] - {""}]
+    columns += [key for key in ("x_label", "y_label") if len(differ[key]) > 1]
+    head = [_COLUMNS[key] for key in columns]
+    for axis in axes:  # its label where all panels share it, else its letter
+        shared = differ[f"{axis}_label"]
+        head.append(axis if len(shared) > 1 else max(shared, default="") or axis)
+    rows = [
+        [
+            *(row[key] or "–" for key in columns),
+            *(Cell(labels.number(float(row[axis])), "number") for axis in axes),
+        ]
+        for row in shown
+    ]
+    part = "" if len(shown) == len(points) else f" ({len(shown)} of {len(points)} points)"
+    return Table(f"Data as drawn{part}", head, rows)

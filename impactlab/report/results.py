@@ -14,7 +14,7 @@ import xarray as xr
 from impactlab.figures import access, labels
 from impactlab.figures.access import count
 from impactlab.figures.draw import CAPTIONS, draw_all, draw_findings
-from impactlab.report.page import write_page
+from impactlab.report.page import described, write_page
 from impactlab.report.study import write_report
 from impactlab.report.verification import tally, write_verification
 from impactlab.study.netcdf import read_netcdf
@@ -34,24 +34,6 @@ class Kind:
     draw: Callable[..., object]
     write: Callable[..., object]
     counts: Callable[[xr.Dataset], tuple[str, str]]
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A study in the index.
-
-    size: how much there is; failed: what failed ("" for nothing). report, thumbnail: addresses
-    relative to the index ("" for none).
-    """
-
-    study: str
-    title: str
-    description: str
-    size: str
-    failed: str
-    report: str
-    thumbnail: str
-    alt: str
 
 
 def _runs(runs: xr.Dataset) -> tuple[str, str]:
@@ -94,41 +76,30 @@ def write_index(results: Path, path: Path) -> None:
     The page on the paper (results/paper) is linked where it exists. A report without the stored
     results that it was made from is left out. Raises OSError when `path` cannot be written.
     """
+
+    def address(target: Path) -> str:
+        return quote(Path(os.path.relpath(target, path.parent)).as_posix())
+
     entries = []
     for report in sorted(results.glob("*/report.html")):
-        stored = [kind for kind in (RUNS, FINDINGS) if report.with_name(kind.files[0]).exists()]
-        if stored:
-            entries.append(_entry(report.parent, stored[0], path.parent))
+        for kind in (RUNS, FINDINGS):
+            if report.with_name(kind.files[0]).exists():
+                with xr.open_dataset(report.with_name(kind.files[0])) as stored:
+                    size, failed = kind.counts(stored)
+                    entry = described(stored) | {"size": size, "failed": failed}
+                picture, alt = _thumbnail(report.with_name("figures"))
+                entry |= {"study": report.parent.name, "report": address(report), "alt": alt}
+                entries.append(entry | {"thumbnail": address(picture) if picture else ""})
+                break
     claims = results / "paper" / "claims.html"
-    address = _address(claims, path.parent) if claims.exists() else ""
-    write_page("index.html.j2", path, entries=entries, paper=address)
+    paper = address(claims) if claims.exists() else ""
+    write_page("index.html.j2", path, entries=entries, paper=paper)
 
 
-def _entry(folder: Path, kind: Kind, home: Path) -> Entry:
-    thumbnail, alt = _thumbnail(folder)
-    with xr.open_dataset(folder / kind.files[0]) as stored:
-        size, failed = kind.counts(stored)
-        return Entry(
-            study=folder.name,
-            title=str(stored.attrs.get("title") or folder.name),
-            description=str(stored.attrs.get("description", "")),
-            size=size,
-            failed=failed,
-            report=_address(folder / "report.html", home),
-            thumbnail=_address(thumbnail, home) if thumbnail else "",
-            alt=alt,
-        )
-
-
-def _thumbnail(folder: Path) -> tuple[Path | None, str]:
+def _thumbnail(figures: Path) -> tuple[Path | None, str]:
     """Return the study's first figure, and its title."""
-    captions = folder / "figures" / CAPTIONS
-    if captions.exists():
-        for name, entry in json.loads(captions.read_bytes()).items():
-            if (path := captions.with_name(f"{name}.svg")).exists():
-                return path, str(entry["title"])
+    if (figures / CAPTIONS).exists():
+        for name, entry in json.loads((figures / CAPTIONS).read_bytes()).items():
+            if (figures / f"{name}.svg").exists():
+                return figures / f"{name}.svg", str(entry["title"])
     return None, ""
-
-
-def _address(path: Path, home: Path) -> str:
-    return quote(Path(os.path.relpath(path, home)).as_posix())

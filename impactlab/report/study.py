@@ -3,24 +3,48 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from impactlab import wings
 from impactlab.analysis.sensitivity.indices import sensitivity_variables
 from impactlab.figures import access, labels
-from impactlab.figures.access import count, is_sample
+from impactlab.figures.access import (
+    count,
+    design_dims,
+    is_sample,
+    names,
+    responses,
+    usable,
+    varied,
+)
+from impactlab.figures.labels import display
+from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatters
-from impactlab.report import runs as of_runs
+from impactlab.model.parameters import PARAMETERS
 from impactlab.report import sensitivity
 from impactlab.report.cautions import cautions, notes
 from impactlab.report.convergence import convergence
 from impactlab.report.indices import numerical_sections
-from impactlab.report.page import Section, commands, provenance, write_page
-from impactlab.report.pictures import Picture, pictures
+from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
+from impactlab.variables import attributes
+
+_GRID_VALUES = 12
+"""A longer list of values of a grid is replaced by its range."""
+_FAILED_RUNS = 20
+"""Largest number of failed runs listed one by one."""
+_PRINTED_RUNS = 48
+"""Grids up to this size are printed run by run."""
+_COLUMNS = 6
+"""Responses side by side in a printed table."""
+_QUANTILES = {"5th percentile": 0.05, "Median": 0.5, "95th percentile": 0.95}
+_SCATTER = (
+    "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
+    "around a flat line suggest a parameter that matters together with others."
+)
 
 
 def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, path: Path) -> None:
@@ -30,73 +54,236 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     of a sample links indices.csv, which lies beside its analysis. Raises FileNotFoundError when a
     figure is missing, OSError when `path` cannot be written.
     """
-    first, then = _sections(runs, analysis)
-    placed = [name for section in (*first, *then) for name in section.figures]
-    ordered = _numbered(pictures(figures_folder), placed)
-    rest = [name for name in ordered if name not in placed]
-    if rest or not ordered:
+    sections = _sections(runs, analysis)
+    placed = [name for section in sections for name in section.figures]
+    drawn = pictures(figures_folder, placed)
+    rest = [name for name in drawn if name not in placed]
+    if rest or not drawn:
         lead = "" if rest else "This study stores no data that a figure could show."
-        then = [*then, Section("figures", "Figures", lead, figures=rest)]
-    name = str(runs.attrs.get("study", "study"))
+        sections.append(Section("figures", "Figures", lead, figures=rest))
+    if warnings := cautions(runs, analysis):
+        title = "Before using these numbers"
+        sections.insert(0, Section("cautions", title, sentences=warnings, grave=True))
+    if remarks := notes(runs):
+        sections.append(Section("notes", "Notes on the model", sentences=remarks))
     write_page(
         "report.html.j2",
         path,
-        title=str(runs.attrs.get("title") or name),
-        description=str(runs.attrs.get("description", "")),
+        **described(runs),
         method=labels.method(str(runs.attrs.get("method", "grid"))),
         runs=count(runs),
-        varied=of_runs.varied_parameters(runs),
+        varied=_varied_parameters(runs),
         failed=int(access.failed(runs).sum()),
-        cautions=cautions(runs, analysis),
-        notes=notes(runs),
-        convergence=convergence(runs, analysis),
-        pictures=ordered,
+        pictures=drawn,
         files=os.path.relpath(figures_folder, path.parent),
-        first=first,
-        then=then,
-        provenance=provenance(runs),
-        commands=commands(runs),
-        study_text=str(runs.attrs.get("study_text", "")),
+        sections=sections,
     )
 
 
-def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[list[Section], list[Section]]:
-    """Return the sections before the one on convergence, and those after it.
+def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
+    """Return the sections on inputs, runs and results, in the order of the page.
 
-    A grid: inputs, how the runs ended, what a wing adds; results. A sample: inputs, distributions,
-    scatters, indices, ranking; failures, numerical uncertainty.
+    A grid: inputs, how the runs ended, what a wing adds, convergence, results. A sample: inputs,
+    distributions, scatters, indices, ranking; failures, numerical uncertainty.
     """
+    inputs = [table for table in (_varied_parameters(runs), _fixed_parameters(runs)) if table.rows]
     if not is_sample(runs):
         added = wings.added("sections", runs)
-        more = added(runs, analysis) if added else []
         return [
-            of_runs.inputs(runs),
-            of_runs.outcome(runs, analysis),
-            *more,
-        ], [of_runs.results(runs)]
+            Section("runs", "What was run", tables=inputs),
+            _outcome(runs, analysis),
+            *(added(runs, analysis) if added else []),
+            *convergence(runs, analysis),
+            Section("results", "Results", tables=[_ranges(runs), *_all_values(runs)]),
+        ]
+    title = "Distribution of each response"
+    distributions = ["response_distributions"]
+    scattered = [figure.name for figure in scatters(runs)]
     file = "indices.csv" if sensitivity_variables(analysis) else ""
-    of_sample = [
-        of_runs.inputs(runs),
-        of_runs.results(runs, ("response_distributions",)),
-        _scatter(runs),
+    return [
+        Section("runs", "What was varied, and how", tables=inputs),
+        Section("results", title, tables=[_ranges(runs)], figures=distributions),
+        Section("scatter", "Each response against each parameter", _SCATTER, figures=scattered),
         *sensitivity.sections(runs, analysis, file),
-        of_runs.outcome(runs, analysis, ("failure_shares", "failure_map")),
+        _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         *numerical_sections(runs, analysis),
     ]
-    return of_sample, []
 
 
-def _scatter(runs: xr.Dataset) -> Section:
-    lead = (
-        "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
-        "around a flat line suggest a parameter that matters together with others."
-    )
-    names = [figure.name for figure in scatters(runs)]
-    return Section("scatter", "Each response against each parameter", lead, figures=names)
+def _varied_parameters(runs: xr.Dataset) -> Table:
+    """Return one row per varied parameter: its values, or its distribution and group."""
+    groups = dict(zip(names(runs, "varied"), names(runs, "groups"), strict=False))
+    rows: list[Row] = [
+        [
+            labels.sentence(labels.parameter(name)),
+            *_values(_described(runs, name)),
+            *([groups[name].replace("_", " ")] if groups else []),
+            Cell(name, "muted"),
+        ]
+        for name in varied(runs)
+    ]
+    head = ["Parameter", "Values", "Number", *["Group"] * bool(groups), "Key"]
+    return Table("Varied parameters", head, rows)
 
 
-def _numbered(drawn: Sequence[Picture], placed: Sequence[str]) -> dict[str, Picture]:
-    """Return the figures by name, numbered as they stand on the page: unplaced ones come last."""
-    order = {name: at for at, name in enumerate(placed)}
-    ranked = sorted(drawn, key=lambda picture: order.get(picture.name, len(order)))
-    return {picture.name: replace(picture, number=at) for at, picture in enumerate(ranked, 1)}
+def _fixed_parameters(runs: xr.Dataset) -> Table:
+    rows: list[Row] = []
+    for name in [*PARAMETERS, "duration"]:
+        if name in runs.coords and runs[name].ndim == 0 and name not in varied(runs):
+            coordinate = _described(runs, name)
+            label = labels.sentence(coordinate.attrs["long_name"])
+            text = labels.values(coordinate.expand_dims("one"), [0])[0] + labels.unit(coordinate)
+            rows.append([label, text, Cell(name, "muted")])
+    return Table("Parameters that are the same in every run", ["Parameter", "Value", "Key"], rows)
+
+
+def _described(runs: xr.Dataset, name: str) -> xr.DataArray:
+    """Return a coordinate with the attributes of the model's table, where that has it."""
+    table = attributes(name) if name in (*PARAMETERS, "duration") else {}
+    return runs[name].assign_attrs(table | runs[name].attrs)
+
+
+def _values(coordinate: xr.DataArray) -> Row:
+    """Return values and their number, or a distribution: "uniform: low 250 MPa, high 450 MPa"."""
+    unit, size, attrs = labels.unit(coordinate), coordinate.size, coordinate.attrs
+    if "distribution" in attrs:
+        arguments = []
+        for key, value in attrs.items():
+            scale, symbol = display(coordinate).scale, unit
+            if "geometric" in key:  # a ratio, without the parameter's unit
+                scale, symbol = 1.0, ""
+            if key not in ("distribution", "units", "long_name"):
+                text = labels.number(float(value) * scale)
+                arguments.append(f"{key.replace('_', ' ')} {text}{symbol}")
+        name = str(attrs["distribution"]).replace("_", "-")
+        return [f"{name}: {', '.join(arguments)}", Cell(f"{size} draws", "number")]
+    if size <= _GRID_VALUES or coordinate.dtype.kind not in "if":
+        return [", ".join(labels.values(coordinate, range(size))) + unit, str(size)]
+    ends = [int(np.argmin(coordinate.values)), int(np.argmax(coordinate.values))]
+    return [" to ".join(labels.values(coordinate, ends)) + unit, str(size)]
+
+
+def _outcome(runs: xr.Dataset, analysis: xr.Dataset, figures: list[str] | None = None) -> Section:
+    """Return the section on failed runs: how many, which and why.
+
+    A run failed when its status says so, or when one of its responses is missing. Sentences name
+    the responses whose indices rest on values from a surrogate.
+    """
+    failed, total = access.failed(runs), count(runs)
+    imputed = []
+    for name in analysed(runs, analysis) if "imputed_share" in analysis else ():
+        share = float(np.nan_to_num(analysis["imputed_share"].sel(response=name)))
+        if share > 0:
+            imputed.append(
+                f"For the indices of the {labels.response(name)}, a surrogate supplied the value "
+                f"of {labels.percent(share)} of the runs."
+            )
+    title = "How the runs ended"
+    if not failed.any():
+        return Section("outcome", title, f"All {total} runs gave every response.", imputed)
+    lead = f"{int(failed.sum())} of {total} runs failed: each lacks at least one response."
+    causes = access.causes(runs, failed)
+    rows: list[Row] = [[labels.sentence(why), Cell(str(n), "number")] for why, n in causes.items()]
+    reasons = Table("Reasons for the failures", ["Reason", "Runs"], rows)
+    tables = [reasons, _failed_runs(runs, failed)]
+    return Section("outcome", title, lead, imputed, tables, figures or [])
+
+
+def _failed_runs(runs: xr.Dataset, failed: xr.DataArray) -> Table:
+    dims = design_dims(runs, failed.dims)
+    positions = np.argwhere(failed.transpose(*dims).values).tolist()
+    rows: list[Row] = []
+    for position in positions[:_FAILED_RUNS]:
+        where = dict(zip(dims, position, strict=True))
+        why = access.causes(runs.isel(where), xr.DataArray(True))
+        absent = [
+            labels.response(name)
+            for name in responses(runs)
+            if bool(access.absent(usable(runs, name).isel(where)))
+        ]
+        listed = "all" if len(absent) == len(responses(runs)) else labels.listing(absent)
+        rows.append([_place(runs, where), Cell("; ".join(why), "warning"), listed])
+    number = len(positions)
+    more = f" (the first {_FAILED_RUNS} of {number})" if number > _FAILED_RUNS else ""
+    return Table(f"Failed runs{more}", ["Run", "Reason", "Missing responses"], rows)
+
+
+def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
+    """Return the run's number in a sample and its varied parameters, in words."""
+    named = [f"run {where['run']}"] if "run" in where else []
+    for name in varied(runs):
+        named.append(labels.setting(runs[name], [where[str(dim)] for dim in runs[name].dims]))
+    return ", ".join(named) or "the only run"
+
+
+def _ranges(runs: xr.Dataset) -> Table:
+    """Return one row per response: unit, smallest and largest value, number of missing values.
+
+    A grid names the runs of the extremes unless all values are the same; a sample has percentiles
+    between them.
+    """
+    quantiles = _QUANTILES if is_sample(runs) else {}
+    rows: list[Row] = []
+    for name in responses(runs):
+        unit, array = display(runs[name]), usable(runs, name)
+        array = array.where(np.isfinite(array))
+        shown = unit(array.values)
+        gaps = int(np.isnan(shown).sum())
+        cells = [Cell("missing", "warning")] * (2 + len(quantiles))
+        if gaps < shown.size:
+            levels = np.nanquantile(shown, list(quantiles.values()))
+            numbers = [np.nanmin(shown), *levels, np.nanmax(shown)]
+            details = [""] * len(numbers) if quantiles else _extremes(runs, array)
+            cells = [
+                Cell(labels.number(float(number)), "number", detail)
+                for number, detail in zip(numbers, details, strict=True)
+            ]
+        long_name = runs[name].attrs.get("long_name", "")
+        response = Cell(labels.sentence(labels.response(name)), detail=long_name)
+        missing = Cell(str(gaps), "warning" if gaps else "number")
+        rows.append([response, unit.symbol or "–", *cells, missing])
+    head = ["Response", "Unit", "Smallest", *quantiles, "Largest", "Runs missing"]
+    return Table("Range of each response", head, rows)
+
+
+def _extremes(runs: xr.Dataset, array: xr.DataArray) -> list[str]:
+    """Return the runs with the smallest and the largest value."""
+    if array.min() == array.max():
+        return ["in every run"] * 2
+    places = []
+    for flat in (int(np.nanargmin(array.values)), int(np.nanargmax(array.values))):
+        position = np.unravel_index(flat, array.shape)
+        places.append(
+            _place(runs, dict(zip(map(str, array.dims), map(int, position), strict=True)))
+        )
+    return places
+
+
+def _all_values(runs: xr.Dataset) -> list[Table]:
+    """Return all values of a small grid, a few responses per table; none for other grids."""
+    if count(runs) > _PRINTED_RUNS:
+        return []
+    dims = [dim for dim in design_dims(runs) if runs.sizes[dim] > 1]
+    varied_heads = []
+    for dim in dims:
+        unit = labels.unit(runs[dim]).strip()
+        varied_heads.append(labels.sentence(labels.parameter(dim)) + (f" ({unit})" if unit else ""))
+    shown = responses(runs)
+    groups = [shown[at : at + _COLUMNS] for at in range(0, len(shown), _COLUMNS)]
+    tables = []
+    for number, group in enumerate(groups, 1):
+        units = {name: display(runs[name]) for name in group}
+        arrays = {name: usable(runs, name).squeeze() for name in group}
+        rows: list[Row] = []
+        for position in product(*(range(runs.sizes[dim]) for dim in dims)):
+            where = dict(zip(dims, position, strict=True))
+            row = [Cell(labels.values(runs[dim], [at])[0], "number") for dim, at in where.items()]
+            for name, array in arrays.items():
+                value = float(units[name](array.isel(where)))
+                kind = "number" if np.isfinite(value) else "warning"
+                row.append(Cell(labels.number(value), kind))
+            rows.append(row)
+        heads = [labels.axis(labels.response(name), unit.symbol) for name, unit in units.items()]
+        caption = f"Every run, responses {number} of {len(groups)}"
+        tables.append(Table(caption, [*varied_heads, *heads], rows))
+    return tables

@@ -3,7 +3,14 @@
 
 rule paper:
     input:
-        code=code("variables.py", "paper/**/*.py", "figures/**/*.py", "verification/solutions/*.py", *REPORTING),
+        code=code(
+            "variables.py",
+            "paper/**/*.py",
+            "paper/templates/*",
+            "figures/**/*.py",
+            "verification/solutions/*.py",
+            *REPORTING,
+        ),
         stored=expand("results/{study}/{name}", study=PAPER, name=["runs.nc", "analysis.nc"]),
     output:
         "results/paper/claims.csv",

@@ -5,15 +5,8 @@ A new statement is a `Statement` in the module of its subject and a line in STAT
 
 from __future__ import annotations
 
-from impactlab.paper.statements import (
-    contact,
-    contact_law,
-    convergence,
-    misprints,
-    plasticity,
-    three_d,
-)
-from impactlab.paper.statements.statement import Data, JudgedStatement, Statement
+from impactlab.paper.statements import contact, convergence, misprints, plasticity, three_d
+from impactlab.paper.statements.statement import Data, Judgement, Statement
 
 STATEMENTS: tuple[Statement, ...] = (
     convergence.NODES_SUFFICE,
@@ -30,22 +23,19 @@ STATEMENTS: tuple[Statement, ...] = (
     three_d.DURATION_OF_WITNESS,
     three_d.PLASTIC_ZONE_OF_WITNESS,
     misprints.TIME_STEP,
-    contact_law.UNLOADING_RADIUS,
-    contact_law.ELASTIC_PHASE,
-    contact_law.FULLY_PLASTIC,
+    misprints.UNLOADING_RADIUS,
+    misprints.ELASTIC_PHASE,
+    misprints.FULLY_PLASTIC,
     misprints.BEAM_MASS,
     misprints.FEW_POINTS,
-    contact_law.RESTITUTION,
+    misprints.RESTITUTION,
     misprints.SUB_IMPACTS,
 )
 
 
-def judge_all(data: Data) -> list[JudgedStatement]:
+def judge_all(data: Data) -> list[tuple[Statement, list[Judgement]]]:
     """Return all statements with their judgements on the runs of the studies that there are."""
     return [
-        JudgedStatement(
-            statement,
-            tuple(statement.judge({n: data[n] for n in statement.studies if n in data})),
-        )
-        for statement in STATEMENTS
+        (each, list(each.judge({name: data[name] for name in each.studies if name in data})))
+        for each in STATEMENTS
     ]

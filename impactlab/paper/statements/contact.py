@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from impactlab.paper.statements.evidence import Curve, Floats, response_curve, runs_of
 from impactlab.paper.statements.statement import (
     Data,
     Judgement,
@@ -14,7 +13,8 @@ from impactlab.paper.statements.statement import (
     Statement,
     UnknownError,
     Verdict,
-    attempt,
+    response_curve,
+    runs_of,
     verdict,
 )
 
@@ -25,20 +25,15 @@ _ACRONYMS = {"mjg": "MJG"}
 
 
 def _contact_laws(data: Data) -> Iterator[tuple[str, str]]:
-    """Yield each contact law of the study and its case; "any" where the study is not solved."""
+    """Yield a case and its contact law for each of the study; "any" where it is not solved."""
     laws = ["any"]
     if DURATION_STUDY in data and "contact" in data[DURATION_STUDY].dims:
         laws = [str(law) for law in data[DURATION_STUDY]["contact"].values]
     for law in laws:
-        yield law, f"{_ACRONYMS.get(law) or law.replace('_', '-').title()} contact"
+        yield f"{_ACRONYMS.get(law) or law.replace('_', '-').title()} contact", law
 
 
-def _judge_duration(data: Data) -> Iterator[Judgement]:
-    for law, case in _contact_laws(data):
-        yield attempt(case, _judge_duration_case, data, law)
-
-
-def _judge_duration_case(case: str, data: Data, law: str) -> Judgement:
+def _judge_duration(case: str, data: Data, law: str) -> Judgement:
     curve = response_curve(data, DURATION_STUDY, "contact_duration", contact=law)
     falls = curve.high[1:] < curve.low[:-1]
     count = falls.size if falls.all() else int(np.argmin(falls))
@@ -51,18 +46,14 @@ def _judge_duration_case(case: str, data: Data, law: str) -> Judgement:
     if count == falls.size:
         why = f"It falls at every one of the {count} steps."
         return Judgement(case, numbers, Verdict.HOLDS, why)
-    here, there = curve.velocity[count], curve.velocity[count + 1]
     rises = curve.low[count + 1] > curve.high[count]
     change = "rises" if rises else "does not fall by more than its uncertainty"
-    why = f"It falls up to {here:g} m/s and {change} from there to {there:g} m/s"
-    why += ": the sphere no longer lifts off between two pushes." if _merges(curve, count) else "."
+    why = f"It falls up to {curve.velocity[count]:g} m/s and {change} from there to "
+    why += f"{curve.velocity[count + 1]:g} m/s"
+    merges = curve.value[count + 1] > 1.25 * curve.value[count]  # a second push with the first
+    why += ": the sphere no longer lifts off between two pushes." if merges else "."
     outcome = Verdict.READING if 2 * count > falls.size else Verdict.FAILS
     return Judgement(case, numbers, outcome, why)
-
-
-def _merges(curve: Curve, count: int) -> bool:
-    """Return whether the duration jumps by a quarter: a second push merges with the first."""
-    return bool(curve.value[count + 1] > 1.25 * curve.value[count])
 
 
 DURATION_FALLS = Statement(
@@ -73,17 +64,13 @@ DURATION_FALLS = Statement(
         "first contact. The statement holds under a reading where this is so over more than half "
         "of the velocities, from the lowest on."
     ),
-    judge=_judge_duration,
+    judge_case=_judge_duration,
+    cases=_contact_laws,
     studies=(DURATION_STUDY,),
 )
 
 
-def _judge_spring_mass(data: Data) -> Iterator[Judgement]:
-    for law, case in _contact_laws(data):
-        yield attempt(case, _judge_spring_mass_case, data, law)
-
-
-def _judge_spring_mass_case(case: str, data: Data, law: str) -> Judgement:
+def _judge_spring_mass(case: str, data: Data, law: str) -> Judgement:
     if "beam_model" not in runs_of(data, DURATION_STUDY).dims:
         raise UnknownError(f"the study {DURATION_STUDY} does not vary beam_model")
     response = "contact_duration"
@@ -100,12 +87,11 @@ def _judge_spring_mass_case(case: str, data: Data, law: str) -> Judgement:
         return Judgement(case, numbers, Verdict.HOLDS, "It is above at every velocity.")
     if not above.any():
         return Judgement(case, numbers, Verdict.FAILS, "It is above at no velocity.")
-    why = f"Above at {_listed(ours.velocity[above])} m/s, not at {_listed(ours.velocity[~above])}."
+    higher, lower = (
+        ", ".join(f"{velocity:g}" for velocity in ours.velocity[where]) for where in (above, ~above)
+    )
+    why = f"Above at {higher} m/s, not at {lower}."
     return Judgement(case, numbers, Verdict.READING, why)
-
-
-def _listed(velocities: Floats) -> str:
-    return ", ".join(f"{velocity:g}" for velocity in velocities)
 
 
 ABOVE_SPRING_MASS = Statement(
@@ -116,16 +102,13 @@ ABOVE_SPRING_MASS = Statement(
         "duration of the first contact. The statement holds under a reading where this is so at "
         "some velocities."
     ),
-    judge=_judge_spring_mass,
+    judge_case=_judge_spring_mass,
+    cases=_contact_laws,
     studies=(DURATION_STUDY,),
 )
 
 
-def _judge_indentation(data: Data) -> Iterator[Judgement]:
-    yield attempt("Stronge contact, after the last contact", _judge_indentation_case, data)
-
-
-def _judge_indentation_case(case: str, data: Data) -> Judgement:
+def _judge_indentation(case: str, data: Data) -> Judgement:
     curve = response_curve(data, INDENTATION_STUDY, "permanent_indentation")
     grows = curve.low[1:] > curve.high[:-1]
     numbers = tuple(curve.number(at, f"dent at {curve.velocity[at]:g} m/s", "m") for at in (0, -1))
@@ -135,13 +118,14 @@ def _judge_indentation_case(case: str, data: Data) -> Judgement:
         if not up
     ]
     why = f"It does not from {', '.join(steps)} m/s." if steps else "It grows at every step."
-    return Judgement(case, numbers, verdict(bool(grows.all())), why)
+    return Judgement(case, numbers, verdict(not steps), why)
 
 
 DENT_GROWS = Statement(
     "dent_grows",
     text="The permanent indentation grows with the impact velocity.",
     test="d(v₂) − U₂ > d(v₁) + U₁ for every two neighbouring velocities v₁ < v₂ of the study.",
-    judge=_judge_indentation,
+    judge_case=_judge_indentation,
+    cases=(("Stronge contact, after the last contact",),),
     studies=(INDENTATION_STUDY,),
 )

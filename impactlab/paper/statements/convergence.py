@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from impactlab.analysis.convergence.judgement import judge as judge_convergence
 from impactlab.analysis.verdicts import TOLERANCE
-from impactlab.paper.statements.evidence import finest_grid, runs_of, select_response
 from impactlab.paper.statements.statement import (
+    Case,
     Data,
     Judgement,
     Number,
     Statement,
     Verdict,
-    attempt,
+    finest_grid,
+    runs_of,
+    select_response,
     verdict,
 )
 
@@ -28,36 +31,34 @@ STRAIN = ("peak_plastic_strain", "remote_plastic_strain")
 """Responses of plastic strain, which converge in their own way or not at all."""
 PRINTED_NODES = 601
 READINGS_OF_P = (
-    ("two Lobatto points over the depth (as printed)", "lobatto", 2),
-    ("two Lobatto points over half the depth, the axis one of them (3 in all)", "lobatto", 3),
-    ("two Lobatto points in each half of the depth (4 in all)", "lobatto", 4),
-    ("two Gauss points over the depth", "legendre", 2),
+    ("two Lobatto points over the depth (as printed)", "lobatto", 2, True),
+    (
+        "two Lobatto points over half the depth, the axis one of them (3 in all)",
+        "lobatto",
+        3,
+        False,
+    ),
+    ("two Lobatto points in each half of the depth (4 in all)", "lobatto", 4, False),
+    ("two Gauss points over the depth", "legendre", 2, False),
 )
-"""Readings of P = 2: words, rule, points over the whole depth; the first is the literal one."""
+"""Readings of P = 2: words, rule, points over the whole depth, whether it is the literal one."""
 
 
 def _response_groups(data: Data, study: str) -> Iterator[tuple[float, str, tuple[str, ...]]]:
     """Yield velocity, name of the group and its responses; strains only where a fibre yields."""
     for velocity in VELOCITIES:
         yield velocity, "force and motion", MOTION
-        if _yields(data, study, velocity):
+        strains = data[study].get("peak_plastic_strain") if study in data else None
+        if strains is None or (strains.where(strains["velocity"] == velocity) > 0).any():
             yield velocity, "plastic strain (PEEQ)", STRAIN
 
 
-def _yields(data: Data, study: str, velocity: float) -> bool:
-    """Return whether any run at this velocity has a plastic strain; True without such runs."""
-    if study not in data or "peak_plastic_strain" not in data[study]:
-        return True
-    strains = data[study]["peak_plastic_strain"]
-    return bool((strains.where(strains["velocity"] == velocity) > 0).any())
-
-
-def _judge_nodes(data: Data) -> Iterator[Judgement]:
+def _nodes_cases(data: Data) -> Iterator[Case]:
     for velocity, group, names in _response_groups(data, NODES_STUDY):
-        yield attempt(f"{velocity:g} m/s, {group}", _judge_nodes_case, data, velocity, names)
+        yield f"{velocity:g} m/s, {group}", velocity, names
 
 
-def _judge_nodes_case(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> Judgement:
+def _judge_nodes(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> Judgement:
     found = [_nodes_error(data, velocity, name) for name in names]
     errors, needed = [error for error, _ in found], [least for _, least in found]
     worst = names[int(np.argmax([error.high for error in errors]))].replace("_", " ")
@@ -98,38 +99,32 @@ NODES_SUFFICE = Statement(
         "as well. f∞: Richardson's value, or the value with the most nodes where there is none; "
         "U: its uncertainty (grid convergence index). Plastic strain (PEEQ) is judged separately."
     ),
-    judge=_judge_nodes,
+    judge_case=_judge_nodes,
+    cases=_nodes_cases,
     studies=(NODES_STUDY,),
 )
 
 
-def _judge_points(data: Data) -> Iterator[Judgement]:
-    for reading, rule, points in READINGS_OF_P:
-        literal = reading == READINGS_OF_P[0][0]
+def _points_cases(data: Data) -> Iterator[Case]:
+    for reading, rule, points, literal in READINGS_OF_P:
         for velocity, group, names in _response_groups(data, POINTS_STUDY):
-            case = f"{reading}; {velocity:g} m/s, {group}"
             where = {"velocity": velocity, "rule": rule}
-            yield attempt(case, _judge_points_case, data, where, points, names, literal)
+            yield f"{reading}; {velocity:g} m/s, {group}", where, points, names, literal
 
 
-def _judge_points_case(
-    case: str,
-    data: Data,
-    where: dict[str, object],
-    points: int,
-    names: tuple[str, ...],
-    literal: bool,
+def _judge_points(
+    case: str, data: Data, where: dict[str, Any], points: int, names: tuple[str, ...], literal: bool
 ) -> Judgement:
     errors = tuple(_points_error(data, where, points, name) for name in names)
     worst = max(errors, key=lambda error: error.high)
     stands = worst.high <= TOLERANCE
-    why = f"The {worst.name} is {100 * worst.value:,.1f} %."
-    if stands:
-        why = "Every error is within 1 %."
-    return Judgement(case, errors, verdict(stands, reading=not literal), why)
+    why = "Every error is within 1 %."
+    if not stands:
+        why = f"The {worst.name} is {100 * worst.value:,.1f} %."
+    return Judgement(case, errors, verdict(stands, literal=literal), why)
 
 
-def _points_error(data: Data, where: dict[str, object], points: int, name: str) -> Number:
+def _points_error(data: Data, where: dict[str, Any], points: int, name: str) -> Number:
     """Return the relative error with so many points; infinite where the value should be zero."""
     values = select_response(runs_of(data, POINTS_STUDY), name, **where)
     values = values.sortby("points", ascending=False)
@@ -149,6 +144,7 @@ POINTS_SUFFICE = Statement(
         "of f between the most points and the next fewer. The paper does not say which points P "
         "counts: every reading has a row."
     ),
-    judge=_judge_points,
+    judge_case=_judge_points,
+    cases=_points_cases,
     studies=(POINTS_STUDY,),
 )

@@ -1,18 +1,29 @@
-"""A statement of the paper, and the judgements that testing it gives."""
+"""A statement of the paper, its judgements, and the numbers from solved studies that they rest on.
+
+Every number has an uncertainty from the convergence in the mesh.
+"""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Concatenate, ParamSpec
+from typing import Any
 
+import numpy as np
 import xarray as xr
+
+from impactlab.analysis.convergence.judgement import judge
+from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL
+from impactlab.analysis.responses import relevant_bits
+from impactlab.types import Floats
+from impactlab.variables import RESPONSES, reasons
 
 Data = Mapping[str, xr.Dataset]
 """The runs of each study by its name."""
-P = ParamSpec("P")
+Case = tuple[Any, ...]
+BEAM = "euler_bernoulli"
+"""The paper's beam, among `beam_model`."""
 
 
 class Verdict(StrEnum):
@@ -69,8 +80,9 @@ class Statement:
 
     name: identifies it in the CSV files and in links.
     text: the paper's words in short. test: the formula in words.
-    judge: a function from the runs of the studies to one judgement per case. Where a run is
-        missing it gives the verdict UNKNOWN; it never raises UnknownError.
+    judge_case: a function (words of the case, data, the rest of the case) that judges one case; it
+        raises UnknownError where a run is missing.
+    cases: tuples that begin with their words, or a function that returns them for the data.
     studies: names of the studies that it is judged on; empty where closed forms suffice.
     holds: what holds in place of a misprint; empty for a statement.
     """
@@ -78,40 +90,119 @@ class Statement:
     name: str
     text: str
     test: str
-    judge: Callable[[Data], Iterable[Judgement]]
+    judge_case: Callable[..., Judgement]
+    cases: tuple[Case, ...] | Callable[[Data], Iterable[Case]]
     studies: tuple[str, ...] = ()
     holds: str = ""
 
-
-@dataclass(frozen=True)
-class JudgedStatement:
-    """A statement with all its judgements."""
-
-    statement: Statement
-    judgements: tuple[Judgement, ...]
-
-
-def attempt(
-    case: str,
-    judge: Callable[Concatenate[str, P], Judgement],
-    *args: P.args,
-    **kwargs: P.kwargs,
-) -> Judgement:
-    """Return judge(case, ...), or the verdict UNKNOWN with the reason where it raises one."""
-    try:
-        return judge(case, *args, **kwargs)
-    except UnknownError as reason:
-        return Judgement(case, (), Verdict.UNKNOWN, str(reason))
+    def judge(self, data: Data) -> Iterator[Judgement]:
+        """Yield one judgement per case: UNKNOWN, with the reason, where a run is missing."""
+        for words, *rest in self.cases(data) if callable(self.cases) else self.cases:
+            try:
+                judgement = self.judge_case(words, data, *rest)
+            except UnknownError as reason:
+                judgement = Judgement(words, (), Verdict.UNKNOWN, str(reason))
+            yield judgement
 
 
-def verdict(stands: bool, *, reading: bool = False) -> Verdict:
-    """Return the verdict on a clear test; reading: the paper does not state this case itself."""
+def verdict(stands: bool, *, literal: bool = True) -> Verdict:
+    """Return the verdict on a clear test; literal: the paper states this very case."""
     if not stands:
         return Verdict.FAILS
-    return Verdict.READING if reading else Verdict.HOLDS
+    return Verdict.HOLDS if literal else Verdict.READING
 
 
-def require_known(number: Number) -> None:
-    """Raise UnknownError where the value or the uncertainty is missing."""
-    if math.isnan(number.value) or math.isnan(number.uncertainty):
-        raise UnknownError(f"no number, or none with an uncertainty: {number.name}")
+@dataclass(frozen=True)
+class Curve:
+    """A response against the velocity.
+
+    velocity (m/s, ascending), value and uncertainty (SI): each of shape (velocities,).
+    """
+
+    velocity: Floats
+    value: Floats
+    uncertainty: Floats
+
+    @property
+    def low(self) -> Floats:
+        """The smallest values that the uncertainty allows."""
+        return self.value - self.uncertainty
+
+    @property
+    def high(self) -> Floats:
+        """The largest values that the uncertainty allows."""
+        return self.value + self.uncertainty
+
+    def number(self, at: int, name: str, units: str) -> Number:
+        """Return the value at one velocity, given by its index."""
+        return Number(name, float(self.value[at]), units, float(self.uncertainty[at]))
+
+
+def runs_of(data: Data, study: str) -> xr.Dataset:
+    """Return the runs of a study. Raises UnknownError where there are none."""
+    if study not in data:
+        raise UnknownError(f"the study {study} has not been solved")
+    return data[study]
+
+
+def select_response(runs: xr.Dataset, response: str, **where: Any) -> xr.DataArray:
+    """Return a response at the labels `where`.
+
+    Raises UnknownError, with the reasons, where a run lacks it.
+    """
+    try:
+        chosen = runs[[response, "status"]].sel(where)
+    except KeyError as error:
+        study = runs.attrs.get("study", "?")
+        raise UnknownError(f"the study {study} does not have {error.args[0]!r}") from None
+    bits = chosen["status"].values & relevant_bits(response)
+    gaps = (bits != 0) | ~np.isfinite(chosen[response].values)
+    if gaps.any():
+        found = reasons(int(np.bitwise_or.reduce(np.ravel(bits)))) or ["no reason is recorded"]
+        raise UnknownError(f"{int(gaps.sum())} of {gaps.size} runs lack it: {'; '.join(found)}")
+    return chosen[response]
+
+
+def finest_grid(runs: xr.Dataset, response: str, **where: Any) -> Number:
+    """Return a response on the finest grid with its uncertainty.
+
+    The uncertainty is the grid convergence index. Where the grids show no convergence, it is three
+    times the range of the three finest (Eca and Hoekstra's bound for scattered data), so that a
+    value which still grows has an uncertainty of its own size. It is NaN with fewer than three
+    grids. where: a label for every varied parameter but `nodes`. Raises UnknownError where a run
+    of the grids is missing.
+    """
+    if "nodes" not in runs.dims:
+        study = runs.attrs.get("study", "?")
+        raise UnknownError(f"the study {study} does not vary the nodes: no uncertainty is known")
+    by_grid = select_response(runs, response, **where).sortby("nodes", ascending=False)
+    values = by_grid.values.astype(float)
+    uncertainty = float("nan")
+    if len(values) >= 3:
+        index = judge(values, 1.0 / (by_grid["nodes"].values - 1.0)).gci
+        scatter = SAFETY_DOUBTFUL * float(np.ptp(values[:3]))
+        uncertainty = float(index * abs(values[0])) if np.isfinite(index) else scatter
+    entry = RESPONSES[response]
+    return Number(entry.long_name, float(values[0]), entry.units, uncertainty)
+
+
+def response_curve(data: Data, study: str, response: str, **where: Any) -> Curve:
+    """Return a response over the velocities of a study, on the paper's beam unless `where` differs.
+
+    Raises UnknownError where a run or an uncertainty is missing, naming the velocity.
+    """
+    runs = runs_of(data, study)
+    if "beam_model" in runs.dims:
+        where = {"beam_model": BEAM} | where
+    velocities = np.sort(runs["velocity"].values.astype(float))
+    found = []
+    for velocity in velocities:
+        try:
+            number = finest_grid(runs, response, velocity=velocity, **where)
+        except UnknownError as reason:
+            raise UnknownError(f"at {velocity:g} m/s {reason}") from None
+        if np.isnan(number.uncertainty):
+            raise UnknownError(f"at {velocity:g} m/s there are fewer than three grids")
+        found.append((number.value, number.uncertainty))
+    values, uncertainties = np.array(found).T
+    return Curve(velocities, values, uncertainties)

@@ -3,90 +3,142 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+import xarray as xr
 
+from impactlab.analysis.convergence.axes import ELEMENT_SIZE
+from impactlab.analysis.convergence.judgement import numerical_uncertainty
 from impactlab.model.impact import SOLID
-from impactlab.paper.statements.evidence import (
-    BEAM,
-    FIRST_CONTACT,
-    MESHES,
-    VELOCITY,
-    Floats,
-    beam_response,
-    refined_elements,
-    refined_runs,
-    solid_response,
-    solid_runs,
-)
+from impactlab.model.parameters import ELEMENTS
 from impactlab.paper.statements.statement import (
+    BEAM,
+    Case,
     Data,
     Judgement,
     Number,
     Statement,
     UnknownError,
     Verdict,
-    attempt,
+    finest_grid,
+    runs_of,
+    select_response,
     verdict,
 )
+from impactlab.types import Floats
+from impactlab.variables import RESPONSES, WITNESS
 
+VELOCITY = 0.99
+"""The paper's impact velocity, m/s."""
+FIRST_CONTACT, MESHES = "witness", "witness_mesh"
+"""Studies: beam and 3-D models over the velocities; the 3-D model at VELOCITY on finer meshes."""
 BEAMS = {BEAM: "Euler-Bernoulli beam", "timoshenko": "Timoshenko beam"}
 """The beam models that are compared, the paper's first."""
 DISPLACEMENT_LIMIT = 0.10
 DISPLACEMENTS = {"midspan_deflection": "deflection at mid-span", "sphere_displacement": "sphere"}
 PRINTED_EXTENT = 1.52e-3
 """Extent of the plastic zone from the centre of the impact, m."""
-ZONE_READINGS = {
-    "on the surface, PEEQ above 0.2 %": ("plastic_zone_radius", 1.0),
-    "at any depth, PEEQ above 1e-5": ("plastic_zone_length", 0.5),
-}
-"""A variable of the runs, and the factor to the extent from the centre."""
+ZONE_READINGS = (
+    ("on the surface, PEEQ above 0.2 %", "plastic_zone_radius", 1.0),
+    ("at any depth, PEEQ above 1e-5", "plastic_zone_length", 0.5),
+)
+"""Words, variable of the runs, and the factor to the extent from the centre."""
+_UNDECIDED = "{:g} % lies within the uncertainty of the two models together."
 
 
-@dataclass(frozen=True)
-class Agreement:
-    """A judge of |beam/3-D − 1| ± U ≤ limit; U: the numerical uncertainties of both.
+def _solid_response(data: Data, response: str, velocity: float, least: float = 0.0) -> Number:
+    """Return the 3-D model's response, its uncertainty from the element sizes, at least `least`.
 
-    below, above: words for a smaller and a larger value, such as "shorter" and "longer".
-    stated: (velocity in m/s, beam model) that the paper speaks of; all others are readings.
+    At the paper's velocity it comes from the study MESHES, where that is solved. Raises
+    UnknownError where a run is missing or nothing bounds the error.
     """
-
-    response: str
-    limit: float
-    below: str
-    above: str
-    stated: tuple[float, str] | None = None
-
-    def __call__(self, data: Data) -> Iterator[Judgement]:
-        """Yield one judgement per velocity and beam model."""
-        velocities = [VELOCITY]
-        if FIRST_CONTACT in data and "velocity" in data[FIRST_CONTACT].dims:
-            velocities = sorted(
-                float(velocity) for velocity in data[FIRST_CONTACT]["velocity"].values
-            )
-        for velocity in velocities:
-            for model, words in BEAMS.items():
-                yield attempt(f"{velocity:g} m/s, {words}", self._judge, data, velocity, model)
-
-    def _judge(self, case: str, data: Data, velocity: float, model: str) -> Judgement:
-        ours = beam_response(data, self.response, velocity, model)
-        theirs = solid_response(data, self.response, velocity)
-        ratio = ours.value / theirs.value
-        share = ours.uncertainty / abs(ours.value) + theirs.uncertainty / abs(theirs.value)
-        gap = Number("difference, relative to the 3-D model", ratio - 1.0, "1", ratio * share)
-        numbers = (ours, theirs, gap)
-        least, most = abs(gap.value) - gap.uncertainty, abs(gap.value) + gap.uncertainty
-        if least <= self.limit < most:
-            return Judgement(case, numbers, Verdict.UNKNOWN, _undecided(self.limit))
-        comparative = self.below if gap.value < 0 else self.above
-        why = f"The beam's is {100 * abs(gap.value):.1f} % {comparative}."
-        reading = (velocity, model) != self.stated
-        return Judgement(case, numbers, verdict(most <= self.limit, reading=reading), why)
+    runs = _solid_runs(data, velocity)
+    if response not in runs:
+        study = runs.attrs.get("study", FIRST_CONTACT)
+        raise UnknownError(f"the runs of the study {study} do not hold the {response}")
+    values = select_response(runs, response, velocity=velocity, beam_model=SOLID)
+    elements = _refined_elements(runs)
+    spacings = ELEMENT_SIZE.spacings[elements](runs[elements].values.astype(float))
+    finest_first = np.argsort(spacings)
+    found = values.values.astype(float)[finest_first]
+    width = max(float(numerical_uncertainty(found, spacings[finest_first]).amounts[0]), least)
+    entry = (RESPONSES | WITNESS)[response]
+    return _bounded(Number(f"{entry.long_name} (3-D)", found[0], entry.units, width))
 
 
-def _undecided(limit: float) -> str:
-    return f"{100 * limit:g} % lies within the uncertainty of the two models together."
+def _solid_runs(data: Data, velocity: float) -> xr.Dataset:
+    """Return runs that vary the element size, among them those of the 3-D model."""
+    if velocity == VELOCITY and MESHES in data:
+        return data[MESHES].expand_dims("velocity")
+    return _refined_runs(data)[0].isel(nodes=0)
+
+
+def _refined_runs(data: Data) -> tuple[xr.Dataset, str]:
+    """Return the runs of FIRST_CONTACT and the dimension on which their elements are refined.
+
+    Raises UnknownError unless nodes and elements vary.
+    """
+    runs = runs_of(data, FIRST_CONTACT)
+    if "nodes" not in runs.dims:
+        raise UnknownError(f"the study {FIRST_CONTACT} does not vary nodes: its error is unknown")
+    return runs, _refined_elements(runs)
+
+
+def _refined_elements(runs: xr.Dataset) -> str:
+    for name in ELEMENTS:
+        if name in runs.dims:
+            return name
+    study = runs.attrs.get("study", "?")
+    raise UnknownError(f"the study {study} does not vary {ELEMENTS[0]}: its error is unknown")
+
+
+def _bounded(number: Number) -> Number:
+    if not np.isfinite(number.uncertainty):
+        raise UnknownError(f"nothing bounds the numerical error of the {number.name}")
+    return number
+
+
+def _velocities_and_beams(data: Data) -> Iterator[Case]:
+    velocities = [VELOCITY]
+    if FIRST_CONTACT in data and "velocity" in data[FIRST_CONTACT].dims:
+        velocities = np.sort(data[FIRST_CONTACT]["velocity"].values.astype(float)).tolist()
+    for velocity in velocities:
+        for model, words in BEAMS.items():
+            yield f"{velocity:g} m/s, {words}", velocity, model
+
+
+def _judge_ratio(
+    case: str,
+    data: Data,
+    velocity: float,
+    model: str,
+    *,
+    response: str,
+    limit: float,
+    comparatives: tuple[str, str],
+    stated: tuple[float, str] | None = None,
+) -> Judgement:
+    """Judge |beam/3-D − 1| ± U ≤ limit; U: the numerical uncertainties of both.
+
+    comparatives: words for a smaller and a larger value, such as "shorter" and "longer". stated:
+    velocity (m/s) and beam model that the paper speaks of; all others are readings.
+    """
+    runs, elements = _refined_runs(data)
+    runs = runs.isel({elements: 0})
+    ours = _bounded(finest_grid(runs, response, velocity=velocity, beam_model=model))
+    theirs = _solid_response(data, response, velocity)
+    ratio = ours.value / theirs.value
+    share = ours.uncertainty / abs(ours.value) + theirs.uncertainty / abs(theirs.value)
+    gap = Number("difference, relative to the 3-D model", ratio - 1.0, "1", ratio * share)
+    numbers = (ours, theirs, gap)
+    least, most = abs(gap.value) - gap.uncertainty, abs(gap.value) + gap.uncertainty
+    if least <= limit < most:
+        return Judgement(case, numbers, Verdict.UNKNOWN, _UNDECIDED.format(100 * limit))
+    comparative = comparatives[0] if gap.value < 0 else comparatives[1]
+    why = f"The beam's is {100 * abs(gap.value):.1f} % {comparative}."
+    literal = (velocity, model) == stated
+    return Judgement(case, numbers, verdict(most <= limit, literal=literal), why)
 
 
 FORCE_OF_WITNESS = Statement(
@@ -97,7 +149,14 @@ FORCE_OF_WITNESS = Statement(
         "both. 3-D: this project's 3-D model in place of the paper's. The paper states it at 0.99 "
         "m/s of its own beam; other velocities, and the Timoshenko beam, are readings."
     ),
-    judge=Agreement("peak_force", 0.024, "smaller", "larger", stated=(VELOCITY, BEAM)),
+    judge_case=partial(
+        _judge_ratio,
+        response="peak_force",
+        limit=0.024,
+        comparatives=("smaller", "larger"),
+        stated=(VELOCITY, BEAM),
+    ),
+    cases=_velocities_and_beams,
     studies=(FIRST_CONTACT, MESHES),
 )
 DURATION_OF_WITNESS = Statement(
@@ -108,37 +167,38 @@ DURATION_OF_WITNESS = Statement(
         "uncertainties of both. The paper gives no number: 5 % is ours, about what its figure "
         "shows, so a case that holds does so under a reading."
     ),
-    judge=Agreement("contact_duration", 0.05, "shorter", "longer"),
+    judge_case=partial(
+        _judge_ratio,
+        response="contact_duration",
+        limit=0.05,
+        comparatives=("shorter", "longer"),
+    ),
+    cases=_velocities_and_beams,
     studies=(FIRST_CONTACT, MESHES),
 )
-
-
-def _judge_displacements(data: Data) -> Iterator[Judgement]:
-    for variable, what in DISPLACEMENTS.items():
-        for model, words in BEAMS.items():
-            case = f"{VELOCITY:g} m/s, {what}, {words}"
-            yield attempt(case, _judge_displacement, data, variable, model)
 
 
 def _judge_displacement(case: str, data: Data, variable: str, model: str) -> Judgement:
     ours, theirs = (_histories(data, variable, name) for name in (model, SOLID))
     scale = float(np.max(np.abs(theirs[0])))
     gap = float(np.max(np.abs(ours[0] - theirs[0]))) / scale
-    width = (_history_uncertainty(ours) + _history_uncertainty(theirs)) / scale
+    # three times the largest change from the second finest grid to the finest, of each model
+    changes = [3.0 * float(np.max(np.abs(curves[1] - curves[0]))) for curves in (ours, theirs)]
+    width = (changes[0] + changes[1]) / scale
     name = "largest difference over the largest displacement"
     numbers = (Number(name, gap, "1", width, percent=True),)
     if gap - width <= DISPLACEMENT_LIMIT < gap + width:
-        return Judgement(case, numbers, Verdict.UNKNOWN, _undecided(DISPLACEMENT_LIMIT))
+        undecided = _UNDECIDED.format(100 * DISPLACEMENT_LIMIT)
+        return Judgement(case, numbers, Verdict.UNKNOWN, undecided)
     than = "more" if gap > width else "no more"
     why = f"They differ by up to {100 * gap:.1f} % of the largest displacement, "
     why += f"{than} than the uncertainty."
-    return Judgement(case, numbers, verdict(gap + width <= DISPLACEMENT_LIMIT, reading=True), why)
+    return Judgement(case, numbers, verdict(gap + width <= DISPLACEMENT_LIMIT, literal=False), why)
 
 
 def _histories(data: Data, variable: str, model: str) -> list[Floats]:
     """Return a history at the paper's velocity per grid of the model, finest first, (time,)."""
-    runs = refined_runs(data)
-    elements = refined_elements(runs)
+    runs, elements = _refined_runs(data)
     refined, other = (elements, "nodes") if model == SOLID else ("nodes", elements)
     runs = runs.isel({other: 0})
     if variable not in runs:
@@ -149,11 +209,6 @@ def _histories(data: Data, variable: str, model: str) -> list[Floats]:
     if not np.isfinite(curves).all():
         raise UnknownError(f"the {variable.replace('_', ' ')} of a run is missing")
     return curves
-
-
-def _history_uncertainty(curves: list[Floats]) -> float:
-    """Return three times the largest change from the second finest grid to the finest, in m."""
-    return 3.0 * float(np.max(np.abs(curves[1] - curves[0])))
 
 
 DISPLACEMENT_OF_WITNESS = Statement(
@@ -168,29 +223,29 @@ DISPLACEMENT_OF_WITNESS = Statement(
         "where d + U ≤ 10 %, with “deviations” where d − U > 0. The paper gives no number: 10 % is "
         "ours."
     ),
-    judge=_judge_displacements,
+    judge_case=_judge_displacement,
+    cases=tuple(
+        (f"{VELOCITY:g} m/s, {what}, {words}", variable, model)
+        for variable, what in DISPLACEMENTS.items()
+        for model, words in BEAMS.items()
+    ),
     studies=(FIRST_CONTACT, MESHES),
 )
 
 
-def _judge_zone(data: Data) -> Iterator[Judgement]:
-    for words, (variable, factor) in ZONE_READINGS.items():
-        yield attempt(f"{VELOCITY:g} m/s, {words}", _judge_zone_case, data, variable, factor)
-
-
-def _judge_zone_case(case: str, data: Data, variable: str, factor: float) -> Judgement:
-    runs = solid_runs(data, VELOCITY)
+def _judge_zone(case: str, data: Data, variable: str, factor: float) -> Judgement:
+    runs = _solid_runs(data, VELOCITY)
     if "element_size" not in runs.dims:
         raise UnknownError(f"the study {MESHES} has not been solved")
     least = float(runs["element_size"].min()) / factor
-    found = solid_response(data, variable, VELOCITY, least)
+    found = _solid_response(data, variable, VELOCITY, least)
     reach = Number("extent from the centre", factor * found.value, "m", factor * found.uncertainty)
     within = reach.low <= PRINTED_EXTENT <= reach.high
     if within and reach.uncertainty > 0.5 * PRINTED_EXTENT:
         why = "The elements are too large to tell."
         return Judgement(case, (reach,), Verdict.UNKNOWN, why)
     why = f"The printed extent lies {'within' if within else 'outside'} the uncertainty."
-    return Judgement(case, (reach,), verdict(within, reading=True), why)
+    return Judgement(case, (reach,), verdict(within, literal=False), why)
 
 
 PLASTIC_ZONE_OF_WITNESS = Statement(
@@ -203,6 +258,7 @@ PLASTIC_ZONE_OF_WITNESS = Statement(
         "between); and at any depth, half of the length of beam in which an element has a PEEQ "
         "above 1e-5."
     ),
-    judge=_judge_zone,
+    judge_case=_judge_zone,
+    cases=tuple((f"{VELOCITY:g} m/s, {words}", *rest) for words, *rest in ZONE_READINGS),
     studies=(FIRST_CONTACT, MESHES),
 )

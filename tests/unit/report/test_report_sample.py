@@ -14,9 +14,8 @@ import xarray as xr
 from impactlab.analysis.numerical import NumericalFrom
 from impactlab.analysis.verdicts import flagged
 from impactlab.figures.draw import draw_all
-from impactlab.report import ranking
+from impactlab.report import sensitivity
 from impactlab.report.indices import numerical_warnings, with_margin
-from impactlab.report.sensitivity import surrogate
 from impactlab.report.study import write_report
 
 Study = tuple[xr.Dataset, xr.Dataset]
@@ -82,14 +81,14 @@ def test_figures_are_numbered_as_they_stand(study: Study, tmp_path: Path, page: 
 def test_an_index_within_the_dummys_interval_is_not_named(study: Study) -> None:
     runs, analysis = study
     analysis["dummy_first_order"].loc[PEAK] = 0.2
-    (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
+    (sentence, *_) = sensitivity.sentences(runs, analysis, sensitivity.SOBOL)
     assert (
         "the impact velocity alone explains 71 % (± 3) of the variance of the peak force"
         in sentence
     )
     assert "yield stress" not in sentence
     analysis["dummy_first_order"].loc[PEAK] = 0.8
-    (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
+    (sentence, *_) = sensitivity.sentences(runs, analysis, sensitivity.SOBOL)
     assert sentence.startswith("No parameter alone explains a significant share")
 
 
@@ -97,7 +96,9 @@ def test_an_index_below_the_numerical_error_is_not_named_but_warned_of(study: St
     runs, analysis = study
     assert numerical_warnings(runs, analysis) == []
     analysis["first_order_numerical"].loc[PEAK] = [0.0, 0.2, 0.0, 0.0]
-    told, left = ranking.sentences(runs, analysis, ranking.SOBOL)[0].split(" The numerical error ")
+    told, left = sensitivity.sentences(runs, analysis, sensitivity.SOBOL)[0].split(
+        " The numerical error "
+    )
     assert "yield stress" not in told
     assert "71 % (± 3) of the variance" in told
     assert left.startswith(
@@ -119,7 +120,7 @@ def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant
     runs, analysis = study
     for order in ("first_order", "total_order"):
         analysis[f"{order}_numerical"].loc[PEAK] = 0.9
-    (sentence, *_) = ranking.sentences(runs, analysis, ranking.SOBOL)
+    (sentence, *_) = sensitivity.sentences(runs, analysis, sensitivity.SOBOL)
     assert sentence == (
         "The numerical error leaves open which share of the variance of the peak force these "
         "parameters explain alone: impact velocity, 71 % (± 3, numerically ± 90); yield stress of "
@@ -181,7 +182,7 @@ def test_morris_in_words(study: Study) -> None:
     analysis["morris_mu_star"].loc[PEAK] = [12e3, 3e3, 10.0, 0.0]
     analysis["morris_mu_star_interval"].loc[PEAK] = 600.0
     analysis["morris_sigma"].loc[PEAK] = [1e3, 4e3, 1e3, 1e3]
-    assert ranking.sentences(runs, analysis, ranking.MORRIS)[0] == (
+    assert sensitivity.sentences(runs, analysis, sensitivity.MORRIS)[0] == (
         "Over its whole range, the impact velocity changes the peak force by 12 kN ± 0.6 and "
         "the yield stress of the beam by 3 kN ± 0.6 on average. The effect of the yield stress "
         "of the beam varies with the others or along its range by more than its mean (σ above µ*)."
@@ -191,12 +192,12 @@ def test_morris_in_words(study: Study) -> None:
 def test_most_is_said_of_one_parameter_that_leads_beyond_doubt(study: Study) -> None:
     runs, analysis = study
     analysis["delta"].loc[PEAK] = [0.4, 0.2, 0.01, 0.01]
-    assert ranking.sentences(runs, analysis, ranking.DELTA)[0] == (
+    assert sensitivity.sentences(runs, analysis, sensitivity.DELTA)[0] == (
         "The peak force depends most on the impact velocity (delta 0.40 ± 0.02), then on the yield "
         "stress of the beam (delta 0.20 ± 0.02)."
     )
     analysis["delta"].loc[PEAK] = [0.4, 0.38, 0.01, 0.01]
-    assert ranking.sentences(runs, analysis, ranking.DELTA)[0].startswith(
+    assert sensitivity.sentences(runs, analysis, sensitivity.DELTA)[0].startswith(
         "The peak force depends on the impact velocity (delta 0.40 ± 0.02) and the yield stress"
     )
 
@@ -205,7 +206,7 @@ def test_a_poor_fit_is_said_with_its_coefficients(study: Study) -> None:
     runs, analysis = study
     analysis["regression"].loc[PEAK] = [0.6, -0.3, 0.0, 0.0]
     analysis["regression_r_squared"].loc[PEAK] = 0.45
-    assert ranking.sentences(runs, analysis, ranking.REGRESSION)[0] == (
+    assert sensitivity.sentences(runs, analysis, sensitivity.REGRESSION)[0] == (
         "The peak force rises with the impact velocity (0.60 ± 0.02) and falls with the yield "
         "stress of the beam (−0.30 ± 0.02). The linear fit explains 45 % of its variance, so "
         "the coefficients do not show what it depends on."
@@ -216,7 +217,7 @@ def test_a_surrogate_that_disagrees_or_is_poor_is_named(study: Study) -> None:
     runs, analysis = study
     analysis["surrogate_total_order"].loc[PEAK] = [0.5, 0.13, 0.0, 0.0]
     analysis["surrogate_q2"].loc[PEAK] = 0.6
-    found = surrogate(runs, analysis)
+    found = sensitivity.surrogate(runs, analysis)
     assert found.sentences == [
         "Peak force: the total-order indices of the runs and of the surrogate differ by more than "
         "their intervals for impact velocity."
