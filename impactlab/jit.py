@@ -237,14 +237,14 @@ class Compiler:
         """Return what `ordered` does, always part of its callers: their loops can be vectorised."""
         return self._compile(function, fastmath={"contract"}, inline=True)
 
-    def linked(self, function: Function, number: int) -> Function:
-        """Return what `compiled` does, of a function made within another.
+    def linked(self, function: Function, name: str) -> Function:
+        """Return what `compiled` does, of a function made within another, under a name of its own.
 
-        `number` tells functions made in the same place apart: numba knows functions by their names,
-        in its cache and where it links code from there, and would take one for another. For the
-        same reason the function is kept in its callers' code alone.
+        Functions made in the same place need one: numba knows functions by their names, in its
+        cache and where it links code from there, and would take one for another. For the same
+        reason the function is kept in its callers' code alone.
         """
-        function.__qualname__ = function.__name__ = f"{function.__name__}_{number}"
+        function.__qualname__ = function.__name__ = name
         return self._compile(function, kept=False)
 
     def _compile(

@@ -63,12 +63,6 @@ def vertex(before: float, here: float, after: float) -> tuple[float, float]:
 
 
 @compiled
-def passed_peak(events: Record, delta: float, delta_m: float) -> bool:
-    """Return whether the largest indentation lies between the last two steps and this one."""
-    return events.delta == delta_m and delta < events.delta and events.delta >= events.delta_before
-
-
-@compiled
 def update_events(
     events: Record,
     delta: float,
@@ -79,42 +73,22 @@ def update_events(
     t: float,
     dt: float,
 ) -> None:
-    """Note what happened in the step that ends at t."""
-    update_contact(events, delta, delta_r, v_s, t, dt)
-    update_deflection(events, w)
-    shift(events, delta, w, F, dt)
-
-
-@compiled
-def update_contact(
-    events: Record, delta: float, delta_r: float, v_s: float, t: float, dt: float
-) -> None:
-    """Note where, in the step that ends at t, a contact ended or a new one began."""
+    """Note what happened in the step that ends at t, and make it the last one."""
     gap_before, gap = delta_r - events.delta, delta_r - delta
-    if events.touching == 1.0 and gap >= 0.0 and t > 0.0:
+    if events.touching == 1.0 and gap >= 0.0 and t > 0.0:  # a contact has ended
         end = t - dt * gap / (gap - gap_before)
         events.touching = 0.0
         events.time_in_contact += end - events.t_touch
         events.v_exit = v_s
         if np.isnan(events.t_first_end):
             events.t_first_end = end
-    elif events.touching == 0.0 and gap < 0.0:
+    elif events.touching == 0.0 and gap < 0.0:  # a new one has begun
         events.t_touch = t - dt * gap / (gap - gap_before)
         events.touching = 1.0
         events.contacts += 1.0
-
-
-@compiled
-def update_deflection(events: Record, w: float) -> None:
-    """Note a largest mid-span deflection that lies between the last two steps and this one."""
-    if events.w > events.w_before and w <= events.w:
+    if events.w > events.w_before and w <= events.w:  # a largest deflection lies between the steps
         _, value = vertex(events.w_before, events.w, w)
         events.w_max = max(events.w_max, value)
-
-
-@compiled
-def shift(events: Record, delta: float, w: float, F: float, dt: float) -> None:
-    """Make this step the last one."""
     events.impulse += 0.5 * dt * (events.F + F)
     events.delta_before, events.delta = events.delta, delta
     events.w_before, events.w = events.w, w

@@ -14,8 +14,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import Beam, Grid
-from impactlab.solver.jit import allocating, compiled
-from impactlab.solver.section import FAR, Section, bend, tangent
+from impactlab.solver.jit import allocating, compiled, vectorised
+from impactlab.solver.section import (
+    FAR,
+    Section,
+    bend,
+    dissipated_energy,
+    stored_energy,
+    tangent,
+)
 from impactlab.solver.types import ONE, TWO, Array, Index
 
 
@@ -62,6 +69,17 @@ def curvature(w: Array, now: int, psi: Array, grid: Grid, i: Index) -> float:
 
 
 @compiled
+def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: Grid) -> None:
+    """Change M_0 of section i by so much (N m), and `plastic` with it."""
+    share = grid.factor * change
+    M_0[i] += change
+    plastic[i - ONE] += share  # at the support it is never read
+    plastic[i] -= 2.0 * share
+    # mid-span has such a neighbour on both sides
+    plastic[i + ONE] += 2.0 * share if i + ONE == np.uint64(grid.mid) else share
+
+
+@compiled
 def follow_tangents(
     w: Array,
     now: int,
@@ -72,11 +90,9 @@ def follow_tangents(
     tangent: Array,
     grid: Grid,
 ) -> int:
-    """Bend the sections on a tangent, before the beam makes its step.
+    """Bend the sections on a tangent; return how many have come to its end.
 
-    psi: the rotation of a Timoshenko beam, else empty. Returns how many have come to the end of
-    their tangent; these get the direction 0 and are left as they are. Runs at every step: see
-    beam.py.
+    These get the direction 0 and are left as they are. Runs at every step: see beam.py.
     """
     ended = 0
     for k in range(ONE, on_tangent[0] + ONE):
@@ -93,21 +109,10 @@ def follow_tangents(
 
 
 @compiled
-def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: Grid) -> None:
-    """Change M_0 of section i by so much (N m), and `plastic` with it."""
-    share = grid.factor * change
-    M_0[i] += change
-    plastic[i - ONE] += share  # at the support it is never read
-    plastic[i] -= 2.0 * share
-    # mid-span has such a neighbour on both sides
-    plastic[i + ONE] += 2.0 * share if i + ONE == np.uint64(grid.mid) else share
-
-
-@compiled
 def leave_tangents(
     beam: Beam, now: int, psi: Array, plastic_state: PlasticState, section: Section, grid: Grid
 ) -> None:
-    """Bend the sections that follow_tangents has left, before the beam makes its step."""
+    """Bend the sections that follow_tangents has left."""
     k = np.uint64(1)
     while k <= plastic_state.on_tangent[0]:
         i = plastic_state.on_tangent[k]
@@ -192,3 +197,33 @@ def catch_up(plastic_state: PlasticState, section: Section) -> None:
             plastic_state.peeq,
             i,
         )
+
+
+@compiled
+def plastic_energy(
+    plastic_state: PlasticState, section: Section, grid: Grid
+) -> tuple[float, float]:
+    """Return (stored at zero curvature, dissipated) energy in J, of fibres that are up to date."""
+    stored, dissipated = 0.0, 0.0
+    for i in range(2, grid.mid + 1):
+        if plastic_state.peeq[i, 0] > 0.0:  # the outermost fibre yields first
+            kept, lost = plastic_energies(
+                section, plastic_state.plastic_strain, plastic_state.peeq, i
+            )
+            times = 1.0 if i == grid.mid else 2.0
+            stored += times * kept
+            dissipated += times * lost
+    return stored * grid.dx, dissipated * grid.dx
+
+
+@vectorised
+def plastic_energies(
+    section: Section, plastic_strain: Array, peeq: Array, i: int
+) -> tuple[float, float]:
+    """Return (stored at zero curvature, dissipated) energy per length of section i, J/m."""
+    stored, dissipated, moduli = 0.0, 0.0, section.moduli
+    for j in range(section.z.size):
+        stored += section.area[j] * stored_energy(plastic_strain[i, j], moduli.E, moduli.H_k)
+        lost = dissipated_energy(peeq[i, j], moduli.S_y, moduli.H_i)
+        dissipated += section.area[j] * lost
+    return stored, dissipated

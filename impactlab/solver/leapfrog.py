@@ -1,30 +1,32 @@
 """The time loop: leapfrog (central differences), velocities at half steps.
 
 m_s w_s'' = -F + m_s g, w_s(0) = 0, w_s'(0) = v0; indentation delta = w_s - w(L/2).
+
+The paper's beam is moved in the loop itself, where that is fastest; the other models of the beam,
+and the semi-implicit scheme, each by a function of its file.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from impactlab.solver import event_tracker, responses
-from impactlab.solver.beam import Beam, Grid, make_beam, make_grid, move, move_virgin, reach, strike
-from impactlab.solver.beam_models import (
-    RIGID,
-    SEMI_IMPLICIT,
-    SPRING_MASS,
-    TIMOSHENKO,
-    ModelState,
-    beam_energy,
-    is_explicit,
-    make_model_state,
-    model_step,
+from impactlab.solver.beam import (
+    Beam,
+    Grid,
+    bending_energy,
+    kinetic_energy,
+    make_beam,
+    move,
+    move_virgin,
+    reach,
+    strike,
 )
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact.history import Pair, make_pair
-from impactlab.solver.energy import plastic_energy
 from impactlab.solver.fibre_plasticity import (
     PlasticState,
     begin_tangents,
@@ -33,19 +35,22 @@ from impactlab.solver.fibre_plasticity import (
     follow_tangents,
     leave_tangents,
     make_plastic_state,
+    plastic_energy,
 )
 from impactlab.solver.jit import allocating, compiled
-from impactlab.solver.lumped import mid_span
+from impactlab.solver.lumped import Lumped, lumped_energy, lumped_step, make_lumped
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.solver.section import Section, make_section
-from impactlab.solver.stability import (
-    critical_time_step,
-    lumped_time_step,
-    semi_implicit_time_step,
-    timoshenko_time_step,
+from impactlab.solver.semi_implicit import (
+    Filter,
+    filtered_kinetic_energy,
+    filtered_step,
+    make_filter,
+    no_filter,
 )
-from impactlab.solver.timoshenko import shear_stiffness
-from impactlab.solver.types import Array, Record
+from impactlab.solver.stability import discretise
+from impactlab.solver.timoshenko import Shear, make_shear, shear_energy, shear_step
+from impactlab.solver.types import ELASTIC, SEMI_IMPLICIT, TIMOSHENKO, Array, Record
 
 _AUDITS = 500
 _LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
@@ -55,29 +60,21 @@ WORST_ENERGY_ERROR = 0.05
 """Imbalance over the initial kinetic energy beyond which a run gives no other answer."""
 
 
-@compiled
-def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
-    """Return (grid, number of time steps) of a case."""
-    dx = case.beam_span / (case.nodes - 1)
-    dt = case.courant * _largest_time_step(case, pair, section.stiffness, dx)
-    steps = math.ceil(case.duration / dt)
-    mu = case.beam_density * case.beam_width * case.beam_depth
-    return make_grid(case.nodes // 2, dx, case.duration / steps, mu, section.stiffness), steps
+class State(NamedTuple):
+    """What a run marches: contact pair, section and grid, and the state of the beam.
 
+    filter, shear and lumped are of the models and schemes beside the paper's; empty where a case
+    needs none.
+    """
 
-@compiled
-def _largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
-    """Return the largest step in s, of the case's beam model and scheme."""
-    if case.beam_model == TIMOSHENKO:
-        return timoshenko_time_step(case, pair, EI, shear_stiffness(case), dx)
-    if case.beam_model == SPRING_MASS:
-        mass, stiffness = mid_span(case, EI)
-        return lumped_time_step(case, pair, mass, stiffness)
-    if case.beam_model == RIGID:
-        return lumped_time_step(case, pair, 0.0, 0.0)
-    if case.scheme == SEMI_IMPLICIT:
-        return semi_implicit_time_step(case, pair, dx)
-    return critical_time_step(case, pair, EI, dx)
+    pair: Pair
+    section: Section
+    grid: Grid
+    beam: Beam
+    plastic: PlasticState
+    filter: Filter
+    shear: Shear
+    lumped: Lumped
 
 
 @compiled
@@ -101,14 +98,30 @@ def _sample(
 
 
 @compiled
+def _beam_energy(model: int, state: State, now: int, F: float, u_mid: float) -> float:
+    """Return all energy of the beam in J, stored and dissipated: after a step, at its beginning.
+
+    u_mid (m): u at mid-span before that step.
+    """
+    beam, section, grid = state.beam, state.section, state.grid
+    M_0, EI = state.plastic.M_0, section.stiffness
+    stored, dissipated = plastic_energy(state.plastic, section, grid)
+    if model > TIMOSHENKO:
+        return lumped_energy(beam, state.lumped, grid, now)
+    if model == TIMOSHENKO:
+        return stored + dissipated + shear_energy(beam, state.shear, M_0, EI, grid)
+    elastic = bending_energy(beam, M_0, EI, grid, now)
+    if state.filter.length > 0:
+        moving = filtered_kinetic_energy(beam, grid, state.filter, now, F)
+    else:
+        moving = kinetic_energy(beam, grid, now, u_mid)
+    return stored + dissipated + elastic + moving
+
+
+@compiled
 def _imbalance(
     case: Record,
-    pair: Pair,
-    section: Section,
-    grid: Grid,
-    beam: Beam,
-    plastic_state: PlasticState,
-    model_state: ModelState,
+    state: State,
     contact: Record,
     now: int,
     sphere: tuple[float, float, float, float],
@@ -122,45 +135,22 @@ def _imbalance(
     w_s, v_before, v_after, delta = sphere
     start = 0.5 * case.sphere_mass * case.velocity**2
     falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
-    in_beam = beam_energy(
-        case.beam_model, beam, plastic_state, section, grid, model_state, now, F, u_mid
-    )
-    kept, lost = contact_history.energies(contact, pair, delta)
+    in_beam = _beam_energy(case.beam_model, state, now, F, u_mid)
+    kept, lost = contact_history.energies(contact, state.pair, delta)
     return abs(falling + in_beam + kept + lost - start) / start
 
 
 @compiled
-def _contact_force(
+def contact_force(
     contact: Record, events: Record, pair: Pair, delta: float, t: float, dt: float
 ) -> float:
     """Return the contact force (N) at time t; a peak just passed is taken between the steps."""
-    if event_tracker.passed_peak(events, delta, contact.delta_m):
+    falls = delta < events.delta and events.delta >= events.delta_before
+    if falls and events.delta == contact.delta_m:
         offset, peak = event_tracker.vertex(events.delta_before, events.delta, delta)
         contact_history.load(contact, pair, peak)
         events.t_peak = t + (offset - 1.0) * dt
     return contact_history.force(contact, pair, delta)
-
-
-@compiled
-def _answer(
-    answer: Record,
-    case: Record,
-    pair: Pair,
-    section: Section,
-    grid: Grid,
-    plastic_state: PlasticState,
-    contact: Record,
-    events: Record,
-) -> None:
-    """Fill in all responses, or why there are none, after a run that has not diverged."""
-    _, dissipated = plastic_energy(plastic_state, section, grid)
-    answer.energy_error = events.energy_error
-    if events.energy_error > WORST_ENERGY_ERROR:
-        answer.status = ENERGY_OUT_OF_BALANCE
-        return
-    responses.read_contact(answer, events, contact, pair)
-    responses.read_rebound(answer, case, events)
-    responses.read_beam(answer, case, events, plastic_state.peeq, grid, dissipated)
 
 
 @allocating
@@ -185,59 +175,50 @@ def run(
     """
     pair, section = make_pair(case), make_section(case)
     grid, steps = discretise(case, pair, section)
-    beam, plastic_state = make_beam(grid), make_plastic_state(grid, section)
-    model_state = make_model_state(case, section, grid)
-    now = march(
-        case,
+    filtered = case.beam_model <= ELASTIC and case.scheme == SEMI_IMPLICIT
+    state = State(
         pair,
         section,
         grid,
-        beam,
-        plastic_state,
-        model_state,
-        contact,
-        events,
-        samples,
-        steps,
+        make_beam(grid),
+        make_plastic_state(grid, section),
+        make_filter(grid, section.stiffness) if filtered else no_filter(),
+        make_shear(case, grid.mid + 3 if case.beam_model == TIMOSHENKO else 0),
+        make_lumped(case, section.stiffness, grid),
     )
+    now = march(case, state, contact, events, samples, steps)
     if now < 0:
         answer.status = DIVERGED
         samples[:] = np.nan
         return
-    _answer(answer, case, pair, section, grid, plastic_state, contact, events)
+    answer.energy_error = events.energy_error
+    if events.energy_error > WORST_ENERGY_ERROR:
+        answer.status = ENERGY_OUT_OF_BALANCE
+    else:
+        _, dissipated = plastic_energy(state.plastic, section, grid)
+        responses.read_contact(answer, events, contact, pair)
+        responses.read_rebound(answer, case, events)
+        responses.read_beam(answer, case, events, state.plastic.peeq, grid, dissipated)
     if deflection.size > 0:
         along = slice(1, grid.mid + 1)
-        deflection[:] = beam.w[now, along]
-        plastic_strain[:] = plastic_state.plastic_strain[along]
-        peeq[:] = plastic_state.peeq[along]
+        deflection[:] = state.beam.w[now, along]
+        plastic_strain[:] = state.plastic.plastic_strain[along]
+        peeq[:] = state.plastic.peeq[along]
 
 
 @compiled
 def march(
-    case: Record,
-    pair: Pair,
-    section: Section,
-    grid: Grid,
-    beam: Beam,
-    plastic_state: PlasticState,
-    model_state: ModelState,
-    contact: Record,
-    events: Record,
-    samples: Array,
-    steps: int,
+    case: Record, state: State, contact: Record, events: Record, samples: Array, steps: int
 ) -> int:
     """March from first touch to the end; return which row of beam.w is the last, or -1.
 
     -1: it diverged. contact and events are kept up to date.
     """
-    w, u, plastic = beam.w, beam.u, beam.plastic
+    pair, section, grid, beam, plastic_state = state[:5]
+    w, u, plastic, psi = beam.w, beam.u, beam.plastic, state.shear.psi
     kappa_min, kappa_max, M_0 = plastic_state.kappa_min, plastic_state.kappa_max, plastic_state.M_0
-    on_tangent, tangent, psi = (
-        plastic_state.on_tangent,
-        plastic_state.tangent,
-        model_state.shear.psi,
-    )
-    explicit = is_explicit(case)
+    on_tangent, tangent = plastic_state.on_tangent, plastic_state.tangent
+    paper = case.beam_model <= ELASTIC and case.scheme != SEMI_IMPLICIT
     kappa_y, dt, mid = section.yield_curvature, grid.dt, grid.mid
     stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
     # half a step before the first touch
@@ -249,14 +230,14 @@ def march(
     for step in range(steps + 1):
         w_mid, u_mid = w[now, mid], u[mid]
         delta = w_s - w_mid
-        F = _contact_force(contact, events, pair, delta, step * dt, dt)
+        F = contact_force(contact, events, pair, delta, step * dt, dt)
         v_after = v_s + dt * (case.gravity - F * per_mass)
         event_tracker.update_events(events, delta, contact.delta_r, w_mid, F, v_s, step * dt, dt)
         kappa = curvature(w, now, psi, grid, np.uint64(mid))
         before, here = here, (F, w_mid, kappa, w_s, delta)
         _sample(samples, step, steps, before, here)
 
-        if explicit:
+        if paper:
             if on_tangent[0] > 0 and follow_tangents(
                 w, now, psi, plastic, M_0, on_tangent, tangent, grid
             ):
@@ -270,8 +251,12 @@ def march(
                 )
                 yielded = min(yielded, max(bent - 1, 2))
             strike(w, now, u, F, grid)
+        elif case.beam_model == TIMOSHENKO:
+            shear_step(beam, state.shear, plastic_state, section, grid, now, F)
+        elif case.beam_model <= ELASTIC:
+            filtered_step(beam, plastic_state, section, grid, state.filter, now, F)
         else:
-            model_step(case.beam_model, beam, plastic_state, section, grid, model_state, now, F)
+            lumped_step(beam, state.lumped, grid, now, F)
 
         to_audit -= 1
         if to_audit == 0 or step == steps:
@@ -279,20 +264,7 @@ def march(
             catch_up(plastic_state, section)
             events.v_s, events.v_mid = v_s, u_mid / dt
             sphere = (w_s, v_s, v_after, delta)
-            error = _imbalance(
-                case,
-                pair,
-                section,
-                grid,
-                beam,
-                plastic_state,
-                model_state,
-                contact,
-                now,
-                sphere,
-                F,
-                u_mid,
-            )
+            error = _imbalance(case, state, contact, now, sphere, F, u_mid)
             events.energy_error = max(events.energy_error, error)
             if not error < 1.0:
                 return -1

@@ -13,7 +13,7 @@ import numpy as np
 
 from impactlab.solver.beam import Beam, Grid, mirror
 from impactlab.solver.jit import allocating, compiled
-from impactlab.solver.types import Array, Record
+from impactlab.solver.types import RIGID, Array, Record
 
 
 class Lumped(NamedTuple):
@@ -27,15 +27,6 @@ class Lumped(NamedTuple):
     shape: Array
 
 
-@allocating
-def make_lumped(case: Record, rigid: bool, EI: float, grid: Grid) -> Lumped:
-    """Return the model of a case's beam; EI: the section's (N m2)."""
-    if rigid:
-        return Lumped(0.0, 0.0, np.zeros(grid.mid + 3))
-    mass, stiffness = mid_span(case, EI)
-    return Lumped(mass, stiffness, _static_shape(grid))
-
-
 @compiled
 def mid_span(case: Record, EI: float) -> tuple[float, float]:
     """Return (generalised mass in kg, static stiffness in N/m) of the mid-span."""
@@ -44,17 +35,22 @@ def mid_span(case: Record, EI: float) -> tuple[float, float]:
 
 
 @allocating
-def _static_shape(grid: Grid) -> Array:
-    """Return the static shape by finite differences: curvature linear in the distance."""
+def make_lumped(case: Record, EI: float, grid: Grid) -> Lumped:
+    """Return the model of a case's beam; EI: the section's (N m2).
+
+    The static shape is that of finite differences: curvature linear in the distance.
+    """
     mid = grid.mid
-    drop = np.zeros(mid + 3)  # below mid-span, in curvatures there times dx^2
-    drop[mid - 1] = 0.5
+    shape, drop = np.zeros(mid + 3), np.zeros(mid + 3)
+    if case.beam_model == RIGID:
+        return Lumped(0.0, 0.0, shape)
+    drop[mid - 1] = 0.5  # below mid-span, in curvatures there times dx^2
     for i in range(mid - 1, 1, -1):
         drop[i - 1] = 2.0 * drop[i] - drop[i + 1] + (i - 1.0) / (mid - 1.0)
-    shape = np.zeros(mid + 3)
     for i in range(1, mid + 1):
         shape[i] = 1.0 - drop[i] / drop[1]
-    return shape
+    mass, stiffness = mid_span(case, EI)
+    return Lumped(mass, stiffness, shape)
 
 
 @compiled

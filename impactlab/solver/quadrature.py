@@ -28,47 +28,36 @@ def legendre_pair(degree: int, x: float) -> tuple[float, float]:
 
 
 @compiled
-def _legendre_point(x: float, points: int) -> tuple[float, float]:
-    """Return a root of P_n near x, n = points, and its weight 2 (1 - x^2)/(n P_{n-1})^2."""
-    for _ in range(_NEWTON_STEPS):
-        value, lower = legendre_pair(points, x)
-        step = value * (x * x - 1.0) / (points * (x * value - lower))
-        x -= step
-        if abs(step) < 1e-15:
-            break
-    value, lower = legendre_pair(points, x)
-    return x, 2.0 * (1.0 - x * x) / (points * lower) ** 2
-
-
-@compiled
-def _lobatto_point(x: float, points: int) -> tuple[float, float]:
-    """Return a root of (1 - x^2) P'_n near x and its weight 2/(n (n + 1) P_n^2), n = points - 1."""
-    n = points - 1
-    for _ in range(_NEWTON_STEPS):
-        value, lower = legendre_pair(n, x)
-        step = (x * value - lower) / (points * value)
-        x -= step
-        if abs(step) < 1e-15:
-            break
-    value, lower = legendre_pair(n, x)
-    return x, 2.0 / (n * points * value * value)
-
-
-@compiled
 def upper_half(rule: int, points: int, positions: Array, weights: Array) -> None:
     """Fill `positions`, `weights`, shape (points // 2,), with the points above 0, outermost first.
 
     The rest of the rule is their mirror image, and for odd P the point 0, which bends nothing.
+    Legendre: the roots of P_n, n = P, with the weights 2 (1 - x^2)/(n P_{n-1})^2. Lobatto: those of
+    (1 - x^2) P'_n, n = P - 1, with 2/(n (n + 1) P_n^2).
     """
+    lobatto = rule == LOBATTO
+    n = points - 1 if lobatto else points
     for j in range(points // 2):
-        if rule == LOBATTO:
-            guess = math.cos(math.pi * j / (points - 1))
-            positions[j], weights[j] = _lobatto_point(guess, points)
-        elif rule == LEGENDRE:
-            guess = math.cos(math.pi * (j + 0.75) / (points + 0.5))
-            positions[j], weights[j] = _legendre_point(guess, points)
-        else:
+        if not (lobatto or rule == LEGENDRE):
             positions[j], weights[j] = 1.0 - (2 * j + 1) / points, 2.0 / points
+            continue
+        if lobatto:
+            x = math.cos(math.pi * j / (points - 1))
+        else:
+            x = math.cos(math.pi * (j + 0.75) / (points + 0.5))
+        for _ in range(_NEWTON_STEPS):
+            value, lower = legendre_pair(n, x)
+            step = x * value - lower
+            step = step / (points * value) if lobatto else value * (x * x - 1.0) / (points * step)
+            x -= step
+            if abs(step) < 1e-15:
+                break
+        value, lower = legendre_pair(n, x)
+        positions[j] = x
+        if lobatto:
+            weights[j] = 2.0 / (n * points * value * value)
+        else:
+            weights[j] = 2.0 * (1.0 - x * x) / (points * lower) ** 2
 
 
 def rule_points(rule: str, points: int) -> np.ndarray:

@@ -19,15 +19,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import allocating, compiled, vectorised
 from impactlab.solver.quadrature import upper_half
-from impactlab.solver.types import Array, Record
+from impactlab.solver.types import ELASTIC, Array, Record
 
 FAR = 1e300
 """A curvature that no section reaches (1/m)."""
 
-_ELASTIC = BEAM_MODELS.index("elastic")
 _ROUND_OFF = 1e-12
 """A fibre so near its yield strain, in shares of it, yields."""
 
@@ -73,7 +71,7 @@ def make_section(case: Record) -> Section:
         area,
         E * area * z,
         stiffness,
-        FAR if case.beam_model == _ELASTIC else case.beam_yield_stress / (E * z[0]),
+        FAR if case.beam_model == ELASTIC else case.beam_yield_stress / (E * z[0]),
         Moduli(
             E,
             case.beam_yield_stress,

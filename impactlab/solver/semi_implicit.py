@@ -77,10 +77,8 @@ def make_filter(grid: Grid, EI: float) -> Filter:
 @allocating
 def no_filter() -> Filter:
     """Return the filter of an explicit run, which has no rows."""
-    none = np.zeros((0, 2))
-    return Filter(
-        0.0, 0, 0, none, none, none, none[:, 0].copy(), none[:, 0].copy(), (0.0, 0.0, 0.0)
-    )
+    rows, none = np.zeros((0, 2)), np.zeros(0)
+    return Filter(0.0, 0, 0, rows, rows, rows, none, none, (0.0, 0.0, 0.0))
 
 
 @allocating
@@ -208,19 +206,19 @@ def filtered_step(
     F: float,
 ) -> None:
     """Move the beam by one step under the contact force F (N)."""
-    w, u, du, plastic = beam.w, beam.u, beam.du, beam.plastic
+    w, u, du = beam.w, beam.u, beam.du
     if plastic_state.on_tangent[0] > 0 and follow_tangents(
-        w,
+        beam.w,
         now,
         du[:0],
-        plastic,
+        beam.plastic,
         plastic_state.M_0,
         plastic_state.on_tangent,
         plastic_state.tangent,
         grid,
     ):
         leave_tangents(beam, now, du[:0], plastic_state, section, grid)
-    outside = pull(w, now, du, plastic, plastic_state.kappa_min, plastic_state.kappa_max, grid)
+    outside = pull(w, now, du, beam.plastic, plastic_state.kappa_min, plastic_state.kappa_max, grid)
     if outside > 0.0:
         begin_tangents(beam, now, du[:0], outside, plastic_state, section, grid, du, du[:0])
     du[grid.mid] += grid.push * F

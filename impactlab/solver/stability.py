@@ -1,21 +1,33 @@
 """The largest time steps, of each model of the beam and scheme in time.
 
-The paper's beam by leapfrog: omega^2 <= 16 (EI)_q/(rho A dx^4) + k_c (1/(rho A dx) + 1/m_s);
-dt_critical = 2/omega (physics.md, in the place of the paper's bar-wave limit).
+Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
+    the paper's beam  omega^2 <= 16 (EI)_q/(rho A dx^4) + k_c (1/(rho A dx) + 1/m_s)
+                      (physics.md, in the place of the paper's bar-wave limit)
+    Timoshenko beam   4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) as first term
+    lumped            k_c/m_s, and (k_c + k)/m_b of the spring-mass model; a thousandth of it is
+                      taken, for accuracy: no wave asks for small steps here
+The semi-implicit scheme takes half of the time in which a bar wave crosses a spacing, for accuracy;
+and what the contact spring between the bare masses of node and sphere allows, for stability: the
+filter makes the node's mass larger.
 """
 
 from __future__ import annotations
 
 import math
 
+from impactlab.solver.beam import Grid, make_grid
 from impactlab.solver.contact.history import Pair, loading_work
 from impactlab.solver.contact.switch import curve
 from impactlab.solver.jit import compiled
-from impactlab.solver.types import Record
+from impactlab.solver.lumped import mid_span
+from impactlab.solver.section import Section
+from impactlab.solver.timoshenko import shear_stiffness
+from impactlab.solver.types import SEMI_IMPLICIT, SPRING_MASS, TIMOSHENKO, Record
 
 _GROWTH = 1.25
 _LARGEST_SHARE = 0.01
 """Of the loading work, in energy that a jump at the turn may bring at the critical time step."""
+_LUMPED_STEPS = 1000.0
 
 
 @compiled
@@ -57,55 +69,36 @@ def stiffest_contact(case: Record, pair: Pair) -> float:
 
 
 @compiled
-def critical_time_step(case: Record, pair: Pair, bending_stiffness: float, dx: float) -> float:
-    """Return the largest stable time step (s) for node spacing dx (m) and the rule's EI (N m2)."""
-    mu = case.beam_density * case.beam_width * case.beam_depth
-    k_c = stiffest_contact(case, pair)
-    omega_squared = 16.0 * bending_stiffness / (mu * dx**4)
-    omega_squared += k_c * (1.0 / (mu * dx) + 1.0 / case.sphere_mass)
-    return 2.0 / math.sqrt(omega_squared)
+def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
+    """Return the largest step in s, of the case's beam model and scheme.
+
+    EI: the integration rule's (N m2); dx: node spacing (m).
+    """
+    k_c, mu = stiffest_contact(case, pair), case.beam_density * case.beam_width * case.beam_depth
+    if case.beam_model >= SPRING_MASS:
+        omega_squared = k_c / case.sphere_mass
+        if case.beam_model == SPRING_MASS:
+            mass, stiffness = mid_span(case, EI)
+            omega_squared += (k_c + stiffness) / mass
+        return 2.0 / math.sqrt(omega_squared) / _LUMPED_STEPS
+    contact = k_c * (1.0 / (mu * dx) + 1.0 / case.sphere_mass)
+    if case.scheme == SEMI_IMPLICIT:
+        wave = 0.5 * dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
+        return min(wave, 2.0 / math.sqrt(contact))
+    if case.beam_model == TIMOSHENKO:
+        inertia, kGA = mu * case.beam_depth**2 / 12.0, shear_stiffness(case)
+        omega_squared = (4.0 * EI / dx**2 + kGA) / inertia
+        omega_squared += 4.0 * kGA / (mu * dx**2)
+    else:
+        omega_squared = 16.0 * EI / (mu * dx**4)
+    return 2.0 / math.sqrt(omega_squared + contact)
 
 
 @compiled
-def timoshenko_time_step(
-    case: Record, pair: Pair, bending_stiffness: float, shear_stiffness: float, dx: float
-) -> float:
-    """Return the largest stable time step (s) of the Timoshenko beam; shear_stiffness: k G A in N.
-
-    omega^2 <= 4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) and the contact's.
-    """
+def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
+    """Return (grid, number of time steps) of a case."""
+    dx = case.beam_span / (case.nodes - 1)
+    dt = case.courant * largest_time_step(case, pair, section.stiffness, dx)
+    steps = math.ceil(case.duration / dt)
     mu = case.beam_density * case.beam_width * case.beam_depth
-    inertia = mu * case.beam_depth**2 / 12.0
-    omega_squared = (4.0 * bending_stiffness / dx**2 + shear_stiffness) / inertia
-    omega_squared += 4.0 * shear_stiffness / (mu * dx**2)
-    omega_squared += stiffest_contact(case, pair) * (1.0 / (mu * dx) + 1.0 / case.sphere_mass)
-    return 2.0 / math.sqrt(omega_squared)
-
-
-_LUMPED_STEPS = 1000.0
-
-
-@compiled
-def lumped_time_step(case: Record, pair: Pair, mass: float, stiffness: float) -> float:
-    """Return the largest time step (s) of the spring-mass model or, with mass = 0, the rigid beam.
-
-    A thousandth of the critical one, for accuracy: no wave asks for small steps here.
-    """
-    k_c = stiffest_contact(case, pair)
-    omega_squared = k_c / case.sphere_mass
-    if mass > 0.0:
-        omega_squared += (k_c + stiffness) / mass
-    return 2.0 / math.sqrt(omega_squared) / _LUMPED_STEPS
-
-
-@compiled
-def semi_implicit_time_step(case: Record, pair: Pair, dx: float) -> float:
-    """Return the largest time step (s) of the semi-implicit scheme for node spacing dx (m).
-
-    Half of what a bar wave takes over a spacing, for accuracy; and the contact spring between the
-    bare masses of node and sphere, for stability: the filter makes the node's mass larger.
-    """
-    mu = case.beam_density * case.beam_width * case.beam_depth
-    wave = 0.5 * dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
-    k_c = stiffest_contact(case, pair)
-    return min(wave, 2.0 / math.sqrt(k_c * (1.0 / (mu * dx) + 1.0 / case.sphere_mass)))
+    return make_grid(case.nodes // 2, dx, case.duration / steps, mu, section.stiffness), steps

@@ -74,7 +74,7 @@ def shear_step(
     F: float,
 ) -> None:
     """Move the beam by one step under the contact force F (N)."""
-    psi, M, mid = shear.psi, shear.M, grid.mid
+    psi, Q, mid = shear.psi, shear.Q, grid.mid
     if plastic_state.on_tangent[0] > 0 and follow_tangents(
         beam.w,
         now,
@@ -87,24 +87,11 @@ def shear_step(
     ):
         leave_tangents(beam, now, psi, plastic_state, section, grid)
     EI, per_dx = section.stiffness, 1.0 / grid.dx
-    outside = _moments(
-        psi, M, plastic_state.M_0, plastic_state.kappa_min, plastic_state.kappa_max, EI, per_dx, mid
-    )
+    outside = _moments(shear, plastic_state, EI, per_dx, mid)
     if outside > 0.0:
         begin_tangents(beam, now, psi, outside, plastic_state, section, grid, beam.du, beam.du[:0])
-        _moments(
-            psi,
-            M,
-            plastic_state.M_0,
-            plastic_state.kappa_min,
-            plastic_state.kappa_max,
-            EI,
-            per_dx,
-            mid,
-        )
-    turn = grid.dt**2 / shear.inertia
-    Q, kGA = shear.Q, shear.stiffness
-    _rotate(beam.w, now, psi, shear.spin, shear.d_spin, Q, M, kGA, turn, per_dx, mid)
+        _moments(shear, plastic_state, EI, per_dx, mid)
+    _rotate(beam.w, now, shear, grid.dt**2 / shear.inertia, per_dx, mid)
     psi[mid], Q[mid] = -psi[mid - 1], -Q[mid - 1]
     _shift(beam.w, now, beam.u, beam.du, Q, grid.push, F, mid)
     mirror(beam.w, now, grid)
@@ -112,42 +99,25 @@ def shear_step(
 
 @vectorised
 def _moments(
-    psi: Array,
-    M: Array,
-    M_0: Array,
-    kappa_min: Array,
-    kappa_max: Array,
-    EI: float,
-    per_dx: float,
-    mid: int,
+    shear: Shear, plastic_state: PlasticState, EI: float, per_dx: float, mid: int
 ) -> float:
     """Set the moments at the nodes; return how many sections are outside their elastic interval."""
+    psi, M, M_0 = shear.psi, shear.M, plastic_state.M_0
     outside = 0.0
     for i in range(np.uint64(2), np.uint64(mid + 1)):
         kappa = (psi[i] - psi[i - ONE]) * per_dx
-        outside += 1.0 if kappa > kappa_max[i] else 0.0
-        outside += 1.0 if kappa < kappa_min[i] else 0.0
+        outside += 1.0 if kappa > plastic_state.kappa_max[i] else 0.0
+        outside += 1.0 if kappa < plastic_state.kappa_min[i] else 0.0
         M[i] = M_0[i] - EI * kappa
     return outside
 
 
 @vectorised
-def _rotate(
-    w: Array,
-    now: int,
-    psi: Array,
-    spin: Array,
-    d_spin: Array,
-    Q: Array,
-    M: Array,
-    kGA: float,
-    turn: float,
-    per_dx: float,
-    mid: int,
-) -> None:
+def _rotate(w: Array, now: int, shear: Shear, turn: float, per_dx: float, mid: int) -> None:
     """Set the shear force half-way between nodes and move the rotation; turn = dt^2/(rho I)."""
+    psi, spin, d_spin, Q, M = shear.psi, shear.spin, shear.d_spin, shear.Q, shear.M
     for i in range(np.uint64(1), np.uint64(mid)):
-        Q[i] = kGA * ((w[now, i + ONE] - w[now, i]) * per_dx - psi[i])
+        Q[i] = shear.stiffness * ((w[now, i + ONE] - w[now, i]) * per_dx - psi[i])
         d_spin[i] = turn * (Q[i] - (M[i + ONE] - M[i]) * per_dx)
         spin[i] += d_spin[i]
         psi[i] += spin[i]

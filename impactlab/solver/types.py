@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from impactlab.solver import BEAM_MODELS, SCHEMES
+
 Array = np.ndarray[Any, Any]
 """An array; the docstring gives shape and unit."""
 Record = Any
@@ -18,6 +20,12 @@ ONE, TWO = np.uint64(1), np.uint64(2)
 index might be negative, that is, count from the end."""
 Curve = Callable[..., tuple[float, float, float, float]]
 """A contact law: see contact/hertz.py."""
+
+ELASTIC = BEAM_MODELS.index("elastic")
+TIMOSHENKO = BEAM_MODELS.index("timoshenko")
+SPRING_MASS = BEAM_MODELS.index("spring_mass")
+RIGID = BEAM_MODELS.index("rigid")
+SEMI_IMPLICIT = SCHEMES.index("semi_implicit")
 
 WHOLE = ("contact", "beam_model", "nodes", "points", "rule", "scheme")
 REAL = (

@@ -11,8 +11,8 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
 from impactlab.simulate import case_table, simulate
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.leapfrog import discretise
 from impactlab.solver.section import make_section
+from impactlab.solver.stability import discretise
 
 
 @dataclass(frozen=True)

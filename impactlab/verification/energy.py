@@ -15,8 +15,8 @@ from impactlab.simulate import case_table, simulate
 from impactlab.solver import RULES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.leapfrog import discretise
 from impactlab.solver.section import make_section
+from impactlab.solver.stability import discretise
 from impactlab.types import Floats
 from impactlab.variables import WARNINGS
 from impactlab.verification.finding import (

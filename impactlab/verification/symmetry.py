@@ -17,8 +17,8 @@ from impactlab.simulate import case_table, simulate
 from impactlab.solver.beam import Beam, Grid, make_beam, move_virgin, strike
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, Pair, force, make_pair
-from impactlab.solver.leapfrog import discretise
 from impactlab.solver.section import Section, make_section
+from impactlab.solver.stability import discretise
 from impactlab.types import Floats
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 from impactlab.verification.cases import elastic, with_beam_material

@@ -23,8 +23,8 @@ from impactlab.simulate import case_table
 from impactlab.solver import RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.leapfrog import discretise
 from impactlab.solver.section import make_section
+from impactlab.solver.stability import discretise
 from impactlab.variables import FLAGS, HISTORIES, STATUS_FLAGS
 
 from .. import plain_beam

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.contact.jackson_green import ONSET, critical_indentation
-from impactlab.solver.contact.mjg import loading, loading_limit
+from impactlab.solver.contact.jackson_green import ONSET, critical_indentation, indentation_at
+from impactlab.solver.contact.mjg import loading
 from impactlab.solver.jit import compiled
 
 
@@ -32,5 +32,5 @@ def curve(
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Return the limit of the loading in m; unloading has none."""
-    return loading_limit(E, R, S_y, nu)
+    """Return where (m) a/R reaches 1, the limit of the loading; unloading has none."""
+    return indentation_at(1.0, E, R, S_y, nu)

@@ -31,12 +31,6 @@ def _critical_indentation(E: float, R: float, S_y: float, nu: float) -> float:
 
 
 @compiled
-def _force_ratio(y: float) -> float:
-    """Return F/F_c within the fits."""
-    return 1.03 * y**1.425 if y <= ELASTIC_PLASTIC else 1.40 * y**1.263
-
-
-@compiled
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
@@ -47,7 +41,8 @@ def curve(
     if y <= 1.0:
         return K * delta * math.sqrt(delta), K, 0.0, 1.5
     if y <= FULLY_PLASTIC:
-        F = K * delta_c * math.sqrt(delta_c) * _force_ratio(y)
+        ratio = 1.03 * y**1.425 if y <= ELASTIC_PLASTIC else 1.40 * y**1.263
+        F = K * delta_c * math.sqrt(delta_c) * ratio
     else:
         F = 2.0 * math.pi * R * HARDNESS * S_y * delta
     delta_r = delta * (1.0 - y**-0.28) * (1.0 - y**-0.69)

@@ -36,12 +36,6 @@ def loading(delta: float, delta_c: float, E: float, R: float, S_y: float, nu: fl
 
 
 @compiled
-def loading_limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Return the indentation (m) at which a/R reaches 1, beyond which the hardness would rise."""
-    return indentation_at(1.0, E, R, S_y, nu)
-
-
-@compiled
 def curve(
     delta: float, E: float, R: float, S_y: float, nu: float
 ) -> tuple[float, float, float, float]:
@@ -56,5 +50,5 @@ def curve(
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Return where (m) the hardness would rise again, or the fit of the residual ends."""
-    return min(loading_limit(E, R, S_y, nu), unloading_limit(E, R, S_y, nu))
+    """Return where (m) the hardness would rise again (a/R = 1), or the fit of the residual ends."""
+    return min(indentation_at(1.0, E, R, S_y, nu), unloading_limit(E, R, S_y, nu))

@@ -12,8 +12,8 @@ from impactlab.model.impact import paper_impact
 from impactlab.simulate import case_table
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.leapfrog import discretise
 from impactlab.solver.section import make_section
+from impactlab.solver.stability import discretise
 
 PAPER: dict[str, Any] = {
     "beam_span": 0.78,

@@ -5,15 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.solver.event_tracker import (
-    EVENTS,
-    passed_peak,
-    shift,
-    start,
-    update_contact,
-    update_deflection,
-    vertex,
-)
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.history import CONTACT, Pair, force
+from impactlab.solver.event_tracker import EVENTS, start, update_events, vertex
+from impactlab.solver.leapfrog import contact_force
 
 DT = 0.1
 
@@ -29,8 +24,7 @@ def follow(events, deltas, delta_r=0.0, velocities=None):
     """Watch a history of indentation, a step of DT each, from t = 0."""
     velocities = np.zeros(len(deltas)) if velocities is None else velocities
     for step, (delta, v_s) in enumerate(zip(deltas, velocities, strict=True)):
-        update_contact(events, delta, delta_r, v_s, step * DT, DT)
-        shift(events, delta, 0.0, 0.0, DT)
+        update_events(events, delta, delta_r, 0.0, 0.0, v_s, step * DT, DT)
 
 
 @pytest.mark.parametrize("top", [-0.4, 0.0, 0.3])
@@ -44,13 +38,28 @@ def test_vertex_of_a_straight_line_is_its_middle():
     assert vertex(2.0, 2.0, 2.0) == (0.0, 2.0)
 
 
-def test_a_peak_has_passed_where_the_largest_indentation_begins_to_fall(events):
-    events.delta_before, events.delta = 1.0, 2.0
-    assert passed_peak(events, 1.9, 2.0)
-    assert not passed_peak(events, 2.1, 2.0)  # still growing
-    assert not passed_peak(events, 1.9, 2.5)  # a lower peak than an earlier one
-    events.delta_before = 3.0
-    assert not passed_peak(events, 1.9, 2.0)  # falling already
+@pytest.mark.parametrize(
+    ("before", "delta", "largest", "passed"),
+    [
+        (1.0, 1.9, 2.0, True),
+        (1.0, 2.1, 2.0, False),  # still growing
+        (1.0, 1.9, 2.5, False),  # a lower peak than an earlier one
+        (3.0, 1.9, 2.0, False),  # falling already
+    ],
+)
+def test_a_peak_has_passed_where_the_largest_indentation_begins_to_fall(
+    events, before, delta, largest, passed
+):
+    """Then it is taken at the top of the parabola, between the steps."""
+    pair, contact = Pair(LAWS.index("hertz"), 1e11, 0.1, 3e8, 0.3), np.zeros(1, CONTACT)[0]
+    force(contact, pair, largest)
+    events.delta_before, events.delta = before, 2.0
+    contact_force(contact, events, pair, delta, 7.0, DT)
+    offset, peak = vertex(before, 2.0, delta)
+    assert np.isnan(events.t_peak) != passed
+    assert contact.delta_m == (peak if passed else max(largest, delta))
+    if passed:
+        assert events.t_peak == pytest.approx(7.0 + (offset - 1.0) * DT, rel=1e-14)
 
 
 def test_the_first_contact_begins_at_zero(events):
@@ -94,21 +103,19 @@ def test_a_contact_that_goes_on_has_no_end(events):
 def test_the_largest_deflection_is_the_top_of_its_parabola(events):
     time = DT * np.arange(50)
     for w in np.where(time < 2, 1 - (time - 1.03) ** 2, 2 - (time - 3.04) ** 2):
-        update_deflection(events, w)
-        shift(events, 0.0, w, 0.0, DT)
+        update_events(events, 0.0, 0.0, w, 0.0, 0.0, 0.0, DT)
     assert events.w_max == pytest.approx(2.0, rel=1e-12)
 
 
 def test_a_deflection_that_only_grows_has_no_peak(events):
     for w in np.arange(10.0):
-        update_deflection(events, w)
-        shift(events, 0.0, w, 0.0, DT)
+        update_events(events, 0.0, 0.0, w, 0.0, 0.0, 0.0, DT)
     assert events.w_max == 0.0
 
 
 def test_impulse_is_the_trapezoidal_sum(events):
     forces = np.array([0.0, 3.0, 5.0, 2.0])
     for F in forces:
-        shift(events, 0.0, 0.0, F, DT)
+        update_events(events, 0.0, 0.0, 0.0, F, 0.0, 0.0, DT)
     # the first step begins at zero force
     assert events.impulse == pytest.approx(np.trapezoid(forces, dx=DT))

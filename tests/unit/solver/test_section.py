@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from impactlab.solver import RULES
-from impactlab.solver.energy import plastic_energies
+from impactlab.solver.fibre_plasticity import plastic_energies
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.section import (
     dissipated_energy,

@@ -14,8 +14,8 @@ from impactlab.model.parameters import flatten
 from impactlab.simulate import case_table
 from impactlab.solver import SCHEMES
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.leapfrog import discretise
 from impactlab.solver.section import make_section
+from impactlab.solver.stability import discretise
 from impactlab.study import execute as executing
 from impactlab.study.engine import Engine
 from impactlab.study.execute import Batches, execute, solve_batch
