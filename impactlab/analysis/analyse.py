@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -15,30 +14,18 @@ from impactlab.analysis.numerical import numerical
 from impactlab.analysis.responses import failures
 from impactlab.variables import ANALYSES
 
-
-@dataclass(frozen=True)
-class Analysis:
-    """An analysis of a study.
-
-    applies: whether the runs are of the kind that it is about. analysis: its variables, with
-    `response` among their coordinates.
-    """
-
-    name: str
-    applies: Callable[[xr.Dataset], bool]
-    analysis: Callable[[xr.Dataset], xr.Dataset]
-
-
-_TABLE = (
-    Analysis("failures", lambda runs: True, failures),
-    Analysis("convergence_in_nodes", NODES.applies, NODES.analysis),
-    Analysis("convergence_in_time_step", TIME_STEP.applies, TIME_STEP.analysis),
-    Analysis("convergence_in_element_size", ELEMENT_SIZE.applies, ELEMENT_SIZE.analysis),
-    Analysis("convergence_in_points", points.applies, points.analysis),
-    Analysis("sensitivity", sensitivity.applies, sensitivity.analysis),
-    Analysis("surrogate", surrogate.applies, surrogate.analysis),
-)
-"""Every analysis; a new one is one line here and one in variables.ANALYSES."""
+_TABLE: dict[str, tuple[Callable[[xr.Dataset], bool], Callable[[xr.Dataset], xr.Dataset]]] = {
+    "failures": (lambda runs: True, failures),
+    "convergence_in_nodes": (NODES.applies, NODES.analysis),
+    "convergence_in_time_step": (TIME_STEP.applies, TIME_STEP.analysis),
+    "convergence_in_element_size": (ELEMENT_SIZE.applies, ELEMENT_SIZE.analysis),
+    "convergence_in_points": (points.applies, points.analysis),
+    "sensitivity": (sensitivity.applies, sensitivity.analysis),
+    "surrogate": (surrogate.applies, surrogate.analysis),
+}
+"""Every analysis by its name: whether the runs are of the kind that it is about, and its variables,
+with `response` among their coordinates. A new one is one line here and one in variables.ANALYSES.
+"""
 
 
 def analyse(
@@ -59,9 +46,9 @@ def analyse(
     """
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
     parts = [
-        entry.analysis(runs)
-        for entry in _TABLE
-        if entry.applies(runs) and entry.name not in ANALYSES.keys() - wanted
+        analysis(runs)
+        for name, (applies, analysis) in _TABLE.items()
+        if applies(runs) and name not in ANALYSES.keys() - wanted
     ]
     merged = xr.merge(parts, join="exact", compat="equals", combine_attrs="override")
     if resolution is not None or refinement is not None:

@@ -1,21 +1,33 @@
 """Numerical uncertainty of sensitivity indices, as a variable beside each of them.
 
-It is measured where the sample was solved again on other grids. Elsewhere it is bounded by the
-uncertainty of the responses, as if none of it were common to all runs.
+It is measured where the first base samples of a Sobol sample were solved again on other grids. All
+grids see the same points of the sample, so that the sampling error of an index nearly cancels in
+its change from grid to grid; what is left of it is bootstrapped, the base samples of all grids
+drawn together. Elsewhere it is bounded by the uncertainty of the responses, as if none of it were
+common to all runs.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import xarray as xr
 
+from impactlab.analysis.convergence import points
+from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
 from impactlab.analysis.responses import usable
-from impactlab.analysis.sensitivity import refinement as refining
-from impactlab.analysis.sensitivity.indices import Fit
+from impactlab.analysis.sample import Sample
+from impactlab.analysis.sensitivity import sobol
+from impactlab.analysis.sensitivity.indices import Fit, imputed
+from impactlab.analysis.sensitivity.method import half_widths
+from impactlab.analysis.sensitivity.sobol import Outputs, estimates
+from impactlab.analysis.sensitivity.verdict import still, tail
 from impactlab.analysis.surrogate import fit
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
+from impactlab.types import Floats
 
-_GRID = ("nodes", "points", "courant")
+ORDERS = ("first_order", "total_order")
 _MEASURED = (
     "change of the index with half the spacing and with more points, on the first {} base samples, "
     "extrapolated to the limit, where numerical_from says so; elsewhere "
@@ -46,48 +58,67 @@ def numerical(
     Returns of a resolution numerical_uncertainty (response), relative, the worst over the corner
     cases, and numerical_share (response), (u/sigma)^2 with u the root mean square of the
     uncertainty over the corner cases and sigma the standard deviation over the runs; of a
-    refinement <order>_change (response, parameter) and its interval, see sensitivity.refinement.
-    Of either <order>_numerical (response, parameter), by how much the first_order and the
-    total_order may be off, and numerical_from (response). An index S lies between 0 and 1: it is
-    off by no more than the larger of S and 1 - S, whatever bounds the error or not. Raises
-    ValueError when resolution or refinement is not of these runs.
+    refinement <order>_change (response, parameter) and its interval, see `measured`. Of either
+    <order>_numerical (response, parameter), by how much the first_order and the total_order may be
+    off, and numerical_from (response). An index S lies between 0 and 1: it is off by no more than
+    the larger of S and 1 - S, whatever bounds the error or not. Raises ValueError when resolution
+    or refinement is not of these runs.
 
     The bound: an index is the square of the length of a projection of the response over that of
     the response, and an error of relative length e moves either length by no more than e, so that
     an index S is moved by no more than about 2 e sqrt(S) + e^2.
     """
     found = {} if resolution is None else _of_responses(runs, resolution)
-    changed = xr.Dataset() if refinement is None else _changed(runs, refinement, fit)
+    changed, estimator = xr.Dataset(), _BOUND
+    if refinement is not None:
+        _check_refinement(runs, refinement)
+        changed = measured(refinement, fit)
+        estimator = _MEASURED.format(refinement.attrs["base_samples"]) + _BOUND
     nothing = xr.full_like(analysis["response"], np.inf, dtype=float).reset_coords(drop=True)
     share = found.get("numerical_share", nothing)
-    orders = [order for order in refining.ORDERS if order in analysis]
+    orders = [order for order in ORDERS if order in analysis]
     for order in orders:
-        bound = _bound(analysis[order], share)
-        measured = changed.get(order, xr.full_like(bound, np.nan))
-        amount = _within(xr.where(measured.notnull(), measured, bound), analysis[order])
-        found[f"{order}_numerical"] = amount.assign_attrs(
-            long_name=f"how far the {_words(order)} index may be off numerically",
+        index = analysis[order]
+        bound = 2.0 * share**0.5 * index.clip(min=0.0) ** 0.5 + share
+        known = changed.get(order, xr.full_like(bound, np.nan))
+        amount = xr.where(known.notnull(), known, bound)
+        most = (1.0 - index).where(index < 0.5, index)
+        amount = amount.where(amount < most, most).where(index.notnull())
+        found[f"{order}_numerical"] = amount.transpose(*index.dims).assign_attrs(
+            long_name=f"how far the {order.replace('_', '-')} index may be off numerically",
             units="1",
-            estimator=_estimator(refinement),
+            estimator=estimator,
         )
     if orders:
-        measured = changed[orders[0]].notnull().any("parameter") if changed else share.isnull()
-        found["numerical_from"] = _from(measured, share)
-    parts = xr.Dataset(found), changed.drop_vars(refining.ORDERS, errors="ignore")
+        given = changed[orders[0]].notnull().any("parameter") if changed else share.isnull()
+        otherwise = xr.where(np.isfinite(share), NumericalFrom.BOUND, NumericalFrom.NOTHING)
+        found["numerical_from"] = flagged(
+            xr.where(given, NumericalFrom.MEASURED, otherwise),
+            NumericalFrom,
+            "what the numerical uncertainty of the indices rests on",
+        )
+    parts = xr.Dataset(found), changed.drop_vars(ORDERS, errors="ignore")
     return xr.merge(parts, join="exact", compat="equals").reset_coords(drop=True)
 
 
 def _of_responses(runs: xr.Dataset, resolution: xr.Dataset) -> dict[str, xr.DataArray]:
-    _same(runs, resolution)
+    """Return numerical_uncertainty and numerical_share. Raises ValueError for other runs' ones."""
+    again = f"make it again (impactlab recommend studies/{runs.attrs.get('study', 'NAME')}.yaml)"
+    for name in ("nodes", "points", "courant"):
+        here, there = runs[name].values, resolution.attrs.get(f"grid_{name}")
+        if here.ndim or here != there:
+            raise ValueError(
+                f"the resolution was found for {name} = {there}, the runs have {here}: {again}"
+            )
+    if runs.attrs.get("study_sha256") != resolution.attrs.get("study_sha256"):
+        raise ValueError(f"the resolution was found for another text of the study file: {again}")
     values = usable(runs)
     deviation = values.std([dim for dim in values.dims if dim != "response"])
-    asked = resolution.sel(response=values["response"].values)
+    asked = resolution.sel(response=values["response"].values).reset_coords(drop=True)
     squares = (asked["grid_uncertainty"] ** 2).mean("case")
     share = (squares / deviation.where(deviation > 0) ** 2).where(squares > 0, 0.0)
     return {
-        "numerical_uncertainty": asked["grid_relative"]
-        .reset_coords(drop=True)
-        .assign_attrs(
+        "numerical_uncertainty": asked["grid_relative"].assign_attrs(
             long_name="relative numerical uncertainty, the worst of the corner cases", units="1"
         ),
         "numerical_share": share.fillna(np.inf)
@@ -96,67 +127,122 @@ def _of_responses(runs: xr.Dataset, resolution: xr.Dataset) -> dict[str, xr.Data
     }
 
 
-def _changed(runs: xr.Dataset, refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
-    """Return the described variables of sensitivity.refinement."""
-    _same_values(runs, refinement)
-    found = refining.uncertainty(refinement, fit)
-    used = f"on the first {refinement.attrs['base_samples']} base samples"
-    for order in refining.ORDERS:
-        words = f"change of the {_words(order)} index with half the spacing, {used}"
-        found[f"{order}_change"].attrs = {"long_name": words, "units": "1"}
-        found[f"{order}_change_interval"].attrs = {
-            "long_name": f"half-width of the interval of the {words}",
-            "units": "1",
-        }
-    return found
+USED, FINER, COARSER, MORE_POINTS = "used", "finer", "coarser", "more_points"
+TAIL_SHARE = 0.25
+"""Largest share of the variance that one run in a hundred may carry (normal response: 0.09).
+
+Above, single runs decide, such as those in which a further impact falls into the first contact:
+which of them another grid moves, and whether it moves one, so few base samples cannot tell.
+"""
+_TO_LIMIT = 2.0
+"""Distance to the limit over change, where each refinement takes half of the error."""
+_FIRST_ORDER = 1.0
 
 
-def _bound(index: xr.DataArray, share: xr.DataArray) -> xr.DataArray:
-    length = index.clip(min=0.0) ** 0.5
-    return 2.0 * share**0.5 * length + share
-
-
-def _within(amount: xr.DataArray, index: xr.DataArray) -> xr.DataArray:
-    """Limit the amount to what keeps the index between 0 and 1; NaN without an index."""
-    most = (1.0 - index).where(index < 0.5, index)
-    return amount.where(amount < most, most).where(index.notnull()).transpose(*index.dims)
-
-
-def _from(measured: xr.DataArray, share: xr.DataArray) -> xr.DataArray:
-    otherwise = xr.where(np.isfinite(share), NumericalFrom.BOUND, NumericalFrom.NOTHING)
-    codes = xr.where(measured, NumericalFrom.MEASURED, otherwise)
-    return flagged(codes, NumericalFrom, "what the numerical uncertainty of the indices rests on")
-
-
-def _estimator(refinement: xr.Dataset | None) -> str:
-    if refinement is None:
-        return _BOUND
-    return _MEASURED.format(refinement.attrs["base_samples"]) + _BOUND
-
-
-def _words(order: str) -> str:
-    return order.replace("_", "-")
-
-
-def _same(runs: xr.Dataset, resolution: xr.Dataset) -> None:
-    again = f"make it again (impactlab recommend studies/{runs.attrs.get('study', 'NAME')}.yaml)"
-    for name in _GRID:
-        here, there = runs[name].values, resolution.attrs.get(f"grid_{name}")
-        if here.ndim or here != there:
-            raise ValueError(
-                f"the resolution was found for {name} = {there}, the runs have {here}: {again}"
-            )
-    if runs.attrs.get("study_sha256") != resolution.attrs.get("study_sha256"):
-        raise ValueError(f"the resolution was found for another text of the study file: {again}")
-
-
-def _same_values(runs: xr.Dataset, refinement: xr.Dataset) -> None:
+def _check_refinement(runs: xr.Dataset, refinement: xr.Dataset) -> None:
     """Raise ValueError unless the used grid of the refinement gives what the runs give."""
-    there = usable(refinement).sel(grid=refining.USED)
+    there = usable(refinement).sel(grid=USED)
     here = usable(runs).reindex(response=there["response"], run=there["run"])
-    here = here.transpose(*there.dims)
-    if not np.allclose(here, there, rtol=ROUND_OFF, atol=0.0, equal_nan=True):
+    if not np.allclose(
+        here.transpose(*there.dims), there, rtol=ROUND_OFF, atol=0.0, equal_nan=True
+    ):
         raise ValueError(
             "the refinement was made from other runs: make it again (impactlab refine "
             f"results/{runs.attrs.get('study', 'NAME')}/runs.nc)"
         )
+
+
+def measured(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
+    """Return how far the indices of the used grid may lie from those in the limit.
+
+    refinement: see adaptive.refining. fit: makes the surrogate that supplies failed runs where the
+    study asks for it.
+
+    Returns for each of ORDERS, on (response, parameter) and without unit: <order>, that distance;
+    <order>_change, from the used to the finer grid, and <order>_change_interval, the half-width of
+    its interval. NaN where a grid gives no index, and where few runs carry the variance
+    (TAIL_SHARE). Raises ValueError when the runs are not the sample that their attributes describe.
+
+    The distance is the change to the finer grid and as much again from there to the limit (first
+    order) times SAFETY_DOUBTFUL, or SAFETY_CREDIBLE where the coarser grid, too, shows that the
+    changes fall to a half or less; and points.SAFETY times the change with more points (both as for
+    responses, see analysis.convergence). Each change is known to within its half-width, and the
+    limit is twice as far off.
+    """
+    sample = Sample.of(refinement)
+    sobol.check(sample)
+    values = usable(refinement).sortby("run").transpose("response", "grid", "run")
+    nodes = refinement["nodes"].values.astype(float)
+    spacings = dict(zip(refinement["grid"].values.tolist(), 1.0 / (nodes - 1.0), strict=True))
+    names = [str(name) for name in values["response"].values]
+    rows = [
+        _of_response(name, outputs, spacings, sample, fit)
+        for name, outputs in zip(names, values.values, strict=True)
+    ]
+    gap = np.full(len(sample.factors), np.nan)
+    used = f"on the first {refinement.attrs['base_samples']} base samples"
+    variables = {}
+    for order in ORDERS:
+        words = f"change of the {order.replace('_', '-')} index with half the spacing, {used}"
+        long_names = {"": "", "_change": words}
+        long_names["_change_interval"] = f"half-width of the interval of the {words}"
+        for ending, long_name in long_names.items():
+            stacked = [row.get(f"{order}{ending}", gap) for row in rows]
+            attrs = {"long_name": long_name, "units": "1"} if long_name else {}
+            variables[f"{order}{ending}"] = (("response", "parameter"), stacked, attrs)
+    return xr.Dataset(variables, {"response": names, "parameter": list(sample.factors)})
+
+
+def _of_response(
+    name: str, outputs: Floats, spacings: Mapping[str, float], sample: Sample, fit: Fit
+) -> dict[str, Floats]:
+    """Analyse one response; empty where a grid gives no index. outputs: (grid, run)."""
+    statistics = []
+    for row in outputs:
+        complete = imputed(row, sample, fit, name)
+        if complete is None or not np.isfinite(complete).all():
+            return {}
+        if still(complete, sobol.varying(complete, sample)) or tail(complete) > TAIL_SHARE:
+            return {}
+        statistics.append(Outputs.of(complete, sample).statistics())
+    factors, used = len(sample.factors), list(spacings).index(USED)
+
+    def changes(means: Floats) -> dict[str, Floats]:
+        parts = [estimates(part, factors) for part in np.split(means, len(spacings), axis=-1)]
+        return {
+            order: np.stack([part[order] - parts[used][order] for part in parts], axis=-2)
+            for order in ORDERS
+        }
+
+    columns = np.concatenate(statistics, axis=1)
+    found = changes(columns.mean(axis=0))
+    widths = half_widths(columns, changes, sample, sample.rng("refinement", name))
+    answer: dict[str, Floats] = {}
+    for order in ORDERS:
+        change = dict(zip(spacings, found[order], strict=True))
+        width = dict(zip(spacings, widths[f"{order}_interval"], strict=True))
+        by_spacing = (1.0 + _safety(change, spacings)) * abs(change[FINER])
+        by_points = points.SAFETY * abs(change[MORE_POINTS])
+        by_chance = _TO_LIMIT * (width[FINER] + width[MORE_POINTS])
+        answer |= {
+            order: by_spacing + by_points + by_chance,
+            f"{order}_change": change[FINER],
+            f"{order}_change_interval": width[FINER],
+        }
+    return answer
+
+
+def _safety(change: Mapping[str, Floats], spacings: Mapping[str, float]) -> Floats:
+    """Return the safety factor on the part beyond the finer grid, (factor,).
+
+    change: from the used grid, (factor,), by grid.
+    """
+    if COARSER not in change:
+        return np.full_like(change[FINER], SAFETY_DOUBTFUL)
+    steps = [spacings[grid] for grid in (FINER, USED, COARSER)]
+    triples = [
+        estimate(three, steps)
+        for three in zip(change[FINER], change[USED], change[COARSER], strict=True)
+    ]
+    falling = [triple.credible and triple.order >= _FIRST_ORDER for triple in triples]
+    return np.where(falling, SAFETY_CREDIBLE, SAFETY_DOUBTFUL)

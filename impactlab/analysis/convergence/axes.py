@@ -1,12 +1,221 @@
-"""The axes of the discretisation that are refined: nodes, time step, and size of the elements."""
+"""Convergence of all responses along an axis of the discretisation, as labelled variables.
+
+The axes are the nodes, the time step, and the size of the elements.
+
+Some responses have no limit in the model itself: no grid makes them converge, and no number is
+given. Source: Bazant and Planas (1998), Fracture and Size Effect, ch. 8 (localisation of strain in
+materials that do not harden).
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.convergence.axis import Axis
+from impactlab.analysis.convergence.judgement import AxisVerdict, How, Judgement, judge
+from impactlab.analysis.convergence.least_squares import Expansion
+from impactlab.analysis.convergence.richardson import Behaviour
+from impactlab.analysis.responses import usable
+from impactlab.analysis.verdicts import TOLERANCE, Verdict, flagged, verdict_variables
+from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS
+from impactlab.types import Floats
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An axis of the discretisation that is refined.
+
+    name: prefix of the variables; words: the axis in titles, such as "the nodes". spacings: by
+    dimension of the runs, the function from its values to what tends to zero, in any unit. comment:
+    what to know about the order, from the runs.
+    """
+
+    name: str
+    words: str
+    spacings: Mapping[str, Callable[[Floats], Floats]]
+    comment: Callable[[xr.Dataset], str]
+
+    def applies(self, runs: xr.Dataset) -> bool:
+        """Return whether the runs are a grid with three or more values on the axis."""
+        return any(runs.sizes.get(dim, 0) >= 3 for dim in self.spacings)
+
+    def analysis(self, runs: xr.Dataset) -> xr.Dataset:
+        """Judge every response at every point of the rest of the grid.
+
+        Returns the fields of Judgement as <axis>_<field> on (response, *other grid dims), flags as
+        CF flags; beside them <axis>_summary (response) and <axis>_tally (response, <axis>_outcome).
+        What has no limit by design keeps its observed order alone. Raises ValueError for a repeated
+        value on the axis.
+        """
+        dim = next(name for name in self.spacings if name in runs.dims)
+        values = usable(runs)
+        spacings = self.spacings[dim](values[dim].values.astype(float))
+        finest_first = np.argsort(spacings)
+        values, spacings = values.isel({dim: finest_first}), spacings[finest_first]
+        fields = xr.apply_ufunc(
+            partial(judge, spacings=spacings),
+            values,
+            input_core_dims=[[dim]],
+            output_core_dims=[[]] * len(Judgement._fields),
+            output_dtypes=[np.int8 if name in _FLAGS else float for name in Judgement._fields],
+            vectorize=True,
+        )
+        mask = without_limit(runs, values, self.name, dim)
+        found = {
+            name: field.where(~mask, _WITHOUT_LIMIT.get(name, np.nan))
+            for name, field in zip(Judgement._fields, fields, strict=True)
+        }
+        found["observed_order"] = fields[Judgement._fields.index("observed_order")]
+        return self._described(found, self.comment(runs), _entries(self.name, values))
+
+    def _described(
+        self, found: Mapping[str, xr.DataArray], comment: str, reasons: list[WithoutLimit]
+    ) -> xr.Dataset:
+        variables = {}
+        for key, (long_name, units, said) in _NUMBERS.items():
+            attrs = {"long_name": long_name.format(self.words)}
+            attrs |= {"comment": f"{said} {comment}".strip()} | ({"units": units} if units else {})
+            variables[f"{self.name}_{key}"] = found[key].assign_attrs(attrs)
+        for key, (kind, long_name) in _FLAGS.items():
+            flags = flagged(found[key], kind, f"{long_name} {self.words}")
+            variables[f"{self.name}_{key}"] = flags
+        variables |= verdict_variables(
+            found["verdict"], AxisVerdict, self.name, f"convergence with {self.words}"
+        )
+        dataset = xr.Dataset(variables)
+        said_of_all = {"tolerance": TOLERANCE, "comment": comment}
+        if reasons:
+            lines = [f"{entry.response}: {entry.reason}" for entry in reasons]
+            said_of_all["without_limit"] = "\n".join(lines)
+        for key in ("verdict", "summary"):
+            dataset[f"{self.name}_{key}"].attrs |= said_of_all
+        return dataset
+
+
+_FLAGS: dict[str, tuple[type[Verdict], str]] = {
+    "behaviour": (Behaviour, "behaviour of the three finest grids with"),
+    "fit_expansion": (Expansion, "form of the error in the least-squares fit with"),
+    "uncertainty_from": (How, "what the numerical uncertainty rests on, with"),
+    "verdict": (AxisVerdict, "verdict on convergence with"),
+}
+_NUMBERS = {
+    "observed_order": ("observed order of convergence with {}", "1", ""),
+    "extrapolated": (
+        "Richardson value, extrapolated in {}",
+        "",
+        "In the unit of response_units; given where the order is credible.",
+    ),
+    "gci": (
+        "grid convergence index of the finest grid, {}",
+        "1",
+        "Relative to the finest value, infinite where that is zero.",
+    ),
+    "safety_factor": ("safety factor in the grid convergence index, {}", "1", ""),
+    "asymptotic_ratio": (
+        "ratio of successive grid convergence indices over r^p, {}",
+        "1",
+        "1 in the asymptotic range, but near 1 elsewhere, too: not a proof by itself.",
+    ),
+    "fit_order": (
+        "order of the least-squares fit in {}",
+        "1",
+        "Over four or more grids; assumed, not fitted, where fit_expansion is not `free`.",
+    ),
+    "fit_extrapolated": (
+        "limit of the least-squares fit in {}",
+        "",
+        "In the unit of response_units; over four or more grids.",
+    ),
+    "fit_uncertainty": (
+        "uncertainty of the finest value by the least-squares fit in {}",
+        "1",
+        "Relative to the finest value; Eca and Hoekstra (2014), over four or more grids.",
+    ),
+    "uncertainty": (
+        "numerical uncertainty of the finest value, from {}",
+        "1",
+        "Relative to the finest value; infinite where nothing bounds the error.",
+    ),
+}
+"""Long name, unit and comment of each number."""
+
+_WITHOUT_LIMIT = {
+    "uncertainty": np.inf,
+    "fit_expansion": Expansion.NONE,
+    "uncertainty_from": How.NOTHING,
+    "behaviour": Behaviour.NOT_CONVERGENT_BY_DESIGN,
+    "verdict": AxisVerdict.NOT_CONVERGENT_BY_DESIGN,
+}
+"""What is stored where there is no limit; of other fields, NaN."""
+
+
+class WithoutLimit(NamedTuple):
+    """A response that has no limit as the grid of an axis is refined, in runs that yield.
+
+    where: in which runs; reason: in words.
+    """
+
+    axis: str
+    response: str
+    where: Callable[[xr.Dataset], xr.DataArray]
+    reason: str
+
+
+def _is_solid(runs: xr.Dataset) -> xr.DataArray:
+    return (
+        runs.coords["beam_model"] == SOLID if "beam_model" in runs.coords else xr.DataArray(False)
+    )
+
+
+def _does_not_harden(runs: xr.Dataset) -> xr.DataArray:
+    """Select runs of beams; those without a stated hardening modulus may harden."""
+    found = ~_is_solid(runs)
+    for kind in ("isotropic", "kinematic"):
+        found = found & (runs.get(f"beam_{kind}_hardening_modulus", np.nan) == 0)
+    return found
+
+
+WITHOUT_LIMIT = (
+    WithoutLimit(
+        "nodes",
+        "peak_plastic_strain",
+        _does_not_harden,
+        "in a beam that does not harden, plastic strain gathers at the node that is struck: its "
+        "peak grows with the nodes, up to twice as much with each halving of the spacing",
+    ),
+    WithoutLimit(
+        "element_size",
+        "peak_plastic_strain",
+        _is_solid,
+        "in the contact of a solid, plastic strain gathers at the edge of the dent: its peak grows "
+        "as the elements shrink",
+    ),
+)
+"""Every such response, one entry each."""
+
+
+def without_limit(runs: xr.Dataset, values: xr.DataArray, axis: str, dim: str) -> xr.DataArray:
+    """Return True on (response, *rest of the grid) where there is no limit along `dim`.
+
+    values: the usable responses of the runs on (response, *grid dims).
+    """
+    largest = values.max(dim)
+    found = xr.zeros_like(largest, dtype=bool)
+    for entry in _entries(axis, values):
+        found = found | ((found["response"] == entry.response) & (largest > 0) & entry.where(runs))
+    return found.transpose(*largest.dims).reset_coords(drop=True)
+
+
+def _entries(axis: str, values: xr.DataArray) -> list[WithoutLimit]:
+    there = values["response"].values
+    return [entry for entry in WITHOUT_LIMIT if entry.axis == axis and entry.response in there]
+
 
 _STEPS = {
     "leapfrog": "the square of the spacing (leapfrog)",
@@ -14,13 +223,16 @@ _STEPS = {
     "timoshenko": "the spacing (Timoshenko beam)",
 }
 """What the time step follows, by the scheme of bending beams or the model of others."""
-_BENDING = ("euler_bernoulli", "elastic")
 
 
 def coupling(runs: xr.Dataset) -> str:
     """Describe what is refined along with the spacing; "" if the time step is independent of it."""
-    models, schemes = _words(runs, "beam_model"), _words(runs, "scheme")
-    tied = [_STEPS[scheme] for scheme in schemes if set(models) & set(_BENDING)]
+    models, schemes = (
+        np.unique(runs.coords[name].values).tolist() if name in runs.coords else []
+        for name in ("beam_model", "scheme")
+    )
+    bending = {"euler_bernoulli", "elastic"} & set(models)
+    tied = [_STEPS[scheme] for scheme in schemes if bending]
     tied += [_STEPS[model] for model in models if model in _STEPS]
     if not tied:
         return ""
@@ -28,12 +240,6 @@ def coupling(runs: xr.Dataset) -> str:
     return (
         f"At {held} the time step shrinks with {' or '.join(tied)}: the order is that of space and "
         "time together. Vary courant at fixed nodes to see time alone."
-    )
-
-
-def _words(runs: xr.Dataset, name: str) -> list[str]:
-    return (
-        [str(word) for word in np.unique(runs.coords[name].values)] if name in runs.coords else []
     )
 
 

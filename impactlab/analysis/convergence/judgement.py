@@ -18,13 +18,14 @@ import numpy as np
 import numpy.typing as npt
 
 from impactlab.analysis.convergence import least_squares
-from impactlab.analysis.convergence.least_squares import Expansion, Fit
+from impactlab.analysis.convergence.least_squares import Expansion
 from impactlab.analysis.convergence.richardson import (
     CREDIBLE_ORDERS,
     SAFETY_DOUBTFUL,
     Behaviour,
     Estimate,
     estimate,
+    relative,
     safety,
 )
 from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict
@@ -73,49 +74,33 @@ def numerical_uncertainty(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Unc
 
 
 def _of_present(f: Floats, h: Floats) -> Uncertainty:
+    nothing = Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
     if f.size < 2:
-        return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
+        return nothing
     if np.ptp(f) <= ROUND_OFF * np.max(abs(f)):
         return Uncertainty(np.full(f.shape, ROUND_OFF * float(np.max(abs(f)))), How.ROUND_OFF)
+    apart = abs(f - f[0])
     if f.size == 2:
         first_order = abs(f[1] - f[0]) / (h[1] / h[0] - 1.0)
-        return _from_finest(f, SAFETY_DOUBTFUL * float(first_order), How.TWO_GRIDS)
-    return _of_three_or_more(f, h)
-
-
-def _of_three_or_more(f: Floats, h: Floats) -> Uncertainty:
+        return Uncertainty(apart + SAFETY_DOUBTFUL * float(first_order), How.TWO_GRIDS)
     triples = [estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
-    finest = triples[0]
+    finest, steps = triples[0], np.diff(f)
     fitted = least_squares.fit(f, h) if f.size >= least_squares.FEWEST else None
-    if _one_way(f) and not _slows_down(finest, fitted):
-        if finest.behaviour is not Behaviour.MONOTONE:
-            return Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
-        return _from_finest(f, finest.uncertainty(SAFETY_DOUBTFUL), How.SLOW_DRIFT)
-    by_index = _from_finest(f, finest.uncertainty(safety(triples)), How.GCI)
+    # An order above 0.5, of the three finest grids or of all of four or more, slows a drift down.
+    least, monotone = CREDIBLE_ORDERS[0], finest.behaviour is Behaviour.MONOTONE
+    slows_down = (monotone and finest.order >= least) or (fitted and fitted.free_order >= least)
+    if not slows_down and ((steps > 0).all() or (steps < 0).all()):
+        drift = Uncertainty(apart + finest.uncertainty(SAFETY_DOUBTFUL), How.SLOW_DRIFT)
+        return drift if monotone else nothing
+    by_index = Uncertainty(apart + finest.uncertainty(safety(triples)), How.GCI)
     if fitted is None:
-        by_range = _from_finest(f, SAFETY_DOUBTFUL * float(np.ptp(f)), How.RANGE)
+        by_range = Uncertainty(apart + SAFETY_DOUBTFUL * float(np.ptp(f)), How.RANGE)
         return by_index if finest.credible else by_range
     by_fit = least_squares.uncertainty(fitted, f)
     if not finest.credible:
         return Uncertainty(by_fit, How.FIT)
     # Scatter passes for an order easily: the index alone would hold the limit in 6 of 10 cases.
     return Uncertainty(np.maximum(by_index.amounts, by_fit), How.GCI_AND_FIT)
-
-
-def _slows_down(finest: Estimate, fitted: Fit | None) -> bool:
-    """Return whether the three finest grids, or all of four or more, show an order above 0.5."""
-    least = CREDIBLE_ORDERS[0]
-    seen = finest.behaviour is Behaviour.MONOTONE and finest.order >= least
-    return seen or (fitted is not None and fitted.free_order >= least)
-
-
-def _one_way(f: Floats) -> bool:
-    steps = np.diff(f)
-    return bool((steps > 0).all() or (steps < 0).all())
-
-
-def _from_finest(f: Floats, amount: float, how: How) -> Uncertainty:
-    return Uncertainty(abs(f - f[0]) + amount, how)
 
 
 VANISHING = 0.1
@@ -177,8 +162,11 @@ def judge(values: Floats, spacings: Floats) -> Judgement:
     """
     triples = [estimate(values[i : i + 3], spacings[i : i + 3]) for i in range(len(values) - 2)]
     finest, factor = triples[0], safety(triples)
-    fitted = _fit(values, spacings)
     bound = numerical_uncertainty(values, spacings)
+    uncertainty = relative(bound.amounts[0], values[0])
+    complete = len(values) >= least_squares.FEWEST and np.isfinite(values).all()
+    differ = complete and np.ptp(values) > ROUND_OFF * np.max(abs(values))
+    fitted = least_squares.fit(values, spacings) if differ else None
     gci = finest.gci(factor)
     return Judgement(
         finest.order,
@@ -189,47 +177,29 @@ def judge(values: Floats, spacings: Floats) -> Judgement:
         fitted.order if fitted else np.nan,
         fitted.extrapolated if fitted else np.nan,
         relative(least_squares.uncertainty(fitted, values)[0], values[0]) if fitted else np.nan,
-        relative(bound.amounts[0], values[0]),
+        uncertainty,
         fitted.expansion if fitted else Expansion.NONE,
         bound.how,
         finest.behaviour,
-        _verdict(triples, bound.how, relative(bound.amounts[0], values[0])),
+        _verdict(triples, bound.how.sound and uncertainty <= TOLERANCE),
     )
 
 
-def relative(amount: float, value: float) -> float:
-    """Return amount/|value|, infinite where only the value is zero."""
-    return float(amount / abs(value)) if value else float(np.inf * amount if amount else 0.0)
-
-
-def _fit(values: Floats, spacings: Floats) -> Fit | None:
-    """Return the fit over all grids; None for fewer than four, a missing one, or equal values."""
-    if values.size < least_squares.FEWEST or not np.isfinite(values).all():
-        return None
-    if np.ptp(values) <= ROUND_OFF * np.max(abs(values)):
-        return None
-    return least_squares.fit(values, spacings)
-
-
-def _verdict(triples: list[Estimate], how: How, uncertainty: float) -> AxisVerdict:
-    finest, within = triples[0], how.sound and uncertainty <= TOLERANCE
-    if finest.behaviour in _DECIDED:
-        return _OTHERWISE[finest.behaviour]
-    if within and finest.credible:
+def _verdict(triples: list[Estimate], within: bool) -> AxisVerdict:
+    """Return the verdict; within: whether a sound uncertainty is within tolerance."""
+    finest = triples[0]
+    if within and finest.behaviour not in (Behaviour.AT_ROUND_OFF, Behaviour.UNDETERMINED):
+        if not finest.credible:
+            return AxisVerdict.SETTLED
         second = finest.asymptotic and all(triple.credible for triple in triples)
         return AxisVerdict.CONVERGED_SECOND_ORDER if second else AxisVerdict.CONVERGED
-    if within:
-        return AxisVerdict.SETTLED
-    return AxisVerdict.TENDS_TO_ZERO if _tends_to_zero(finest) else _OTHERWISE[finest.behaviour]
-
-
-def _tends_to_zero(finest: Estimate) -> bool:
     fine, middle, coarse = (abs(value) for value in finest.values)
     shrinking = finest.credible and fine < middle < coarse
-    return shrinking and abs(finest.extrapolated) <= VANISHING * fine
+    if shrinking and abs(finest.extrapolated) <= VANISHING * fine:
+        return AxisVerdict.TENDS_TO_ZERO
+    return _OTHERWISE[finest.behaviour]
 
 
-_DECIDED = (Behaviour.AT_ROUND_OFF, Behaviour.UNDETERMINED)
 _OTHERWISE = {
     Behaviour.AT_ROUND_OFF: AxisVerdict.AT_ROUND_OFF,
     Behaviour.MONOTONE: AxisVerdict.NOT_YET_CONVERGED,

@@ -8,8 +8,8 @@ standard deviation of the fit, delta the data range over n - 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 import numpy.typing as npt
@@ -56,6 +56,9 @@ class Fit:
     deviation: float
 
 
+_deviation = attrgetter("deviation")
+
+
 def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
     """Fit the expansion of least standard deviation among those that the fitted order allows.
 
@@ -71,14 +74,12 @@ def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
     weights = (np.full(f.size, 1.0 / f.size), (1.0 / h) / np.sum(1.0 / h))
     free = [_fit(f, h, w, (_free_order(f, h, w),)) for w in weights]
     if credible := [found for found in free if ORDERS[0] <= found.order <= ORDERS[1]]:
-        return _best(credible)
-    order = _best(free).order
+        return min(credible, key=_deviation)
+    order = min(free, key=_deviation).order
     fixed = [(Expansion.FIRST, (1.0,)), (Expansion.SECOND, (2.0,)), (Expansion.BOTH, (1.0, 2.0))]
-    return _best(
-        _fit(f, h, w, powers, expansion, order)
-        for expansion, powers in (fixed if order < ORDERS[0] else fixed[:2])
-        for w in weights
-    )
+    allowed = fixed if order < ORDERS[0] else fixed[:2]
+    found = [_fit(f, h, w, powers, kind, order) for kind, powers in allowed for w in weights]
+    return min(found, key=_deviation)
 
 
 def uncertainty(found: Fit, values: npt.ArrayLike) -> Floats:
@@ -97,10 +98,6 @@ def uncertainty(found: Fit, values: npt.ArrayLike) -> Floats:
     return safety * found.errors + found.deviation + abs(found.residuals)
 
 
-def _best(fits: Iterable[Fit]) -> Fit:
-    return min(fits, key=lambda found: found.deviation)
-
-
 def _fit(
     f: Floats,
     h: Floats,
@@ -110,8 +107,10 @@ def _fit(
     free_order: float | None = None,
 ) -> Fit:
     """Fit f0 + sum a h^power, weights of sum 1; a free order costs a degree of freedom, too."""
-    terms = np.column_stack([h**power for power in powers])
-    coefficients, residuals = _solved(f, terms, weights)
+    terms, root = np.column_stack([h**power for power in powers]), np.sqrt(weights)
+    design = np.column_stack([np.ones_like(f), terms])
+    coefficients = np.linalg.lstsq(design * root[:, None], f * root, rcond=None)[0]
+    residuals = f - design @ coefficients
     parameters = 1 + len(powers) + (expansion is Expansion.FREE)
     return Fit(
         expansion,
@@ -124,36 +123,24 @@ def _fit(
     )
 
 
-def _solved(f: Floats, terms: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """Return the coefficients of 1 and the terms, (1 + terms,), and residuals f - fit, (grids,)."""
-    design = np.column_stack([np.ones_like(f), terms])
-    root = np.sqrt(weights)
-    coefficients = np.linalg.lstsq(design * root[:, None], f * root, rcond=None)[0]
-    return coefficients, f - design @ coefficients
-
-
 def _free_order(f: Floats, h: Floats, weights: Floats) -> float:
-    """Return the power of least weighted residual, looked for around the best of a few dozen."""
-
-    def misfit(orders: npt.ArrayLike) -> Floats:
-        return _misfits(f, h, weights, np.atleast_1d(orders))
-
-    at = int(np.argmin(misfit(_SEARCHED)))
-    around = _SEARCHED[max(at - 1, 0)], _SEARCHED[min(at + 1, _SEARCHED.size - 1)]
-    found = minimize_scalar(
-        lambda order: misfit(order)[0], bounds=around, method="bounded", options={"xatol": 1e-10}
-    )
-    return float(found.x)
-
-
-def _misfits(f: Floats, h: Floats, weights: Floats, orders: Floats) -> Floats:
-    """Return the weighted sum of squared residuals at the best f0 and a for each order, (orders,).
+    """Return the power of least weighted residual, looked for around the best of a few dozen.
 
     The curve is (h^p - 1)/p: with a constant the same as h^p, and ln h at p = 0.
     """
-    p, logarithm = orders[:, None], np.log(h)
-    curves = np.where(p, np.expm1(p * logarithm) / np.where(p, p, 1.0), logarithm)
-    curves = curves - (curves @ weights)[:, None]
-    values = f - weights @ f
-    slopes = (curves * values) @ weights / (curves**2 @ weights)
-    return np.asarray((values - slopes[:, None] * curves) ** 2 @ weights)
+    logarithm, values = np.log(h), f - weights @ f
+
+    def misfits(orders: npt.ArrayLike) -> Floats:
+        """Return the weighted squared residuals at the best f0 and a for each order, (orders,)."""
+        p = np.atleast_1d(orders)[:, None]
+        curves = np.where(p, np.expm1(p * logarithm) / np.where(p, p, 1.0), logarithm)
+        curves = curves - (curves @ weights)[:, None]
+        slopes = (curves * values) @ weights / (curves**2 @ weights)
+        return np.asarray((values - slopes[:, None] * curves) ** 2 @ weights)
+
+    at = int(np.argmin(misfits(_SEARCHED)))
+    around = _SEARCHED[max(at - 1, 0)], _SEARCHED[min(at + 1, _SEARCHED.size - 1)]
+    found = minimize_scalar(
+        lambda order: misfits(order)[0], bounds=around, method="bounded", options={"xatol": 1e-10}
+    )
+    return float(found.x)

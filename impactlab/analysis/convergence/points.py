@@ -61,17 +61,19 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     them points_summary (response) and points_tally (response, points_outcome).
     """
     values = usable(runs).sortby("points")
-    error = relative_error(values)
+    reference = values.isel(points=-1, drop=True)
+    difference = abs(values - reference)
+    against_zero = difference.where(difference.isnull() | (difference == 0), np.inf)
+    error = (difference / abs(reference).where(reference != 0)).where(reference != 0, against_zero)
+    dims = ("response", *runs["status"].dims)
+    found = {
+        "points_error": error.sel(points=runs["points"]).transpose(*dims),
+        "points_uncertainty": SAFETY * error.isel(points=-2, drop=True),
+        "points_needed": _points_needed(error),
+    }
     verdicts = verdict_variables(
         _verdict(error), PointsVerdict, "points", "convergence with the integration points"
     )
-    found = {
-        "points_error": error.sel(points=runs["points"]).transpose(
-            "response", *runs["status"].dims
-        ),
-        "points_uncertainty": SAFETY * error.isel(points=-2, drop=True),
-        "points_needed": points_needed(error),
-    }
     dataset = xr.Dataset({key: found[key].assign_attrs(_ATTRS[key]) for key in found} | verdicts)
     for name in ("points_verdict", "points_summary"):
         dataset[name].attrs |= {"tolerance": TOLERANCE, "comment": _COMMENT}
@@ -92,28 +94,13 @@ def numerical_uncertainty(values: npt.ArrayLike) -> Floats:
     return np.where(np.isfinite(found), amounts, np.inf)
 
 
-def relative_error(values: xr.DataArray) -> xr.DataArray:
-    """Return |value - reference|/|reference| along `points`, rising; the reference is the last."""
-    reference = values.isel(points=-1, drop=True)
-    difference = abs(values - reference)
-    relative = difference / abs(reference).where(reference != 0)
-    against_zero = difference.where(difference.isnull() | (difference == 0), np.inf)
-    return relative.where(reference != 0, against_zero)
-
-
-def points_needed(error: xr.DataArray) -> xr.DataArray:
+def _points_needed(error: xr.DataArray) -> xr.DataArray:
     """Return the fewest points from which on the error stays within 1 %; NaN if only the most do.
 
     error: on `points`, rising. A missing run ends the stretch: it is not within anything.
     """
-    fewer = error.isel(points=slice(None, -1))
-    within = (fewer <= TOLERANCE).astype(int)
-    stays = (
-        within.isel(points=slice(None, None, -1))
-        .cumprod("points")
-        .isel(points=slice(None, None, -1))
-    )
-    return error["points"].where(stays == 1).min("points")
+    within = (error.isel(points=slice(-2, None, -1)) <= TOLERANCE).astype(int)
+    return error["points"].where(within.cumprod("points") == 1).min("points")
 
 
 def _verdict(error: xr.DataArray) -> xr.DataArray:

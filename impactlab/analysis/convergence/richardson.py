@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -94,18 +95,26 @@ class Estimate:
 
     def gci(self, safety: float) -> float:
         """Return the relative GCI of the finest grid; infinite where the finest value is zero."""
-        return _relative(self.uncertainty(safety), self.values[0])
+        return relative(self.uncertainty(safety), self.values[0])
 
     @property
     def _order_used(self) -> float:
         return min(self.order, FORMAL_ORDER)
 
 
-def grid_convergence_index(
-    fine: float, coarse: float, ratio: float, order: float, safety: float = SAFETY_CREDIBLE
-) -> float:
-    """Return safety |fine - coarse|/(|fine| (ratio^order - 1)), no unit (Celik et al., step 5)."""
-    return _relative(safety * _error(fine, coarse, ratio, order), fine)
+def relative(amount: float, value: float) -> float:
+    """Return amount/|value|, infinite where only the value is zero."""
+    return float(amount / abs(value)) if value else float(math.inf * amount if amount else 0.0)
+
+
+def _error(fine: float, coarse: float, ratio: float, order: float) -> float:
+    """Return Richardson's estimate of the error of the fine value, in its unit."""
+    return abs(fine - coarse) / math.expm1(order * math.log(ratio))
+
+
+def grid_convergence_index(fine: float, coarse: float, ratio: float, order: float) -> float:
+    """Return 1.25 |fine - coarse|/(|fine| (ratio^order - 1)), no unit (Celik et al., step 5)."""
+    return relative(SAFETY_CREDIBLE * _error(fine, coarse, ratio, order), fine)
 
 
 def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
@@ -114,16 +123,31 @@ def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
     values: f1, f2, f3 in any unit; spacings: h1 < h2 < h3 in any unit, for only ratios count.
     Raises ValueError unless there are three of each and the spacings rise.
     """
-    (f1, f2, f3), ratios = (f := _three(values)), _ratios(spacings)
-    if behaviour := _without_order(f1, f2, f3):
-        return Estimate(behaviour, f, ratios)
+    f, h = np.asarray(values, float).tolist(), np.asarray(spacings, float).tolist()
+    if len(f) != 3 or len(h) != 3:
+        raise ValueError(f"an observed order needs three grids, not {len(f)}")
+    (f1, f2, f3), (h1, h2, h3) = f, h
+    if not 0 < h1 < h2 < h3 < math.inf:
+        raise ValueError(f"grid spacings must rise from the finest on: {h1}, {h2}, {h3}")
+    found = partial(Estimate, values=(f1, f2, f3), ratios=(h2 / h1, h3 / h2))
+    if not np.isfinite(f).all():
+        return found(Behaviour.UNDETERMINED)
+    smallest = ROUND_OFF * max(abs(f1), abs(f2), abs(f3))
+    fine_still, coarse_still = abs(f2 - f1) <= smallest, abs(f3 - f2) <= smallest
+    if fine_still:
+        return found(Behaviour.AT_ROUND_OFF if coarse_still else Behaviour.STALLED)
+    if coarse_still:
+        return found(Behaviour.MONOTONE_DIVERGENT)
     change = (f3 - f2) / (f2 - f1)
-    order = observed_order(change, *ratios)
-    behaviour = _with_order(change, order)
-    if behaviour is not Behaviour.MONOTONE:
-        return Estimate(behaviour, f, ratios, order)
-    limit = f1 - (f2 - f1) / math.expm1(order * math.log(ratios[0]))
-    return Estimate(behaviour, f, ratios, order, limit)
+    order = observed_order(change, h2 / h1, h3 / h2)
+    if change < 0:
+        converging = order > ROUND_OFF
+        behaviour = Behaviour.OSCILLATORY if converging else Behaviour.OSCILLATORY_DIVERGENT
+        return found(behaviour, order=order)
+    if order <= ROUND_OFF:
+        return found(Behaviour.MONOTONE_DIVERGENT, order=order)
+    limit = f1 - (f2 - f1) / math.expm1(order * math.log(h2 / h1))
+    return found(Behaviour.MONOTONE, order=order, extrapolated=limit)
 
 
 def safety(triples: Sequence[Estimate]) -> float:
@@ -144,58 +168,14 @@ def observed_order(change: float, r21: float, r32: float) -> float:
     target, a, b = math.log(abs(change)), math.log(r21), math.log(r32)
 
     def residual(p: float) -> float:
-        return math.log(_size_of_change(p, a, b, sign)) - target
+        # |e32/e21| = (r32^p - s)/(1 - s r21^-p): Celik's equation in a form that does not overflow,
+        # which tends to b/a at p = 0, s = 1
+        if sign < 0:
+            size = (1.0 + math.exp(b * p)) / (1.0 + math.exp(-a * p))
+        else:
+            size = -math.expm1(b * p) / math.expm1(-a * p) if p else b / a
+        return math.log(size) - target
 
     lowest = -math.log1p(2.0 / abs(change)) / a
     highest = math.log1p(2.0 * abs(change)) / b
     return float(brentq(residual, lowest, highest, xtol=1e-14, rtol=1e-14))
-
-
-def _size_of_change(p: float, a: float, b: float, sign: float) -> float:
-    """Return |e32/e21| at order p: (r32^p - s)/(1 - s r21^-p), which tends to b/a at p = 0, s = 1.
-
-    a = ln r21, b = ln r32. Celik's equation in a form that does not overflow.
-    """
-    if sign < 0:
-        return (1.0 + math.exp(b * p)) / (1.0 + math.exp(-a * p))
-    return -math.expm1(b * p) / math.expm1(-a * p) if p else b / a
-
-
-def _without_order(f1: float, f2: float, f3: float) -> Behaviour | None:
-    """Return the behaviour of values that define no order, None for all others."""
-    if not all(math.isfinite(value) for value in (f1, f2, f3)):
-        return Behaviour.UNDETERMINED
-    smallest = ROUND_OFF * max(abs(f1), abs(f2), abs(f3))
-    fine_still, coarse_still = abs(f2 - f1) <= smallest, abs(f3 - f2) <= smallest
-    if fine_still:
-        return Behaviour.AT_ROUND_OFF if coarse_still else Behaviour.STALLED
-    return Behaviour.MONOTONE_DIVERGENT if coarse_still else None
-
-
-def _with_order(change: float, order: float) -> Behaviour:
-    if change > 0:
-        return Behaviour.MONOTONE if order > ROUND_OFF else Behaviour.MONOTONE_DIVERGENT
-    return Behaviour.OSCILLATORY if order > ROUND_OFF else Behaviour.OSCILLATORY_DIVERGENT
-
-
-def _three(values: npt.ArrayLike) -> tuple[float, float, float]:
-    numbers = np.asarray(values, float)
-    if numbers.shape != (3,):
-        raise ValueError(f"an observed order needs three grids, not {numbers.size}")
-    return float(numbers[0]), float(numbers[1]), float(numbers[2])
-
-
-def _ratios(spacings: npt.ArrayLike) -> tuple[float, float]:
-    h1, h2, h3 = _three(spacings)
-    if not 0 < h1 < h2 < h3 < math.inf:
-        raise ValueError(f"grid spacings must rise from the finest on: {h1}, {h2}, {h3}")
-    return h2 / h1, h3 / h2
-
-
-def _error(fine: float, coarse: float, ratio: float, order: float) -> float:
-    """Return Richardson's estimate of the error of the fine value, in its unit."""
-    return abs(fine - coarse) / math.expm1(order * math.log(ratio))
-
-
-def _relative(amount: float, value: float) -> float:
-    return amount / abs(value) if value else math.inf * amount

@@ -3,6 +3,5 @@
 Each method is a file with its record `METHOD`; `indices` has the registry.
 """
 
-from impactlab.analysis.sensitivity.indices import analysis, applies
-
-__all__ = ["analysis", "applies"]
+from impactlab.analysis.sensitivity.indices import analysis as analysis
+from impactlab.analysis.sensitivity.indices import applies as applies

@@ -12,13 +12,14 @@ import numpy as np
 import numpy.typing as npt
 from SALib.analyze.delta import calc_delta, sobol_first
 
+from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity.method import (
-    Array,
     Index,
-    Sample,
     SensitivityMethod,
+    apart_from_dummy,
     dummy_column,
 )
+from impactlab.types import Floats
 
 GRID = 100
 """Places at which densities are compared, as in SALib."""
@@ -41,32 +42,28 @@ _INDICES = {
 }
 
 
-def check(sample: Sample) -> None:
-    """Raise ValueError where groups are stated."""
-    sample.ungrouped()
-
-
-def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     """Return indices of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,), finite and varying. NaN for a parameter of which a class holds one value of
     the response alone: SALib takes such a class for one without influence.
     """
     runs = len(outputs)
-    inputs = np.column_stack([sample.inputs, dummy_column(runs, sample.rng("dummy"))])
+    inputs = np.column_stack([sample.inputs, dummy_column(sample)])
     edges = np.linspace(0, runs, classes(runs) + 1)
     places = np.linspace(outputs.min(), outputs.max(), GRID)
-    values = np.array([_salib(column, outputs, edges, places) for column in inputs.T])
+    values = np.full((inputs.shape[1], 2), np.nan)
+    for at, column in enumerate(inputs.T):
+        ordered = outputs[np.argsort(column, kind="stable")]
+        if min(np.ptp(part) for part in np.split(ordered, edges[1:-1].astype(int))) > 0:
+            values[at, 0] = calc_delta(outputs, places, column, edges)
+        values[at, 1] = sobol_first(outputs, column, edges)
     drawn = sample.rng(response).integers(runs, size=(sample.resamples, runs))
     replicates = np.array([resampled(inputs[at], outputs[at], edges, places) for at in drawn])
     values[:, 0] = 2 * values[:, 0] - replicates[..., 0].mean(axis=0)
     spread = sample.half_width(replicates)
-    result: dict[str, Array] = {}
-    for at, name in enumerate(("delta", "delta_first_order")):
-        result |= {name: values[:-1, at], f"dummy_{name}": values[-1, at]}
-        margins = spread[:, at]
-        result |= {f"{name}_interval": margins[:-1], f"dummy_{name}_interval": margins[-1]}
-    return result
+    delta = apart_from_dummy("delta", values[:, 0], spread[:, 0])
+    return delta | apart_from_dummy("delta_first_order", values[:, 1], spread[:, 1])
 
 
 def classes(runs: int) -> int:
@@ -75,19 +72,7 @@ def classes(runs: int) -> int:
     return round(min(int(np.ceil(runs**exponent)), 48))
 
 
-def _salib(column: Array, outputs: Array, edges: Array, places: Array) -> Array:
-    """Return delta with its bias, NaN where a class has no density, and the first order.
-
-    edges: of the classes, in ranks; places: (GRID,), where densities are compared.
-    """
-    first = float(sobol_first(outputs, column, edges))
-    ordered = outputs[np.argsort(column, kind="stable")]
-    if min(np.ptp(part) for part in np.split(ordered, edges[1:-1].astype(int))) == 0:
-        return np.array([np.nan, first])
-    return np.array([float(calc_delta(outputs, places, column, edges)), first])
-
-
-def resampled(inputs: Array, outputs: Array, edges: Array, places: Array) -> Array:
+def resampled(inputs: Floats, outputs: Floats, edges: Floats, places: Floats) -> Floats:
     """Return both of all parameters, (parameter, 2); NaN where a resample does not vary.
 
     inputs: (runs, parameters). Sums over the classes are sums over stretches of sorted runs.
@@ -107,7 +92,7 @@ def resampled(inputs: Array, outputs: Array, edges: Array, places: Array) -> Arr
     return np.array(found)
 
 
-def _density(outputs: Array, starts: npt.NDArray[np.intp], places: Array) -> Array:
+def _density(outputs: Floats, starts: npt.NDArray[np.intp], places: Floats) -> Floats:
     """Return the density of each class of outputs at the places, (places, classes).
 
     outputs: (runs,), sorted by class; starts: where the classes begin.
@@ -126,4 +111,4 @@ def _density(outputs: Array, starts: npt.NDArray[np.intp], places: Array) -> Arr
     )
 
 
-METHOD = SensitivityMethod("delta", lambda sample: _INDICES, check, estimate)
+METHOD = SensitivityMethod("delta", _INDICES, Sample.ungrouped, estimate)

@@ -13,7 +13,9 @@ import math
 import numpy as np
 from SALib.analyze.fast import compute_orders
 
-from impactlab.analysis.sensitivity.method import Array, Index, Sample, SensitivityMethod
+from impactlab.analysis.sample import Sample
+from impactlab.analysis.sensitivity.method import Index, SensitivityMethod, apart_from_dummy
+from impactlab.types import Floats
 
 _1999 = "extended FAST: Saltelli et al. (1999), Technometrics 41, 39"
 _DUMMY = "the index of a parameter that the model never sees, from a curve of its own"
@@ -46,37 +48,34 @@ def check(sample: Sample) -> None:
         )
 
 
-def varying(outputs: Array, sample: Sample) -> list[Array]:
+def curves(outputs: Floats, sample: Sample) -> list[Floats]:
     """Return the curves, each of which has to vary: it is divided by its own variance."""
-    return list(_curves(outputs, sample))
+    return list(outputs.reshape(len(sample.parameters) + 1, -1))
 
 
-def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     """Return indices of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,), one curve per parameter and the dummy's last, finite and varying.
     """
-    curves, harmonics = _curves(outputs, sample), sample.number("harmonics")
-    found = np.array([_orders(curve, harmonics) for curve in curves]).T
-    starts = sample.rng(response).integers(curves.shape[1], size=(sample.resamples, len(curves)))
+    closed, harmonics = curves(outputs, sample), sample.number("harmonics")
+    points = closed[0].size
+    half = math.ceil(points / 2)
+    first, total = np.array([_orders(curve, harmonics) for curve in closed]).T
+    starts = sample.rng(response).integers(points, size=(sample.resamples, len(closed)))
     replicates = [
-        [_orders(_half(curve, at), harmonics) for curve, at in zip(curves, row, strict=True)]
+        [
+            _orders(np.roll(curve, -at)[:half], harmonics)
+            for curve, at in zip(closed, row, strict=True)
+        ]
         for row in starts
     ]
     spread = sample.half_width(np.array(replicates)).T
-    spread = np.hypot(spread, found[:, -1:])
-    result: dict[str, Array] = {}
-    for name, values, margins in zip(("first_order", "total_order"), found, spread, strict=True):
-        result |= {name: values[:-1], f"{name}_interval": margins[:-1]}
-        result |= {f"dummy_{name}": values[-1], f"dummy_{name}_interval": margins[-1]}
-    return result
+    found = apart_from_dummy("first_order", first, np.hypot(spread[0], first[-1]))
+    return found | apart_from_dummy("total_order", total, np.hypot(spread[1], total[-1]))
 
 
-def _curves(outputs: Array, sample: Sample) -> Array:
-    return outputs.reshape(len(sample.parameters) + 1, -1)
-
-
-def _orders(curve: Array, harmonics: int) -> tuple[float, float]:
+def _orders(curve: Floats, harmonics: int) -> tuple[float, float]:
     """Return first and total order from one curve, whose parameter has SALib's frequency.
 
     NaN where it does not vary, as half of a curve may.
@@ -88,9 +87,4 @@ def _orders(curve: Array, harmonics: int) -> tuple[float, float]:
     return float(first), float(total)
 
 
-def _half(curve: Array, start: int) -> Array:
-    """Return half of a closed curve, beginning at `start`."""
-    return np.roll(curve, -start)[: math.ceil(curve.size / 2)]
-
-
-METHOD = SensitivityMethod("fast", lambda sample: _INDICES, check, estimate, varying=varying)
+METHOD = SensitivityMethod("fast", _INDICES, check, estimate, varying=curves)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -13,40 +12,35 @@ import xarray as xr
 from scipy.stats import rankdata
 
 from impactlab.analysis.responses import usable
+from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity import delta, fast, morris, pawn, regression, sobol, verdict
 from impactlab.analysis.sensitivity.method import (
     BY_SAMPLES,
     PAIR,
-    Array,
     Index,
-    Sample,
     SensitivityMethod,
     index_variables,
 )
 from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
 from impactlab.analysis.surrogate import fit
 from impactlab.analysis.verdicts import flagged
+from impactlab.types import Floats
 
 METHODS: Mapping[str, SensitivityMethod] = {
-    method.name: method
-    for method in (
-        sobol.METHOD,
-        morris.METHOD,
-        fast.METHOD,
-        delta.METHOD,
-        pawn.METHOD,
-        regression.METHOD,
-    )
+    module.METHOD.name: module.METHOD for module in (sobol, morris, fast, delta, pawn, regression)
 }
 """By their names in study files."""
-
-Answer = tuple[list[SensitivityVerdict], float, dict[str, Array]]
-"""Verdicts on a response, share of its runs that a surrogate supplied, and indices if any."""
 
 
 def applies(runs: xr.Dataset) -> bool:
     """Return True if the runs are a sample of one of the methods."""
     return runs.attrs.get("method") in METHODS
+
+
+Predict = Callable[[Floats], Floats]
+"""From places (runs, parameters) in the unit cube to values (runs,)."""
+Fit = Callable[[Floats, Floats, int], Predict]
+"""From places (runs, parameters) in the unit cube, values (runs,), and a seed to a surrogate."""
 
 
 def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
@@ -64,43 +58,44 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
     sample, method = Sample.of(runs), METHODS[str(runs.attrs["method"])]
     method.check(sample)
     values = usable(runs).sortby("run").transpose("response", "run")
-    names = [str(name) for name in values["response"].values]
     answers = [
-        _answer(name, row, sample, method, fit)
-        for name, row in zip(names, values.values, strict=True)
+        _answer(str(row["response"].item()), row.values, sample, method, fit) for row in values
     ]
     verdicts, shares, rows = zip(*answers, strict=True)
-    wanted = method.indices(sample)
+    wanted = {
+        name: index
+        for name, index in method.indices.items()
+        if index.dims != PAIR or sample.number("second_order")
+    }
     coordinates = _coordinates(values, sample, wanted)
     sizes = {name: len(entry[1]) for name, entry in coordinates.items()}
     worst = [max(entry, default=SensitivityVerdict.USABLE) for entry in verdicts]
     codes = xr.DataArray([int(judgement) for judgement in worst], dims="response")
+    imputed_words = "share of runs whose value a surrogate supplied"
     return xr.Dataset(index_variables(rows, wanted, sample, sizes), coords=coordinates).assign(
         sensitivity_verdict=flagged(
             codes, SensitivityVerdict, "verdict on the sensitivity indices"
         ),
         sensitivity_remarks=verdict.remarks(verdicts),
-        imputed_share=("response", np.array(shares), _IMPUTED),
+        imputed_share=("response", list(shares), {"long_name": imputed_words, "units": "1"}),
     )
 
 
-_IMPUTED = {"long_name": "share of runs whose value a surrogate supplied", "units": "1"}
-
-
 def _answer(
-    response: str, outputs: Array, sample: Sample, method: SensitivityMethod, fit: Fit
-) -> Answer:
-    """Analyse one response; outputs: (runs,), NaN where a run failed."""
-    share = 0.0
-    if np.isnan(outputs).any() and sample.policy == "impute":
-        if not can_impute(outputs, sample):
-            return [SensitivityVerdict.TOO_FEW_RUNS], share, {}
-        share = float(np.isnan(outputs).mean())
-        outputs = imputed(outputs, sample, fit, response)
-    verdicts = verdict.of_outputs(outputs, method.varying(outputs, sample), share)
+    response: str, outputs: Floats, sample: Sample, method: SensitivityMethod, fit: Fit
+) -> tuple[list[SensitivityVerdict], float, dict[str, Floats]]:
+    """Return verdicts, share of the runs that a surrogate supplied, and indices if any.
+
+    outputs: (runs,), NaN where a run failed.
+    """
+    complete = imputed(outputs, sample, fit, response)
+    if complete is None:
+        return [SensitivityVerdict.TOO_FEW_RUNS], 0.0, {}
+    share = 0.0 if complete is outputs else float(np.isnan(outputs).mean())
+    verdicts = verdict.of_outputs(complete, method.varying(complete, sample), share)
     if set(verdicts) & set(verdict.NO_INDEX):
         return verdicts, 0.0, {}
-    found = method.estimate(outputs, sample, response)
+    found = method.estimate(complete, sample, response)
     return verdicts + verdict.of_indices(found), share, found
 
 
@@ -124,127 +119,83 @@ def _coordinates(
     return coordinates
 
 
-Predict = Callable[[Array], Array]
-"""From places (runs, parameters) in the unit cube to values (runs,)."""
-Fit = Callable[[Array, Array, int], Predict]
-"""From places (runs, parameters) in the unit cube, values (runs,), and a seed to a surrogate."""
-
 MOST_IMPUTED = 0.2
 """Largest share of runs that may be supplied."""
 FEWEST_PER_PARAMETER = 10
 """Good runs that a surrogate needs per parameter."""
 
 
-def can_impute(outputs: Array, sample: Sample) -> bool:
-    """Return True if enough runs are left to supply the others."""
-    gaps = int(np.isnan(outputs).sum())
-    good = outputs.size - gaps
-    return gaps <= MOST_IMPUTED * outputs.size and good >= FEWEST_PER_PARAMETER * len(
-        sample.parameters
-    )
+def imputed(outputs: Floats, sample: Sample, fit: Fit, response: str) -> Floats | None:
+    """Return outputs (runs,) with a surrogate's predictions in the place of NaN.
 
+    They are returned as they are where none is NaN or the study does not ask for it; None where
+    too few runs are left. A mean would take away variance; the share of supplied runs is stored
+    beside the indices.
 
-def imputed(outputs: Array, sample: Sample, fit: Fit, response: str) -> Array:
-    """Return outputs (runs,) with the surrogate's predictions in the place of NaN.
-
-    A mean would take away variance; the share of supplied runs is stored beside the indices.
+    The surrogate's place of a value is the share of runs below it. In a sample as even as those of
+    sensitivity analyses, this is the probability to 1/runs, whatever the distribution.
     """
     gaps = np.isnan(outputs)
-    if not gaps.any():
+    if not gaps.any() or sample.policy != "impute":
         return outputs
-    places = unit_ranks(sample.inputs)
+    enough = np.count_nonzero(~gaps) >= FEWEST_PER_PARAMETER * len(sample.parameters)
+    if not enough or np.count_nonzero(gaps) > MOST_IMPUTED * outputs.size:
+        return None
+    places = np.asarray((rankdata(sample.inputs, axis=0) - 0.5) / len(sample.inputs))
     seed = int(sample.rng("surrogate", response).integers(1, 2**31))
-    predict = fit(places[~gaps], outputs[~gaps], seed)
     filled = outputs.copy()
-    filled[gaps] = predict(places[gaps])
+    filled[gaps] = fit(places[~gaps], outputs[~gaps], seed)(places[gaps])
     return filled
 
 
-def unit_ranks(inputs: Array) -> Array:
-    """Return places (runs, parameters) in the open unit cube: the share of runs below each value.
-
-    In a sample as even as those of sensitivity analyses, this is the probability to 1/runs,
-    whatever the distribution.
-    """
-    return np.asarray((rankdata(inputs, axis=0) - 0.5) / len(inputs))
-
-
-_OF = ("parameter", "other_parameter", "base_samples")
 _BESIDE = ("sensitivity_verdict", "sensitivity_remarks", "imputed_share")
-
-
-@dataclass(frozen=True)
-class Row:
-    """One index. low, high: ends of its interval; NaN where there is none. units: of all three."""
-
-    response: str
-    parameter: str
-    other_parameter: str
-    base_samples: str
-    index: str
-    value: float
-    low: float
-    high: float
-    units: str
-    verdict: str
+_LABELS = ("response", "parameter", "other_parameter", "base_samples")
+COLUMNS = (*_LABELS, "index", "value", "low", "high", "units", "verdict")
+"""Of the table. low, high: ends of the interval of the value. units: of all three."""
 
 
 def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
     """Return the sensitivity variables of an analysis: indices, intervals and verdicts."""
-    wanted = [name for name in analysis.data_vars if _is_index(analysis[name]) or name in _BESIDE]
+
+    def is_index(array: xr.DataArray) -> bool:
+        known = "response" in array.dims and set(array.dims) <= set(_LABELS)
+        return known and ("estimator" in array.attrs or "parameter" in array.dims)
+
+    wanted = [name for name, array in analysis.items() if is_index(array) or name in _BESIDE]
     return analysis[wanted]
 
 
-def table_rows(analysis: xr.Dataset) -> Iterator[Row]:
-    """Yield every index of every response; that of a pair of parameters once."""
-    for name, array in sensitivity_variables(analysis).data_vars.items():
-        if not str(name).endswith("_interval") and name not in _BESIDE:
-            yield from _rows(analysis, array)
+def table_rows(analysis: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Yield every index of every response by COLUMNS; that of a pair of parameters once.
+
+    Columns that have no meaning for an index are left out; low and high are NaN without interval.
+    """
+    for name, index in sensitivity_variables(analysis).items():
+        if str(name).endswith("_interval") or name in _BESIDE:
+            continue
+        margin = analysis.get(f"{name}_interval", xr.full_like(index, np.nan))
+        meanings = analysis["sensitivity_verdict"].attrs["flag_meanings"].split()
+        columns = {
+            "value": index,
+            "low": index - margin,
+            "high": index + margin,
+            "units": index.attrs.get("units", analysis.get("response_units", "")),
+            "verdict": ("response", np.array(meanings)[analysis["sensitivity_verdict"]]),
+        }
+        frame = xr.Dataset(columns).to_dataframe([str(dim) for dim in index.dims])
+        order = analysis.get("parameter", analysis["response"]).values.tolist()
+        for row in frame.reset_index().to_dict("records"):
+            if "other_parameter" not in row or (
+                order.index(row["parameter"]) < order.index(row["other_parameter"])
+            ):
+                yield {"index": name} | row
 
 
 def write_csv(analysis: xr.Dataset, path: Path) -> None:
     """Write the rows under their names, in UTF-8; missing values are empty cells."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(field.name for field in fields(Row))
-        writer.writerows(map(_cells, table_rows(analysis)))
-
-
-def _rows(analysis: xr.Dataset, array: xr.DataArray) -> Iterator[Row]:
-    margins = analysis.get(f"{array.name}_interval", xr.full_like(array, np.nan))
-    margins = margins.transpose(*array.dims)
-    verdicts = _verdicts(analysis["sensitivity_verdict"])
-    units = analysis.get("response_units", xr.full_like(analysis["response"], ""))
-    for place in np.ndindex(array.shape):
-        at = dict(zip(map(str, array.dims), place, strict=True))
-        if "other_parameter" in at and at["parameter"] >= at["other_parameter"]:
-            continue
-        labels = {dim: str(array[dim].values[at[dim]]) if dim in at else "" for dim in _OF}
-        value, margin, response = float(array[at]), float(margins[at]), at["response"]
-        yield Row(
-            response=str(array["response"].values[response]),
-            index=str(array.name),
-            value=value,
-            low=value - margin,
-            high=value + margin,
-            units=str(array.attrs.get("units", units.values[response])),
-            verdict=verdicts[response],
-            **labels,
-        )
-
-
-def _is_index(array: xr.DataArray) -> bool:
-    known = set(array.dims) <= {"response", *_OF} and "response" in array.dims
-    return known and ("estimator" in array.attrs or "parameter" in array.dims)
-
-
-def _verdicts(array: xr.DataArray) -> list[str]:
-    flags = np.atleast_1d(array.attrs["flag_values"]).tolist()
-    names = dict(zip(flags, str(array.attrs["flag_meanings"]).split(), strict=True))
-    return [names[code] for code in array.values.tolist()]
-
-
-def _cells(row: Row) -> list[str]:
-    cells = astuple(row)
-    return ["" if isinstance(cell, float) and np.isnan(cell) else str(cell) for cell in cells]
+        writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        for row in table_rows(analysis):
+            writer.writerow({key: "" if cell != cell else cell for key, cell in row.items()})

@@ -1,4 +1,4 @@
-"""The sample under analysis, records of an index and of a method, and the bootstrap.
+"""Records of an index and of a method, and the bootstrap.
 
 The bootstrap resamples functions of means by matrix products: the mean over a resample is the mean
 weighted by how often each row was drawn, so that all resamples together are one product of counts
@@ -10,115 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
-import xarray as xr
-from scipy.stats import norm
 
-from impactlab.analysis.responses import listed
-
-Array = npt.NDArray[np.float64]
-
-CONFIDENCE = 0.95
-RESAMPLES = 200
-"""Bootstrap resamples: give the width of an interval to 5 % (1/sqrt(2 resamples))."""
-POLICIES = ("fail", "impute")
-
-
-@dataclass(frozen=True)
-class Sample:
-    """A sample, and the settings of its indices.
-
-    groups: the group of each parameter; empty where each stands for itself. inputs: (runs,
-    parameter), in SI units and in the order of the runs. settings: the attributes of the runs.
-    """
-
-    parameters: tuple[str, ...]
-    groups: tuple[str, ...]
-    inputs: Array
-    settings: Mapping[Any, Any]
-
-    @classmethod
-    def of(cls, runs: xr.Dataset) -> Sample:
-        """Return the sample of runs, from their coordinates and attributes."""
-        names = listed(runs, "varied")
-        ordered = runs.sortby("run")
-        return cls(
-            parameters=tuple(names),
-            groups=tuple(listed(runs, "groups")) if "groups" in runs.attrs else (),
-            inputs=np.stack([np.asarray(ordered[name].values, float) for name in names], axis=1),
-            settings=runs.attrs,
-        )
-
-    @property
-    def factors(self) -> tuple[str, ...]:
-        """Names of the indices: groups in order of appearance, or parameters."""
-        return tuple(dict.fromkeys(self.groups or self.parameters))
-
-    @property
-    def confidence(self) -> float:
-        """Confidence level of the intervals, in (0, 1)."""
-        return float(self.settings.get("confidence", CONFIDENCE))
-
-    @property
-    def resamples(self) -> int:
-        """Number of bootstrap resamples."""
-        return int(self.settings.get("resamples", RESAMPLES))
-
-    @property
-    def policy(self) -> str:
-        """Policy for failed runs. Raises ValueError for an unknown one."""
-        policy = str(self.settings.get("failed_runs", POLICIES[0]))
-        if policy not in POLICIES:
-            raise ValueError(f"{self.study}: failed_runs = {policy!r}: choose from fail, impute")
-        return policy
-
-    @property
-    def study(self) -> str:
-        """The study's name, for messages."""
-        return f"the study {str(self.settings.get('study', '?'))!r}"
-
-    def number(self, setting: str) -> int:
-        """Return a whole number that the method needs. Raises ValueError where it is absent."""
-        if setting not in self.settings:
-            raise ValueError(
-                f"the runs of {self.study} have no attribute {setting}: solve the study again"
-            )
-        return int(self.settings[setting])
-
-    def expect(self, runs: int, words: str) -> None:
-        """Raise ValueError unless the sample has this number of runs; words: where it is from."""
-        if len(self.inputs) != runs:
-            raise ValueError(
-                f"{self.study} has {len(self.inputs)} runs, but {words} make {runs}: solve it again"
-            )
-
-    def ungrouped(self) -> None:
-        """Raise ValueError where groups are stated for a method that has none."""
-        if self.groups:
-            raise ValueError(
-                f"{self.study}: the method {self.settings['method']!r} has no groups: remove them, "
-                "or use sobol or morris"
-            )
-
-    def rng(self, *purpose: str) -> np.random.Generator:
-        """Return the random stream of a purpose, such as a response, independent of all others."""
-        key = tuple("\0".join(purpose).encode())
-        seed = self.number("seed")
-        return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
-
-    def half_width(self, replicates: Array) -> Array:
-        """Return half-widths of intervals from bootstrap replicates (resamples, ...).
-
-        NaN where a replicate is: a resample without variance has no index.
-        """
-        quantile = float(norm.ppf(0.5 + self.confidence / 2))
-        return np.asarray(quantile * replicates.std(axis=0, ddof=1))
-
-
-Stored = dict[str, tuple[tuple[str, ...], Array, dict[str, object]]]
+from impactlab.analysis.sample import Sample
+from impactlab.types import Floats
 
 FACTOR = ("parameter",)
 PAIR = ("parameter", "other_parameter")
@@ -141,21 +37,29 @@ class Index:
     interval: bool = True
     comment: str = ""
 
-    def attributes(self) -> dict[str, object]:
-        """Return the attributes of its variable."""
-        attrs: dict[str, object] = {"long_name": self.long_name, "estimator": self.estimator}
-        attrs |= {"units": self.units} if self.units else {}
-        return attrs | ({"comment": self.comment} if self.comment else {})
 
-    def interval_attributes(self, sample: Sample) -> dict[str, object]:
-        """Return the attributes of the variable of its half-width."""
-        words = f"half-width of the {100 * sample.confidence:g} % interval of the {self.long_name}"
-        own = {"confidence": sample.confidence, "resamples": sample.resamples}
-        return self.attributes() | {"long_name": words} | own
+@dataclass(frozen=True)
+class SensitivityMethod:
+    """One method of sensitivity analysis.
+
+    name: as in study files. indices: by variable name. check: raises ValueError where the runs are
+    not the sample that their attributes describe. estimate: from finite and varying outputs
+    (runs,), the sample and the response's name to indices and half-widths, by variable name.
+    varying: the parts of the outputs each of which has to vary.
+    """
+
+    name: str
+    indices: Mapping[str, Index]
+    check: Callable[[Sample], None]
+    estimate: Callable[[Floats, Sample, str], dict[str, Floats]]
+    varying: Callable[[Floats, Sample], list[Floats]] = lambda outputs, sample: [outputs]
+
+
+Stored = dict[str, tuple[tuple[str, ...], Floats, dict[str, object]]]
 
 
 def index_variables(
-    rows: Sequence[Mapping[str, Array]],
+    rows: Sequence[Mapping[str, Floats]],
     indices: Mapping[str, Index],
     sample: Sample,
     sizes: Mapping[str, int],
@@ -163,31 +67,45 @@ def index_variables(
     """Return dataset variables from one mapping of indices per response; an empty one is NaN."""
     variables: Stored = {}
     for name, index in indices.items():
+        attrs: dict[str, object] = {"long_name": index.long_name, "estimator": index.estimator}
+        attrs |= {"units": index.units} if index.units else {}
+        attrs |= {"comment": index.comment} if index.comment else {}
+        width = f"half-width of the {100 * sample.confidence:g} % interval of the {index.long_name}"
+        settings = {"confidence": sample.confidence, "resamples": sample.resamples}
+        both = {name: attrs, f"{name}_interval": attrs | {"long_name": width} | settings}
         gap = np.full([sizes[dim] for dim in index.dims], np.nan)
-        kinds = {name: index.attributes()}
-        if index.interval:
-            kinds[f"{name}_interval"] = index.interval_attributes(sample)
-        for key, attrs in kinds.items():
+        for key in both if index.interval else [name]:
             stacked = np.array([row[key] if row else gap for row in rows], float)
-            variables[key] = (("response", *index.dims), stacked, attrs)
+            variables[key] = (("response", *index.dims), stacked, both[key])
     return variables
 
 
-def dummy_column(runs: int, rng: np.random.Generator) -> Array:
+def dummy_column(sample: Sample) -> Floats:
     """Return values of a parameter that the model never saw, (runs,): its indices are noise.
 
     A Latin hypercube in one dimension, in the open interval (0, 1).
     """
-    return (rng.permutation(runs) + 0.5) / runs
+    runs = len(sample.inputs)
+    return (sample.rng("dummy").permutation(runs) + 0.5) / runs
 
 
-Estimator = Callable[[Array], Mapping[str, Array]]
+def apart_from_dummy(name: str, values: Floats, margins: Floats) -> dict[str, Floats]:
+    """Return indices and half-widths by variable name; of both, the last is that of the dummy."""
+    return {
+        name: values[:-1],
+        f"{name}_interval": margins[:-1],
+        f"dummy_{name}": values[-1],
+        f"dummy_{name}_interval": margins[-1],
+    }
+
+
+Estimator = Callable[[Floats], Mapping[str, Floats]]
 """From means (..., columns) to indices (..., *dims)."""
 _CELLS = 2_000_000
 """Number of counts held at a time: 16 MB, and about three times that while they are drawn."""
 
 
-def counts(rows: int, resamples: int, rng: np.random.Generator) -> Iterator[Array]:
+def counts(rows: int, resamples: int, rng: np.random.Generator) -> Iterator[Floats]:
     """Yield how often each row is drawn: (some resamples, rows), of `resamples` in all.
 
     The draws do not depend on how many are held at a time.
@@ -201,8 +119,8 @@ def counts(rows: int, resamples: int, rng: np.random.Generator) -> Iterator[Arra
 
 
 def half_widths(
-    columns: Array, estimator: Estimator, sample: Sample, rng: np.random.Generator
-) -> dict[str, Array]:
+    columns: Floats, estimator: Estimator, sample: Sample, rng: np.random.Generator
+) -> dict[str, Floats]:
     """Return half-widths of intervals of everything the estimator gives, by `<name>_interval`.
 
     columns: (rows, columns), resampled by row.
@@ -215,24 +133,3 @@ def half_widths(
         f"{name}_interval": sample.half_width(np.concatenate([part[name] for part in parts]))
         for name in parts[0]
     }
-
-
-def _whole(outputs: Array, sample: Sample) -> list[Array]:
-    return [outputs]
-
-
-@dataclass(frozen=True)
-class SensitivityMethod:
-    """One method of sensitivity analysis.
-
-    name: as in study files. indices: its indices of a sample, by variable name. check: raises
-    ValueError where the runs are not the sample that their attributes describe. estimate: from
-    finite and varying outputs (runs,), the sample and the response's name to indices and
-    half-widths, by variable name. varying: the parts of the outputs each of which has to vary.
-    """
-
-    name: str
-    indices: Callable[[Sample], Mapping[str, Index]]
-    check: Callable[[Sample], None]
-    estimate: Callable[[Array, Sample, str], dict[str, Array]]
-    varying: Callable[[Array, Sample], list[Array]] = _whole

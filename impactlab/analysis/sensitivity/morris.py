@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from SALib.analyze import morris
 
-from impactlab.analysis.sensitivity.method import Array, Index, Sample, SensitivityMethod
+from impactlab.analysis.sample import Sample
+from impactlab.analysis.sensitivity.method import Index, SensitivityMethod
+from impactlab.types import Floats
 
 SAME = 1e-13
 """Difference, relative to the largest value, up to which two values are one level."""
@@ -41,7 +43,7 @@ def check(sample: Sample) -> None:
     sample.expect(trajectories * (factors + 1), f"{trajectories} trajectories of {factors} steps")
     path = levels(sample.inputs).reshape(trajectories, factors + 1, -1)
     moved = np.diff(path, axis=1) != 0
-    members = np.array(sample.factors)[:, None] == np.array(sample.groups or sample.parameters)
+    members = np.array(sample.factors)[:, None] == np.array(sample.memberships)
     steps = (moved[:, :, None, :] == members).all(axis=-1)
     if not (steps.sum(axis=1) == 1).all():
         raise ValueError(
@@ -50,7 +52,7 @@ def check(sample: Sample) -> None:
         )
 
 
-def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     """Return elementary effects of one response, by variable name.
 
     outputs: (runs,), trajectory by trajectory, finite and varying.
@@ -58,7 +60,7 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
     problem = {
         "num_vars": len(sample.parameters),
         "names": list(sample.parameters),
-        "groups": list(sample.groups or sample.parameters),
+        "groups": list(sample.memberships),
     }
     found = morris.analyze(
         problem,
@@ -69,8 +71,7 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
         num_levels=sample.number("levels"),
         seed=sample.rng(response),
     )
-    groups = sample.groups or sample.parameters
-    alone = np.array([groups.count(name) == 1 for name in sample.factors])
+    alone = np.array([sample.memberships.count(name) == 1 for name in sample.factors])
     return {
         "morris_mu": np.where(alone, np.asarray(found["mu"], float), np.nan),
         "morris_mu_star": np.asarray(found["mu_star"], float),
@@ -79,19 +80,18 @@ def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
     }
 
 
-def levels(inputs: Array) -> Array:
+def levels(inputs: Floats) -> Floats:
     """Return the number of the level of each value, (runs, parameter), from 0 on.
 
     SALib sees a step in every change; the same level may come out of a quantile with another last
     digit.
     """
-    return np.stack([_levels(column) for column in inputs.T], axis=1)
+    found = np.empty(inputs.shape)
+    for at, column in enumerate(inputs.T):
+        values, places = np.unique(column, return_inverse=True)
+        apart = np.diff(values) > SAME * np.abs(values).max()
+        found[:, at] = np.concatenate([[0.0], np.cumsum(apart)])[places]
+    return found
 
 
-def _levels(column: Array) -> Array:
-    values, places = np.unique(column, return_inverse=True)
-    apart = np.diff(values) > SAME * np.abs(values).max()
-    return np.concatenate([[0.0], np.cumsum(apart)])[places]
-
-
-METHOD = SensitivityMethod("morris", lambda sample: _INDICES, check, estimate)
+METHOD = SensitivityMethod("morris", _INDICES, check, estimate)

@@ -13,14 +13,15 @@ import numpy as np
 import numpy.typing as npt
 from SALib.analyze import pawn
 
+from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity.method import (
-    Array,
     Index,
-    Sample,
     SensitivityMethod,
+    apart_from_dummy,
     counts,
     dummy_column,
 )
+from impactlab.types import Floats
 
 SLIDES = 10
 """Classes of a parameter's values, as in SALib."""
@@ -50,53 +51,47 @@ def check(sample: Sample) -> None:
         )
 
 
-def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     """Return indices of one response and half-widths of their intervals, by variable name.
 
-    outputs: (runs,), finite and varying.
+    outputs: (runs,), finite and varying. In the resamples, runs are drawn anew between the same
+    limits of the slides.
     """
-    column = dummy_column(len(outputs), sample.rng("dummy"))
-    inputs = np.column_stack([sample.inputs, column])
+    inputs = np.column_stack([sample.inputs, dummy_column(sample)])
     names = [*sample.parameters, "dummy"]
     with warnings.catch_warnings():
         # of the significance of a distance, which is not used
         warnings.filterwarnings("ignore", "ks_2samp", RuntimeWarning)
         found = pawn.analyze({"num_vars": len(names), "names": names}, inputs, outputs, S=SLIDES)
-    spread = _half_widths(inputs, outputs, sample, sample.rng(response))
-    return {
-        "pawn": found["median"][:-1],
-        "pawn_interval": spread[:-1],
-        "pawn_maximum": found["maximum"][:-1],
-        "dummy_pawn": found["median"][-1],
-        "dummy_pawn_interval": spread[-1],
-    }
-
-
-def _half_widths(inputs: Array, outputs: Array, sample: Sample, rng: np.random.Generator) -> Array:
-    """Return those of the medians, (parameter,): runs are drawn anew between the same limits."""
     order = np.argsort(outputs, kind="stable")
     last = last_of_equals(outputs[order])
     members = [slides(column)[order] for column in inputs.T]
-    replicates = [
-        [_median(distances(row[order], member, last)) for member in members]
-        for tally in counts(len(outputs), sample.resamples, rng)
+    medians = [
+        # of the slides that are not empty, as in SALib
+        [np.nanmedian(distances(row[order], member, last)) for member in members]
+        for tally in counts(len(outputs), sample.resamples, sample.rng(response))
         for row in tally
     ]
-    return sample.half_width(np.array(replicates))
+    margins = sample.half_width(np.array(medians))
+    return apart_from_dummy("pawn", np.array(found["median"]), margins) | {
+        "pawn_maximum": found["maximum"][:-1]
+    }
 
 
-def slides(column: Array) -> npt.NDArray[np.bool_]:
+def slides(column: Floats) -> npt.NDArray[np.bool_]:
     """Return which runs lie in which slide, (runs, slides); SALib omits the largest value."""
     limits = np.quantile(column, np.linspace(0, 1, SLIDES + 1))
     return (column[:, None] >= limits[:-1]) & (column[:, None] < limits[1:])
 
 
-def last_of_equals(ordered: Array) -> npt.NDArray[np.intp]:
+def last_of_equals(ordered: Floats) -> npt.NDArray[np.intp]:
     """Return the last place of each stretch of equal outputs, where distributions step."""
     return np.flatnonzero(np.diff(ordered, append=np.inf))
 
 
-def distances(weights: Array, members: npt.NDArray[np.bool_], last: npt.NDArray[np.intp]) -> Array:
+def distances(
+    weights: Floats, members: npt.NDArray[np.bool_], last: npt.NDArray[np.intp]
+) -> Floats:
     """Return the Kolmogorov-Smirnov distance of each slide from all runs, (slides,).
 
     weights: (runs,), how often each run counts, by rising output; members: bool (runs, slides) in
@@ -109,9 +104,4 @@ def distances(weights: Array, members: npt.NDArray[np.bool_], last: npt.NDArray[
     return np.asarray(np.abs(apart).max(axis=0))
 
 
-def _median(values: Array) -> float:
-    """Return the median over the slides that are not empty, as in SALib."""
-    return float(np.nanmedian(values))
-
-
-METHOD = SensitivityMethod("pawn", lambda sample: _INDICES, check, estimate)
+METHOD = SensitivityMethod("pawn", _INDICES, check, estimate)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import rankdata
 
+from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity.method import (
-    Array,
     Index,
-    Sample,
     SensitivityMethod,
     dummy_column,
     half_widths,
 )
+from impactlab.types import Floats
 
 _2008 = "Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5"
 _1979 = "Iman and Conover (1979), Technometrics 21, 499"
@@ -46,38 +46,37 @@ def check(sample: Sample) -> None:
         )
 
 
-def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     """Return coefficients of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,), finite and varying. The ranks are those among all runs, in resamples, too.
     """
-    column = dummy_column(len(outputs), sample.rng("dummy"))
-    table = np.column_stack([sample.inputs, column, outputs])
-    found: dict[str, Array] = {}
+    table = np.column_stack([sample.inputs, dummy_column(sample), outputs])
+    found: dict[str, Floats] = {}
     for name, values in (("regression", table), ("rank_regression", rankdata(table, axis=0))):
         found |= _regression(name, values, sample, sample.rng(response))
     return found
 
 
 def _regression(
-    name: str, table: Array, sample: Sample, rng: np.random.Generator
-) -> dict[str, Array]:
+    name: str, table: Floats, sample: Sample, rng: np.random.Generator
+) -> dict[str, Floats]:
     """Regress the last column on the others, of which the last is the dummy."""
     standard = (table - table.mean(axis=0)) / table.std(axis=0)
     products = (standard[:, :, None] * standard[:, None, :]).reshape(len(table), -1)
     columns = np.column_stack([standard, products])
 
-    def estimator(means: Array) -> dict[str, Array]:
-        correlation = correlations(means, table.shape[1])
-        with_dummy, _ = coefficients(correlation)
+    def estimator(means: Floats) -> dict[str, Floats]:
+        correlation = _correlations(means, table.shape[1])
+        with_dummy, _ = _coefficients(correlation)
         without = np.delete(np.delete(correlation, -2, axis=-1), -2, axis=-2)
-        values, share = coefficients(without)
+        values, share = _coefficients(without)
         return {name: values, f"dummy_{name}": with_dummy[..., -1], f"{name}_r_squared": share}
 
     return estimator(columns.mean(axis=0)) | half_widths(columns, estimator, sample, rng)
 
 
-def correlations(means: Array, size: int) -> Array:
+def _correlations(means: Floats, size: int) -> Floats:
     """Return the matrix (..., size, size) from means of columns and of their products."""
     centre = means[..., :size]
     second = means[..., size:].reshape(*means.shape[:-1], size, size)
@@ -87,11 +86,11 @@ def correlations(means: Array, size: int) -> Array:
     return np.asarray(covariance / deviation[..., :, None] / deviation[..., None, :])
 
 
-def coefficients(correlation: Array) -> tuple[Array, Array]:
+def _coefficients(correlation: Floats) -> tuple[Floats, Floats]:
     """Return standardised coefficients (..., regressors) of the last variable, and R^2 (...)."""
     inner, outer = correlation[..., :-1, :-1], correlation[..., :-1, -1]
     found = np.asarray(np.linalg.solve(inner, outer[..., None])[..., 0], float)
     return found, np.asarray((found * outer).sum(axis=-1))
 
 
-METHOD = SensitivityMethod("regression", lambda sample: _INDICES, check, estimate)
+METHOD = SensitivityMethod("regression", _INDICES, check, estimate)

@@ -15,16 +15,16 @@ import numpy as np
 from SALib.analyze import sobol
 from SALib.analyze.sobol import separate_output_values
 
+from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity.method import (
     BY_SAMPLES,
     PAIR,
-    Array,
     Index,
-    Sample,
     SensitivityMethod,
     half_widths,
 )
 from impactlab.analysis.sensitivity.verdict import still
+from impactlab.types import Floats
 
 _ALONE = 5
 """Number of columns of the statistics that belong to no factor: a, b, a^2, b^2, a b."""
@@ -38,24 +38,24 @@ class Outputs:
     the factor's columns from B; ba: the same at B with columns from A, None without second order.
     """
 
-    a: Array
-    b: Array
-    ab: Array
-    ba: Array | None
+    a: Floats
+    b: Floats
+    ab: Floats
+    ba: Floats | None
 
     @classmethod
-    def of(cls, outputs: Array, factors: int, second_order: bool) -> Outputs:
+    def of(cls, outputs: Floats, sample: Sample) -> Outputs:
         """Return the parts of outputs (runs,) in SALib's order, not all equal."""
         standard = (outputs - outputs.mean()) / outputs.std()
-        size = len(outputs) // step(factors, second_order)
-        return cls(*separate_output_values(standard, factors, size, second_order))
+        size, second = len(outputs) // step(sample), bool(sample.number("second_order"))
+        return cls(*separate_output_values(standard, len(sample.factors), size, second))
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
         """Pairs of factors whose second order was sampled."""
         return list(combinations(range(self.ab.shape[1]), 2)) if self.ba is not None else []
 
-    def statistics(self, interactions: bool = True) -> Array:
+    def statistics(self, interactions: bool = True) -> Floats:
         """Return the columns whose means the estimators take, (base samples, columns)."""
         a, b = self.a[:, None], self.b[:, None]
         columns = [a, b, a**2, b**2, a * b, b * (self.ab - a), (a - self.ab) ** 2 / 2]
@@ -65,12 +65,12 @@ class Outputs:
         return np.concatenate(columns, axis=1)
 
 
-def step(factors: int, second_order: bool) -> int:
+def step(sample: Sample) -> int:
     """Return the number of runs per base sample."""
-    return (2 if second_order else 1) * factors + 2
+    return (2 if sample.number("second_order") else 1) * len(sample.factors) + 2
 
 
-def estimates(means: Array, factors: int) -> dict[str, Array]:
+def estimates(means: Floats, factors: int) -> dict[str, Floats]:
     """Return indices from the means of the statistics, (..., columns); NaN where nothing varies.
 
     first_order, total_order (..., factor): Saltelli et al. (2010), Table 2 (b) and (f);
@@ -129,17 +129,11 @@ _INDICES = {
 }
 
 
-def indices(sample: Sample) -> dict[str, Index]:
-    """Return the indices of a sample, by variable name."""
-    second = _second_order(sample)
-    return {name: index for name, index in _INDICES.items() if second or index.dims != PAIR}
-
-
 def check(sample: Sample) -> None:
     """Raise ValueError when the number of runs does not fit the sample."""
     base, factors = sample.number("base_samples"), len(sample.factors)
     words = f"{base} base samples of {factors} {'groups' if sample.groups else 'parameters'}"
-    sample.expect(base * step(factors, _second_order(sample)), words)
+    sample.expect(base * step(sample), words)
 
 
 def base_samples(sample: Sample) -> list[int]:
@@ -149,31 +143,46 @@ def base_samples(sample: Sample) -> list[int]:
     return [size for size in sizes if size >= FEWEST] + [whole]
 
 
-def varying(outputs: Array, sample: Sample) -> list[Array]:
+def varying(outputs: Floats, sample: Sample) -> list[Floats]:
     """Return the outputs that have to vary: the variance comes from the two base samples."""
-    size = step(len(sample.factors), _second_order(sample))
+    size = step(sample)
     return [np.concatenate([outputs[::size], outputs[size - 1 :: size]])]
 
 
-def estimate(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
+def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     """Return indices of one response and half-widths of their intervals, by variable name.
 
     outputs: (runs,) in SALib's order, finite and varying.
     """
-    factors, second = len(sample.factors), _second_order(sample)
-    found = _indices(Outputs.of(outputs, factors, second), sample, response)
-    nested = [
-        _nested(outputs[: size * step(factors, second)], sample, response)
-        for size in base_samples(sample)[:-1]
-    ]
-    for name in ("first_order", "total_order"):
+    series = [_of_first(size, outputs, sample, response) for size in base_samples(sample)]
+    found, gap = dict(series[-1]), np.full(len(sample.factors), np.nan)
+    for order in ("first_order", "total_order"):
         for ending in ("", "_interval"):
-            series = [part[f"{name}{ending}"] for part in nested] + [found[f"{name}{ending}"]]
-            found[f"{name}_by_samples{ending}"] = np.stack(series)
+            values = [part.get(f"{order}{ending}", gap) for part in series]
+            found[f"{order}_by_samples{ending}"] = np.stack(values)
     return found
 
 
-def points(outputs: Outputs) -> dict[str, Array]:
+def _of_first(size: int, outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
+    """Return the indices on the first base samples; none where these do not vary.
+
+    Those of second order have intervals on the whole sample alone.
+    """
+    start, factors = outputs[: size * step(sample)], len(sample.factors)
+    if still(start, varying(start, sample)):
+        return {}
+    parts = Outputs.of(start, sample)
+    statistics = parts.statistics(interactions=start.size == outputs.size)
+    found = points(parts) | half_widths(
+        statistics, lambda means: estimates(means, factors), sample, sample.rng(response)
+    )
+    if "second_order_interval" in found:
+        found["second_order_interval"] = _matrix(found["second_order_interval"], factors)
+    floor = estimates(statistics.mean(axis=0), factors)
+    return found | {name: floor[name] for name in ("dummy_first_order", "dummy_total_order")}
+
+
+def points(outputs: Outputs) -> dict[str, Floats]:
     """Return SALib's indices: first_order, total_order (factor) and second_order, symmetric."""
     a, b, ab, ba = outputs.a, outputs.b, outputs.ab, outputs.ba
     found = {
@@ -186,42 +195,11 @@ def points(outputs: Outputs) -> dict[str, Array]:
     return found
 
 
-def _indices(outputs: Outputs, sample: Sample, response: str) -> dict[str, Array]:
-    """Return everything on the whole sample."""
-    factors, statistics = len(sample.factors), outputs.statistics()
-    floor = estimates(statistics.mean(axis=0), factors)
-    spread = half_widths(
-        statistics, lambda means: estimates(means, factors), sample, sample.rng(response)
-    )
-    if "second_order_interval" in spread:
-        spread["second_order_interval"] = _matrix(spread["second_order_interval"], factors)
-    dummies = {name: value for name, value in floor.items() if name.startswith("dummy")}
-    return points(outputs) | dummies | spread
-
-
-def _nested(outputs: Array, sample: Sample, response: str) -> dict[str, Array]:
-    """Return first and total order of a part of the sample; NaN where that does not vary."""
-    factors = len(sample.factors)
-    gap = np.full(factors, np.nan)
-    if still(outputs, varying(outputs, sample)):
-        names = ("first_order", "total_order")
-        return {f"{name}{ending}": gap for name in names for ending in ("", "_interval")}
-    parts = Outputs.of(outputs, factors, _second_order(sample))
-    statistics = parts.statistics(interactions=False)
-    return points(parts) | half_widths(
-        statistics, lambda means: estimates(means, factors), sample, sample.rng(response)
-    )
-
-
-def _matrix(values: Array, factors: int) -> Array:
+def _matrix(values: Floats, factors: int) -> Floats:
     """Return values of pairs as a symmetric matrix, NaN on its diagonal."""
     matrix = np.full((factors, factors), np.nan)
     matrix[np.triu_indices(factors, 1)] = values
     return np.where(np.isnan(matrix), matrix.T, matrix)
 
 
-def _second_order(sample: Sample) -> bool:
-    return bool(sample.number("second_order"))
-
-
-METHOD = SensitivityMethod("sobol", indices, check, estimate, varying=varying)
+METHOD = SensitivityMethod("sobol", _INDICES, check, estimate, varying=varying)

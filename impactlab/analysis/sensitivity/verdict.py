@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.sensitivity.method import Array
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict
+from impactlab.types import Floats
 
 MOSTLY = 0.9
 """Share of runs with one and the same value from which on a response is mostly constant."""
@@ -78,7 +78,7 @@ NO_INDEX = (
 
 
 def of_outputs(
-    outputs: Array, varying: Sequence[Array], imputed: float
+    outputs: Floats, varying: Sequence[Floats], imputed: float
 ) -> list[SensitivityVerdict]:
     """Return the verdicts on one response before its indices are known; empty for the best.
 
@@ -99,49 +99,38 @@ def of_outputs(
     return [verdict for verdict, held in holds.items() if held]
 
 
-def remarks(verdicts: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:
-    """Return all verdicts on each response, (response,): bits of `flag_masks`, 0 for none."""
-    kinds = [kind for kind in SensitivityVerdict if kind is not SensitivityVerdict.USABLE]
-    masks: dict[SensitivityVerdict, int] = {kind: 1 << at for at, kind in enumerate(kinds)}
-    codes = [sum(masks[kind] for kind in set(entry)) for entry in verdicts]
-    attrs = {
-        "long_name": "all that is to be said of the sensitivity indices, beside the verdict",
-        "flag_masks": np.array(list(masks.values()), np.int32),
-        "flag_meanings": " ".join(kind.name.lower() for kind in kinds),
-    }
-    return xr.DataArray(np.array(codes, np.int32), dims="response", attrs=attrs)
-
-
-def still(outputs: Array, varying: Sequence[Array]) -> bool:
+def still(outputs: Floats, varying: Sequence[Floats]) -> bool:
     """Return True if a part does not vary, for its size or beside the variance of the whole."""
     smallest, least = ROUND_OFF * np.abs(outputs).max(), ROUND_OFF * np.var(outputs)
     return any(np.ptp(part) <= smallest or np.var(part) <= least for part in varying)
 
 
-def of_indices(found: Mapping[str, Array]) -> list[SensitivityVerdict]:
+def tail(outputs: Floats) -> float:
+    """Return the share of the variance that comes from the runs farthest from the mean."""
+    squares = np.sort((outputs - outputs.mean()) ** 2)
+    return float(squares[-max(1, round(TAIL * squares.size)) :].sum() / squares.sum())
+
+
+def of_indices(found: Mapping[str, Floats]) -> list[SensitivityVerdict]:
     """Return the verdicts on the indices of one response; empty for the best."""
-    holds = {
-        SensitivityVerdict.WIDE_INTERVALS: _wide(found),
-        SensitivityVerdict.NOT_LINEAR: "rank_regression" in found and _best_fit(found) < LINEAR,
-        SensitivityVerdict.INCONSISTENT: "total_order" in found and _inconsistent(found),
-        SensitivityVerdict.NO_DENSITY: "delta" in found and bool(np.isnan(found["delta"]).any()),
-    }
-    return [verdict for verdict, held in holds.items() if held]
-
-
-def _wide(found: Mapping[str, Array]) -> bool:
+    verdicts = []
     margins = [found[f"{name}_interval"] for name in _JUDGED if name in found]
     if "morris_mu_star" in found:
         margins.append(found["morris_mu_star_interval"] / found["morris_mu_star"].max())
-    return not all((margin <= WIDE).all() for margin in margins)
+    if not all((margin <= WIDE).all() for margin in margins):
+        verdicts.append(SensitivityVerdict.WIDE_INTERVALS)
+    if "rank_regression" in found:
+        explained = (found["regression_r_squared"], found["rank_regression_r_squared"])
+        if max(map(float, explained)) < LINEAR:
+            verdicts.append(SensitivityVerdict.NOT_LINEAR)
+    if "total_order" in found and _inconsistent(found):
+        verdicts.append(SensitivityVerdict.INCONSISTENT)
+    if "delta" in found and np.isnan(found["delta"]).any():
+        verdicts.append(SensitivityVerdict.NO_DENSITY)
+    return verdicts
 
 
-def _best_fit(found: Mapping[str, Array]) -> float:
-    """Return the share of the variance that the better regression explains."""
-    return max(float(found[f"{kind}_r_squared"]) for kind in ("regression", "rank_regression"))
-
-
-def _inconsistent(found: Mapping[str, Array]) -> bool:
+def _inconsistent(found: Mapping[str, Floats]) -> bool:
     """Return True if the indices contradict that they are shares, by more than their intervals.
 
     Below zero by twice the interval: of many indices that are zero, some lie outside of it once.
@@ -155,7 +144,13 @@ def _inconsistent(found: Mapping[str, Array]) -> bool:
     )
 
 
-def tail(outputs: Array) -> float:
-    """Return the share of the variance that comes from the runs farthest from the mean."""
-    squares = np.sort((outputs - outputs.mean()) ** 2)
-    return float(squares[-max(1, round(TAIL * squares.size)) :].sum() / squares.sum())
+def remarks(verdicts: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:
+    """Return all verdicts on each response, (response,): bits of `flag_masks`, 0 for none."""
+    masks = {kind: 1 << at for at, kind in enumerate(list(SensitivityVerdict)[1:])}
+    codes = [sum(masks[kind] for kind in entry) for entry in verdicts]
+    attrs = {
+        "long_name": "all that is to be said of the sensitivity indices, beside the verdict",
+        "flag_masks": np.array(list(masks.values()), np.int32),
+        "flag_meanings": " ".join(kind.name.lower() for kind in masks),
+    }
+    return xr.DataArray(np.array(codes, np.int32), dims="response", attrs=attrs)

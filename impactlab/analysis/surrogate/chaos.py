@@ -1,11 +1,13 @@
-"""Polynomial chaos: sums of products of Legendre polynomials on the unit cube.
+"""Sparse polynomial chaos: sums of products of Legendre polynomials on the unit cube.
 
-Its Sobol indices are shares of the sum of its squared coefficients: Sudret (2008), Reliab. Eng.
-Syst. Saf. 93, 964, eqs. 36 to 39.
+Hybrid least angle regression picks the terms, and least squares fits their coefficients: Blatman
+and Sudret (2011), J. Comput. Phys. 230, 2345, section 4.3. The Sobol indices are shares of the sum
+of the squared coefficients: Sudret (2008), Reliab. Eng. Syst. Saf. 93, 964, eqs. 36 to 39.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -14,6 +16,9 @@ import numpy as np
 import scipy  # its stats are loaded when first used
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from impactlab.types import Floats
 
 Degrees = NDArray[np.int64]
 """(terms, parameters): the degree of each term's polynomial in each parameter."""
@@ -27,7 +32,7 @@ def candidates(parameters: int, most: int, highest: int) -> Degrees:
     """Return the largest hyperbolic set of at most `most` terms, the constant first.
 
     A set holds the terms whose degrees a_i keep to (sum a_i^q)^(1/q) <= p with q = 0.7; p is at
-    most `highest`. Blatman and Sudret (2011), J. Comput. Phys. 230, 2345, eq. 24.
+    most `highest`. Blatman and Sudret (2011), eq. 24.
     """
     found = hyperbolic(parameters, 0)
     for degree in range(1, highest + 1):
@@ -41,17 +46,10 @@ def candidates(parameters: int, most: int, highest: int) -> Degrees:
 @cache
 def hyperbolic(parameters: int, degree: int) -> Degrees:
     """Return all terms up to this degree, sorted by total degree, then by parameter."""
-    rows = [(0,) * parameters, *_within(parameters, degree)]
-    rows.sort(key=lambda row: (sum(row), [-part for part in row]))
-    return np.array(rows, dtype=np.int64)
-
-
-def _within(parameters: int, degree: int) -> list[tuple[int, ...]]:
-    """Return all terms but the constant, each grown from one without its last parameter."""
     limit = degree**_NORM + _ROUNDING
-    found: list[tuple[int, ...]] = []
-    grown = [((0,) * parameters, 0, 0.0)]
-    while grown:
+    constant = (0,) * parameters
+    rows, grown = [constant], [(constant, 0, 0.0)]
+    while grown:  # each term grows from the one without its last parameter
         row, start, used = grown.pop()
         for at in range(start, parameters):
             for part in range(1, degree + 1):
@@ -59,30 +57,13 @@ def _within(parameters: int, degree: int) -> list[tuple[int, ...]]:
                 if total > limit:
                     break
                 longer = (*row[:at], part, *row[at + 1 :])
-                found.append(longer)
+                rows.append(longer)
                 grown.append((longer, at + 1, total))
-    return found
+    rows.sort(key=lambda row: (sum(row), [-part for part in row]))
+    return np.array(rows, dtype=np.int64)
 
 
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Chaos:
-    """A fitted response, which predicts when called with points.
-
-    degrees: (terms, parameters). coefficients: (terms,), in the response's unit.
-    """
-
-    degrees: Degrees
-    coefficients: Array
-
-    def __call__(self, unit: Array) -> Array:
-        """Return the response at points of the unit cube, (points, parameters) to (points,)."""
-        return np.asarray(self.coefficients @ basis(unit, self.degrees))
-
-
-def basis(unit: Array, degrees: Degrees) -> Array:
+def basis(unit: Floats, degrees: Degrees) -> Floats:
     """Return every term at every point of the unit cube, (points, parameters) to (terms, points).
 
     A term is a product of Legendre polynomials sqrt(2 a + 1) P_a(2 u - 1), by recurrence: of mean
@@ -99,87 +80,151 @@ def basis(unit: Array, degrees: Degrees) -> Array:
 
 
 @dataclass(frozen=True)
-class Indices:
-    """Indices and half-widths of their intervals, each (labels,)."""
+class Chaos:
+    """A fitted response, which predicts when called with points.
 
-    first_order: Array
-    total_order: Array
-    first_order_interval: Array
-    total_order_interval: Array
-
-
-@dataclass(frozen=True)
-class Errors:
-    """Errors on held-out runs.
-
-    q2: 1 - mean squared error / variance; rmse: root of the mean squared error.
+    degrees: (terms, parameters). coefficients: (terms,), in the response's unit.
     """
 
-    q2: float
-    rmse: float
+    degrees: Degrees
+    coefficients: Floats
 
-    @property
-    def missed(self) -> float:
-        """Share of the variance that is not predicted, from 0 to 1."""
-        return min(max(1 - self.q2, 0.0), 1.0)
-
-
-@dataclass(frozen=True)
-class Fitted:
-    """Runs that a chaos was fitted to: unit (runs, parameters), values (runs,), block (runs,)."""
-
-    unit: Array
-    values: Array
-    block: NDArray[np.int64]
+    def __call__(self, unit: Floats) -> Floats:
+        """Return the response at points of the unit cube, (points, parameters) to (points,)."""
+        return np.asarray(self.coefficients @ basis(unit, self.degrees))
 
 
-def indices(
-    chaos: Chaos, groups: Sequence[str], runs: Fitted, errors: Errors, confidence: float
-) -> Indices:
-    """Return indices of first and total order, with intervals.
+MOST_RUNS = 20_000
+"""Largest number of runs that a fit uses; of more, it draws as many."""
+_MOST_CANDIDATES = 400
+_MOST_TERMS = 200
+_HIGHEST_DEGREE = 20
+_SMALLEST = 1e-12
+"""Least leverage left to a run, so that nothing is divided by zero."""
 
-    groups: of each parameter. errors: on runs held out. A half-width is the sum of two parts: the
-    scatter of the coefficients (the linearised bootstrap of whole blocks of runs, their residuals
-    as large as the errors on runs held out; the choice of terms is taken as given), and the share
-    of the variance that the chaos misses, for it may belong to any parameter. All NaN where the
-    chaos is a constant.
+
+def fewest_runs(parameters: int) -> int:
+    """Return the number of runs that a fit needs: four per term of the linear model."""
+    return 4 * (parameters + 1)
+
+
+def drawn(runs: int, seed: int) -> NDArray[np.int64]:
+    """Return the positions of the runs that a fit uses, rising: all, or a draw of MOST_RUNS."""
+    return np.sort(np.random.default_rng(seed).permutation(runs)[:MOST_RUNS])
+
+
+def fit(unit: Floats, values: Floats, seed: int) -> Chaos:
+    """Return a chaos that predicts `values` from points of the unit cube.
+
+    unit: (runs, parameters), the probabilities of the parameters' values; values: (runs,), finite.
+    seed: which runs are used where there are more than MOST_RUNS. Raises ValueError when there
+    are fewer than `fewest_runs`.
     """
-    alone, taking_part = _members(chaos, groups)
-    varying = chaos.degrees.any(axis=1)
-    whole = (chaos.coefficients[varying] ** 2).sum() or np.nan
-    influence = _influence(chaos, runs, errors.rmse)
-    factor = float(scipy.stats.norm.ppf((1 + confidence) / 2))
-
-    def index(members: NDArray[np.bool_]) -> Array:
-        return members @ chaos.coefficients**2 / whole
-
-    def half_width(members: NDArray[np.bool_]) -> Array:
-        gradient = members - np.outer(index(members), varying)
-        scatter = 2 * gradient * chaos.coefficients / whole @ influence
-        return np.asarray(factor * np.sqrt((scatter**2).sum(axis=1)) + errors.missed)
-
-    return Indices(index(alone), index(taking_part), half_width(alone), half_width(taking_part))
-
-
-def _members(chaos: Chaos, groups: Sequence[str]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return masks (labels, terms): terms of the label alone, and all terms with the label."""
-    labels = list(dict.fromkeys(groups))
-    belongs = np.array([[group == label for label in labels] for group in groups])
-    taking_part = ((chaos.degrees > 0).astype(int) @ belongs > 0).T
-    return taking_part & (taking_part.sum(axis=0) == 1), taking_part
+    parameters = unit.shape[1]
+    if len(values) < fewest_runs(parameters):
+        raise ValueError(
+            f"{len(values)} runs are too few for a surrogate in {parameters} parameters: "
+            f"solve {fewest_runs(parameters)} or more"
+        )
+    rows = drawn(len(values), seed)
+    unit, values = unit[rows], values[rows]
+    levels = min(np.unique(np.round(column, 9)).size for column in unit.T)
+    highest = min(_HIGHEST_DEGREE, levels - 1)  # that the parameter of the fewest levels resolves
+    with threadpool_limits(limits=1):  # the same bits on any number of processors
+        degrees = candidates(parameters, min(_MOST_CANDIDATES, len(values) // 2), highest)
+        columns, mean = basis(unit, degrees), values.mean()
+        order = _order(columns, values - mean)
+        coefficients = _least_squares(columns[order], values - mean)
+    coefficients[0] += mean
+    return Chaos(degrees[order[: coefficients.size]], coefficients)
 
 
-def _influence(chaos: Chaos, runs: Fitted, rmse: float) -> Array:
+def _order(columns: Floats, values: Floats) -> list[int]:
+    """Return the terms in the order of least angle regression, the constant first.
+
+    values: of mean zero.
+    """
+    # scikit-learn is a large dependency for one function, but its treatment of dependent terms and
+    # round-off decides which terms are picked: another one would change stored results.
+    from sklearn.exceptions import ConvergenceWarning
+    from sklearn.linear_model import lars_path_gram  # takes a second
+
+    centred = columns[1:] - columns[1:].mean(axis=1, keepdims=True)
+    centred /= np.linalg.norm(centred, axis=1, keepdims=True)
+    # Scaled to norm one, as the terms are, because the tolerances are absolute.
+    correlation = centred @ (values / (np.linalg.norm(values) or 1.0))
+    with warnings.catch_warnings():
+        # Of terms that the runs cannot distinguish it rightly drops one.
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        _, active, _ = lars_path_gram(
+            correlation,
+            centred @ centred.T,
+            n_samples=1,
+            max_iter=min(_MOST_TERMS, len(values) // 4),
+        )
+    return [0, *(int(term) + 1 for term in active)]
+
+
+def _least_squares(columns: Floats, values: Floats) -> Floats:
+    """Return the coefficients of the first terms, as many as predict best.
+
+    Best: the least leave-one-out error, which one QR decomposition gives for all counts at once,
+    corrected for the number of terms k of n runs by (n + k)/(n - k): Blatman and Sudret (2011),
+    eqs. 17 to 20, with a basis as good as orthonormal.
+    """
+    runs, count = columns.shape[1], np.arange(1, len(columns) + 1)
+    q, r = scipy.linalg.qr(columns.T, mode="economic")
+    projected = q.T @ values
+    residual = values[:, np.newaxis] - np.cumsum(q * projected, axis=1)
+    free = np.maximum(1 - np.cumsum(q**2, axis=1), _SMALLEST)
+    error = ((residual / free) ** 2).mean(axis=0) * (runs + count) / (runs - count)
+    best = int(np.argmin(error)) + 1
+    return np.asarray(scipy.linalg.solve_triangular(r[:best, :best], projected[:best]))
+
+
+def influence(
+    chaos: Chaos, unit: Floats, values: Floats, block: NDArray[np.int64], rmse: float
+) -> Floats:
     """Return the influence of each block of runs on each coefficient, (terms, blocks).
+
+    unit (runs, parameters), values (runs,), block (runs,): the runs that the chaos was fitted to.
+    rmse: root mean squared error on runs held out.
 
     Their outer product is the covariance of the coefficients that is robust to dependence within
     blocks: Liang and Zeger (1986), Biometrika 73, 13. The residuals are scaled to the error on
     runs held out: a fit of many terms to few blocks leaves residuals far smaller than that.
     """
-    columns = basis(runs.unit, chaos.degrees)
-    residual = runs.values - chaos.coefficients @ columns
+    columns = basis(unit, chaos.degrees)
+    residual = values - chaos.coefficients @ columns
     size = float(np.sqrt(np.mean(residual**2))) or 1.0
     scores = columns * residual * (rmse / size)
-    starts = np.flatnonzero(np.diff(runs.block, prepend=-1))
+    starts = np.flatnonzero(np.diff(block, prepend=-1))
     pulls = np.add.reduceat(scores, starts, axis=1)
     return np.asarray(np.linalg.solve(columns @ columns.T, pulls))
+
+
+def indices(
+    chaos: Chaos, groups: Sequence[str], influence: Floats, missed: float, confidence: float
+) -> dict[str, Floats]:
+    """Return first_order and total_order, each (groups,) and with <name>_interval, a half-width.
+
+    groups: of each parameter. missed: the share of the variance that the chaos does not predict on
+    runs held out. A half-width is the sum of two parts: the scatter of the coefficients (the
+    linearised bootstrap of whole blocks of runs, from their `influence`; the choice of terms is
+    taken as given), and the share that is missed, for it may belong to any parameter. All NaN where
+    the chaos is a constant.
+    """
+    belongs = np.array([[group == name for name in dict.fromkeys(groups)] for group in groups])
+    taking_part = ((chaos.degrees > 0).astype(int) @ belongs > 0).T  # (groups, terms)
+    alone = taking_part & (taking_part.sum(axis=0) == 1)
+    varying = chaos.degrees.any(axis=1)
+    whole = (chaos.coefficients[varying] ** 2).sum() or np.nan
+    factor = float(scipy.stats.norm.ppf((1 + confidence) / 2))
+    found: dict[str, Floats] = {}
+    for name, members in (("first_order", alone), ("total_order", taking_part)):
+        index = members @ chaos.coefficients**2 / whole
+        gradient = members - np.outer(index, varying)
+        scatter = 2 * gradient * chaos.coefficients / whole @ influence
+        half_width = np.asarray(factor * np.sqrt((scatter**2).sum(axis=1)) + missed)
+        found |= {name: index, f"{name}_interval": half_width}
+    return found

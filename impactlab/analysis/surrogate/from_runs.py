@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -12,18 +10,67 @@ import xarray as xr
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from impactlab.analysis.responses import usable
-from impactlab.analysis.surrogate.chaos import (
-    Array,
-    Chaos,
-    Degrees,
-    Errors,
-    Fitted,
-    Indices,
-    indices,
-)
-from impactlab.analysis.surrogate.fitting import Sample, drawn, fewest_runs, fit, is_sample
+from impactlab.analysis.responses import listed, usable
+from impactlab.analysis.sample import Sample
+from impactlab.analysis.surrogate.chaos import Chaos, drawn, fewest_runs, fit, indices, influence
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
+from impactlab.model.distributions import cumulative, is_distributed
+from impactlab.types import Floats
+
+_SHARE = 0.2
+"""Share of the blocks of runs to test on."""
+_FEWEST_TESTS, _MOST_TESTS = 10, 4000
+_BLOCKS = {"sobol": "base_samples", "morris": "trajectories"}
+"""Methods whose runs come in blocks of near-copies, and the attribute with their number."""
+_LENGTHS = {"fast": "samples"}
+"""Methods whose blocks are curves through the cube, and the attribute with their length."""
+
+
+def applies(runs: xr.Dataset) -> bool:
+    """Return True if the runs are a sample, by any method, with distributions of parameters."""
+    return "run" in runs.dims and all(
+        name in runs.coords and is_distributed(runs[name].attrs) for name in listed(runs, "varied")
+    )
+
+
+@dataclass(frozen=True)
+class Divided:
+    """A sample, divided into runs to fit to and runs to test on, in the order of `run`.
+
+    unit: (runs, parameters), the probability of each value. block: (runs,), equal for runs that
+    differ in few parameters. held_out: mask of the runs that no surrogate sees, (runs,), a fifth of
+    the blocks. tests: positions of these runs, rising; of more than _MOST_TESTS, a draw of as many.
+    """
+
+    sample: Sample
+    unit: Floats
+    block: NDArray[np.int64]
+    held_out: NDArray[np.bool_]
+    tests: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, runs: xr.Dataset) -> Divided:
+        """Divide runs sorted by `run`. Raises ValueError where blocks do not fit."""
+        sample = Sample.of(runs)
+        method, count = str(runs.attrs.get("method")), runs.sizes["run"]
+        length = sample.number(_LENGTHS[method]) if method in _LENGTHS else 1
+        if method in _BLOCKS:
+            length = count // max(sample.number(_BLOCKS[method]), 1)
+        if length < 1 or count % length:
+            raise ValueError(
+                f"{sample.study} has {count} runs, not a whole number of blocks of its method "
+                f"{method}: solve it again"
+            )
+        block, blocks = np.arange(count) // length, count // length
+        shuffled = sample.rng("surrogate held out").permutation(blocks)
+        held_out = np.isin(block, shuffled[: max(1, round(_SHARE * blocks))])
+        tests = sample.rng("surrogate tests").permutation(np.flatnonzero(held_out))[:_MOST_TESTS]
+        columns = [
+            cumulative(runs[name].attrs, column)
+            for name, column in zip(sample.parameters, sample.inputs.T, strict=True)
+        ]
+        return cls(sample, np.column_stack(columns), block, held_out, np.sort(tests))
+
 
 GOOD = 0.9
 """Predictivity on held-out runs from which on a surrogate needs no warning."""
@@ -44,95 +91,52 @@ class SurrogateVerdict(Verdict):
     CONSTANT = 6, False, "the response does not vary: there is none"
 
 
-def before_fitting(values: Array, enough: bool) -> SurrogateVerdict:
-    """Return the verdict from the runs alone; values: (runs,), NaN where missing.
-
-    enough: whether there are enough runs to fit and to test.
-    """
-    found = values[np.isfinite(values)]
-    if not enough or found.size == 0:
-        return SurrogateVerdict.TOO_FEW_RUNS
+def _verdict(found: Floats, runs: int) -> SurrogateVerdict:
+    """Return the verdict from the runs alone; found: the values of those of them that answered."""
     if np.ptp(found) <= ROUND_OFF * np.abs(found).max():
         return SurrogateVerdict.CONSTANT
-    if found.size < values.size:
+    if found.size < runs:
         return SurrogateVerdict.FAILED_RUNS
     counts = np.unique(found, return_counts=True)[1]
     if counts.max() >= MOSTLY * found.size:
         return SurrogateVerdict.MOSTLY_CONSTANT
-    return (
-        SurrogateVerdict.JUMPS
-        if counts.size <= min(FEW, found.size // 10)
-        else SurrogateVerdict.USABLE
-    )
+    jumps = counts.size <= min(FEW, found.size // 10)
+    return SurrogateVerdict.JUMPS if jumps else SurrogateVerdict.USABLE
 
 
-def after_testing(before: SurrogateVerdict, predictivity: float) -> SurrogateVerdict:
-    """Return the verdict after the test: POOR where it was USABLE; a NaN is poor, too."""
-    poor = before is SurrogateVerdict.USABLE and not predictivity >= GOOD
-    return SurrogateVerdict.POOR if poor else before
+Answer = tuple[SurrogateVerdict, Chaos | None, dict[str, Any]]
+"""Verdict on a response, and, where it has one, its surrogate and what is known of it."""
 
 
-_FEWEST_TESTS = 10
+def surrogate(values: Floats, divided: Divided) -> Answer:
+    """Fit and test a surrogate of one response; none where constant or with too few runs.
 
-
-@dataclass(frozen=True)
-class Tested:
-    """A chaos and how well it predicts.
-
-    predicted: (tests,), in the response's unit. errors: on the tests that have a value. runs: how
-    many the chaos was fitted to.
+    values: (runs,), NaN where missing. What is known of it is by the names of `analysis`; the
+    predictivity q2 is -inf where the tested values are all equal.
     """
-
-    chaos: Chaos
-    predicted: Array
-    errors: Errors
-    runs: int
-    indices: Indices
-
-
-def surrogate(values: Array, sample: Sample) -> tuple[SurrogateVerdict, Tested | None]:
-    """Return verdict and surrogate of one response; None where constant or with too few runs.
-
-    values: (runs,), NaN where missing.
-    """
-    answered = np.isfinite(values)
-    training = np.flatnonzero(answered & ~sample.held_out)
-    enough = bool(
-        training.size >= fewest_runs(len(sample.parameters))
-        and np.count_nonzero(answered[sample.tests]) >= _FEWEST_TESTS
-    )
-    verdict = before_fitting(values, enough)
-    if verdict in (SurrogateVerdict.TOO_FEW_RUNS, SurrogateVerdict.CONSTANT):
-        return verdict, None
-    tested = _tested(values, sample, training)
-    return after_testing(verdict, tested.errors.q2), tested
-
-
-def _tested(values: Array, sample: Sample, training: NDArray[np.int64]) -> Tested:
-    rows = training[drawn(training.size, sample.fit_seed)]
-    fitted = Fitted(sample.unit[rows], values[rows], sample.block[rows])
-    chaos = fit(fitted.unit, fitted.values, sample.fit_seed)
-    predicted = chaos(sample.unit[sample.tests])
-    errors = _errors(predicted, values[sample.tests])
-    found = indices(chaos, sample.groups, fitted, errors, sample.confidence)
-    return Tested(chaos, predicted, errors, rows.size, found)
-
-
-def _errors(predicted: Array, values: Array) -> Errors:
-    """Return the errors of predictions at known values; q2 is -inf where these are all equal."""
-    known = np.isfinite(values)
-    square = float(np.mean((predicted - values)[known] ** 2))
-    variance = float(np.var(values[known]))
-    return Errors(1 - square / variance if variance > 0 else -np.inf, float(np.sqrt(square)))
-
-
-Found = Sequence[Tested | None]
-"""The surrogate of each response, or none."""
-
-
-def applies(runs: xr.Dataset) -> bool:
-    """Return True if the runs are a sample, by any method, with distributions of parameters."""
-    return is_sample(runs)
+    sample, answered = divided.sample, np.isfinite(values)
+    training = np.flatnonzero(answered & ~divided.held_out)
+    tested = answered[divided.tests]
+    few = training.size < fewest_runs(len(sample.parameters))
+    if few or np.count_nonzero(tested) < _FEWEST_TESTS:
+        return SurrogateVerdict.TOO_FEW_RUNS, None, {}
+    verdict = _verdict(values[answered], values.size)
+    if verdict is SurrogateVerdict.CONSTANT:
+        return verdict, None, {}
+    seed = int(sample.rng("surrogate fit").integers(2**31))
+    rows = training[drawn(training.size, seed)]
+    chaos = fit(divided.unit[rows], values[rows], seed)
+    predicted = chaos(divided.unit[divided.tests])
+    square = float(np.mean((predicted - values[divided.tests])[tested] ** 2))
+    variance = float(np.var(values[divided.tests][tested]))
+    q2, rmse = 1 - square / variance if variance > 0 else -np.inf, float(np.sqrt(square))
+    pull = influence(chaos, divided.unit[rows], values[rows], divided.block[rows], rmse)
+    missed = min(max(1 - q2, 0.0), 1.0)
+    found = {"q2": q2, "rmse": rmse, "runs": rows.size, "held_out": predicted}
+    found |= indices(chaos, sample.memberships, pull, missed, sample.confidence)
+    if verdict is SurrogateVerdict.USABLE and not q2 >= GOOD:  # a NaN is poor, too
+        verdict = SurrogateVerdict.POOR
+    return verdict, chaos, found
 
 
 def analysis(runs: xr.Dataset) -> xr.Dataset:
@@ -148,99 +152,89 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     runs does not fit the sample.
     """
     runs = runs.sortby("run")
-    sample, values = Sample.of(runs), usable(runs).transpose("response", "run")
+    divided, values = Divided.of(runs), usable(runs).transpose("response", "run")
+    sample = divided.sample
     with threadpool_limits(limits=1):  # the same bits on any number of processors
-        pairs = [surrogate(row, sample) for row in values.values]
-    codes = xr.DataArray([int(verdict) for verdict, _ in pairs], dims="response")
-    found = [tested for _, tested in pairs]
-    variables = _numbers(found) | _tests(found, sample) | _indices(found, sample)
-    dataset = xr.Dataset(
-        variables | _terms(found, sample), _coordinates(values, sample, runs["run"].values)
-    )
-    return dataset.assign(
-        surrogate_verdict=flagged(codes, SurrogateVerdict, "verdict on the surrogate")
-    )
-
-
-def _coordinates(values: xr.DataArray, sample: Sample, numbers: Any) -> dict[str, Any]:
-    lists = {
-        "held_out": (numbers[sample.tests], "number of a run held out"),
-        "parameter": (sample.labels, "varied parameter"),
+        answers = [surrogate(row, divided) for row in values.values]
+    degrees = _terms(answers, len(sample.parameters))
+    labels: dict[str, tuple[Any, str]] = {
+        "held_out": (runs["run"].values[divided.tests], "number of a run held out"),
+        "parameter": (list(sample.factors), "varied parameter"),
         "surrogate_input": (list(sample.parameters), "parameter that the surrogate depends on"),
     }
-    return {
+    coordinates: dict[str, Any] = {
+        name: (name, entries, {"long_name": words}) for name, (entries, words) in labels.items()
+    }
+    coordinates |= {
         str(name): array.variable
         for name, array in values.coords.items()
         if array.dims == ("response",)
-    } | {name: (name, entries, {"long_name": words}) for name, (entries, words) in lists.items()}
-
-
-def _numbers(found: Found) -> dict[str, Any]:
-    def row(name: str, none: float, words: str, **attrs: str) -> tuple[str, list[Any], Any]:
-        values = [attrgetter(name)(one) if one else none for one in found]
-        return "response", values, {"long_name": words, **attrs}
-
-    error = "1 - mean squared error / variance over the runs held out"
-    root = "root mean squared error over the runs held out, in the unit of the response"
-    return {
-        "surrogate_q2": row(
-            "errors.q2", np.nan, f"predictivity of the surrogate: {error}", units="1"
-        ),
-        "surrogate_rmse": row("errors.rmse", np.nan, root),
-        "surrogate_runs": row("runs", 0, "runs that the surrogate was fitted to", units="1"),
     }
-
-
-def _tests(found: Found, sample: Sample) -> dict[str, Any]:
-    rows = _rows(found, attrgetter("predicted"), sample.tests.size)
-    attrs = {"long_name": "the surrogate's value at a run held out, in the unit of the response"}
-    return {"surrogate_held_out": (("response", "held_out"), rows, attrs)}
-
-
-def _indices(found: Found, sample: Sample) -> dict[str, Any]:
-    dims, confidence = ("response", "parameter"), sample.confidence
-    variables = {}
-    for order in ("first_order", "total_order"):
-        words = f"{order.replace('_', '-')} Sobol index of the surrogate"
-        attrs = {"long_name": words, "units": "1", "estimator": "polynomial chaos"}
-        half_width = f"half-width of the {100 * confidence:g} % interval of the {words}"
-        for name, own in (
-            (order, attrs),
-            (f"{order}_interval", attrs | {"long_name": half_width, "confidence": confidence}),
-        ):
-            of = attrgetter(f"indices.{name}")
-            variables[f"surrogate_{name}"] = (dims, _rows(found, of, len(sample.labels)), own)
-    return variables
-
-
-def _terms(found: Found, sample: Sample) -> dict[str, Any]:
-    """Return the terms of all responses, and the coefficients of each: zero where it has none."""
-    constant: Degrees = np.zeros((1, len(sample.parameters)), dtype=np.int64)
-    degrees = np.unique(
-        np.concatenate([constant, *(one.chaos.degrees for one in found if one)]), axis=0
-    )
-    at = {tuple(row): position for position, row in enumerate(degrees.tolist())}
-
-    def spread(one: Tested) -> Array:
-        row = np.zeros(len(degrees))
-        row[[at[tuple(term)] for term in one.chaos.degrees.tolist()]] = one.chaos.coefficients
-        return row
-
-    words = "coefficient of each Legendre product, in the unit of the response"
+    variables: dict[str, Any] = {}
+    for name, (dims, words, units) in _NUMBERS.items():
+        shape = [len(degrees) if dim == "surrogate_term" else len(labels[dim][0]) for dim in dims]
+        gap = 0 if name == "runs" else np.full(shape, np.nan)
+        rows = [found.get(name, gap) for _, _, found in answers]
+        attrs: dict[str, Any] = {"long_name": words.format(100 * sample.confidence)}
+        attrs |= {"units": units} if units else {}
+        attrs |= {"estimator": "polynomial chaos"} if dims == ("parameter",) else {}
+        attrs |= {"confidence": sample.confidence} if name.endswith("_interval") else {}
+        variables[f"surrogate_{name}"] = (("response", *dims), np.array(rows), attrs)
     degree = "degree of each term's Legendre polynomial in each parameter"
-    return {
-        "surrogate_coefficient": (
-            ("response", "surrogate_term"),
-            _rows(found, spread, len(degrees)),
-            {"long_name": words},
-        ),
-        "surrogate_degree": (
-            ("surrogate_term", "surrogate_input"),
-            degrees,
-            {"long_name": degree, "units": "1"},
-        ),
-    }
+    variables["surrogate_degree"] = (
+        ("surrogate_term", "surrogate_input"),
+        degrees,
+        {"long_name": degree, "units": "1"},
+    )
+    codes = xr.DataArray([int(verdict) for verdict, _, _ in answers], dims="response")
+    variables["surrogate_verdict"] = flagged(codes, SurrogateVerdict, "verdict on the surrogate")
+    return xr.Dataset(variables, coordinates)
 
 
-def _rows(found: Found, row: Callable[[Tested], Array], length: int) -> Array:
-    return np.array([row(one) if one else np.full(length, np.nan) for one in found])
+def _terms(answers: list[Answer], parameters: int) -> NDArray[np.int64]:
+    """Return the degrees of all terms, and add `coefficient` to what is known of each response.
+
+    It is zero where the response does not have the term.
+    """
+    found = [chaos.degrees for _, chaos, _ in answers if chaos]
+    constant = np.zeros((1, parameters), dtype=np.int64)
+    degrees = np.unique(np.concatenate([constant, *found]), axis=0)
+    at = {tuple(row): position for position, row in enumerate(degrees.tolist())}
+    for _, chaos, known in answers:
+        if chaos:
+            known["coefficient"] = np.zeros(len(degrees))
+            places = [at[tuple(term)] for term in chaos.degrees.tolist()]
+            known["coefficient"][places] = chaos.coefficients
+    return degrees
+
+
+_HALF_WIDTH = "half-width of the {:g} % interval of the "
+_FIRST, _TOTAL = (f"{order}-order Sobol index of the surrogate" for order in ("first", "total"))
+_NUMBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "q2": (
+        (),
+        "predictivity of the surrogate: 1 - mean squared error / variance over the runs held out",
+        "1",
+    ),
+    "rmse": (
+        (),
+        "root mean squared error over the runs held out, in the unit of the response",
+        "",
+    ),
+    "runs": ((), "runs that the surrogate was fitted to", "1"),
+    "held_out": (
+        ("held_out",),
+        "the surrogate's value at a run held out, in the unit of the response",
+        "",
+    ),
+    "first_order": (("parameter",), _FIRST, "1"),
+    "first_order_interval": (("parameter",), _HALF_WIDTH + _FIRST, "1"),
+    "total_order": (("parameter",), _TOTAL, "1"),
+    "total_order_interval": (("parameter",), _HALF_WIDTH + _TOTAL, "1"),
+    "coefficient": (
+        ("surrogate_term",),
+        "coefficient of each Legendre product, in the unit of the response",
+        "",
+    ),
+}
+"""What is known of a surrogate: dimensions beside `response`, long name, and unit."""

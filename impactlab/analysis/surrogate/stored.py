@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.surrogate.chaos import Array, basis
+from impactlab.analysis.surrogate.chaos import basis
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
+from impactlab.analysis.verdicts import names
 from impactlab.model.distributions import arguments, cumulative
 
 _AT_ONCE = 4096
 """Number of points whose terms about fit in the processor's cache."""
-_VERDICTS = {int(member): member for member in SurrogateVerdict}
 
 
 class Surrogate:
@@ -28,6 +27,7 @@ class Surrogate:
         self.parameters: tuple[str, ...] = tuple(map(str, dataset["parameter"].values))
         self.responses: tuple[str, ...] = tuple(map(str, dataset["response"].values))
         self._distributions = [json.loads(text) for text in dataset["distribution"].values]
+        self._study = repr(dataset.attrs.get("study", "?"))
 
     def units(self, parameter: str) -> str:
         """Return the SI unit of a parameter. Raises ValueError where it was not varied."""
@@ -43,38 +43,37 @@ class Surrogate:
         verdict; the values are its coordinates. Raises ValueError, naming parameter, value and
         range, where one is missing, was not varied, or lies outside what the surrogate knows.
         """
-        columns = self._columns(values)
-        points = np.column_stack([column.values.ravel() for column in columns])
-        unit = np.column_stack(
-            [cumulative(*pair) for pair in zip(self._distributions, points.T, strict=True)]
-        )
-        shape, dims = columns[0].shape, columns[0].dims
-        found = np.concatenate(list(self._evaluated(unit)), axis=1)
-        variables = {
-            name: (dims, row.reshape(shape), self._attributes(name))
-            for name, row in zip(self.responses, found, strict=True)
-        }
-        coords = dict(zip(self.parameters, columns, strict=True))
-        return xr.Dataset(variables, coords)
-
-    def _columns(self, values: dict[str, Any]) -> list[xr.DataArray]:
-        """Return the checked values in the order of the parameters, of one shape."""
         for name in values:
             self._check_known(name)
         if absent := [name for name in self.parameters if name not in values]:
-            raise ValueError(f"{', '.join(absent)}: no value is given; {self._hint()}")
-        arrays = [_array(name, values[name]) for name in self.parameters]
-        for name, array in zip(self.parameters, arrays, strict=True):
-            self._check_range(name, array)
-        return [
+            raise ValueError(
+                f"{', '.join(absent)}: no value is given; the surrogate takes "
+                f"{', '.join(self.parameters)}"
+            )
+        arrays = [self._checked(name, values[name]) for name in self.parameters]
+        columns = [
             array.drop_vars(self.parameters, errors="ignore") for array in xr.broadcast(*arrays)
         ]
-
-    def _evaluated(self, unit: Array) -> Iterator[Array]:
-        """Yield (responses, points), one batch of points after another."""
+        unit = np.column_stack(
+            [
+                cumulative(distribution, column.values.ravel())
+                for distribution, column in zip(self._distributions, columns, strict=True)
+            ]
+        )
         degrees, coefficients = self.dataset["degree"].values, self.dataset["coefficient"].values
-        for start in range(0, max(len(unit), 1), _AT_ONCE):
-            yield coefficients @ basis(unit[start : start + _AT_ONCE], degrees)
+        found = np.concatenate(
+            [
+                coefficients @ basis(unit[start : start + _AT_ONCE], degrees)
+                for start in range(0, max(len(unit), 1), _AT_ONCE)
+            ],
+            axis=1,
+        )
+        first = columns[0]
+        variables = {
+            name: (first.dims, row.reshape(first.shape), self._attributes(name))
+            for name, row in zip(self.responses, found, strict=True)
+        }
+        return xr.Dataset(variables, dict(zip(self.parameters, columns, strict=True)))
 
     def _attributes(self, response: str) -> dict[str, Any]:
         entry = self.dataset.sel(response=response)
@@ -83,17 +82,21 @@ class Surrogate:
             "units": str(entry["response_units"].item()),
             "rmse": float(entry["rmse"]),
             "q2": float(entry["q2"]),
-            "verdict": _VERDICTS[int(entry["verdict"])].name.lower(),
+            "verdict": names(SurrogateVerdict)[int(entry["verdict"])],
         }
 
     def _check_known(self, name: str) -> None:
-        if name in self.parameters:
-            return
-        held = self.dataset.coords.get(name)
-        words = "" if held is None else f" (it is {held.item()!r} in all of its runs)"
-        raise ValueError(f"{name}: was not varied in study {self._study()}{words}; {self._hint()}")
+        if name not in self.parameters:
+            held = self.dataset.coords.get(name)
+            words = "" if held is None else f" (it is {held.item()!r} in all of its runs)"
+            raise ValueError(
+                f"{name}: was not varied in study {self._study}{words}; the surrogate takes "
+                f"{', '.join(self.parameters)}"
+            )
 
-    def _check_range(self, name: str, array: xr.DataArray) -> None:
+    def _checked(self, name: str, value: Any) -> xr.DataArray:
+        """Return a parameter's values as floats. Raises ValueError where it cannot take one."""
+        array = _array(name, value)
         entry = self.dataset.sel(parameter=name)
         low, high = float(entry["lowest"]), float(entry["highest"])
         outside = ~((array.values >= low) & (array.values <= high))
@@ -101,15 +104,10 @@ class Surrogate:
             worst = float(array.values[outside][0])
             raise ValueError(
                 f"{name} = {worst!r}: outside {low!r} to {high!r} ({self.units(name)}), where the "
-                f"surrogate of study {self._study()} was trained: choose a value within, or "
+                f"surrogate of study {self._study} was trained: choose a value within, or "
                 "sample a wider range"
             )
-
-    def _hint(self) -> str:
-        return f"the surrogate takes {', '.join(self.parameters)}"
-
-    def _study(self) -> str:
-        return repr(self.dataset.attrs.get("study", "?"))
+        return array
 
 
 def _array(name: str, value: Any) -> xr.DataArray:
@@ -127,26 +125,42 @@ def _array(name: str, value: Any) -> xr.DataArray:
     return xr.DataArray(array, dims=("point",)[: array.ndim])
 
 
-_OF_RESPONSE = ("verdict", "q2", "rmse", "runs")
-
-
 def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
     """Return the surrogates of a sample as a dataset; None where the analysis has none.
 
     Variables, without the prefix that they have in `analysis`: coefficient (response, term),
     degree (term, parameter), verdict, q2, rmse and runs (response); on (parameter): distribution
     (its name and arguments as JSON, in SI units), lowest and highest (between which it was
-    trained), parameter_units, parameter_long_name. Parameters that were not varied are scalar
-    coordinates, as in the runs; so are the attributes.
+    trained: its bounds, or the extreme draws), parameter_units, parameter_long_name. Parameters
+    that were not varied are scalar coordinates, as in the runs; so are the attributes.
     """
     if "surrogate_coefficient" not in analysis:
         return None
-    names = {"surrogate_term": "term", "surrogate_input": "parameter"}
-    names |= {f"surrogate_{name}": name for name in ("coefficient", "degree", *_OF_RESPONSE)}
-    kept = [name for name in names if name in analysis.data_vars]
-    dataset = analysis[kept].drop_vars("parameter", errors="ignore").rename(names)
+    kept = ("coefficient", "degree", "verdict", "q2", "rmse", "runs")
+    renamed = {f"surrogate_{name}": name for name in kept}
+    dataset = analysis[list(renamed)].drop_vars("parameter", errors="ignore")
+    dataset = dataset.rename(renamed | {"surrogate_term": "term", "surrogate_input": "parameter"})
+    columns = [runs[str(name)] for name in dataset["parameter"].values]
+    given = [arguments(column.attrs) for column in columns]
+    ends = np.array(
+        [
+            [float(known.get("low", column.min())), float(known.get("high", column.max()))]
+            for known, column in zip(given, columns, strict=True)
+        ]
+    )
+    inputs = {
+        "distribution": ([json.dumps(known) for known in given], {}),
+        "parameter_units": ([column.attrs.get("units", "1") for column in columns], {}),
+        "parameter_long_name": ([column.attrs.get("long_name", "") for column in columns], {}),
+        "lowest": (ends[:, 0], {"long_name": "lowest value trained on, SI"}),
+        "highest": (ends[:, 1], {"long_name": "highest value trained on, SI"}),
+    }
     held = {name: array for name, array in runs.coords.items() if array.ndim == 0}
-    return dataset.assign(_inputs(runs, dataset)).assign_coords(held).assign_attrs(runs.attrs)
+    return (
+        dataset.assign({name: ("parameter", *entry) for name, entry in inputs.items()})
+        .assign_coords(held)
+        .assign_attrs(runs.attrs)
+    )
 
 
 def load_surrogate(path: str | Path) -> Surrogate:
@@ -164,23 +178,3 @@ def load_surrogate(path: str | Path) -> Surrogate:
             "name the surrogate.nc that `impactlab analyse` wrote"
         )
     return Surrogate(dataset)
-
-
-def _inputs(runs: xr.Dataset, dataset: xr.Dataset) -> dict[str, Any]:
-    columns = [runs[str(name)] for name in dataset["parameter"].values]
-    ends = np.array([_range(column) for column in columns])
-    texts = {
-        "distribution": [json.dumps(arguments(column.attrs)) for column in columns],
-        "parameter_units": [column.attrs.get("units", "1") for column in columns],
-        "parameter_long_name": [column.attrs.get("long_name", "") for column in columns],
-    }
-    return {name: ("parameter", values) for name, values in texts.items()} | {
-        "lowest": ("parameter", ends[:, 0], {"long_name": "lowest value trained on, SI"}),
-        "highest": ("parameter", ends[:, 1], {"long_name": "highest value trained on, SI"}),
-    }
-
-
-def _range(column: xr.DataArray) -> tuple[float, float]:
-    """Return the bounds of a parameter's distribution, or its extreme draws."""
-    ends = {"low": column.min(), "high": column.max()} | arguments(column.attrs)
-    return float(ends["low"]), float(ends["high"])

@@ -19,7 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.linalg import hadamard
 
-from impactlab.analysis.convergence.axis import without_limit
+from impactlab.analysis.convergence.axes import without_limit
 from impactlab.analysis.responses import usable
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten

@@ -13,7 +13,7 @@ from SALib.analyze import sobol as salib
 from SALib.sample import sobol as sampler
 
 from impactlab.analysis import sensitivity
-from impactlab.analysis.sensitivity.method import Sample
+from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity.sobol import Outputs, estimates, points
 
 Build = Callable[..., xr.Dataset]
@@ -97,9 +97,11 @@ def test_intervals_are_those_of_salib(sample_runs: Build, ishigami: Any) -> None
             np.testing.assert_allclose(ours, half_width(joint), rtol=1e-6)
 
 
-def test_points_and_their_bootstrap_agree(ishigami: Any) -> None:
+def test_points_and_their_bootstrap_agree(sample_runs: Build, ishigami: Any) -> None:
     """The indices by SALib are those whose spread is told."""
-    outputs = Outputs.of(ishigami.of_unit(_sample(3, 64)), 3, True)
+    values = ishigami.of_unit(_sample(3, 64))
+    sample = Sample.of(sample_runs(["x0", "x1", "x2"], 64, peak_force=values))
+    outputs = Outputs.of(values, sample)
     ours, theirs = estimates(outputs.statistics().mean(axis=0), 3), points(outputs)
     for name in ("first_order", "total_order"):
         np.testing.assert_allclose(ours[name], theirs[name], atol=1e-12)

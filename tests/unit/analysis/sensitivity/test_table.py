@@ -51,13 +51,15 @@ def test_every_index_has_a_row(found: xr.Dataset, tmp_path: Path) -> None:
 
 
 def test_pairs_once_and_sizes(found: xr.Dataset) -> None:
-    rows = [row for row in table_rows(found) if row.response == "peak_force"]
-    pairs = [(row.parameter, row.other_parameter) for row in rows if row.index == "second_order"]
+    rows = [row for row in table_rows(found) if row["response"] == "peak_force"]
+    pairs = [
+        (row["parameter"], row["other_parameter"]) for row in rows if row["index"] == "second_order"
+    ]
     assert pairs == [("x0", "x1"), ("x0", "x2"), ("x1", "x2")]
-    sizes = [row for row in rows if row.index == "first_order_by_samples"]
-    assert [row.base_samples for row in sizes[::3]] == ["8", "16", "32", "64"]
+    sizes = [row for row in rows if row["index"] == "first_order_by_samples"]
+    assert [row["base_samples"] for row in sizes[::3]] == [8, 16, 32, 64]
     at = found["first_order_by_samples"].sel(response="peak_force", base_samples=16)
-    assert [row.value for row in sizes[3:6]] == at.values.tolist()
+    assert [row["value"] for row in sizes[3:6]] == at.values.tolist()
 
 
 def test_what_is_not_given_is_an_empty_cell(found: xr.Dataset, tmp_path: Path) -> None:
@@ -80,10 +82,12 @@ def test_effects_have_the_unit_of_the_response(drawn: Build) -> None:
     attrs = {"trajectories": 20, "levels": 4, "optimal_trajectories": 0}
     found = analyse(drawn("morris", unit, unit @ [3.0, 2.0, 1.0], **attrs))
     (row,) = [
-        row for row in table_rows(found) if (row.index, row.parameter) == ("morris_mu_star", "x0")
+        row
+        for row in table_rows(found)
+        if (row["index"], row["parameter"]) == ("morris_mu_star", "x0")
     ]
-    assert row.units == "N"
-    np.testing.assert_allclose((row.value, row.low, row.high), 3.0, rtol=1e-12)
+    assert row["units"] == "N"
+    np.testing.assert_allclose((row["value"], row["low"], row["high"]), 3.0, rtol=1e-12)
 
 
 def test_a_grid_has_none(grid_runs: Callable[..., xr.Dataset]) -> None:
