@@ -21,12 +21,11 @@ SOLVERS = {"witness": "impactlab.fem3d.study.solver:SOLVER"}
 """Solvers of runs, see study.solvers, by the name that designs hold."""
 SOLID = {
     "cases": "impactlab.fem3d.study.cases",
-    "costs": "impactlab.fem3d.study.cases",
     "figures": "impactlab.fem3d.figures:FIGURES",
     "sections": "impactlab.fem3d.study.report:sections",
 }
 """What the 3-D model adds to studies that have runs of it: their table of cases and its costs (see
-study.looking), figures by name and sections of the report."""
+study.estimate), figures by name and sections of the report."""
 
 
 def load(reference: str) -> Any:

@@ -1,4 +1,4 @@
-"""The command line: one command per file, which parses, calls and prints.
+"""The command line: each command parses, calls one function and prints.
 
 Heavy imports wait until a command needs them.
 """

@@ -15,23 +15,20 @@ from impactlab import wings
 from impactlab.cli.interrupt import stop_quietly
 
 _COMMANDS = {
-    name: f"impactlab.cli.{name}:{name}"
-    for name in (
-        "simulate",
-        "studies",
-        "recommend",
-        "design",
-        "run",
-        "refine",
-        "status",
-        "analyse",
-        "predict",
-        "verify",
-        "figures",
-        "report",
-        "index",
-        "clean",
-    )
+    "simulate": "impactlab.cli.simulate:simulate",
+    "studies": "impactlab.cli.studies:studies",
+    "recommend": "impactlab.cli.solve:recommend",
+    "design": "impactlab.cli.solve:design",
+    "run": "impactlab.cli.solve:run",
+    "refine": "impactlab.cli.solve:refine",
+    "status": "impactlab.cli.studies:status",
+    "analyse": "impactlab.cli.results:analyse",
+    "predict": "impactlab.cli.results:predict",
+    "verify": "impactlab.cli.verify:verify",
+    "figures": "impactlab.cli.results:figures",
+    "report": "impactlab.cli.results:report",
+    "index": "impactlab.cli.results:index",
+    "clean": "impactlab.cli.studies:clean",
 } | wings.COMMANDS
 """Module and function by name, in the order of the help."""
 

@@ -16,7 +16,12 @@ _STOPPING = b"impactlab: stopping to keep what is computed; Ctrl-C again ends at
 
 def stop_without_more() -> None:
     """Make Ctrl-C end the process at once: nothing has begun, and imports swallow exceptions."""
-    signal.signal(signal.SIGINT, _stop_without_more)
+
+    def stop(number: int, frame: object) -> NoReturn:
+        os.write(sys.stderr.fileno(), _INTERRUPTED)
+        os._exit(130)
+
+    signal.signal(signal.SIGINT, stop)
 
 
 def stopped() -> None:
@@ -26,7 +31,12 @@ def stopped() -> None:
 
 def stop_quietly() -> None:
     """Make Ctrl-C end the command with one line; unfinished files are removed."""
-    signal.signal(signal.SIGINT, _stop)
+
+    def stop(number: int, frame: object) -> NoReturn:
+        os.write(sys.stderr.fileno(), _INTERRUPTED)
+        raise SystemExit(130)
+
+    signal.signal(signal.SIGINT, stop)
 
 
 def stop_at_once() -> None:
@@ -34,10 +44,19 @@ def stop_at_once() -> None:
 
     Finished batches are on disk.
     """
+
+    def stop(number: int, frame: object) -> NoReturn:
+        show_cursor = "\x1b[?25h\n" if sys.stderr.isatty() else ""
+        message = f"{show_cursor}impactlab: interrupted; the same command goes on from here\n"
+        os.write(sys.stderr.fileno(), message.encode())
+        for worker in active_children():
+            worker.kill()
+        os._exit(130)
+
     # a process of multiprocessing's cleans up behind us: it need not tell what
     quiet = "ignore::UserWarning:multiprocessing.resource_tracker"
     os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (os.getenv("PYTHONWARNINGS"), quiet)))
-    signal.signal(signal.SIGINT, _stop_at_once)
+    signal.signal(signal.SIGINT, stop)
 
 
 @contextmanager
@@ -59,22 +78,3 @@ def stop_kept() -> Iterator[Callable[[], bool]]:
         yield lambda: asked
     finally:
         stop_quietly()
-
-
-def _stop_without_more(number: int, frame: object) -> NoReturn:
-    os.write(sys.stderr.fileno(), _INTERRUPTED)
-    os._exit(130)
-
-
-def _stop(number: int, frame: object) -> NoReturn:
-    os.write(sys.stderr.fileno(), _INTERRUPTED)
-    raise SystemExit(130)
-
-
-def _stop_at_once(number: int, frame: object) -> NoReturn:
-    show_cursor = "\x1b[?25h\n" if sys.stderr.isatty() else ""
-    message = f"{show_cursor}impactlab: interrupted; the same command goes on from here\n"
-    os.write(sys.stderr.fileno(), message.encode())
-    for worker in active_children():
-        worker.kill()
-    os._exit(130)

@@ -14,13 +14,6 @@ StudyFile = Annotated[
 RunsFile = Annotated[
     Path, typer.Argument(metavar="RUNS", help="Solved runs, results/NAME/runs.nc.")
 ]
-StoredFiles = Annotated[
-    list[Path],
-    typer.Argument(
-        metavar="STORED...",
-        help="Of a study: runs.nc and analysis.nc. Of a verification: findings.nc.",
-    ),
-]
 RESULTS = Path("results")
 WITNESS = "witness"
 """Folder of the 3-D model beside a study's results."""

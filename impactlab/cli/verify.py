@@ -27,9 +27,9 @@ def verify(
     the command prints its verdict again.
     """
     from impactlab.report.console import print_outcomes
-    from impactlab.study.checking import check, failure
     from impactlab.study.netcdf import read_netcdf, write_netcdf
     from impactlab.study.schema.files import read_verification
+    from impactlab.study.steps import check, failure
     from impactlab.verification.stored import unpacked
 
     if study.suffix == ".nc":

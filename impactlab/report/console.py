@@ -171,7 +171,7 @@ def _evidence(found: xr.Dataset, best: int) -> list[xr.DataArray]:
     """
     if best < 0:
         return [found["candidate_uncertainty"].min("candidate")]
-    from impactlab.study.adaptive.levels import relative  # late: it loads the solver
+    from impactlab.study.adaptive.recommendation import relative  # late: it loads the solver
 
     chosen = found.isel(candidate=best)
     last = found["nodes_value"].isel(nodes=-1, drop=True)

@@ -6,7 +6,7 @@ import logging
 import shutil
 import signal
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing import resource_tracker
@@ -63,15 +63,14 @@ class Engine:
         for name in _LOGGERS:  # errors are raised and reported by the command
             logging.getLogger(name).setLevel(logging.CRITICAL)
         logging.getLogger("asyncio").addFilter(_no_late_timeout)
-        with dask.config.set(_SETTINGS), self._clients() as client:
-            yield client
-
-    def _clients(self) -> AbstractContextManager[Client]:
         if self.address:
-            return _running(self.address)
-        if self.profile:
-            return _slurm(self.profile)
-        return _here(self.workers, processes=self.kind == "processes")
+            clients = _running(self.address)
+        elif self.profile:
+            clients = _slurm(self.profile)
+        else:
+            clients = _here(self.workers, processes=self.kind == "processes")
+        with dask.config.set(_SETTINGS), clients as client:
+            yield client
 
 
 def _no_late_timeout(record: logging.LogRecord) -> bool:
@@ -107,33 +106,26 @@ def _slurm(profile: Profile) -> Iterator[Client]:
 
 @contextmanager
 def _here(workers: int, *, processes: bool) -> Iterator[Client]:
-    try:
-        with _without_interrupts():
-            cluster = LocalCluster(
-                processes=processes,
-                n_workers=workers if processes else 1,
-                threads_per_worker=1 if processes else workers,
-                host="127.0.0.1" if processes else None,
-                dashboard_address=_LOOPBACK,
-                worker_dashboard_address=_LOOPBACK,
-                memory_limit=0,
-                silence_logs=logging.ERROR,
-            )
-    except RuntimeError as error:
-        raise OSError(f"the workers on this machine did not start: {error}") from error
-    with cluster, Client(cluster, set_as_default=False) as client:
-        yield client
-
-
-@contextmanager
-def _without_interrupts() -> Iterator[None]:
-    """Block Ctrl-C in the worker processes started within: only the main process handles it."""
-    resource_tracker.ensure_running()  # started within, it would unblock the signal
+    # only the main process handles Ctrl-C: its workers start while the signal is blocked
+    resource_tracker.ensure_running()  # started later, it would unblock the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        yield
+        cluster = LocalCluster(
+            processes=processes,
+            n_workers=workers if processes else 1,
+            threads_per_worker=1 if processes else workers,
+            host="127.0.0.1" if processes else None,
+            dashboard_address=_LOOPBACK,
+            worker_dashboard_address=_LOOPBACK,
+            memory_limit=0,
+            silence_logs=logging.ERROR,
+        )
+    except RuntimeError as error:
+        raise OSError(f"the workers on this machine did not start: {error}") from error
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    with cluster, Client(cluster, set_as_default=False) as client:
+        yield client
 
 
 class Profile(BaseModel):
@@ -182,6 +174,6 @@ def slurm_cluster(profile: Profile) -> SLURMCluster:
         raise OSError("there is no command sbatch here: run this where Slurm jobs are submitted")
     return SLURMCluster(
         n_workers=0,
-        scheduler_options={"dashboard_address": "127.0.0.1:0"},
+        scheduler_options={"dashboard_address": _LOOPBACK},
         **profile.model_dump(exclude={"jobs"}, exclude_none=True),
     )

@@ -10,6 +10,7 @@ from typing import Any
 
 _NOTHING = object()
 _LONGEST = 1000
+"""Letters of a reason: a parser may quote as much as the file holds."""
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
@@ -33,40 +34,29 @@ class Problem:
 
     def __str__(self) -> str:
         """Return `file: key = value: reason` on one line, without the parts that do not apply."""
-        shown = "" if self.value is _NOTHING else f" = {_shown(self.value)}"
+        if self.value is None or isinstance(self.value, bool):  # as it stands in YAML
+            shown = " = null" if self.value is None else f" = {str(self.value).lower()}"
+        else:
+            shown = "" if self.value is _NOTHING else f" = {_SHORT.repr(self.value)}"
         key = f"{self.key}{shown}: " if self.key else ""
-        return printable(f"{self.file}: {key}{_cut(self.reason)}")
-
-
-def _cut(reason: str) -> str:
-    """Shorten a reason: a parser may quote as much as the file holds."""
-    return reason if len(reason) <= _LONGEST else f"{reason[:_LONGEST]} ..."
+        cut = " ..." if len(self.reason) > _LONGEST else ""
+        return printable(f"{self.file}: {key}{self.reason[:_LONGEST]}{cut}")
 
 
 def printable(text: str) -> str:
     """Return the text with control characters and line breaks escaped."""
-    if text.isprintable():
-        return text
     return "".join(
         letter if letter.isprintable() else letter.encode("unicode_escape").decode()
         for letter in text
     )
 
 
-def _shown(value: object) -> str:
-    """Return a value as it stands in YAML, shortened."""
-    if value is None or isinstance(value, bool):
-        return "null" if value is None else str(value).lower()
-    return _SHORT.repr(value)
-
-
 def dotted(path: Iterable[object]) -> str:
     """Return keys and positions as one path; unprintable and long ones as their repr."""
-    return ".".join(str(step) if _plain(str(step)) else _SHORT.repr(step) for step in path)
-
-
-def _plain(step: str) -> bool:
-    return step.isprintable() and 0 < len(step) <= 60
+    steps = [str(step) for step in path]
+    return ".".join(
+        step if step.isprintable() and 0 < len(step) <= 60 else _SHORT.repr(step) for step in steps
+    )
 
 
 def unknown(kind: str, word: object, choices: Iterable[str]) -> str:

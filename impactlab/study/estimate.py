@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from shutil import disk_usage
-from types import ModuleType
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from distributed.system import MEMORY_LIMIT
 
 from impactlab import wings
-from impactlab.model import cost as beam_cost
-from impactlab.model.cost import A_SECOND
+from impactlab.model.cost import A_SECOND, memory, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
 from impactlab.simulate import case_table
 from impactlab.study.errors import Problem, StudyError
+from impactlab.study.netcdf import Array
 from impactlab.study.quantities import amount, time
 from impactlab.study.runs import disk_size
 from impactlab.study.sampling.grid import Grid
@@ -30,7 +30,6 @@ from impactlab.study.schema.plausibility import extremes, implausibilities, key_
 from impactlab.study.schema.study import FunctionStudy, Study
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
-Array = np.ndarray[Any, Any]
 MOST_TIME = 30 * 86400.0
 """Limit of the time on one core, in s: a month."""
 _NUMBER = 8
@@ -45,8 +44,7 @@ _PROGRAM = 4e8
 """Bytes of the program and its compiler."""
 _FUNCTION = 1e-6
 """Seconds per value of a test function."""
-_USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES = 10_000, 0.012, 1000
-_USUAL_SIZE = 1e-3
+_USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES, _USUAL_SIZE = 10_000, 0.012, 1000, 1e-3
 _MOST = 4096
 """Runs of a cost sample."""
 _TAIL = 1e-3
@@ -87,55 +85,34 @@ def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
     """
     until = study.sampling.until if isinstance(study.sampling, Sobol) else None
     runs = max(study.runs, until.runs if until else 0)
+    parameters = len(study.sampling.varied)
     if isinstance(study, FunctionStudy):
-        space = runs * float(_NUMBER * (len(study.sampling.varied) + 2))
-        return _estimate(study, runs, np.full(1, _FUNCTION), space, space, 0.0, {})
-    sample, costs = _cost_sample(study), _costs(study)
-    cases = _cases(study, sample)
-    work = costs.work(cases)
-    largest = _largest_run(study, sample, work)
-    end = _cases(study, {name: [value] for name, value in largest.items()})[:1]
-    answers = runs * float(_NUMBER * _values(study, end))
-    return _estimate(
-        study,
-        runs,
-        np.append(work, costs.work(end)) / A_SECOND,
-        answers,
-        answers if until else runs * float(_NUMBER * _largest_column(study, end)),
-        workers * float(costs.memory(np.append(cases, end)).max()),
-        largest,
-        slow=_key(study, _slow(study, end, runs)),
-        large=_key(study, _large(study, end, runs)),
-    )
-
-
-def _estimate(
-    study: Study | FunctionStudy,
-    runs: int,
-    seconds: Array,
-    answers: float,
-    held: float,
-    working: float,
-    largest_run: Mapping[str, Any],
-    slow: str = "sampling",
-    large: str = "sampling",
-) -> Estimate:
-    """Return the estimate of a study from its parts.
-
-    seconds: of sampled runs, the largest one last; answers, held, working: bytes of all answers,
-    of those in memory together, and of the solver.
-    """
-    others = seconds[:-1] if seconds.size > 1 else seconds
+        sampled, largest, largest_run = np.full(1, _FUNCTION), _FUNCTION, {}
+        kept, held, working = parameters + 2, parameters + 2, 0.0
+        slow = large = "sampling"
+    else:
+        model, sample = _model(study), _cost_sample(study)
+        cases = _cases(study, sample)
+        costs = model.work(cases)
+        largest_run = _largest_run(study, sample, costs)
+        end = _cases(study, {name: [value] for name, value in largest_run.items()})[:1]
+        sampled, largest = costs / A_SECOND, float(model.work(end)[0]) / A_SECOND
+        history = study.store.samples * study.store.histories
+        profile = int(end["nodes"][0] * end["points"][0]) * study.store.profiles
+        kept = parameters + len(RESPONSES) + 2 + len(HISTORIES) * history + len(PROFILES) * profile
+        held = kept if until else max(1, history, profile)
+        working = workers * float(model.memory(np.append(cases, end)).max())
+        slow, large = _slow(study, end, runs), _large(study, end, runs)
     return Estimate(
         file=str(study.path),
         runs=runs,
-        seconds=max(float(others.mean()) * runs, float(seconds[-1])),
+        seconds=max(float(sampled.mean()) * runs, largest),
         memory=_PROGRAM
-        + _IN_MEMORY * (held + _parameters(study, runs))
+        + _IN_MEMORY * _NUMBER * runs * float(held + parameters)
         + runs * _PER_RUN
         + working,
-        disk=_ON_DISK * answers,
-        largest=float(seconds[-1]),
+        disk=_ON_DISK * _NUMBER * runs * float(kept),
+        largest=largest,
         largest_run=largest_run,
         slow=slow,
         large=large,
@@ -143,69 +120,42 @@ def _estimate(
     )
 
 
-def _values(study: Study, case: Array) -> int:
-    """Count the numbers kept of a run: its parameters, responses, histories and profiles."""
-    store = study.store
-    history = len(HISTORIES) * store.samples * store.histories
-    profile = len(PROFILES) * int(case["nodes"][0] * case["points"][0]) * store.profiles
-    return len(study.sampling.varied) + len(RESPONSES) + 2 + history + profile
+def _model(study: Study) -> Any:
+    """Return what has the functions table, work and memory (see model.cost) for a study's runs."""
+    if has_solid_runs(study):
+        return wings.load(wings.SOLID["cases"])
+    return SimpleNamespace(table=case_table, work=work, memory=memory)
 
 
-def _largest_column(study: Study, case: Array) -> int:
-    """Count the numbers of a run in its largest column."""
-    store = study.store
-    profile = int(case["nodes"][0] * case["points"][0]) * store.profiles
-    return max(1, store.samples * store.histories, profile)
-
-
-def _parameters(study: Study | FunctionStudy, runs: int) -> float:
-    """Return the bytes of the varied parameters."""
-    return runs * float(_NUMBER * len(study.sampling.varied))
-
-
-def _slow(study: Study, case: Array, runs: int) -> dict[str, float]:
-    """Return the factor of time that each parameter or key would save at the paper's value."""
-    work, impact = _costs(study).work, paper_impact()
-    if has_solid_runs(study) and wings.load(wings.SOLID["cases"]).is_solid(case).all():
+def _slow(study: Study, case: Array, runs: int) -> str:
+    """Return the key whose parameter would save most time at the paper's value."""
+    model, impact = _model(study), paper_impact()
+    if has_solid_runs(study) and model.is_solid(case).all():
         impact = replace(impact, beam_model=SOLID)
     grid = Discretisation(element_size=_USUAL_SIZE)
-    usual = _case_table(study)(impact, grid, duration=_USUAL_DURATION, varied={})
+    usual = model.table(impact, grid, duration=_USUAL_DURATION, varied={})
     gains = {"sampling": runs / _USUAL_RUNS}
-    for name in usual.dtype.names or ():
+    for name in usual.dtype.names:
         changed = case.copy()
         changed[name] = usual[name]
-        gains[name] = float((work(case) / work(changed))[0])
-    return gains
+        gains[name] = float((model.work(case) / model.work(changed))[0])
+    return _key(study, gains)
 
 
-def _large(study: Study, case: Array, runs: int) -> dict[str, float]:
-    """Return the factor of space that each parameter or key would save at its usual value."""
+def _large(study: Study, case: Array, runs: int) -> str:
+    """Return the key whose parameter would save most space at its usual value."""
     gains = {"sampling": runs / _USUAL_RUNS}
     if study.store.histories:
         gains["store.samples"] = study.store.samples / _USUAL_SAMPLES
     for name in ("nodes", "points"):
         gains[name] = float(case[name][0]) / getattr(Discretisation(), name)
-    return gains
+    return _key(study, gains)
 
 
 def _key(study: Study, gains: Mapping[str, float]) -> str:
     """Return the dotted key in the study file of the largest gain."""
     name = max(gains, key=gains.__getitem__)
     return key_of(name, study.sampling) if name in PARAMETERS else name
-
-
-def _costs(study: Study) -> ModuleType:
-    """Return the module with the functions work and memory (see model.cost) for a study's runs."""
-    found: ModuleType = wings.load(wings.SOLID["costs"]) if has_solid_runs(study) else beam_cost
-    return found
-
-
-def _case_table(study: Study) -> Callable[..., Array]:
-    """Return the function that makes the table of cases of a study."""
-    if not has_solid_runs(study):
-        return case_table
-    found: Callable[..., Array] = wings.load(wings.SOLID["cases"]).table
-    return found
 
 
 def _cost_sample(study: Study) -> dict[str, Array]:
@@ -231,33 +181,30 @@ def _cases(study: Study, columns: Mapping[str, Sequence[Value] | Array]) -> Arra
     """Return the table of cases of these runs. Raises StudyError where one is impossible."""
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
     try:
-        return _case_table(study)(*base, duration=study.duration, varied=columns)
+        cases: Array = _model(study).table(*base, duration=study.duration, varied=columns)
     except ValueError as error:
         reason = f"gives runs that are impossible ({error}): take bounded distributions"
         raise StudyError(Problem(str(study.path), "sampling.parameters", reason)) from None
+    return cases
 
 
 def _largest_run(study: Study, sample: Mapping[str, Array], cost: Array) -> dict[str, Value]:
     """Return the parameters of the largest run.
 
-    The search starts at the largest run of a sample and takes each parameter to its costliest end.
+    The search starts at the largest run of a sample and takes each parameter to its costliest end:
+    the least or the greatest value, or any word.
     """
+    sampling = study.sampling
     found = {name: column[int(np.argmax(cost))].item() for name, column in sample.items()}
     for name in found:
-        ends = _ends(study, name)
+        if isinstance(sampling, Grid):
+            values = sampling.parameters[name]
+            ends = list(values) if isinstance(values[0], str) else [min(values), max(values)]
+        else:
+            ends = sampling.varied[name].quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
         columns = {key: [value] * len(ends) for key, value in found.items()} | {name: ends}
-        found[name] = ends[int(np.argmax(_costs(study).work(_cases(study, columns))))]
+        found[name] = ends[int(np.argmax(_model(study).work(_cases(study, columns))))]
     return found
-
-
-def _ends(study: Study, name: str) -> list[Value]:
-    """Return a parameter's least and greatest value, or all its words."""
-    sampling = study.sampling
-    if isinstance(sampling, Grid):
-        values = sampling.parameters[name]
-        return list(values) if isinstance(values[0], str) else [min(values), max(values)]
-    ends: list[Value] = sampling.varied[name].quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
-    return ends
 
 
 def implausible(study: Study | FunctionStudy) -> list[Problem]:
@@ -274,22 +221,20 @@ def exceeded_limits(cost: Estimate, folder: Path) -> list[Problem]:
 
     The limits are a month of one core, this machine's memory, and the free disk at `folder`.
     """
-    return [
-        Problem(cost.file, key, f"{reason}; see --dry-run, or run it anyway with --force")
-        for key, reason in _exceeded(cost, free_disk(folder))
-    ]
-
-
-def _exceeded(cost: Estimate, disk: float) -> Iterator[tuple[str, str]]:
+    disk, exceeded = free_disk(folder), []
     if cost.seconds > MOST_TIME:
         needed = f"needs about {time(cost.seconds)} of one core for {cost.runs:,} runs"
-        yield cost.slow, f"{needed}, which exceeds the limit of {time(MOST_TIME)}"
+        exceeded.append((cost.slow, f"{needed}, which exceeds the limit of {time(MOST_TIME)}"))
     if cost.memory > MEMORY_LIMIT:
-        needed = f"needs about {amount(cost.memory)} of memory"
-        yield cost.large, f"{needed}, which exceeds the {amount(MEMORY_LIMIT)} of this machine"
+        needed, there = f"needs about {amount(cost.memory)} of memory", amount(MEMORY_LIMIT)
+        exceeded.append((cost.large, f"{needed}, which exceeds the {there} of this machine"))
     if cost.disk > disk:
         needed = f"needs about {amount(cost.disk)} of disk"
-        yield cost.large, f"{needed}, which exceeds the {amount(disk)} available"
+        exceeded.append((cost.large, f"{needed}, which exceeds the {amount(disk)} available"))
+    return [
+        Problem(cost.file, key, f"{reason}; see --dry-run, or run it anyway with --force")
+        for key, reason in exceeded
+    ]
 
 
 def free_disk(folder: Path) -> float:

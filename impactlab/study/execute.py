@@ -18,14 +18,13 @@ from distributed import Client, Future, KilledWorker, as_completed
 from distributed.comm.core import CommClosedError
 
 from impactlab.study.engine import Engine
-from impactlab.study.netcdf import Columns
-from impactlab.study.progress import Progress
+from impactlab.study.netcdf import Array, Columns
+from impactlab.study.progress import items_done
 from impactlab.study.runs import Answers, Work
-from impactlab.study.solvers import solver_named, solver_of
-from impactlab.study.store import OutputSpec, RunIndex, Shards, joined, locked
+from impactlab.study.solvers import solver_named
+from impactlab.study.store import OutputSpec, RunIndex, joined, locked
 
 log = logging.getLogger(__name__)
-Array = np.ndarray[Any, Any]
 
 
 @contextmanager
@@ -41,17 +40,23 @@ def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterato
     scheduler answers or its workers fail, or when a shard is damaged while it is read;
     BlockingIOError when another process is at work in `shards_folder`.
     """
-    name = solver_of(design)
-    solver = solver_named(name)
     with locked(shards_folder):
         work = Work.of(design)
-        shards, index = Shards(shards_folder, work.output, solver.version), RunIndex(work.keys)
+        solver, index = solver_named(work.solver), RunIndex(work.keys)
+        shards = work.shards(shards_folder)
         for keys in shards.recover():
             index.mark(index.find(keys)[1])
-        log.info("%s", _summary(index))
-        for runs, columns in _with_progress(work, index, engine):
-            shards.write(work.keys[runs], columns)
-            index.mark(runs)
+        missing, repeats = index.missing(), index.size - index.distinct
+        before = index.distinct - missing.size
+        equal = f" ({repeats} more are equal to one of them)" if repeats else ""
+        log.info("%d runs%s, %d of them solved before", index.distinct, equal, before)
+        if missing.size:
+            bits = solver.failures(design)
+            with items_done(index.distinct, before, "runs") as advance:
+                for runs, columns in solved(work, missing, engine):
+                    shards.write(work.keys[runs], columns)
+                    index.mark(runs)
+                    advance(runs.size, int(np.count_nonzero(columns["status"] & bits)))
         shards.merge()
         # HDF5 is not for two threads
         with Answers(shards, index) as answers, dask.config.set(scheduler="synchronous"):
@@ -62,25 +67,6 @@ def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Datas
     """Return all runs of a design in memory; see `executed`."""
     with executed(design, shards_folder, engine) as runs:
         return runs.load()
-
-
-def _summary(index: RunIndex) -> str:
-    before = index.distinct - index.missing().size
-    repeats = index.size - index.distinct
-    runs = f"{index.distinct} runs" + f" ({repeats} more are equal to one of them)" * bool(repeats)
-    return f"{runs}, {before} of them solved before"
-
-
-def _with_progress(work: Work, index: RunIndex, engine: Engine) -> Iterator[tuple[Array, Columns]]:
-    """Yield numbers and answers of the missing runs as they come in, and show a progress bar."""
-    missing, total = index.missing(), index.distinct
-    if not missing.size:
-        return
-    bits = solver_named(work.solver).failures(work.design)
-    with Progress(total=total, done=total - missing.size) as progress:
-        for runs, columns in solved(work, missing, engine):
-            yield runs, columns
-            progress.advance(runs.size, int(np.count_nonzero(columns["status"] & bits)))
 
 
 Result = tuple[Columns, float]
@@ -124,23 +110,17 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
         pool = WorkerPool(client, work, batches)
         # with results: waiting for the result of a lost worker would never end
         queue = as_completed(pool.submit(), loop=client.loop, with_results=True)
-        for finished in _finished(queue, pool):
-            yield joined([pool.take(future, result) for future, result in finished])
+        while not queue.is_empty():
+            pause, longest = _PAUSE
+            while not queue.has_ready():
+                queue.update(pool.submit())  # for workers that have come
+                time.sleep(pause)
+                pause = min(1.1 * pause, longest)  # about a tenth of the time waited so far
+            ready = []
+            while queue.has_ready():
+                ready.append(pool.take(*_next(queue)))
+            yield joined(ready)
             queue.update(pool.submit())
-
-
-def _finished(queue: as_completed, pool: WorkerPool) -> Iterator[list[tuple[Task, Result]]]:
-    """Yield tasks as they finish; meanwhile, submit more for workers that have come."""
-    while not queue.is_empty():
-        pause, longest = _PAUSE
-        while not queue.has_ready():
-            queue.update(pool.submit())
-            time.sleep(pause)
-            pause = min(1.1 * pause, longest)  # about a tenth of the time waited so far
-        ready = [_next(queue)]
-        while queue.has_ready():
-            ready.append(_next(queue))
-        yield ready
 
 
 class WorkerPool:
@@ -149,19 +129,23 @@ class WorkerPool:
     def __init__(self, client: Client, work: Work, batches: Batches) -> None:
         """Count the workers with the first submission."""
         self._client, self._work, self._batches = client, work, batches
+        self._version = solver_named(work.solver).version
         self._under_way: dict[Any, Array] = {}
         self._threads, self._counted = 1, 0.0
 
     def submit(self) -> list[Task]:
         """Submit and return new tasks, as many as keep the workers busy."""
         self._count_threads()
-        workers = max(1, self._threads)
-        futures = []
+        workers, work, futures = max(1, self._threads), self._work, []
         while len(self._under_way) < _AHEAD * workers:
             runs = self._batches.take(workers)
             if not runs.size:
                 break
-            futures.append(self._submit(runs))
+            future = self._client.submit(
+                solve_batch, work.solver, work.cases(runs), work.output, self._version, pure=False
+            )
+            self._under_way[future.key] = runs
+            futures.append(future)
         return futures
 
     def _count_threads(self) -> None:
@@ -171,7 +155,10 @@ class WorkerPool:
         """
         if time.monotonic() - self._counted < _LOOK_AGAIN:
             return
-        before, self._threads = self._threads, _threads(self._client)
+        try:
+            before, self._threads = self._threads, sum(self._client.nthreads().values())
+        except OSError as error:
+            raise ConnectionError(_GONE) from error
         self._counted = time.monotonic()
         if before and not self._threads:
             log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
@@ -182,22 +169,6 @@ class WorkerPool:
         future.release()
         self._batches.learn(float(self._work.cost[runs].sum()), seconds)
         return runs, columns
-
-    def _submit(self, runs: Array) -> Task:
-        work = self._work
-        version = solver_named(work.solver).version
-        future = self._client.submit(
-            solve_batch, work.solver, work.cases(runs), work.output, version, pure=False
-        )
-        self._under_way[future.key] = runs
-        return future
-
-
-def _threads(client: Client) -> int:
-    try:
-        return sum(client.nthreads().values())
-    except OSError as error:
-        raise ConnectionError(_GONE) from error
 
 
 def _next(queue: as_completed) -> tuple[Task, Result]:
@@ -256,8 +227,11 @@ class Batches:
         """Return the numbers of the next runs; empty when all are taken."""
         ahead = self._runs[self._at : self._at + self._most]
         until = np.cumsum(self._costs[ahead])
-        limit = self._speed * self._target(self._left / self._speed / workers)
-        taken = max(1, int(np.searchsorted(until, limit, side="right")))
+        speed = self._cost / self._seconds if self._seconds else _SPEED
+        wished = self._wished if self._seconds else min(self._wished, _FIRST_SECONDS)
+        share = self._left / speed / workers
+        seconds = min(wished, max(share / _SHARE, _LEAST_SECONDS))
+        taken = max(1, int(np.searchsorted(until, speed * seconds, side="right")))
         runs = ahead[:taken]
         self._at += runs.size
         self._left -= float(self._costs[runs].sum())
@@ -267,12 +241,3 @@ class Batches:
         """Size further batches by the duration of one."""
         self._cost = _MEMORY * self._cost + cost
         self._seconds = _MEMORY * self._seconds + seconds
-
-    @property
-    def _speed(self) -> float:
-        return self._cost / self._seconds if self._seconds else _SPEED
-
-    def _target(self, share: float) -> float:
-        """Return the seconds of the next task; share: a worker's share of the rest, in s."""
-        wished = self._wished if self._seconds else min(self._wished, _FIRST_SECONDS)
-        return min(wished, max(share / _SHARE, _LEAST_SECONDS))

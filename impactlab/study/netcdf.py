@@ -1,4 +1,4 @@
-"""netCDF files, written whole or not at all: datasets and shards.
+"""netCDF files: datasets and shards.
 
 A shard holds keys and answers of some runs, with checksums. Columns of one type and shape are rows
 of one variable; the attribute `places` names them.
@@ -36,25 +36,20 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
         dataset.to_netcdf(unfinished, engine="netcdf4", encoding=large)
 
 
-def read_netcdf(path: Path) -> xr.Dataset:
-    """Return a dataset in memory, its file closed. Raises OSError naming an unreadable file."""
-    with _opened(path) as dataset:
-        return dataset.load()
-
-
-def read_attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of a dataset. Raises OSError naming an unreadable file."""
-    with _opened(path) as dataset:
-        return {str(name): value for name, value in dataset.attrs.items()}
-
-
 @contextmanager
-def _opened(path: Path) -> Iterator[xr.Dataset]:
+def opened(path: Path) -> Iterator[xr.Dataset]:
+    """Give a dataset whose file is open. Raises OSError naming an unreadable file."""
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             yield dataset
     except (OSError, ValueError, RuntimeError) as error:
         raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
+
+
+def read_netcdf(path: Path) -> xr.Dataset:
+    """Return a dataset in memory, its file closed. Raises OSError naming an unreadable file."""
+    with opened(path) as dataset:
+        return dataset.load()
 
 
 Array = np.ndarray[Any, Any]
@@ -72,41 +67,28 @@ _DIMS = {KEYS: ("byte",)} | {name: entry.dims for name, entry in (HISTORIES | PR
 
 
 def write_shard(path: Path, keys: Array, columns: Columns) -> None:
-    """Write the whole shard or nothing. Raises OSError, naming the file, when the disk is full."""
-    arrays = {KEYS: _bytes(keys)} | columns
+    """Write a shard. Raises OSError as `files.replaced`."""
+    letters = np.frombuffer(keys.tobytes(), dtype=np.uint8).reshape(-1, KEY.itemsize)
+    arrays = {KEYS: letters} | columns
+    tables: dict[tuple[str, ...], list[str]] = {}  # each variable takes 0.5 ms
+    for name, values in arrays.items():
+        tables.setdefault((values.dtype.name, *_DIMS.get(name, ())), []).append(name)
     size = sum(values.nbytes for values in arrays.values())
     with replaced(path, size) as unfinished, Dataset(unfinished, "w") as file:
         places: dict[str, tuple[str, int]] = {}
-        for alike in _alike(arrays):
-            table = _written(file, [arrays[name] for name in alike], _DIMS.get(alike[0], ()))
-            places |= {name: (table, row) for row, name in enumerate(alike)}
+        for kind, names in tables.items():
+            table, first = "_".join(kind), arrays[names[0]]
+            dims = (f"{table}_column", "run", *kind[1:])
+            for dim, length in zip(dims, (len(names), *first.shape), strict=True):
+                if dim not in file.dimensions:
+                    file.createDimension(dim, length)
+            variable = file.createVariable(table, first.dtype, dims, fill_value=False)
+            for row, name in enumerate(names):
+                variable[row] = arrays[name]
+                places[name] = table, row
         file.setncattr("places", json.dumps(places))
         checksums = {name: _checksum(path, name, values) for name, values in arrays.items()}
         file.setncattr("checksums", json.dumps(checksums))
-
-
-def _alike(arrays: Columns) -> Collection[list[str]]:
-    """Group the names of columns by type and dimensions."""
-    names: dict[tuple[str, ...], list[str]] = {}
-    for name, values in arrays.items():
-        names.setdefault((values.dtype.name, *_DIMS.get(name, ())), []).append(name)
-    return names.values()
-
-
-def _written(file: Dataset, columns: list[Array], others: tuple[str, ...]) -> str:
-    """Write columns as rows of one variable and return its name: each variable takes 0.5 ms.
-
-    others: dimensions beside that of the runs.
-    """
-    name = "_".join((columns[0].dtype.name, *others))
-    dims = (f"{name}_column", "run", *others)
-    for dim, length in zip(dims, (len(columns), *columns[0].shape), strict=True):
-        if dim not in file.dimensions:
-            file.createDimension(dim, length)
-    variable = file.createVariable(name, columns[0].dtype, dims, fill_value=False)
-    for row, values in enumerate(columns):
-        variable[row] = values
-    return name
 
 
 class Shard:
@@ -150,10 +132,6 @@ class Shard:
     def columns(self, names: Collection[str] = ()) -> Columns:
         """Return the columns of these names, or all of them; keys are under KEYS."""
         return {name: self.read(name) for name in names or self._checksums}
-
-
-def _bytes(keys: Array) -> Array:
-    return np.frombuffer(keys.tobytes(), dtype=np.uint8).reshape(-1, KEY.itemsize)
 
 
 def _checksum(path: Path, name: str, values: Array) -> str:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
 from decimal import Decimal
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
@@ -46,7 +45,10 @@ def si(value: object, units: str) -> float:
     if isinstance(value, str):
         result = _parsed(value.strip(), units)
     elif isinstance(value, int | float) and not isinstance(value, bool):
-        result = _float(value)
+        try:
+            result = float(value)
+        except OverflowError:
+            result = math.inf
     else:
         raise ValueError(expected(units))
     if not math.isfinite(result):
@@ -73,13 +75,6 @@ def expected(units: str) -> str:
     return f"expected {kind} such as {example!r}, or a number in {units}"
 
 
-def _float(value: int | float) -> float:
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf
-
-
 def _parsed(text: str, units: str) -> float:
     match = _QUANTITY.fullmatch(text.translate(_SUPERSCRIPTS)) if len(text) <= _LONGEST else None
     if match is None:
@@ -87,20 +82,17 @@ def _parsed(text: str, units: str) -> float:
     number, written = Decimal(match[1]), match[2]
     if written is None:
         return float(number)
+    wrong = f"{written!r} has the wrong dimension; {expected(units)}"
     if written == "%" or units == "1":
-        return _percentage(number, written, units)
-    unit, target = scale(_factors(written)), scale(_factors(units))
+        if written != "%" or units != "1":
+            raise ValueError(wrong)
+        return float(number / 100)
+    unit, target = _scale(written), _scale(units)
     if unit is None or target is None:
         return _by_pint(number, written, units)
-    if unit.dimension != target.dimension:
-        raise ValueError(f"{written!r} has the wrong dimension; {expected(units)}")
-    return float(number.scaleb(unit.ten - target.ten))
-
-
-def _percentage(number: Decimal, written: str, units: str) -> float:
-    if written != "%" or units != "1":
-        raise ValueError(f"{written!r} has the wrong dimension; {expected(units)}")
-    return float(number / 100)
+    if unit[1:] != target[1:]:
+        raise ValueError(wrong)
+    return float(number.scaleb(unit[0] - target[0]))
 
 
 def _factors(written: str) -> list[tuple[str, int]]:
@@ -123,15 +115,11 @@ def _by_pint(number: Decimal, written: str, units: str) -> float:
 def _unit(written: str, units: str) -> Unit:
     result = _registry().Unit("")
     for name, power in _factors(written):
-        result *= _named(name, units) ** power
+        try:
+            result *= _registry().parse_units(name) ** power
+        except Exception:  # pint's parser raises many kinds, which all mean the same here
+            raise ValueError(f"unknown unit {name!r}; {expected(units)}") from None
     return result
-
-
-def _named(name: str, units: str) -> Unit:
-    try:
-        return _registry().parse_units(name)
-    except Exception:  # pint's parser raises many kinds, which all mean the same here
-        raise ValueError(f"unknown unit {name!r}; {expected(units)}") from None
 
 
 @cache
@@ -142,48 +130,38 @@ def _registry() -> UnitRegistry[Decimal]:
     return UnitRegistry(non_int_type=Decimal)
 
 
-class Scale(NamedTuple):
-    """A unit as 10^ten m^metre kg^kilogram s^second."""
-
-    ten: int = 0
-    metre: int = 0
-    kilogram: int = 0
-    second: int = 0
-
-    @property
-    def dimension(self) -> tuple[int, int, int]:
-        """Return the exponents of metre, kilogram and second."""
-        return self[1:]
-
-
+Scale = tuple[int, int, int, int]
+"""A unit as the powers of 10, metre, kilogram and second."""
 UNITS: dict[str, Scale] = {
-    "m": Scale(metre=1),
-    "cm": Scale(-2, metre=1),
-    "mm": Scale(-3, metre=1),
-    "um": Scale(-6, metre=1),
-    "µm": Scale(-6, metre=1),
-    "kg": Scale(kilogram=1),
-    "g": Scale(-3, kilogram=1),
-    "s": Scale(second=1),
-    "ms": Scale(-3, second=1),
-    "us": Scale(-6, second=1),
-    "µs": Scale(-6, second=1),
-    "Pa": Scale(metre=-1, kilogram=1, second=-2),
-    "kPa": Scale(3, metre=-1, kilogram=1, second=-2),
-    "MPa": Scale(6, metre=-1, kilogram=1, second=-2),
-    "GPa": Scale(9, metre=-1, kilogram=1, second=-2),
+    "m": (0, 1, 0, 0),
+    "cm": (-2, 1, 0, 0),
+    "mm": (-3, 1, 0, 0),
+    "um": (-6, 1, 0, 0),
+    "µm": (-6, 1, 0, 0),
+    "kg": (0, 0, 1, 0),
+    "g": (-3, 0, 1, 0),
+    "s": (0, 0, 0, 1),
+    "ms": (-3, 0, 0, 1),
+    "us": (-6, 0, 0, 1),
+    "µs": (-6, 0, 0, 1),
+    "Pa": (0, -1, 1, -2),
+    "kPa": (3, -1, 1, -2),
+    "MPa": (6, -1, 1, -2),
+    "GPa": (9, -1, 1, -2),
 }
 """The units that studies mostly use, so that pint, slow to load, is rarely needed."""
 
 
-def scale(factors: Iterable[tuple[str, int]]) -> Scale | None:
-    """Return the product of units, each to a power; None where UNITS lacks a name."""
-    total = Scale()
-    for name, power in factors:
+def _scale(written: str) -> Scale | None:
+    """Return the scale of a product of units; None where UNITS lacks one of them."""
+    ten = metre = kilogram = second = 0
+    for name, power in _factors(written):
         if name not in UNITS:
             return None
-        total = Scale(*(sum_ + power * part for sum_, part in zip(total, UNITS[name], strict=True)))
-    return total
+        one = UNITS[name]
+        ten, metre = ten + power * one[0], metre + power * one[1]
+        kilogram, second = kilogram + power * one[2], second + power * one[3]
+    return ten, metre, kilogram, second
 
 
 _PERIODS = (

@@ -16,12 +16,10 @@ import numpy as np
 import xarray as xr
 from dask.delayed import delayed
 
-from impactlab.study.design import run_count
-from impactlab.study.netcdf import DAMAGE, KEYS, Shard
-from impactlab.study.solvers import SOLVERS, solver_named, solver_of
+from impactlab.study.netcdf import DAMAGE, KEYS, Array, Shard
+from impactlab.study.solvers import SOLVERS, run_count, solver_named, solver_of
 from impactlab.study.store import DAMAGED, OutputSpec, RunIndex, Shards, holder, run_keys
 
-Array = np.ndarray[Any, Any]
 _CHUNK = 10_000
 """Runs whose cases are in memory together."""
 
@@ -61,6 +59,10 @@ class Work:
         """Return the cases of these runs, by number."""
         return solver_named(self.solver).cases(self.design, runs)
 
+    def shards(self, folder: Path) -> Shards:
+        """Return the shards in which answers of these runs may be."""
+        return Shards(folder, self.output, solver_named(self.solver).version)
+
 
 _OPEN = 100
 """Shards that stay open: opening one takes longer than reading a column."""
@@ -76,13 +78,12 @@ class Answers:
         self._open: dict[Path, Shard] = {}
         self._parts: list[tuple[Path, Array, Array]] = []
         self._closing = ExitStack()
+        found = np.zeros(index.size, dtype=bool)
         for path in shards.files():
             requested, runs = index.find(self._read(path, KEYS))
             if runs.size:
                 self._parts.append((path, np.flatnonzero(requested), runs))
-        found = np.zeros(index.size, dtype=bool)
-        for _, _, runs in self._parts:
-            found[runs] = True
+                found[runs] = True
         if not index.spread(found).all():
             raise OSError(f"{shards.folder}: shards disappeared while they were read: {_AGAIN}")
 
@@ -96,13 +97,12 @@ class Answers:
         """Return answers by name, each of shape (runs, ...), in one block read when computed."""
         with self._shard(self._parts[0][0]) as shard:
             layouts = {name: shard.layout(name) for name in names}
-        return {name: self._column(name, *layout) for name, layout in layouts.items()}
-
-    def _column(self, name: str, shape: tuple[int, ...], kind: np.dtype[Any]) -> da.Array:
-        whole = (self._index.size, *shape)
-        values = delayed(self._values)(name, whole, kind)
-        column: da.Array = da.from_delayed(values, whole, kind)  # type: ignore[no-untyped-call]
-        return column
+        columns = {}
+        for name, (shape, kind) in layouts.items():
+            whole = (self._index.size, *shape)
+            values = delayed(self._values)(name, whole, kind)
+            columns[name] = da.from_delayed(values, whole, kind)  # type: ignore[no-untyped-call]
+        return columns
 
     def _values(self, name: str, shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
         values = np.empty(shape, kind)
@@ -149,18 +149,19 @@ class Status:
 def status(design: xr.Dataset, shards_folder: Path) -> Status:
     """Return the status of a design; shards are only read, also while another process writes."""
     work = Work.of(design)
-    solver = solver_named(work.solver)
-    shards = Shards(shards_folder, work.output, solver.version)
-    index, bits = RunIndex(work.keys), np.zeros(work.size, dtype=np.int32)
+    shards, index = work.shards(shards_folder), RunIndex(work.keys)
+    bits = np.zeros(work.size, dtype=np.int32)
     for keys, columns in shards.read("status"):
         requested, runs = index.find(keys)
         index.mark(runs)
         bits[runs] = columns["status"][requested]
+    failures = solver_named(work.solver).failures(design)
+    times = [each.st_mtime for each in _seen(shards.files())]
     return Status(
         runs=work.size,
         done=work.size - index.left(),
-        failed=int(np.count_nonzero(index.spread(bits) & solver.failures(design))),
-        age=_age(shards.files()),
+        failed=int(np.count_nonzero(index.spread(bits) & failures)),
+        age=time.time() - max(times) if times else None,
         size=disk_size(shards_folder.rglob("*")),
         holder=holder(shards_folder),
     )
@@ -169,11 +170,6 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
 def disk_size(paths: Iterable[Path]) -> int:
     """Return the bytes of these files; one that disappeared counts nothing."""
     return sum(each.st_size for each in _seen(paths) if S_ISREG(each.st_mode))
-
-
-def _age(files: Iterable[Path]) -> float | None:
-    times = [each.st_mtime for each in _seen(files)]
-    return time.time() - max(times) if times else None
 
 
 def _seen(paths: Iterable[Path]) -> Iterator[os.stat_result]:
@@ -191,24 +187,6 @@ OTHER_RUNS = "holds no run of the study"
 OTHER_SOLVER = "belongs to another version of the solver, or another output"
 
 
-def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, str]:
-    """Return the files of a study's folder of shards that may be removed, and the reasons.
-
-    designs: all that the study may need; none where it does not exist any more. A shard stays as
-    long as one of its runs is needed, or it cannot be read.
-    """
-    wanted: dict[Path, list[Array]] = {}
-    for design in designs:
-        work = Work.of(design)
-        folder = Shards(shards_folder, work.output, solver_named(work.solver).version).folder
-        wanted.setdefault(folder, []).append(work.keys)
-    found = {}
-    for path in _beside(shards_folder):
-        if reason := _reason(path, wanted):
-            found[path] = reason if designs else NO_STUDY
-    return found
-
-
 def note_study(shards_folder: Path, file: Path) -> None:
     """Note beside the shards which study file they belong to."""
     shards_folder.mkdir(parents=True, exist_ok=True)
@@ -218,11 +196,24 @@ def note_study(shards_folder: Path, file: Path) -> None:
 
 def noted_study(shards_folder: Path) -> Path | None:
     """Return the study file that note_study noted, if it still exists."""
-    note = shards_folder / _STUDY
     with suppress(OSError, ValueError):
-        file = Path(note.read_text().strip())
+        file = Path((shards_folder / _STUDY).read_text().strip())
         return file if file.is_file() else None
     return None
+
+
+def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, str]:
+    """Return the files of a study's folder of shards that may be removed, and the reasons.
+
+    designs: all that the study may need; none where it does not exist any more. A shard stays as
+    long as one of its runs is needed, or it cannot be read.
+    """
+    wanted: dict[Path, list[Array]] = {}
+    for design in designs:
+        work = Work.of(design)
+        wanted.setdefault(work.shards(shards_folder).folder, []).append(work.keys)
+    found = _removable(shards_folder, wanted)
+    return found if designs else dict.fromkeys(found, NO_STUDY)
 
 
 def outdated(folder: Path) -> dict[Path, str]:
@@ -231,28 +222,24 @@ def outdated(folder: Path) -> dict[Path, str]:
     All are kept but those of another solver: only a search tells which would be needed again.
     """
     versions = [solver_named(name).version for name in SOLVERS]
-    current = {Shards(folder, OutputSpec(0, False), version).folder for version in versions}
-    reasons = {path: _unusable(path, current) for path in _beside(folder)}
-    return {path: reason for path, reason in reasons.items() if reason}
+    current = [Shards(folder, OutputSpec(0, False), version).folder for version in versions]
+    return _removable(folder, dict.fromkeys(current))
 
 
-def _beside(shards_folder: Path) -> Iterable[Path]:
-    return sorted(path for path in shards_folder.glob("*/*") if path.is_file())
-
-
-def _reason(path: Path, wanted: Mapping[Path, list[Array]]) -> str:
-    """Return why a file may be removed; "" where it has to stay."""
-    if reason := _unusable(path, wanted):
-        return reason
-    keys = Shards.keys(path)
-    needed = any(np.isin(keys, each).any() for each in wanted[path.parent])
-    return OTHER_RUNS if keys.size and not needed else ""
-
-
-def _unusable(path: Path, current: Collection[Path]) -> str:
-    """Return why no study can use a file, or ""; current: folders of the present solvers."""
-    if path.name.startswith("."):
-        return UNFINISHED
-    if path.name.endswith(DAMAGED):
-        return SET_ASIDE
-    return "" if path.parent in current else OTHER_SOLVER
+def _removable(
+    shards_folder: Path, wanted: Mapping[Path, Sequence[Array] | None]
+) -> dict[Path, str]:
+    """Return removable files and reasons; wanted: keys needed in each folder, None: all of them."""
+    found = {}
+    for path in sorted(path for path in shards_folder.glob("*/*") if path.is_file()):
+        if path.name.startswith("."):
+            found[path] = UNFINISHED
+        elif path.name.endswith(DAMAGED):
+            found[path] = SET_ASIDE
+        elif path.parent not in wanted:
+            found[path] = OTHER_SOLVER
+        elif (needed := wanted[path.parent]) is not None:
+            keys = Shards.keys(path)
+            if keys.size and not any(np.isin(keys, each).any() for each in needed):
+                found[path] = OTHER_RUNS
+    return found

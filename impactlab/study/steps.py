@@ -1,4 +1,4 @@
-"""The steps of a study, one function each: price, resolve, solve, refine, analyse.
+"""The steps of a study, one function each: price, resolve, solve, refine, analyse, check, tidy up.
 
 The commands parse, call these and print; whatever else runs a study calls them too. Each imports
 what it needs: compiler and analysis take seconds to load.
@@ -6,6 +6,8 @@ what it needs: compiler and analysis take seconds to load.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,13 +17,15 @@ import xarray as xr
 
 from impactlab.files import replaced
 from impactlab.study import REFINEMENT, RESOLUTION, SHARDS, TRIALS
-from impactlab.study.netcdf import read_netcdf, write_netcdf
-from impactlab.study.schema.study import FunctionStudy, Study
+from impactlab.study.netcdf import opened, read_netcdf, write_netcdf
+from impactlab.study.schema.study import Auto, FunctionStudy, Study, Verification
 
 if TYPE_CHECKING:
     from impactlab.study.engine import Engine
     from impactlab.study.errors import Problem
     from impactlab.study.estimate import Estimate
+    from impactlab.study.runs import Status
+    from impactlab.verification.finding import Outcome
 
 AnyStudy = Study | FunctionStudy
 
@@ -52,6 +56,18 @@ def price(study: AnyStudy, folder: Path, workers: int) -> Price:
     return Price(cost, free_disk(folder), exceeded_limits(cost, folder), implausible(study))
 
 
+def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
+    """Write to `path` (resolution.nc), and return, what pilot runs say of the discretisation.
+
+    wishes: see recommendation.recommend.
+    """
+    from impactlab.study.adaptive import recommendation
+
+    found = recommendation.recommend(study, path.with_name(TRIALS), engine, wishes)
+    write_netcdf(found, path)
+    return found
+
+
 def find_resolution(study: AnyStudy, folder: Path, engine: Engine) -> xr.Dataset | None:
     """Return what pilot runs say of a discretisation that is `auto`; None where it is stated.
 
@@ -60,12 +76,7 @@ def find_resolution(study: AnyStudy, folder: Path, engine: Engine) -> xr.Dataset
     if isinstance(study, FunctionStudy) or study.auto is None:
         return None
     found = _kept(study, folder / RESOLUTION)
-    if found is None:
-        from impactlab.study.adaptive.recommendation import recommend
-
-        found = recommend(study, folder / TRIALS, engine)
-        write_netcdf(found, folder / RESOLUTION)
-    return found
+    return recommend(study, folder / RESOLUTION, engine) if found is None else found
 
 
 def apply_resolution(study: AnyStudy, found: xr.Dataset | None) -> AnyStudy:
@@ -86,6 +97,16 @@ def resolved_before(study: AnyStudy, folder: Path) -> AnyStudy | None:
         return study
     found = _kept(study, folder / RESOLUTION)
     return None if found is None else apply_resolution(study, found)
+
+
+def _kept(study: Study, file: Path) -> xr.Dataset | None:
+    """Return what was found before for this very study, if anything."""
+    if not file.exists():
+        return None
+    from impactlab.study.adaptive.recommendation import fits
+
+    found = read_netcdf(file)
+    return found if fits(found, study) else None
 
 
 def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = None) -> None:
@@ -113,6 +134,69 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
     else:
         with executed(samples, shards, engine) as runs:
             write_netcdf(runs, path)
+
+
+def status(study: AnyStudy, folder: Path) -> Status | None:
+    """Return the progress of a study in its folder of results; nothing is changed there.
+
+    It is that of the stage at which a growing sample stands. None while the discretisation has
+    still to be found.
+    """
+    from impactlab.study.runs import status as status_of
+    from impactlab.study.sampling.design import design, stages
+
+    declared, runs = resolved_before(study, folder), folder / "runs.nc"
+    if declared is None:
+        return None
+    last = None
+    if runs.exists():
+        with opened(runs) as dataset:
+            attrs = dataset.attrs
+        if attrs.get("study_sha256") == declared.sha256 and "until_reason" in attrs:
+            last = attrs["base_samples"]  # at which it stopped growing
+    for stage in stages(design(declared)):
+        found = status_of(stage, folder / SHARDS)
+        if found.done < found.runs or stage.attrs.get("base_samples") == last:
+            break
+    return found
+
+
+@contextmanager
+def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
+    """Give the files of solved runs that no study asks for any more, and the reasons.
+
+    studies, results: folders of the study files and of their results. No other process works on
+    these studies within the context. Raises FileNotFoundError where there are no study files.
+    """
+    from impactlab.study.store import locked
+
+    if not any(studies.glob("*.yaml")):
+        raise FileNotFoundError(f"{studies}: no study files (*.yaml) there: nothing was removed")
+    kinds = (SHARDS, TRIALS, REFINEMENT)
+    with ExitStack() as locks:
+        found: dict[Path, str] = {}
+        for shards in sorted(path for kind in kinds for path in results.glob(f"*/{kind}")):
+            locks.enter_context(locked(shards))
+            found |= _stale(studies / f"{shards.parent.name}.yaml", shards)
+        yield found
+
+
+def _stale(file: Path, shards: Path) -> dict[Path, str]:
+    """Return the files to remove of one study; no shards while its discretisation is to be found.
+
+    file: the study, perhaps gone; another one may be noted beside its runs.
+    """
+    from impactlab.study.runs import noted_study, outdated, stale
+    from impactlab.study.sampling.design import design, stages
+    from impactlab.study.schema.files import read_study
+
+    there = file if file.exists() else noted_study(shards.with_name(SHARDS))
+    if there is None:
+        return stale(shards, ())
+    if shards.name != SHARDS:
+        return outdated(shards)
+    declared = resolved_before(read_study(there), shards.parent)
+    return {} if declared is None else stale(shards, list(stages(design(declared))))
 
 
 def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = None) -> None:
@@ -150,11 +234,41 @@ def analyse_runs(
         write_netcdf(surrogates, path.with_name("surrogate.nc"))
 
 
-def _kept(study: Study, file: Path) -> xr.Dataset | None:
-    """Return what was found before for this very study, if anything."""
-    if not file.exists():
-        return None
-    from impactlab.study.adaptive.recommendation import fits
+def check(verification: Verification) -> xr.Dataset:
+    """Make every check, one after the other, and return findings.nc (verification.stored).
 
-    found = read_netcdf(file)
-    return found if fits(found, study) else None
+    A check that ends in an error is kept as such, and the others are still made.
+    """
+    from impactlab.solver.jit import SOURCES_HASH
+    from impactlab.study.progress import items_done
+    from impactlab.variables import provenance
+    from impactlab.verification.catalogue import run
+    from impactlab.verification.stored import packed
+
+    outcomes: list[Outcome] = []
+    with items_done(len(verification.checks), 0, "checks") as advance:
+        for name in verification.checks:
+            outcomes.append(run(name))
+            advance(1, int(outcomes[-1].verdict != "passed"))
+    attrs = {
+        "study": verification.name,
+        "title": verification.title,
+        "description": verification.description,
+        "study_text": verification.text,
+        "study_sha256": verification.sha256,
+    }
+    return packed(outcomes).assign_attrs(attrs | provenance() | {"kernels_sha256": SOURCES_HASH})
+
+
+def failure(outcomes: Sequence[Outcome]) -> str:
+    """Return a sentence about the checks that failed; "" where none did."""
+    reasons = []
+    for outcome in outcomes:
+        if outcome.verdict != "passed":
+            failed, total = len(outcome.failures), len(outcome.finding.comparisons)
+            counted = f"{failed} of {total} comparisons" if total else "it compared nothing"
+            reasons.append(f"{outcome.name}: {outcome.reason or counted}")
+    if not reasons:
+        return ""
+    told = f"verification failed in {len(reasons)} of {len(outcomes)} checks"
+    return f"{told} ({'; '.join(reasons)})"

@@ -16,17 +16,16 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
 from hashlib import blake2b
+from itertools import starmap
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from filelock import FileLock, Timeout
 
-from impactlab.study.netcdf import DAMAGE, KEY, KEYS, LAYOUT, Columns, Shard, write_shard
+from impactlab.study.netcdf import DAMAGE, KEY, KEYS, LAYOUT, Array, Columns, Shard, write_shard
 
 log = logging.getLogger(__name__)
-Array = np.ndarray[Any, Any]
 
 _MANY = 64
 """Small shards before they are merged."""
@@ -124,7 +123,7 @@ class Shards:
         path = self.folder / f"{hashlib.sha256(keys.tobytes()).hexdigest()[:32]}.nc"
         write_shard(path, keys, columns)
         self._noted(path, keys, columns)
-        if len(self._small) >= _MANY or sum(map(_size, self._small.values())) >= _SMALL:
+        if len(self._small) >= _MANY or sum(starmap(_size, self._small.values())) >= _SMALL:
             self.merge()
         return path
 
@@ -140,13 +139,12 @@ class Shards:
             path.unlink()
 
     def _noted(self, path: Path, keys: Array, columns: Columns) -> None:
-        if _size((keys, columns)) < _SMALL:
+        if _size(keys, columns) < _SMALL:
             self._small[path] = keys, columns
 
 
-def _size(part: tuple[Array, Columns]) -> int:
+def _size(keys: Array, columns: Columns) -> int:
     """Return the bytes of a shard, roughly."""
-    keys, columns = part
     return int(keys.nbytes + sum(values.nbytes for values in columns.values()))
 
 
@@ -240,20 +238,16 @@ def locked(folder: Path) -> Iterator[None]:
         ) from None
     try:
         if lock.lock_counter == 1:
-            _sign(owner)
+            if owner.exists():
+                log.info("%s did not finish: resuming where it stopped", _read(owner))
+            now = datetime.now().astimezone().isoformat(" ", "seconds")
+            with suppress(OSError):  # a note for people, which a full disk may not take
+                owner.write_text(f"process {os.getpid()} on {socket.gethostname()}, since {now}")
         yield
         if lock.lock_counter == 1:
             owner.unlink(missing_ok=True)
     finally:
         lock.release()
-
-
-def _sign(owner: Path) -> None:
-    if owner.exists():
-        log.info("%s did not finish: resuming where it stopped", _read(owner))
-    now = datetime.now().astimezone().isoformat(" ", "seconds")
-    with suppress(OSError):  # a note for people, which a full disk may not take
-        owner.write_text(f"process {os.getpid()} on {socket.gethostname()}, since {now}")
 
 
 def holder(folder: Path) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import groupby, product
+from itertools import product
 from typing import Any
 
 from impactlab.model.discretisation import Discretisation
@@ -27,15 +27,27 @@ class Refusal:
     values: Mapping[str, Any]
 
 
+def _by_owner(names: Iterable[str]) -> dict[tuple[str, ...], list[str]]:
+    """Return names of parameters by the part of the model that has them."""
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for name in names:
+        groups.setdefault(PARAMETERS[name].path[:-1], []).append(name)
+    return dict(sorted(groups.items()))
+
+
 def refusal(base: Base, values: Mapping[str, Value | None]) -> Refusal | None:
     """Return the first parameter that the model refuses when `values` replace the base's."""
-    by_owner = sorted(values, key=lambda name: PARAMETERS[name].path[:-1])
-    for owner, names in groupby(by_owner, key=lambda name: PARAMETERS[name].path[:-1]):
-        group: dict[str, Any] = {name: values[name] for name in names}
+    for owner, (first, *others) in _by_owner(values).items():
+        group: dict[str, Any] = {name: values[name] for name in (first, *others)}
         try:
             with_values(*base, group)
         except ValueError as error:
-            return _refusal(owner, group, str(error))
+            match = _FIELD_REFUSED.fullmatch(str(error))
+            if match is None:
+                return Refusal(first, str(error), group)
+            path = (*owner, match[1])
+            named = (name for name, entry in PARAMETERS.items() if entry.path == path)
+            return Refusal(next(named, first), match[2], group)
     return None
 
 
@@ -46,11 +58,9 @@ def refused_corner(base: Base, extremes: Mapping[str, Iterable[Value]]) -> Refus
     inside a box are valid where all its corners are. Parameters of different bodies are not
     combined, because the model does not compare them.
     """
-    by_owner = sorted(extremes, key=lambda name: PARAMETERS[name].path[:-1])
-    for _, names in groupby(by_owner, key=lambda name: PARAMETERS[name].path[:-1]):
-        box = {name: extremes[name] for name in names}
-        for corner in product(*box.values()):
-            if found := refusal(base, dict(zip(box, corner, strict=True))):
+    for names in _by_owner(extremes).values():
+        for corner in product(*(extremes[name] for name in names)):
+            if found := refusal(base, dict(zip(names, corner, strict=True))):
                 return found
     return None
 
@@ -68,10 +78,10 @@ def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal |
     return next((each for each in found if each), None)
 
 
-def check_alone(name: str, value: Value) -> None:
-    """Raise ValueError with the model's reason when no impact can have this value."""
-    if found := refusal(_ROOMY, {name: value}):
-        raise ValueError(found.reason)
+def refused_alone(name: str, value: Value) -> str:
+    """Return the model's reason why no impact can have this value; "" where one can."""
+    found = refusal(_ROOMY, {name: value})
+    return found.reason if found else ""
 
 
 _ROOMY: Base = with_values(
@@ -87,12 +97,3 @@ _ROOMY: Base = with_values(
     },
 )
 """An impact with which only the limits of a parameter itself apply."""
-
-
-def _refusal(owner: tuple[str, ...], group: dict[str, Any], message: str) -> Refusal:
-    match = _FIELD_REFUSED.fullmatch(message)
-    if match is None:
-        return Refusal(next(iter(group)), message, group)
-    path = (*owner, match[1])
-    names = [name for name, entry in PARAMETERS.items() if entry.path == path]
-    return Refusal(names[0] if names else next(iter(group)), match[2], group)

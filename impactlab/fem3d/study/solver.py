@@ -18,9 +18,8 @@ from impactlab.fem3d.study.cases import impact_of, is_solid, kernel_cases, table
 from impactlab.model.impact import Impact
 from impactlab.simulate import solve as solve_cases
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.design import flattened, run_shape, varied_names
 from impactlab.study.netcdf import Columns
-from impactlab.study.solvers import Solver, impact
+from impactlab.study.solvers import Solver, flattened, impact, run_shape, varied_names
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FAILURES, HISTORIES, RESPONSES, WITNESS, described
 

@@ -8,12 +8,11 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from impactlab.study.sampling.doubling import doubled
+from impactlab.study.sampling.design import doubled
 
 log = logging.getLogger(__name__)
 Step = Callable[[xr.Dataset], xr.Dataset]
@@ -32,44 +31,32 @@ def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
     until_left_out: one line per response without indices, with the reason. Raises ValueError when
     this version of impactlab draws other runs than the design has.
     """
+    limit, most = float(design.attrs["until_interval"]), int(design.attrs["until_runs"])
+    names = np.atleast_1d(design.attrs.get("until_responses", design.attrs["responses"]))
     while True:
         runs = solve(design)
         analysis = analyse(runs.assign_attrs(analyses="sensitivity"))
-        found = largest_interval(analysis, _requested(design))
-        reason = _reason_to_stop(design, found)
-        log.info("%d runs: %s", runs.sizes["run"], reason or f"{found}: twice as many")
-        if reason:
-            return runs.assign_attrs(_attributes(design, found, reason))
-        design = doubled(design)
-
-
-def _requested(design: xr.Dataset) -> list[str]:
-    names = design.attrs.get("until_responses", design.attrs["responses"])
-    return [str(name) for name in np.atleast_1d(names)]
-
-
-def _reason_to_stop(design: xr.Dataset, found: LargestInterval) -> str:
-    """Return why to stop; "" where the sample is to be doubled."""
-    interval, most = float(design.attrs["until_interval"]), int(design.attrs["until_runs"])
-    if not found.response:
-        return "no response has indices that more runs could narrow"
-    if found.half_width <= interval:
-        return f"{found}, within {interval:g}"
-    if 2 * design.sizes["run"] > most:
-        return f"{found}, above {interval:g}, but twice as many runs are more than {most:,}"
-    return ""
-
-
-def _attributes(design: xr.Dataset, found: LargestInterval, reason: str) -> dict[str, Any]:
-    return {
-        "until_reached": int(found.half_width <= float(design.attrs["until_interval"])),
-        "until_reason": reason,
-        "until_widest": found.half_width,
-        "until_widest_index": found.index,
-        "until_widest_response": found.response,
-        "until_widest_parameter": found.parameter,
-        "until_left_out": "\n".join(found.left_out),
-    }
+        found, count = largest_interval(analysis, [str(name) for name in names]), runs.sizes["run"]
+        if not found.response:
+            reason = "no response has indices that more runs could narrow"
+        elif found.half_width <= limit:
+            reason = f"{found}, within {limit:g}"
+        elif 2 * count > most:
+            reason = f"{found}, above {limit:g}, but twice as many runs are more than {most:,}"
+        else:
+            log.info("%d runs: %s: twice as many", count, found)
+            design = doubled(design)
+            continue
+        log.info("%d runs: %s", count, reason)
+        return runs.assign_attrs(
+            until_reached=int(found.half_width <= limit),
+            until_reason=reason,
+            until_widest=found.half_width,
+            until_widest_index=found.index,
+            until_widest_response=found.response,
+            until_widest_parameter=found.parameter,
+            until_left_out="\n".join(found.left_out),
+        )
 
 
 _INDICES = ("first_order", "total_order")
@@ -109,7 +96,11 @@ def largest_interval(analysis: xr.Dataset, responses: Sequence[str]) -> LargestI
     found = requested[[f"{name}_interval" for name in _INDICES]].to_array("index")
     found = found.transpose("index", "response", "parameter")
     without = np.isnan(found.values).all(axis=(0, 2))
-    left_out = tuple(_verdict(requested, name) for name in np.array(responses)[without])
+    verdicts = requested["sensitivity_verdict"]
+    lines = str(verdicts.attrs["flag_descriptions"]).splitlines()
+    told = dict(zip(np.atleast_1d(verdicts.attrs["flag_values"]), lines, strict=True))
+    given_none = zip(np.array(responses)[without], verdicts.values[without], strict=True)
+    left_out = tuple(f"{name} ({told[verdict]})" for name, verdict in given_none)
     if without.all():
         return LargestInterval(np.nan, "", "", "", left_out)
     given = found.isel(response=~without).fillna(np.inf)
@@ -121,11 +112,3 @@ def largest_interval(analysis: xr.Dataset, responses: Sequence[str]) -> LargestI
         str(given["parameter"].values[parameter]),
         left_out,
     )
-
-
-def _verdict(analysis: xr.Dataset, response: str) -> str:
-    """Return the response with its verdict's description ("name: words") from the flags."""
-    verdicts = analysis["sensitivity_verdict"]
-    lines = str(verdicts.attrs["flag_descriptions"]).splitlines()
-    described = dict(zip(np.atleast_1d(verdicts.attrs["flag_values"]), lines, strict=True))
-    return f"{response} ({described[verdicts.sel(response=response).item()]})"

@@ -23,13 +23,13 @@ from impactlab.analysis.convergence.axes import without_limit
 from impactlab.analysis.responses import usable
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten
-from impactlab.study.adaptive.levels import AXES
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.sampling.grid import Grid
+from impactlab.study.schema.parameters import Distribution
 from impactlab.study.schema.study import Study
 from impactlab.variables import described
 
+AXES = ("nodes", "points", "courant")
 Cases = Mapping[str, Sequence[Value]]
 _ALL = 4
 """Most numbers of which all corners are taken."""
@@ -61,21 +61,14 @@ class PilotRuns:
         levels: the values; the other two are those of `at`. Raises OSError when the disk is full or
         no scheduler answers.
         """
-        runs = execute(self._design(axis, levels, at), self._folder, self._engine)
-        values = usable(runs).transpose("response", "case", axis)
-        without = without_limit(runs, values, axis, axis)
-        labels = [name for name in values.coords if name not in values.dims]
-        others = [name for name in labels if values[name].dims != ("response",)]
-        return Answered(values.drop_vars(others), without.drop_vars(others, errors="ignore"))
-
-    def _design(self, axis: str, levels: Sequence[float], at: Discretisation) -> xr.Dataset:
         study = replace(self._study, discretisation=at)
-        scalars = flatten(study.impact, study.discretisation) | {"duration": study.duration}
-        count = len(next(iter(self._cases.values()), [None]))
+        fixed = flatten(study.impact, study.discretisation) | {"duration": study.duration}
+        count = len(next(iter(self._cases.values())))
         varied: dict[str, Any] = {
             name: ("case", np.array(values)) for name, values in self._cases.items()
         }
         varied |= {"case": np.arange(count), axis: (axis, np.array(levels))}
+        scalars = {name: ((), value) for name, value in fixed.items() if name not in varied}
         attrs = {
             "study": study.name,
             "varied": [*self._cases, axis],
@@ -84,8 +77,13 @@ class PilotRuns:
             "profiles": 0,
             "history_samples": study.store.samples,
         }
-        scalars_kept = {name: ((), value) for name, value in scalars.items() if name not in varied}
-        return described(xr.Dataset(coords=scalars_kept | varied, attrs=attrs))
+        design = described(xr.Dataset(coords=scalars | varied, attrs=attrs))
+        runs = execute(design, self._folder, self._engine)
+        values = usable(runs).transpose("response", "case", axis)
+        without = without_limit(runs, values, axis, axis)
+        labels = [name for name in values.coords if name not in values.dims]
+        others = [name for name in labels if values[name].dims != ("response",)]
+        return Answered(values.drop_vars(others), without.drop_vars(others, errors="ignore"))
 
 
 def corner_cases(study: Study) -> dict[str, list[Value]]:
@@ -94,22 +92,19 @@ def corner_cases(study: Study) -> dict[str, list[Value]]:
     Nodes, points and courant are not varied. Where nothing else is, the study's own impact is the
     one case.
     """
-    ends = {name: values for name, values in _extremes(study).items() if name not in AXES}
+    varied = study.sampling.varied.items()
+    ends = {name: _ends(given) for name, given in varied if name not in AXES}
     words = {name: values for name, values in ends.items() if isinstance(values[0], str)}
     numbers = {name: values for name, values in ends.items() if name not in words}
     signs = corners(len(numbers))
-    rows = [
-        (
-            *combination,
-            *(values[1 + sign] for values, sign in zip(numbers.values(), row, strict=True)),
-        )
-        for combination in product(*words.values())
-        for row in signs.tolist()
-    ]
-    names = [*words, *numbers]
-    if not names:
+    rows = []
+    for combination in product(*words.values()):
+        for row in signs.tolist():
+            levels = [values[1 + sign] for values, sign in zip(numbers.values(), row, strict=True)]
+            rows.append((*combination, *levels))
+    if not ends:
         return {"velocity": [study.impact.velocity]}
-    return {name: [row[at] for row in rows] for at, name in enumerate(names)}
+    return {name: [row[at] for row in rows] for at, name in enumerate([*words, *numbers])}
 
 
 def corners(count: int) -> NDArray[np.int64]:
@@ -125,22 +120,13 @@ def corners(count: int) -> NDArray[np.int64]:
     return np.concatenate([signs, middle])
 
 
-def _extremes(study: Study) -> Mapping[str, Sequence[Any]]:
-    """Return (least, middle, greatest) of each number, and all words of the others."""
-    sampling = study.sampling
-    if isinstance(sampling, Grid):
-        return {name: _listed(values) for name, values in sampling.parameters.items()}
-    probabilities = np.array([_TAIL, 0.5, 1.0 - _TAIL])
-    found = {}
-    for name, given in sampling.varied.items():
-        low, middle, high = given.quantile(probabilities).tolist()
-        ends = given.bounds()
-        found[name] = (ends.get("low", low), middle, ends.get("high", high))
-    return found
-
-
-def _listed(values: Sequence[Any]) -> Sequence[Any]:
-    if isinstance(values[0], str):
-        return values
-    ordered = sorted(values)
+def _ends(given: Any) -> Sequence[Any]:
+    """Return (least, middle, greatest) of a varied number, or all words."""
+    if isinstance(given, Distribution):
+        low, middle, high = given.quantile(np.array([_TAIL, 0.5, 1.0 - _TAIL])).tolist()
+        bounds = given.bounds()
+        return bounds.get("low", low), middle, bounds.get("high", high)
+    if isinstance(given[0], str):
+        return tuple(given)
+    ordered = sorted(given)
     return ordered[0], ordered[len(ordered) // 2], ordered[-1]

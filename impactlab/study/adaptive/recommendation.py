@@ -7,33 +7,41 @@ time step (both at the fewest nodes that suffice by themselves).
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from impactlab.analysis.convergence import points
+from impactlab.analysis.convergence.judgement import numerical_uncertainty
+from impactlab.model.cost import node_steps
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import with_values
+from impactlab.simulate import case_table
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.adaptive.levels import (
-    AXES,
-    Levels,
-    cheapest,
-    grid_options,
-    refinement_levels,
-    relative,
-    uncertainty,
-)
-from impactlab.study.adaptive.pilot_runs import PilotRuns, corner_cases
+from impactlab.study.adaptive.pilot_runs import AXES, PilotRuns, corner_cases
 from impactlab.study.engine import Engine
 from impactlab.study.errors import Problem, StudyError
-from impactlab.study.schema.model import Auto
-from impactlab.study.schema.study import Study
+from impactlab.study.schema.study import Auto, Study
 from impactlab.study.store import locked
+from impactlab.types import Floats
 from impactlab.variables import provenance
+
+Levels = Mapping[str, tuple[float, ...]]
+"""Refinement levels of each axis, in order of rising cost."""
+FLOOR = 0.1
+"""Uncertainties are relative to the value, or to this share of the largest over the cases."""
+_COARSEST, _FINEST = 50, 800
+"""Elements over the span: the finer the last level, the smaller the error that remains."""
+_POINTS = (3, 5, 7, 9, 13, 17, 25)
+_COURANTS = (0.9, 0.45, 0.225)
+_POINT_COST = 0.05
+"""Cost of one more integration point, relative to the node-steps of a run where fibres yield;
+measured on the paper's beam at 15 and 20 m/s (tests/benchmarks/kernel.py)."""
 
 
 def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
@@ -44,7 +52,7 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
 
     For each axis (nodes, points, courant), <axis>_value and <axis>_uncertainty are on (response,
     case, axis) in the unit of the response, infinite where unknown. All combinations of levels are
-    as `levels.grid_options` returns them. `asked` (response) is True for requested responses;
+    as `_grid_options` returns them. `asked` (response) is True for requested responses;
     `recommended` is the cheapest candidate that meets the tolerance for every requested response
     for which any candidate does, -1 where there is none. check_difference (response, case) lies
     between the recommended candidate and the last level of all axes at once: an independent check
@@ -58,10 +66,8 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
     study = replace(study, impact=impact, discretisation=grid)
     cases = corner_cases(study)
     pilots = PilotRuns(study, cases, folder, engine)
-    levels, responses = refinement_levels(grid), wishes.responses or study.responses
     with locked(folder):  # over all pilot runs
-        found = _evidence(study, pilots, levels, wishes.tolerance, responses)
-    labels = {name: ("case", np.array(values)) for name, values in cases.items()}
+        found = _evidence(study, pilots, wishes.tolerance, wishes.responses or study.responses)
     attrs: dict[str, Any] = {
         "study": study.name,
         "study_sha256": study.sha256,
@@ -69,8 +75,14 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
         "tolerance": wishes.tolerance,
     }
     chosen = recommended_grid(found, grid) if study.auto else grid
-    found = found.assign(_grid_uncertainty(found, chosen))
-    attrs |= {f"grid_{axis}": getattr(chosen, axis) for axis in AXES if chosen}
+    if chosen is not None:
+        at = {axis: getattr(chosen, axis) for axis in AXES}
+        parts = [found[f"{axis}_uncertainty"].sel({axis: at[axis]}, drop=True) for axis in AXES]
+        amount = parts[0] + parts[1] + parts[2]
+        share = relative(amount, found["nodes_value"].isel(nodes=-1, drop=True)).max("case")
+        found = found.assign(grid_uncertainty=amount, grid_relative=share)
+        attrs |= {f"grid_{axis}": level for axis, level in at.items()}
+    labels = {name: ("case", np.array(values)) for name, values in cases.items()}
     return found.assign_coords(labels).assign_attrs(attrs | provenance())
 
 
@@ -83,59 +95,135 @@ def recommended_grid(found: xr.Dataset, base: Discretisation) -> Discretisation 
     return replace(base, nodes=int(nodes), points=int(points), courant=courant)
 
 
-def _grid_uncertainty(found: xr.Dataset, grid: Discretisation | None) -> dict[str, xr.DataArray]:
-    """Return the numerical uncertainty of a grid on the levels; nothing without a grid."""
-    if grid is None:
-        return {}
-    parts = [
-        found[f"{axis}_uncertainty"].sel({axis: getattr(grid, axis)}, drop=True) for axis in AXES
-    ]
-    amount = parts[0] + parts[1] + parts[2]
-    last = found["nodes_value"].isel(nodes=-1, drop=True)
-    return {"grid_uncertainty": amount, "grid_relative": relative(amount, last).max("case")}
+def relative(amount: xr.DataArray, value: xr.DataArray) -> xr.DataArray:
+    """Return amounts over values, these at least FLOOR of the largest; 0 over 0 is 0."""
+    size = abs(value)
+    floor = FLOOR * size.max("case")
+    scale = size.where(size > floor, floor)
+    share = (amount / scale.where(scale > 0)).where(amount != 0, 0.0)
+    return share.fillna(np.inf)
 
 
 def _evidence(
-    study: Study, pilots: PilotRuns, levels: Levels, tolerance: float, responses: Collection[str]
+    study: Study, pilots: PilotRuns, tolerance: float, responses: Collection[str]
 ) -> xr.Dataset:
     own = study.discretisation
-    found = xr.Dataset(_axis(pilots, "nodes", levels.nodes, own))
+    levels = _refinement_levels(own)
+    found = xr.Dataset(_axis(pilots, "nodes", levels, own))
     asked = found["response"].isin(list(responses))
-    middle = replace(own, nodes=_fewest_nodes(found, asked, tolerance))
-    found = found.assign(_axis(pilots, "points", levels.points, middle))
-    found = found.assign(_axis(pilots, "courant", levels.courant, middle)).assign(asked=asked)
-    found = found.assign(grid_options(found, study, tolerance))
-    found = found.assign(recommended=cheapest(found, tolerance))
-    return found.assign(check_difference=_check(found, pilots, levels, own))
+    # the fewest nodes that suffice for all requested responses for which any do
+    meets = _worst(found, "nodes") <= tolerance
+    enough = (meets | ~meets.any("nodes") | ~asked).all("response")
+    fewest = int(found["nodes"].values[np.argmax(enough.values)])
+    middle = replace(own, nodes=fewest)
+    found = found.assign(_axis(pilots, "points", levels, middle))
+    found = found.assign(_axis(pilots, "courant", levels, middle)).assign(asked=asked)
+    found = found.assign(_grid_options(found, study, tolerance))
+    found = found.assign(recommended=_cheapest(found, tolerance))
+    chosen = recommended_grid(found, own)
+    if chosen is None:
+        difference = xr.full_like(found["nodes_value"].isel(nodes=0, drop=True), np.nan)
+    else:
+        last = replace(own, points=int(levels["points"][-1]), courant=levels["courant"][-1])
+        ours = pilots.along("nodes", (chosen.nodes,), chosen).values
+        theirs = pilots.along("nodes", levels["nodes"][-1:], last).values
+        difference = abs(ours.isel(nodes=0, drop=True) - theirs.isel(nodes=0, drop=True))
+    return found.assign(check_difference=difference)
+
+
+def _refinement_levels(own: Discretisation) -> Levels:
+    """Return the levels to try for a study of this discretisation.
+
+    Spacings are halved, with one level about half-way between. The study's own spacing, half of it
+    and a quarter are levels, too, even beyond the finest: finer levels show its error.
+    """
+    spans = {(own.nodes - 1) * factor for factor in (1, 2, 4)}
+    at = _COARSEST
+    while at <= _FINEST:
+        spans |= {at, 3 * at // 4 * 2}
+        at *= 2
+    most = max(_FINEST, 4 * (own.nodes - 1))
+    courants = {own.courant / factor for factor in (1, 2, 4)} | {*_COURANTS}
+    return {
+        "nodes": tuple(sorted(each + 1 for each in spans if each <= most)),
+        "points": tuple(sorted({*_POINTS, own.points})),
+        "courant": tuple(sorted(courants, reverse=True)),
+    }
 
 
 def _axis(
-    pilots: PilotRuns, axis: str, levels: tuple[float, ...], at: Discretisation
+    pilots: PilotRuns, axis: str, levels: Levels, at: Discretisation
 ) -> dict[str, xr.DataArray]:
-    values, without_limit = pilots.along(axis, levels, at)
-    amounts = uncertainty(values, axis).where(~without_limit, np.inf)
-    return {f"{axis}_value": values, f"{axis}_uncertainty": amounts}
+    """Return the values on all levels of an axis, and their uncertainty, infinite where unknown.
+
+    Points and time step are judged by the differences to the costliest level: once fibres yield,
+    the error is no power of the points; and changes with the time step at fixed nodes are too small
+    (about 1e-6) and too irregular for one.
+    """
+    values, without_limit = pilots.along(axis, levels[axis], at)
+    finest_first = values.isel({axis: slice(None, None, -1)})
+    spacings = 1.0 / (finest_first["nodes"].values.astype(float) - 1.0) if axis == "nodes" else None
+
+    def judge(row: Floats) -> Floats:
+        if spacings is None:
+            return points.numerical_uncertainty(row)
+        return numerical_uncertainty(row, spacings).amounts
+
+    found: xr.DataArray = xr.apply_ufunc(
+        judge, finest_first, input_core_dims=[[axis]], output_core_dims=[[axis]], vectorize=True
+    )
+    amounts = found.isel({axis: slice(None, None, -1)}).fillna(np.inf)
+    return {f"{axis}_value": values, f"{axis}_uncertainty": amounts.where(~without_limit, np.inf)}
 
 
-def _fewest_nodes(found: xr.Dataset, asked: xr.DataArray, tolerance: float) -> int:
-    """Return the fewest nodes that suffice for all requested responses for which any do."""
-    worst = relative(found["nodes_uncertainty"], found["nodes_value"].isel(nodes=-1)).max("case")
-    meets = worst <= tolerance
-    enough = (meets | ~meets.any("nodes") | ~asked).all("response")
-    return int(found["nodes"].values[np.argmax(enough.values)])
+def _grid_options(found: xr.Dataset, study: Study, tolerance: float) -> dict[str, xr.DataArray]:
+    """Return all combinations of the levels of `found`, the cheapest first.
+
+    Variables on (candidate): candidate_nodes, candidate_points, candidate_courant and
+    candidate_cost, relative to the study's own discretisation; candidate_uncertainty (response,
+    candidate), relative, the worst over the cases; reached (response), whether one meets the
+    tolerance.
+    """
+    levels = np.array(list(product(*(found[axis].values for axis in AXES))), dtype=float)
+    own = study.discretisation
+    price = np.array([_cost(study, *level) for level in levels.tolist()])
+    price /= _cost(study, own.nodes, own.points, own.courant)
+    order = np.argsort(price, kind="stable")
+    columns = {
+        axis: xr.DataArray(column, dims="candidate")
+        for axis, column in zip(AXES, levels[order].T, strict=True)
+    }
+    parts = [_worst(found, axis).sel({axis: columns[axis]}).drop_vars(axis) for axis in AXES]
+    worst = (parts[0] + parts[1] + parts[2]).transpose("response", "candidate")
+    return {f"candidate_{axis}": column for axis, column in columns.items()} | {
+        "candidate_cost": xr.DataArray(price[order], dims="candidate"),
+        "candidate_uncertainty": worst,
+        "reached": (worst <= tolerance).any("candidate"),
+    }
 
 
-def _check(
-    found: xr.Dataset, pilots: PilotRuns, levels: Levels, own: Discretisation
-) -> xr.DataArray:
-    """Return the distance from the recommended candidate to the last levels, or NaN without one."""
-    chosen = recommended_grid(found, own)
-    last = replace(own, points=levels.points[-1], courant=levels.courant[-1])
-    if chosen is None:
-        return xr.full_like(found["nodes_value"].isel(nodes=0, drop=True), np.nan)
-    ours = pilots.along("nodes", (chosen.nodes,), chosen).values
-    theirs = pilots.along("nodes", levels.nodes[-1:], last).values
-    return abs(ours.isel(nodes=0, drop=True) - theirs.isel(nodes=0, drop=True))
+def _worst(found: xr.Dataset, axis: str) -> xr.DataArray:
+    reference = found["nodes_value"].isel(nodes=-1, drop=True)
+    return relative(found[f"{axis}_uncertainty"], reference).max("case")
+
+
+def _cost(study: Study, nodes: float, points: float, courant: float) -> float:
+    grid = replace(study.discretisation, nodes=int(nodes), points=int(points), courant=courant)
+    steps = float(node_steps(case_table(study.impact, grid, duration=study.duration)[0]))
+    return steps * (1.0 + _POINT_COST * points)
+
+
+def _cheapest(found: xr.Dataset, tolerance: float) -> int:
+    """Return the first option that is fine enough for all requested responses that any is for.
+
+    Returns -1 where no option is fine enough for any response.
+    """
+    wanted = found["asked"] & found["reached"]
+    if not bool(wanted.any()):
+        return -1
+    meets = (found["candidate_uncertainty"] <= tolerance) | ~wanted
+    enough = meets.all("response").values
+    return int(np.argmax(enough)) if enough.any() else -1
 
 
 def fits(found: xr.Dataset, study: Study) -> bool:
@@ -153,7 +241,13 @@ def apply_recommendation(study: Study, found: xr.Dataset) -> Study:
     auto = study.auto
     if auto is None:
         raise ValueError(f"{study.path}: its discretisation is given, so there is none to find")
-    if missed := _unreached(found):
+    least = found["candidate_uncertainty"].min("candidate")
+    missed = []
+    for name in found["response"].values[(found["asked"] & ~found["reached"]).values]:
+        share = least.sel(response=name).item()
+        best = f"{100 * share:.2g} % at best" if np.isfinite(share) else "nothing bounds its error"
+        missed.append(f"{name} ({best})")
+    if missed:
         most, listed = int(found["nodes"].max()), ", ".join(missed)
         reason = (
             f"no discretisation up to {most} nodes meets {100 * auto.tolerance:g} % for {listed}: "
@@ -163,14 +257,3 @@ def apply_recommendation(study: Study, found: xr.Dataset) -> Study:
     grid = recommended_grid(found, study.discretisation)
     assert grid is not None  # some response is requested, and all are reached
     return replace(study, discretisation=grid, auto=None)
-
-
-def _unreached(found: xr.Dataset) -> list[str]:
-    """Return the requested responses that no candidate resolves, with the least uncertainty."""
-    missed = found["response"].values[(found["asked"] & ~found["reached"]).values]
-    least = found["candidate_uncertainty"].min("candidate")
-    return [f"{name} ({_percent(least.sel(response=name).item())})" for name in missed]
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.2g} % at best" if np.isfinite(share) else "nothing bounds its error"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.study.solvers import solver_of
+from impactlab.study.solvers import solver_of, varied_names
 
 MOST, FEWEST, SHARE = 64, 16, 8
 """Base samples that are solved again: at most, at least, and as a share (1/SHARE) of all."""
@@ -30,10 +30,24 @@ def refined(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr.Data
     (grid) describe each. Raises ValueError where the runs are no such sample, OSError when the disk
     is full or no scheduler answers.
     """
-    _check(runs)
-    names = [str(name) for name in np.atleast_1d(runs.attrs["varied"])]
-    first = _first(runs.sortby("run"), count)
-    grids = _grids(int(runs["nodes"]), int(runs["points"]))
+    study, method = runs.attrs.get("study", "?"), runs.attrs.get("method", "none")
+    if method != "sobol":
+        raise ValueError(
+            f"study {study!r}: its runs are of method {method}, but only those of sobol can be "
+            "refined"
+        )
+    if solver_of(runs) != "impact":
+        raise ValueError(f"study {study!r}: its runs are not impacts, so they have no grid")
+    names, first = varied_names(runs), _first(runs.sortby("run"), count)
+    nodes, points = int(runs["nodes"]), int(runs["points"])
+    grids = {
+        "used": (nodes, points),
+        "finer": (2 * nodes - 1, points),
+        "more_points": (nodes, 2 * points - 1),
+    }
+    coarser = 2 * round((nodes - 1) / 4) + 1  # odd, for a node in the middle
+    if coarser >= COARSEST:
+        grids["coarser"] = coarser, points
     beside = [name for name, values in first.coords.items() if set(values.dims) - {"run"}]
     design = first.drop_vars([*first.data_vars, *beside, "nodes", "points"]).assign_coords(
         grid=("grid", list(grids), {"long_name": "discretisation"}),
@@ -41,7 +55,7 @@ def refined(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr.Data
         points=("grid", [points for _, points in grids.values()]),
     )
     solved = solve(design.assign_attrs(varied=[*names, "nodes", "points"], histories=0, profiles=0))
-    return solved.assign_attrs(varied=names)
+    return solved.assign_attrs(varied=list(names))
 
 
 def base_samples(whole: int) -> int:
@@ -50,17 +64,6 @@ def base_samples(whole: int) -> int:
     The half-width of the changes falls with the square root of the number.
     """
     return min(whole, max(FEWEST, min(MOST, whole // SHARE)))
-
-
-def _grids(nodes: int, points: int) -> dict[str, tuple[int, int]]:
-    """Return nodes and points of each grid, by name."""
-    grids = {
-        "used": (nodes, points),
-        "finer": (2 * nodes - 1, points),
-        "more_points": (nodes, 2 * points - 1),
-    }
-    coarser = 2 * round((nodes - 1) / 4) + 1  # odd, for a node in the middle
-    return grids | ({"coarser": (coarser, points)} if coarser >= COARSEST else {})
 
 
 def _first(runs: xr.Dataset, count: int | None) -> xr.Dataset:
@@ -76,14 +79,3 @@ def _first(runs: xr.Dataset, count: int | None) -> xr.Dataset:
     places = np.add.outer(step * np.arange(count), wanted).ravel()
     attrs: dict[str, Any] = {"base_samples": count, "second_order": 0}
     return runs.isel(run=places).assign_attrs(attrs)
-
-
-def _check(runs: xr.Dataset) -> None:
-    name, method = runs.attrs.get("study", "?"), runs.attrs.get("method", "none")
-    if method != "sobol":
-        raise ValueError(
-            f"study {name!r}: its runs are of method {method}, but only those of sobol can be "
-            "refined"
-        )
-    if solver_of(runs) != "impact":
-        raise ValueError(f"study {name!r}: its runs are not impacts, so they have no grid")

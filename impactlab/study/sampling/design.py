@@ -1,8 +1,10 @@
-"""Designs: the coordinates of all runs of a study."""
+"""Designs: the coordinates of all runs of a study, and larger ones of the same study."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,12 +13,13 @@ import xarray as xr
 from impactlab.model.parameters import flatten, with_values
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.methods import unit_draws
-from impactlab.study.sampling.sections import Draws, Grouped, Sample
+from impactlab.study.sampling.sections import Draws, Grouped
 from impactlab.study.sampling.sobol import Sobol
 from impactlab.study.schema.checks import has_solid_runs
+from impactlab.study.schema.files import study_of_text
 from impactlab.study.schema.study import FunctionStudy, Study, StudyBase
-from impactlab.study.validity import Base, Refusal, check_alone, refused_run
+from impactlab.study.solvers import run_count, varied_names
+from impactlab.study.validity import Refusal, refused_alone, refused_run
 from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
 
@@ -32,112 +35,133 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
     Raises StudyError, naming parameter and value, when a drawn run is physically impossible; and
     for a study whose discretisation is still to be found (impactlab.study.adaptive.recommendation).
     """
-    return _of_function(study) if isinstance(study, FunctionStudy) else _of_impacts(study)
-
-
-def _of_function(study: FunctionStudy) -> xr.Dataset:
-    ranges = FUNCTIONS[study.function].ranges
-    scalars = {name: ((), 0.5 * (low + high)) for name, (low, high) in ranges.items()}
-    scalars |= {name: ((), float(value)) for name, value in study.sampling.fixed.items()}
-    if isinstance(study.sampling, Grid):
-        varied = _grid(study.sampling)
+    sampling = study.sampling
+    fixed: dict[str, Any]
+    if isinstance(study, FunctionStudy):
+        ranges = FUNCTIONS[study.function].ranges
+        fixed = {name: 0.5 * (low + high) for name, (low, high) in ranges.items()}
+        fixed |= {name: float(value) for name, value in sampling.fixed.items()}
+        own: dict[str, Any] = {"solver": "function", "function": study.function}
+        own |= {"histories": 0, "profiles": 0, "history_samples": 0}
     else:
-        varied = _coordinates(study.sampling, columns(study.sampling))
-    attrs = _common_attributes(study) | {"solver": "function", "function": study.function}
-    return xr.Dataset(
-        coords=scalars | varied, attrs=attrs | {"histories": 0, "profiles": 0, "history_samples": 0}
-    )
-
-
-def _of_impacts(study: Study) -> xr.Dataset:
-    if study.auto is not None:
-        reason = "is auto: find it before the runs are drawn (impactlab design)"
-        raise StudyError(Problem(str(study.path), "discretisation", reason))
-    base = with_values(study.impact, study.discretisation, study.sampling.fixed)
-    fixed = flatten(*base) | {"duration": study.duration}
+        if study.auto is not None:
+            reason = "is auto: find it before the runs are drawn (impactlab design)"
+            raise StudyError(Problem(str(study.path), "discretisation", reason))
+        base = with_values(study.impact, study.discretisation, sampling.fixed)
+        fixed = flatten(*base) | {"duration": study.duration}
+        own = {
+            "solver": "witness" if has_solid_runs(study) else "impact",
+            "histories": int(study.store.histories),
+            "profiles": int(study.store.profiles),
+            "history_samples": study.store.samples,
+        }
+    varied: dict[str, Any]
+    if isinstance(sampling, Grid):
+        varied = {name: (name, np.array(values)) for name, values in sampling.parameters.items()}
+    else:
+        drawn = sampling.columns()
+        if isinstance(study, Study):
+            _check_draws(study, drawn)
+        varied = {"run": xr.Variable("run", np.arange(sampling.runs), {"long_name": "run"})}
+        for name, values in drawn.items():
+            varied[name] = "run", values, sampling.varied[name].arguments()
     scalars = {name: ((), value) for name, value in fixed.items()}
-    if isinstance(study.sampling, Grid):
-        varied = _grid(study.sampling)
-    else:
-        drawn = columns(study.sampling)
-        _check_draws(study, base, drawn)
-        varied = _coordinates(study.sampling, drawn)
-    attrs = _common_attributes(study) | {
-        "solver": "witness" if has_solid_runs(study) else "impact",
-        "histories": int(study.store.histories),
-        "profiles": int(study.store.profiles),
-        "history_samples": study.store.samples,
-    }
-    return described(xr.Dataset(coords=scalars | varied, attrs=attrs))
+    found = xr.Dataset(coords=scalars | varied, attrs=_common_attributes(study) | own)
+    return found if isinstance(study, FunctionStudy) else described(found)
 
 
-def columns(sampling: Sample) -> dict[str, Draws]:
-    """Return one value per run of each varied parameter, in SI units."""
-    unit = unit_draws(sampling).T
-    varied = sampling.varied.items()
-    return {name: given.quantile(draws) for (name, given), draws in zip(varied, unit, strict=True)}
-
-
-def _coordinates(sampling: Sample, drawn: dict[str, Draws]) -> dict[str, Any]:
-    """Return `run`, and on it the varied parameters with the arguments of their distributions."""
-    run = xr.Variable("run", np.arange(sampling.runs), {"long_name": "run"})
-    return {"run": run} | {
-        name: ("run", values, sampling.varied[name].arguments()) for name, values in drawn.items()
-    }
-
-
-def _grid(sampling: Grid) -> dict[str, Any]:
-    """Return the varied parameters, each a dimension of its own."""
-    return {name: (name, np.array(values)) for name, values in sampling.parameters.items()}
-
-
-def _check_draws(study: Study, base: Base, drawn: Mapping[str, Draws]) -> None:
+def _check_draws(study: Study, drawn: dict[str, Draws]) -> None:
+    """Raise StudyError where the model refuses a run that was drawn."""
+    found = None
     for name, values in drawn.items():
         for extreme in (float(values.min()), float(values.max())):
-            try:
-                check_alone(name, extreme)
-            except ValueError as error:
-                raise _impossible(study, Refusal(name, str(error), {name: extreme})) from None
-    runs = {name: values.tolist() for name, values in drawn.items()}
-    if found := refused_run(base, runs):
-        raise _impossible(study, found)
-
-
-def _impossible(study: Study, found: Refusal) -> StudyError:
-    drawn = ", ".join(f"{name} = {value!r}" for name, value in found.values.items())
+            if found is None and (reason := refused_alone(name, extreme)):
+                found = Refusal(name, reason, {name: extreme})
+    if found is None:
+        base = with_values(study.impact, study.discretisation, study.sampling.fixed)
+        found = refused_run(base, {name: values.tolist() for name, values in drawn.items()})
+    if found is None:
+        return
+    run = ", ".join(f"{name} = {value!r}" for name, value in found.values.items())
     name = found.name if found.name in found.values else next(iter(found.values))
     reason = (
-        f"a run was drawn with {drawn}, but {found.name} {found.reason}: use a bounded "
+        f"a run was drawn with {run}, but {found.name} {found.reason}: use a bounded "
         "distribution such as truncated_normal, or narrower bounds"
     )
-    return StudyError(Problem(str(study.path), f"sampling.parameters.{name}", reason))
+    raise StudyError(Problem(str(study.path), f"sampling.parameters.{name}", reason))
 
 
 def _common_attributes(study: StudyBase) -> dict[str, Any]:
     """Return the attributes that do not depend on the solver."""
-    attrs = {
+    sampling = study.sampling
+    attrs: dict[str, Any] = {
         "study": study.name,
         "title": study.title,
         "description": study.description,
         "study_text": study.text,
         "study_sha256": study.sha256,
-        "method": study.sampling.method,
-        "varied": list(study.sampling.varied),
+        "method": sampling.method,
+        "varied": list(sampling.varied),
         "responses": list(study.responses),
         "analyses": list(study.analyses),
     }
-    if isinstance(study.sampling, Grid):
+    if isinstance(sampling, Grid):
         return attrs
-    return attrs | study.analysis.model_dump() | _sample_attributes(study.sampling)
-
-
-def _sample_attributes(sampling: Sample) -> dict[str, Any]:
-    """Return how the sample was drawn, and how far it is to grow."""
-    attrs = dict(sampling.settings)
+    attrs |= study.analysis.model_dump() | sampling.settings
     if isinstance(sampling, Grouped) and sampling.groups:
         attrs["groups"] = list(sampling.group_of.values())
-    if isinstance(sampling, Sobol) and sampling.until:
-        until = sampling.until
+    if isinstance(sampling, Sobol) and (until := sampling.until):
         attrs |= {"until_interval": until.interval, "until_runs": until.runs}
         attrs |= {"until_responses": list(until.responses)} if until.responses else {}
     return attrs
+
+
+def doubled(small: xr.Dataset) -> xr.Dataset:
+    """Return the Sobol design with twice the base samples; it begins with the same runs.
+
+    The study's text in the design is drawn anew. Raises ValueError for a design of another method,
+    or when this version of impactlab draws other runs from that text.
+    """
+    study = study_of_design(small, Path(f"{small.attrs['study']}.yaml"))
+    if not isinstance(study.sampling, Sobol):
+        raise ValueError(
+            f"study {study.name!r} has method: {study.sampling.method}, but only a sample with "
+            "method: sobol can be extended"
+        )
+    twice = {"base_samples": 2 * int(small.attrs["base_samples"])}
+    large = design(replace(study, sampling=study.sampling.model_copy(update=twice)))
+    for name in varied_names(small):
+        if not np.array_equal(small[name].values, large[name].values[: small.sizes["run"]]):
+            raise ValueError(
+                f"the design of study {study.name!r} was drawn by another version of impactlab "
+                f"({name} differs): draw it again with `impactlab design`"
+            )
+    return large
+
+
+def stages(design: xr.Dataset) -> Iterator[xr.Dataset]:
+    """Yield the design, then each design of twice as many runs that its `until` allows."""
+    yield design
+    most = int(design.attrs.get("until_runs", 0))
+    while 2 * run_count(design) <= most:
+        design = doubled(design)
+        yield design
+
+
+def study_of_design(design: xr.Dataset, file: Path) -> Study | FunctionStudy:
+    """Return the study whose text a design holds, with the discretisation found for it.
+
+    file: the path named in errors. Raises ValueError where the dataset is not a design, or its
+    text is not a study.
+    """
+    if absent := {"study", "study_text", "varied"} - design.attrs.keys():
+        raise ValueError(
+            f"{file}: is not a design of a study (it has no attribute {min(absent)}): make one "
+            "with `impactlab design`"
+        )
+    study = study_of_text(str(design.attrs["study"]), str(design.attrs["study_text"]))
+    if isinstance(study, FunctionStudy) or study.auto is None:
+        return replace(study, path=file)
+    found = {name: design[name].item() for name in ("nodes", "points", "courant")}
+    grid = replace(study.discretisation, **found)
+    return replace(study, path=file, discretisation=grid, auto=None)

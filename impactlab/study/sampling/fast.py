@@ -6,10 +6,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import model_validator
 
-from impactlab.study.sampling.sections import MOST_RUNS, Draws, Sample, SamplingMethod, problem
+from impactlab.study.sampling.sections import MOST_RUNS, Draws, Sample, problem
 from impactlab.study.schema.section import Whole, at_key, between
-
-_DUMMY = "dummy"
 
 
 class Fast(Sample):
@@ -31,33 +29,20 @@ class Fast(Sample):
 
     @model_validator(mode="after")
     def _check_resolution(self) -> Self:
-        if self.samples <= 4 * self.harmonics**2:
-            least = 4 * self.harmonics**2 + 1
+        least = 4 * self.harmonics**2 + 1
+        if self.samples < least:
             raise at_key("samples", f"must be at least {least:,} (above 4 harmonics²)")
         return self
 
+    def draws(self) -> Draws:
+        """Draw the curves one after the other, that of the dummy last.
 
-def draws(sampling: Fast) -> Draws:
-    """Draw the curves one after the other, that of the dummy last.
+        The dummy has a curve, on which the others have their low frequencies, but no column.
+        """
+        from SALib.sample import fast_sampler  # takes a second, with its pandas
 
-    Returns unit draws on (run, varied parameter): the dummy has a curve, on which the others have
-    their low frequencies, but no column.
-    """
-    from SALib.sample import fast_sampler  # takes a second, with its pandas
-
-    found: Draws = fast_sampler.sample(
-        problem([*sampling.varied, _DUMMY]),
-        sampling.samples,
-        M=sampling.harmonics,
-        seed=sampling.generator(),
-    )
-    return found[:, :-1]
-
-
-METHOD = SamplingMethod(
-    name="fast",
-    section=Fast,
-    summary="first and total order, for smooth responses",
-    draws=draws,
-    indices="impactlab.analysis.sensitivity.fast.METHOD",
-)
+        names, seed = [*self.varied, "dummy"], self.generator()
+        found: Draws = fast_sampler.sample(
+            problem(names), self.samples, M=self.harmonics, seed=seed
+        )
+        return found[:, :-1]

@@ -11,14 +11,12 @@ import numpy as np
 from pydantic import Field, TypeAdapter, ValidationInfo, field_validator
 
 from impactlab.model.parameters import Value
-from impactlab.study.sampling.sections import Sampling, SamplingMethod
+from impactlab.study.sampling.sections import Sampling
 from impactlab.study.schema.parameters import Factor
 from impactlab.study.schema.section import Reader, Section, Whole, between, one_of
 
 Q = TypeVar("Q", bound=float)
 MOST_VALUES = 10_000
-_LIST = "a list such as [1, 2, 3]"
-_RANGE = "a range such as {start: 1, stop: 3, number: 5}"
 
 
 class Range(Section, Generic[Q]):
@@ -46,10 +44,20 @@ class Range(Section, Generic[Q]):
             raise ValueError(f"must be above start ({info.data['start']!r})")
         return value
 
-    def values(self) -> list[float]:
-        """Return the values to 12 significant digits, so that 0.3 is selected as 0.3."""
+    def values(self, factor: Factor) -> list[Value]:
+        """Return the values to 12 significant digits, so that 0.3 is selected as 0.3.
+
+        Raises ValueError where the factor takes whole numbers, and one of them is not.
+        """
         space = np.geomspace if self.spacing == "log" else np.linspace
-        return [float(f"{value:.12g}") for value in space(self.start, self.stop, self.number)]
+        spaced = space(self.start, self.stop, self.number)
+        values: list[Value] = [float(f"{value:.12g}") for value in spaced]
+        if not factor.parameter.whole:
+            return values
+        for value in values:
+            if reason := factor.refused(value):
+                raise ValueError(f"the range gives {value:g}: {reason}; list the values")
+        return [int(value) for value in values]
 
 
 class Grid(Sampling):
@@ -64,8 +72,27 @@ class Grid(Sampling):
 
     @staticmethod
     def entry(factor: Factor) -> Reader:
-        """Return the reader of a list of values, or of a range."""
-        return values_reader(factor)
+        """Return the reader of a parameter's distinct values: a list, or a range of numbers."""
+        value_type: Any = factor.type
+        listed: TypeAdapter[list[Value]] = TypeAdapter(
+            Annotated[list[value_type], Field(min_length=1, max_length=MOST_VALUES)]
+        )
+        ranged = None if factor.parameter.choices else Range[value_type]
+
+        def read(data: Any, info: ValidationInfo) -> tuple[Value, ...]:
+            if isinstance(data, list):
+                values = listed.validate_python(data)
+            elif ranged is None or not isinstance(data, dict):
+                or_range = " or a range such as {start: 1, stop: 3, number: 5}" if ranged else ""
+                raise ValueError(f"expected a list such as [1, 2, 3]{or_range}")
+            else:
+                values = ranged.model_validate(data, context=info.context).values(factor)
+            if twice := [value for value, count in Counter(values).items() if count > 1]:
+                once = "more than once: list each value once"
+                raise ValueError(f"holds {twice[0]!r} (in SI units) {once}")
+            return tuple(values)
+
+        return read
 
     @property
     def runs(self) -> int:
@@ -75,44 +102,3 @@ class Grid(Sampling):
     def bounds(self) -> dict[str, tuple[Value, ...]]:
         """Return the least and greatest value of each parameter."""
         return {name: (min(each), max(each)) for name, each in self.parameters.items()}
-
-
-def values_reader(factor: Factor) -> Reader:
-    """Return the reader of a parameter's distinct values: a list, or a range of numbers."""
-    value_type: Any = factor.type
-    listed: TypeAdapter[list[Value]] = TypeAdapter(
-        Annotated[list[value_type], Field(min_length=1, max_length=MOST_VALUES)]
-    )
-    ranged = None if factor.parameter.choices else Range[value_type]
-
-    def read(data: Any, info: ValidationInfo) -> tuple[Value, ...]:
-        if isinstance(data, list):
-            return _distinct(listed.validate_python(data))
-        if ranged is None or not isinstance(data, dict):
-            raise ValueError(f"expected {_LIST}" + (f" or {_RANGE}" if ranged else ""))
-        return _distinct(_expanded(factor, ranged.model_validate(data, context=info.context)))
-
-    return read
-
-
-def _expanded(factor: Factor, given: Range[Any]) -> list[Value]:
-    values: list[Value] = list(given.values())
-    if not factor.parameter.whole:
-        return values
-    for value in values:
-        try:
-            factor.check(value)
-        except ValueError as error:
-            raise ValueError(f"the range gives {value:g}: {error}; list the values") from None
-    return [int(value) for value in values]
-
-
-def _distinct(values: list[Value]) -> tuple[Value, ...]:
-    if twice := [value for value, count in Counter(values).items() if count > 1]:
-        raise ValueError(f"holds {twice[0]!r} (in SI units) more than once: list each value once")
-    return tuple(values)
-
-
-METHOD = SamplingMethod(
-    name="grid", section=Grid, summary="every combination of listed values or ranges"
-)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, ValidationInfo, model_validator
 
-from impactlab.study.sampling.sections import Draws, Grouped, Sample, SamplingMethod, problem
+from impactlab.study.sampling.sections import Draws, Grouped, Sample, problem
 from impactlab.study.schema.parameters import Distribution, Factor
 from impactlab.study.schema.section import Reader, Whole, at_key, between
 
@@ -62,12 +62,11 @@ class Morris(Grouped):
     @model_validator(mode="after")
     def _check_choice(self) -> Self:
         """Refuse a choice that SALib cannot make, or that takes it too long."""
-        if self.optimal_trajectories == 0:
-            return self
-        if not 2 <= self.optimal_trajectories < self.trajectories:
-            reason = f"must lie from 2 to {self.trajectories - 1} (below trajectories), or be 0"
+        most, chosen = self.trajectories - 1, self.optimal_trajectories
+        if chosen and not 2 <= chosen <= most:
+            reason = f"must lie from 2 to {most} (below trajectories), or be 0"
             raise at_key("optimal_trajectories", reason)
-        if self.trajectories * self.optimal_trajectories**2 > _SEARCH:
+        if self.trajectories * chosen**2 > _SEARCH:
             reason = (
                 "takes too long to choose: trajectories × optimal_trajectories² may be "
                 f"at most {_SEARCH:,}"
@@ -75,28 +74,18 @@ class Morris(Grouped):
             raise at_key("optimal_trajectories", reason)
         return self
 
+    def draws(self) -> Draws:
+        """Draw the trajectories one after the other: a start, and one step per parameter or group.
 
-def draws(sampling: Morris) -> Draws:
-    """Draw the trajectories one after the other: a start, and one step per parameter or group.
+        They are levels, 0 and 1 included.
+        """
+        from SALib.sample import morris  # takes a second, with its pandas
 
-    Returns levels in the unit cube, ends included, on (run, varied parameter).
-    """
-    from SALib.sample import morris  # takes a second, with its pandas
-
-    found: Draws = morris.sample(
-        problem(list(sampling.varied), list(sampling.group_of.values())),
-        sampling.trajectories,
-        num_levels=sampling.levels,
-        optimal_trajectories=sampling.optimal_trajectories or None,
-        seed=sampling.generator(),
-    )
-    return found
-
-
-METHOD = SamplingMethod(
-    name="morris",
-    section=Morris,
-    summary="screening many parameters with few runs",
-    draws=draws,
-    indices="impactlab.analysis.sensitivity.morris.METHOD",
-)
+        found: Draws = morris.sample(
+            problem(list(self.varied), list(self.group_of.values())),
+            self.trajectories,
+            num_levels=self.levels,
+            optimal_trajectories=self.optimal_trajectories or None,
+            seed=self.generator(),
+        )
+        return found

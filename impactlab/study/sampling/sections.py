@@ -1,11 +1,10 @@
-"""The record of a sampling method, and the base classes of its section `sampling`."""
+"""The base classes of the section `sampling`."""
 
 from __future__ import annotations
 
 import re
 from abc import abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
@@ -26,23 +25,9 @@ from impactlab.study.schema.section import Names, Reader, Section, Whole, at_key
 
 Draws = npt.NDArray[np.float64]
 MOST_RUNS = 10_000_000
-
-
-@dataclass(frozen=True)
-class SamplingMethod:
-    """One way of choosing the runs of a study.
-
-    name: as in study files. section: its keys. summary: its purpose, one line of docs/studies.md.
-    draws: from the section to draws in the unit cube, (run, varied parameter), in the order of
-    SALib's runs; None for a grid. indices: dotted name of the SensitivityMethod that analyses the
-    runs; empty for a grid.
-    """
-
-    name: str
-    section: type[Sampling]
-    summary: str
-    draws: Callable[[Any], Draws] | None = None
-    indices: str = ""
+_EDGE = 2.0**-31
+"""Half a step of scipy's 30-bit Sobol sequence: keeps draws off 0 and 1, where quantiles may be
+infinite."""
 
 
 class Sampling(Section):
@@ -80,8 +65,17 @@ class Sampling(Section):
     @classmethod
     def of(cls, factors: Mapping[str, Factor]) -> type[Self]:
         """Return this section for studies that can vary these factors."""
-        parameters = Annotated[Mapping[str, Any], _by_name(cls, factors)]
-        fields: Any = {"parameters": (parameters, ...)}
+        entries: Any = {
+            name: (Annotated[Any, PlainValidator(cls.entry(factor))], None)
+            for name, factor in factors.items()
+        }
+        section = create_model("Parameters", __base__=Section, **entries)
+
+        def read(data: Any, info: ValidationInfo) -> dict[str, Any]:
+            parameters = section.model_validate(data, context=info.context)
+            return {name: getattr(parameters, name) for name in data}  # in the file's order
+
+        fields: Any = {"parameters": (Annotated[Mapping[str, Any], PlainValidator(read)], ...)}
         return create_model(cls.__name__, __base__=cls, **fields)
 
     @model_validator(mode="after")
@@ -92,21 +86,6 @@ class Sampling(Section):
         if self.runs > MOST_RUNS:
             raise ValueError(f"makes {self.runs:,} runs: reduce them to {MOST_RUNS:,} or fewer")
         return self
-
-
-def _by_name(method: type[Sampling], factors: Mapping[str, Factor]) -> PlainValidator:
-    """Return a reader of a mapping from names of factors, which keeps the order of the file."""
-    entries: Any = {
-        name: (Annotated[Any, PlainValidator(method.entry(factor))], None)
-        for name, factor in factors.items()
-    }
-    section = create_model("Parameters", __base__=Section, **entries)
-
-    def read(data: Any, info: ValidationInfo) -> dict[str, Any]:
-        parameters = section.model_validate(data, context=info.context)
-        return {name: getattr(parameters, name) for name in data}
-
-    return PlainValidator(read)
 
 
 class Sample(Sampling):
@@ -154,6 +133,16 @@ class Sample(Sampling):
         """Return the source of randomness. SALib ignores some seeds of 0, but no generator."""
         return np.random.default_rng(self.seed)
 
+    @abstractmethod
+    def draws(self) -> Draws:
+        """Draw in the unit cube, on (run, varied parameter), in the order of SALib's runs."""
+
+    def columns(self) -> dict[str, Draws]:
+        """Draw one value per run of each varied parameter, in SI units."""
+        unit = np.clip(self.draws(), _EDGE, 1 - _EDGE).T
+        columns = zip(self.varied.items(), unit, strict=True)
+        return {name: given.quantile(draws) for (name, given), draws in columns}
+
 
 def problem(names: Sequence[str], groups: Sequence[str] = ()) -> dict[str, Any]:
     """Return SALib's problem of parameters in the unit cube. groups: the group of each one."""
@@ -176,9 +165,6 @@ def _check_names(data: Any) -> Any:
     return data
 
 
-Groups = Annotated[Mapping[str, Names], BeforeValidator(_check_names)]
-
-
 class Grouped(Sample):
     """A sample that gives one index per group of parameters.
 
@@ -189,7 +175,9 @@ class Grouped(Sample):
     of one group alone, and there are two groups or more (SALib takes a single group for none).
     """
 
-    groups: Groups = Field(default_factory=dict)
+    groups: Annotated[Mapping[str, Names], BeforeValidator(_check_names)] = Field(
+        default_factory=dict
+    )
 
     @property
     def group_of(self) -> dict[str, str]:
@@ -204,27 +192,23 @@ class Grouped(Sample):
 
     @model_validator(mode="after")
     def _check_groups(self) -> Self:
-        for key, reason in self._wrong_groups():
-            raise at_key(key, reason)
-        return self
-
-    def _wrong_groups(self) -> Iterator[tuple[str, str]]:
-        """Yield the dotted key and the reason of each problem."""
         seen: set[str] = set()
         for group, members in self.groups.items():
             if group in self.parameters:
-                yield f"groups.{group}", "is the name of a parameter: choose another name"
+                reason = "is the name of a parameter: choose another name"
+                raise at_key(f"groups.{group}", reason)
             for at, member in enumerate(members):
-                if reason := self._wrong_member(member, seen):
-                    yield f"groups.{group}.{at}", reason
-                seen.add(member)
+                if member in self.fixed:
+                    reason = "is fixed, so it belongs to no group: take it out"
+                elif member not in self.varied:
+                    reason = unknown("varied parameter", member, self.varied)
+                elif member in seen:
+                    reason = "is named more than once: each parameter has one group"
+                else:
+                    seen.add(member)
+                    continue
+                raise at_key(f"groups.{group}.{at}", reason)
         if self.group_count < self.fewest:
             reason = f"too few: {self.group_count} group, but {self.fewest} or more are needed"
-            yield "groups", reason
-
-    def _wrong_member(self, member: str, seen: set[str]) -> str:
-        if member in self.fixed:
-            return "is fixed, so it belongs to no group: take it out"
-        if member not in self.varied:
-            return unknown("varied parameter", member, self.varied)
-        return "is named more than once: each parameter has one group" if member in seen else ""
+            raise at_key("groups", reason)
+        return self

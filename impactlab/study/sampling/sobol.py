@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, StrictBool, model_validator
 
-from impactlab.study.sampling.sections import MOST_RUNS, Draws, Grouped, SamplingMethod, problem
+from impactlab.study.sampling.sections import MOST_RUNS, Draws, Grouped, problem
 from impactlab.study.schema.section import Names, Number, Section, Whole, at_key, between
 
 _FEWEST_TO_GROW = 64
@@ -56,37 +56,27 @@ class Sobol(Grouped):
     @model_validator(mode="after")
     def _check_until(self) -> Self:
         if self.until and self.base_samples < _FEWEST_TO_GROW:
-            raise at_key(
-                "base_samples",
+            reason = (
                 f"must be at least {_FEWEST_TO_GROW} with until: the intervals of fewer cannot be "
-                "trusted",
+                "trusted"
             )
+            raise at_key("base_samples", reason)
         if self.until and self.until.runs < self.runs:
             raise at_key("until.runs", f"must be at least the first sample's {self.runs:,} runs")
         return self
 
+    def draws(self) -> Draws:
+        """Draw base samples one after the other: A, A with B's columns, B with A's columns, B.
 
-def draws(sampling: Sobol) -> Draws:
-    """Draw the base samples one after the other: A, A with B's columns, B with A's columns, B.
+        The parameters of a group take their columns together. The first runs of a larger sample
+        are the smaller sample.
+        """
+        from SALib.sample import sobol  # takes a second, with its pandas
 
-    Returns unit draws on (run, varied parameter); the parameters of a group take their columns
-    together. The first runs of a larger sample are the smaller sample.
-    """
-    from SALib.sample import sobol  # takes a second, with its pandas
-
-    found: Draws = sobol.sample(
-        problem(list(sampling.varied), list(sampling.group_of.values())),
-        sampling.base_samples,
-        calc_second_order=sampling.second_order,
-        seed=sampling.generator(),
-    )
-    return found
-
-
-METHOD = SamplingMethod(
-    name="sobol",
-    section=Sobol,
-    summary="shares of the variance: first, second and total order",
-    draws=draws,
-    indices="impactlab.analysis.sensitivity.sobol.METHOD",
-)
+        found: Draws = sobol.sample(
+            problem(list(self.varied), list(self.group_of.values())),
+            self.base_samples,
+            calc_second_order=self.second_order,
+            seed=self.generator(),
+        )
+        return found

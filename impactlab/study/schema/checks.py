@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from impactlab.model.impact import SOLID
-from impactlab.model.parameters import ELEMENTS, Value, flatten
+from impactlab.model.parameters import ELEMENTS, Value
 from impactlab.solver import BEAM_MODELS
 from impactlab.study.errors import Problem, unknown
 from impactlab.study.sampling.grid import Grid
@@ -42,22 +42,26 @@ def problems(file: StudyFile, path: str, sound: set[str]) -> list[Problem]:
 
 def has_solid_runs(study: Study | StudyFile) -> bool:
     """Return True if any run is of the 3-D model."""
-    sampling = study.sampling
-    listed = sampling.parameters if isinstance(sampling, Grid) else sampling.fixed
-    models = listed.get("beam_model", study.impact.beam_model)
-    return SOLID in (models if isinstance(models, tuple) else (models,))
+    return SOLID in _values(study.sampling, "beam_model", study.impact.beam_model)
+
+
+def _values(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, ...]:
+    """Return all values of a parameter that a sample cannot draw."""
+    if isinstance(sampling, Grid):
+        return sampling.parameters.get(name, (base,))
+    return (sampling.fixed.get(name, base),)
 
 
 def _mass_and_density(file: StudyFile) -> Reasons:
     """Density and radius have no effect beside a stated mass."""
-    varied = file.sampling.parameters
+    varied, mass = file.sampling.parameters, file.impact.sphere.mass
     for name in ("sphere_radius", "sphere_density"):
-        if name in varied and file.impact.sphere.mass is not None and "sphere_mass" not in varied:
-            yield (
-                f"sampling.parameters.{name}",
-                f"has no effect on the stated mass of the sphere ({file.impact.sphere.mass!r} kg): "
-                "set impact.sphere.mass: null to let it follow from density and radius",
+        if name in varied and mass is not None and "sphere_mass" not in varied:
+            reason = (
+                f"has no effect on the stated mass of the sphere ({mass!r} kg): set "
+                "impact.sphere.mass: null to let it follow from density and radius"
             )
+            yield f"sampling.parameters.{name}", reason
     if {"sphere_mass", "sphere_density"} <= varied.keys():
         reason = "has no effect beside sphere_mass: take out one of the two"
         yield "sampling.parameters.sphere_density", reason
@@ -65,13 +69,13 @@ def _mass_and_density(file: StudyFile) -> Reasons:
 
 def _one_mesh_for_profiles(file: StudyFile) -> Reasons:
     """Profiles of all runs share their x and z."""
-    for name in _MESH:
-        if file.store.profiles and name in file.sampling.varied:
-            yield (
-                f"sampling.parameters.{name}",
-                "cannot be varied with store.profiles: true, because the places x and z of the "
-                "profiles would differ between runs: set profiles: false, or fix it",
-            )
+    reason = (
+        "cannot be varied with store.profiles: true, because the places x and z of the profiles "
+        "would differ between runs: set profiles: false, or fix it"
+    )
+    for name in _MESH if file.store.profiles else ():
+        if name in file.sampling.varied:
+            yield f"sampling.parameters.{name}", reason
 
 
 def _analysis_of_a_sample(file: StudyFile) -> Reasons:
@@ -141,11 +145,10 @@ def _physics(file: StudyFile) -> Reasons:
 
 def _scheme_of_the_beam_model(file: StudyFile) -> Reasons:
     """Each beam model has the time scheme it is solved by."""
-    base = flatten(file.impact, file.discretisation.discretisation)
-    used: dict[str, tuple[Value, ...]] = {name: (base[name],) for name in ("scheme", "beam_model")}
-    used |= {name: words for name, words in _words(file.sampling).items() if name in used}
-    others = [name for name in BEAM_MODELS if name in used["beam_model"] and name not in _FIBRES]
-    if others and "semi_implicit" in used["scheme"]:
+    schemes = _values(file.sampling, "scheme", file.discretisation.discretisation.scheme)
+    models = _values(file.sampling, "beam_model", file.impact.beam_model)
+    others = [name for name in BEAM_MODELS if name in models and name not in _FIBRES]
+    if others and "semi_implicit" in schemes:
         reason = (
             f"semi_implicit is for {' and '.join(_FIBRES)}, and {others[0]} has leapfrog alone: "
             "set scheme: leapfrog, or take out the beam model"
@@ -153,29 +156,35 @@ def _scheme_of_the_beam_model(file: StudyFile) -> Reasons:
         yield key_of("scheme", file.sampling), reason
 
 
-def _words(sampling: Grid | Sample) -> dict[str, tuple[Value, ...]]:
-    """Return all values of the parameters that a sample cannot draw."""
-    if isinstance(sampling, Sample):
-        return {name: (value,) for name, value in sampling.fixed.items()}
-    return dict(sampling.parameters)
-
-
 def _solid(file: StudyFile) -> Reasons:
-    """Check that runs of the 3-D model have an element size and no option that it lacks."""
-    solid = has_solid_runs(file)
-    yield from _element_size(list(_element_keys(file)), solid)
-    if not solid:
+    """Check that runs of the 3-D model have one element size, and others none; and their options.
+
+    They need a grid, and they have neither `auto` nor profiles, nor one of the responses.
+    """
+    own = file.discretisation.discretisation
+    sizes = [
+        key_of(name, file.sampling)
+        for name in ELEMENTS
+        if name in file.sampling.parameters or getattr(own, name) is not None
+    ]
+    if not has_solid_runs(file):
+        for key in sizes:
+            yield key, f"has no effect without beam_model: {SOLID}: take it out"
         return
+    if not sizes:
+        reason = (
+            f"is required for beam_model: {SOLID} (runs with 1 mm take seconds, those with "
+            "0.5 mm a minute)"
+        )
+        yield f"discretisation.{ELEMENTS[0]}", reason
+    for key in sizes[1:]:
+        yield key, f"has no effect beside {sizes[0]}: take one of them out"
     if not isinstance(file.sampling, Grid):
-        yield (
-            "sampling.method",
-            f"beam_model: {SOLID} needs method: grid, because a run takes minutes",
-        )
+        reason = f"beam_model: {SOLID} needs method: grid, because a run takes minutes"
+        yield "sampling.method", reason
     if file.discretisation.auto is not None:
-        yield (
-            "discretisation.auto",
-            f"is not possible with beam_model: {SOLID}: state the discretisation",
-        )
+        reason = f"is not possible with beam_model: {SOLID}: state the discretisation"
+        yield "discretisation.auto", reason
     if file.store.profiles:
         yield "store.profiles", f"must be false with beam_model: {SOLID}, which has no profiles"
     if _NOT_SOLID in file.responses:
@@ -184,30 +193,6 @@ def _solid(file: StudyFile) -> Reasons:
             "includes that of the contact: list the responses without it"
         )
         yield "responses", reason
-
-
-def _element_keys(file: StudyFile) -> Iterator[str]:
-    """Yield the keys that give the size of the solid elements."""
-    for name in ELEMENTS:
-        if name in file.sampling.parameters:
-            yield f"sampling.parameters.{name}"
-        elif getattr(file.discretisation.discretisation, name) is not None:
-            yield f"discretisation.{name}"
-
-
-def _element_size(keys: list[str], solid: bool) -> Reasons:
-    """Check that the 3-D model has one element size, and the others none."""
-    if not solid:
-        for key in keys:
-            yield key, f"has no effect without beam_model: {SOLID}: take it out"
-    elif not keys:
-        reason = (
-            f"is required for beam_model: {SOLID} (runs with 1 mm take seconds, those with "
-            "0.5 mm a minute)"
-        )
-        yield f"discretisation.{ELEMENTS[0]}", reason
-    for key in keys[1:] if solid else []:
-        yield key, f"has no effect beside {keys[0]}: take one of them out"
 
 
 _CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (

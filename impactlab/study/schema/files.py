@@ -9,11 +9,12 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator, ValidationError, create_model
 
-from impactlab.model.parameters import Parameter, Value
+from impactlab.model.parameters import Parameter
 from impactlab.study.errors import Problem, StudyError, unknown
+from impactlab.study.sampling import sampling_reader
 from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.methods import sampling_reader
 from impactlab.study.sampling.sections import Sample
+from impactlab.study.sampling.sobol import Sobol
 from impactlab.study.schema import checks
 from impactlab.study.schema.parameters import Factor
 from impactlab.study.schema.section import Heading, names, validation_problems
@@ -67,6 +68,35 @@ def read_verification(path: str | Path) -> Verification:
     return _verification(source)
 
 
+def describe(path: Path) -> dict[str, Any]:
+    """Return name, title, size (runs or checks) and traits of a study file, for JSON.
+
+    traits: "checks" (a verification), "auto" (its discretisation is to be found), "sample" (its
+    impacts are drawn), "sobol" (by Sobol's sequence), "growing" (until its intervals are narrow),
+    "fem3d" (some runs are of the 3-D FE model). Of a file that is wrong: name, no traits, and
+    `error`.
+    """
+    try:
+        study = read_any(path)
+    except StudyError as error:
+        return {"name": path.stem, "traits": [], "error": str(error)}
+    sampling, impacts = getattr(study, "sampling", None), isinstance(study, Study)
+    traits = {
+        "checks": isinstance(study, Verification),
+        "growing": isinstance(sampling, Sobol) and bool(sampling.until),
+        "auto": isinstance(study, Study) and study.auto is not None,
+        "sample": impacts and isinstance(sampling, Sample),
+        "sobol": impacts and isinstance(sampling, Sobol),
+        "fem3d": isinstance(study, Study) and checks.has_solid_runs(study),
+    }
+    return {
+        "name": study.name,
+        "title": study.title,
+        "size": study.size,
+        "traits": [name for name, has in traits.items() if has],
+    }
+
+
 def _runs(source: Source) -> Study | FunctionStudy:
     return _function_study(source) if _has(source, "function") else _study(source)
 
@@ -92,15 +122,23 @@ _STAND_INS: dict[str, Any] = {
 
 def _study(source: Source) -> Study:
     """Return a study of impacts. Raises StudyError with every problem of the file."""
-    data, path = source.data, source.path
-    file, problems = _validated(data, str(path))
+    data, path = source.data, str(source.path)
+    keys: dict[int, tuple[str, ...]] = {}
+    problems: list[Problem] = []
+    try:
+        file = StudyFile.model_validate(data, context=keys)
+    except ValidationError as error:
+        wrong = {line["loc"][0] for line in error.errors(include_url=False)}
+        valid = {key: data[key] for key in StudyFile.model_fields if key in data.keys() - wrong}
+        file = StudyFile.model_validate(_STAND_INS | valid)
+        problems = validation_problems(error, data, path, keys)
     sound = set(StudyFile.model_fields) - {problem.key.split(".")[0] for problem in problems}
-    problems += checks.problems(file, str(path), sound)
+    problems += checks.problems(file, path, sound)
     if problems:
         raise StudyError(*problems)
     return Study(
         name=source.name,
-        path=path,
+        path=source.path,
         title=file.title,
         description=file.description,
         impact=file.impact,
@@ -114,17 +152,6 @@ def _study(source: Source) -> Study:
         analysis=file.analysis or Analysis(),
         text=source.text,
     )
-
-
-def _validated(data: dict[str, Any], path: str) -> tuple[StudyFile, list[Problem]]:
-    keys: dict[int, tuple[str, ...]] = {}
-    try:
-        return StudyFile.model_validate(data, context=keys), []
-    except ValidationError as error:
-        wrong = {line["loc"][0] for line in error.errors(include_url=False)}
-        sound = {key: data[key] for key in StudyFile.model_fields if key in data.keys() - wrong}
-        file = StudyFile.model_validate(_STAND_INS | sound)
-        return file, validation_problems(error, data, path, keys)
 
 
 def _function_study(source: Source) -> FunctionStudy:
@@ -152,7 +179,7 @@ def _function_file(name: str) -> type[Heading]:
     """Return the keys of a study of this test function."""
     title = FUNCTIONS[name].title
     factors = {
-        key: Factor(Parameter(key, "1", f"{key} of the {title}", ()), _accept)
+        key: Factor(Parameter(key, "1", f"{key} of the {title}", ()), lambda value: "")
         for key in FUNCTIONS[name].ranges
     }
     sampling = Annotated[Grid | Sample, PlainValidator(sampling_reader(factors))]
@@ -164,22 +191,14 @@ def _function_file(name: str) -> type[Heading]:
     return create_model("FunctionFile", __base__=Heading, **fields)
 
 
-def _accept(value: Value) -> None:
-    """Accept every number."""
-
-
 def _verification(source: Source) -> Verification:
     """Return the checks of a file. Raises StudyError with every problem of the file."""
-    values = _valid(_verification_file(), source).model_dump()
-    return Verification(name=source.name, path=source.path, text=source.text, **values)
-
-
-@cache
-def _verification_file() -> type[Heading]:
     from impactlab.verification.catalogue import CATALOGUE  # late: loads all independent solutions
 
-    checks = Annotated[tuple[str, ...], names("check", CATALOGUE)]
-    return create_model("VerificationFile", __base__=Heading, checks=(checks, ...))
+    listed = Annotated[tuple[str, ...], names("check", CATALOGUE)]
+    kind = create_model("VerificationFile", __base__=Heading, checks=(listed, ...))
+    values = _valid(kind, source).model_dump()
+    return Verification(name=source.name, path=source.path, text=source.text, **values)
 
 
 def _valid(kind: type[Heading], source: Source) -> Any:

@@ -8,50 +8,52 @@ from dataclasses import dataclass
 from functools import cache, partial
 from typing import Annotated, Any, Generic, Literal, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import AfterValidator, ValidationInfo, field_validator, model_validator
 
 from impactlab.model.distributions import quantile
 from impactlab.model.parameters import PARAMETERS, Parameter, Value
 from impactlab.study.schema.section import (
+    ABOVE_ZERO,
     Number,
     Reader,
     Section,
     Whole,
-    above_zero,
     at_key,
     one_of,
     quantity,
+    requires,
     section_by,
 )
-from impactlab.study.validity import check_alone
+from impactlab.study.validity import refused_alone
+from impactlab.types import Floats
 
 
 @dataclass(frozen=True)
 class Factor:
     """A parameter as study files may vary it.
 
-    check: raises ValueError, with the reason, for a value that no run can have.
+    refused: returns the reason why no run can have a value, or "".
     """
 
     parameter: Parameter
-    check: Callable[[Value], None]
+    refused: Callable[[Value], str]
 
     @property
     def type(self) -> Any:
         """Pydantic type of one value: a word, a whole number, or a number in SI units."""
         if self.parameter.choices:
             return Annotated[str, one_of(self.parameter.long_name, self.parameter.choices)]
+
+        def possible(value: Value) -> Value:
+            if reason := self.refused(value):
+                raise ValueError(reason)
+            return value
+
         number = Whole if self.parameter.whole else quantity(self.parameter.units)
-        return Annotated[number, AfterValidator(self._possible)]
-
-    def _possible(self, value: Value) -> Value:
-        self.check(value)
-        return value
+        return Annotated[number, AfterValidator(possible)]
 
 
-FACTORS = {name: Factor(entry, partial(check_alone, name)) for name, entry in PARAMETERS.items()}
+FACTORS = {name: Factor(entry, partial(refused_alone, name)) for name, entry in PARAMETERS.items()}
 """Parameters of an impact and its discretisation, by name."""
 
 VALUES: dict[str, Any] = {name: factor.type for name, factor in FACTORS.items()}
@@ -60,19 +62,6 @@ VALUES: dict[str, Any] = {name: factor.type for name, factor in FACTORS.items()}
 
 Q = TypeVar("Q", bound=float)
 """A number in the parameter's unit; Number: a pure number."""
-Values = NDArray[np.float64]
-
-
-def _above_low(high: float, info: ValidationInfo) -> float:
-    low = info.data.get("low", -math.inf)
-    if high == low:
-        raise ValueError(
-            f"must be above low ({low!r}); "
-            "for a single value write {distribution: fixed, value: ...}"
-        )
-    if high < low:
-        raise ValueError(f"must be above low ({low!r})")
-    return high
 
 
 class Distribution(Section):
@@ -80,7 +69,7 @@ class Distribution(Section):
 
     distribution: str
 
-    def quantile(self, probability: Values) -> Values:
+    def quantile(self, probability: Floats) -> Floats:
         """Return the quantiles at these probabilities in (0, 1), of the same shape."""
         return quantile(self.arguments(), probability)
 
@@ -99,7 +88,18 @@ class Bounded(Distribution, Generic[Q]):
     low: Q
     high: Q
 
-    _order = field_validator("high")(_above_low)
+    @field_validator("high")
+    @classmethod
+    def _above_low(cls, high: float, info: ValidationInfo) -> float:
+        low = info.data.get("low", -math.inf)
+        if high == low:
+            raise ValueError(
+                f"must be above low ({low!r}); "
+                "for a single value write {distribution: fixed, value: ...}"
+            )
+        if high < low:
+            raise ValueError(f"must be above low ({low!r})")
+        return high
 
 
 class Uniform(Bounded[Q], Generic[Q]):
@@ -112,8 +112,7 @@ class LogUniform(Bounded[Q], Generic[Q]):
     """Uniform distribution of the logarithm, between those of low and high; low above zero."""
 
     distribution: Literal["log_uniform"]
-
-    _positive = field_validator("low")(above_zero)
+    low: Annotated[Q, ABOVE_ZERO]
 
 
 class Normal(Distribution, Generic[Q]):
@@ -121,7 +120,7 @@ class Normal(Distribution, Generic[Q]):
 
     distribution: Literal["normal"]
     mean: Q
-    standard_deviation: Annotated[Q, AfterValidator(above_zero)]
+    standard_deviation: Annotated[Q, ABOVE_ZERO]
 
 
 class TruncatedNormal(Bounded[Q], Generic[Q]):
@@ -129,7 +128,7 @@ class TruncatedNormal(Bounded[Q], Generic[Q]):
 
     distribution: Literal["truncated_normal"]
     mean: Q
-    standard_deviation: Annotated[Q, AfterValidator(above_zero)]
+    standard_deviation: Annotated[Q, ABOVE_ZERO]
 
     @model_validator(mode="after")
     def _holds_something(self) -> TruncatedNormal[Q]:
@@ -150,15 +149,14 @@ class LogNormal(Distribution, Generic[Q]):
     """
 
     distribution: Literal["lognormal"]
-    median: Annotated[Q, AfterValidator(above_zero)]
-    geometric_standard_deviation: Number
-
-    @field_validator("geometric_standard_deviation")
-    @classmethod
-    def _above_one(cls, value: float) -> float:
-        if value <= 1:
-            raise ValueError("must be above 1 (with 1.1 most draws lie within 10 % of the median)")
-        return value
+    median: Annotated[Q, ABOVE_ZERO]
+    geometric_standard_deviation: Annotated[
+        Number,
+        requires(
+            lambda factor: factor > 1,
+            "must be above 1 (with 1.1 most draws lie within 10 % of the median)",
+        ),
+    ]
 
 
 class Triangular(Bounded[Q], Generic[Q]):
@@ -204,33 +202,24 @@ def distribution_reader(factor: Factor) -> Reader:
     Words and whole numbers can only be fixed.
     """
     value_type: Any = factor.type
-    fixed: dict[str, type[Section]] = {"fixed": Fixed[value_type]}
-    if factor.parameter.choices or factor.parameter.whole:
-        return _only_fixed(factor, section_by("distribution", fixed))
-    read_any = section_by("distribution", _distributions(factor.parameter.units) | fixed)
+    sections: dict[str, type[Section]] = {"fixed": Fixed[value_type]}
+    what = "a choice of words" if factor.parameter.choices else "a whole number"
+    single = bool(factor.parameter.choices or factor.parameter.whole)
+    if not single:
+        sections = _distributions(factor.parameter.units) | sections
+    read_any = section_by("distribution", sections)
 
     def read(data: Any, info: ValidationInfo) -> Any:
+        if single and not (isinstance(data, dict) and data.get("distribution") == "fixed"):
+            raise ValueError(
+                f"is {what} and cannot be sampled: vary it in a study with method: grid, "
+                "or write {distribution: fixed, value: ...}"
+            )
         given = read_any(data, info)
         for key, value in given.bounds().items() if isinstance(given, Distribution) else ():
-            try:
-                factor.check(value)
-            except ValueError as error:
-                raise at_key(key, str(error)) from None
+            if reason := factor.refused(value):
+                raise at_key(key, reason)
         return given
-
-    return read
-
-
-def _only_fixed(factor: Factor, read_fixed: Reader) -> Reader:
-    what = "a choice of words" if factor.parameter.choices else "a whole number"
-
-    def read(data: Any, info: ValidationInfo) -> Any:
-        if isinstance(data, dict) and data.get("distribution") == "fixed":
-            return read_fixed(data, info)
-        raise ValueError(
-            f"is {what} and cannot be sampled: vary it in a study with method: grid, "
-            "or write {distribution: fixed, value: ...}"
-        )
 
     return read
 

@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf, sqrt
+from typing import Any
 
 import numpy as np
 
-from impactlab.model.parameters import PARAMETERS, Value, flatten
+from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.study.sampling.sections import Sampling
 from impactlab.study.schema.parameters import Distribution
 from impactlab.study.validity import Base
@@ -30,13 +31,12 @@ _TAILS = np.array([1e-3, 1 - 1e-3])
 
 @dataclass(frozen=True)
 class Implausibility:
-    """An implausible value of a parameter, in SI units, with the reason.
+    """A parameter with an implausible value, and the reason.
 
     impossible: whether the study is refused for it.
     """
 
     name: str
-    value: float
     reason: str
     impossible: bool = False
 
@@ -86,25 +86,23 @@ def extremes(base: Base, sampling: Sampling) -> Extremes:
 
     A tail ends at its last thousandth; one that reaches below zero is left to the check of draws.
     """
-    found = {name: (value, value) for name, value in flatten(*base).items() if _number(value)}
+    found: dict[str, Any] = {
+        name: (value, value) for name, value in flatten(*base).items() if not isinstance(value, str)
+    }
     for name, values in sampling.bounds().items():
-        if _number(values[0]):
+        if not isinstance(values[0], str):
             found[name] = min(values), max(values)
     for name, given in sampling.varied.items():
         if isinstance(given, Distribution) and not given.bounds():
             low, high = given.quantile(_TAILS).tolist()
             found[name] = (low, high) if low > 0 else found.get(name, (high, high))
-    return found  # type: ignore[return-value]
+    return found
 
 
 def key_of(name: str, sampling: Sampling) -> str:
     """Return the key of a parameter in the study, whether it is given or not."""
     varied = name in sampling.parameters
     return f"sampling.parameters.{name}" if varied else ".".join(PARAMETERS[name].path)
-
-
-def _number(value: Value) -> bool:
-    return not isinstance(value, str)
 
 
 def implausibilities(ends: Extremes) -> list[Implausibility]:
@@ -123,49 +121,45 @@ def _alone(ends: Extremes) -> Iterator[Implausibility]:
             if none or few:
                 what = "is impossible" if none else "is implausible"
                 reason = f"{value:g} {limits.units} {what}: {limits.words}"
-                yield Implausibility(name, value, reason, impossible=none)
+                yield Implausibility(name, reason, impossible=none)
 
 
 def _together(ends: Extremes) -> Iterator[Implausibility]:
     """Yield values that are implausible beside others, at the worst ends of all."""
+    velocity = ends["velocity"][1]
     for body in ("beam", "sphere"):
-        density, modulus = ends[f"{body}_density"], ends[f"{body}_youngs_modulus"]
-        if (fastest := sqrt(modulus[1] / density[0])) >= LIGHT:
+        lightest, heaviest = ends[f"{body}_density"]
+        soft, stiff = ends[f"{body}_youngs_modulus"]
+        weak, strong = ends[f"{body}_yield_stress"]
+        if (fastest := sqrt(stiff / lightest)) >= LIGHT:
             reason = (
                 f"a bar wave in the {body} would run at {fastest:.3g} m/s, faster than light: "
                 "check the units of density and Young's modulus"
             )
-            yield Implausibility(f"{body}_density", density[0], reason, impossible=True)
-        yield from _velocity(ends, body, sqrt(modulus[0] / min(density[1], HEAVIEST)))
-        stress = ends[f"{body}_yield_stress"][1]
-        if stress > 0.1 * modulus[0]:
-            reason = f"{stress:g} Pa is above a tenth of Young's modulus, the strength of a perfect"
-            yield Implausibility(
-                f"{body}_yield_stress", stress, f"{reason} crystal: are both in Pa?"
+            yield Implausibility(f"{body}_density", reason, impossible=True)
+        if velocity >= (wave := sqrt(soft / min(heaviest, HEAVIEST))):
+            reason = (
+                f"{velocity:g} m/s is above the speed of a bar wave in the {body} ({wave:.4g} m/s)"
+                ": quasi-static contact laws and beam theory do not apply: reduce it"
             )
-    depth, span = ends["beam_depth"][1], ends["beam_span"][0]
+            yield Implausibility("velocity", reason, impossible=True)
+        number = min(lightest, HEAVIEST) * velocity**2 / weak
+        if number > _PIERCES:
+            reason = (
+                f"{velocity:g} m/s: density velocity²/yield stress of the {body} is {number:.2g}; "
+                f"above {_PIERCES} metals flow, and the dent is no longer small"
+            )
+            yield Implausibility("velocity", reason)
+        if strong > 0.1 * soft:
+            reason = (
+                f"{strong:g} Pa is above a tenth of Young's modulus, the strength of a perfect "
+                "crystal: are both in Pa?"
+            )
+            yield Implausibility(f"{body}_yield_stress", reason)
+    depth, span, radius = ends["beam_depth"][1], ends["beam_span"][0], ends["sphere_radius"][1]
     if depth > _STOCKY * span:
         reason = f"{depth:g} m is above a fifth of the span: shear matters (beam_model: timoshenko)"
-        yield Implausibility("beam_depth", depth, reason)
-    if (radius := ends["sphere_radius"][1]) > 0.5 * span:
-        yield Implausibility(
-            "sphere_radius", radius, f"{radius:g} m makes the sphere wider than the span"
-        )
-
-
-def _velocity(ends: Extremes, body: str, wave: float) -> Iterator[Implausibility]:
-    velocity = ends["velocity"][1]
-    if velocity >= wave:
-        reason = (
-            f"{velocity:g} m/s is above the speed of a bar wave in the {body} ({wave:.4g} m/s): "
-            "quasi-static contact laws and beam theory do not apply: reduce it"
-        )
-        yield Implausibility("velocity", velocity, reason, impossible=True)
-    density = min(ends[f"{body}_density"][0], HEAVIEST)
-    number = density * velocity**2 / ends[f"{body}_yield_stress"][1]
-    if number > _PIERCES:
-        reason = (
-            f"{velocity:g} m/s: density velocity²/yield stress of the {body} is {number:.2g}; "
-            f"above {_PIERCES} metals flow, and the dent is no longer small"
-        )
-        yield Implausibility("velocity", velocity, reason)
+        yield Implausibility("beam_depth", reason)
+    if radius > 0.5 * span:
+        reason = f"{radius:g} m makes the sphere wider than the span"
+        yield Implausibility("sphere_radius", reason)

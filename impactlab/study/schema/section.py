@@ -102,61 +102,50 @@ def section_by(key: str, sections: Mapping[str, type[Section]]) -> Reader:
     return read
 
 
-def above_zero(value: float) -> float:
-    """Return the value. Raises ValueError unless it is above zero."""
-    if value <= 0:
-        raise ValueError("must be above zero")
-    return value
+def requires(test: Callable[[Any], bool], words: str) -> AfterValidator:
+    """Return a check that a value passes a test; the words say what it must be."""
 
-
-def between(least: float, most: float) -> AfterValidator:
-    """Return a check that a number lies from `least` to `most`."""
-
-    def check(value: float) -> float:
-        if not least <= value <= most:
-            raise ValueError(f"must lie from {least:,} to {most:,}")
+    def check(value: Any) -> Any:
+        if not test(value):
+            raise ValueError(words)
         return value
 
     return AfterValidator(check)
 
 
-def _not_empty(listed: tuple[str, ...]) -> tuple[str, ...]:
-    if not listed:
-        raise ValueError("is empty: list at least one name")
-    return listed
+def between(least: float, most: float) -> AfterValidator:
+    """Return a check that a number lies from `least` to `most`."""
+    return requires(lambda value: least <= value <= most, f"must lie from {least:,} to {most:,}")
 
 
-Names = Annotated[tuple[StrictStr, ...], AfterValidator(_not_empty)]
+ABOVE_ZERO = requires(lambda value: value > 0, "must be above zero")
+Names = Annotated[tuple[StrictStr, ...], requires(bool, "is empty: list at least one name")]
 """A list of words, at least one."""
 Number = Annotated[float, BeforeValidator(partial(si, units="1"))]
 """A pure number."""
 Whole = Annotated[int, BeforeValidator(whole)]
 """A whole number."""
-
-
-def _printable(text: str) -> str:
-    if not all(line.isprintable() for line in text.replace("\t", " ").split("\n")):
-        raise ValueError("holds characters that cannot be printed: take them out")
-    return text
-
-
-def _one_line(text: str) -> str:
-    if len(text.splitlines()) != 1:
-        raise ValueError("must be one line of text: put more into the key description")
-    return text
-
-
 Text = Annotated[
     str,
     StringConstraints(strict=True, strip_whitespace=True, max_length=2000),
-    AfterValidator(_printable),
+    requires(
+        lambda text: all(line.isprintable() for line in text.replace("\t", " ").split("\n")),
+        "holds characters that cannot be printed: take them out",
+    ),
 ]
 
 
 class Heading(Section):
     """The first keys of every study file, which head the report."""
 
-    title: Annotated[Text, StringConstraints(max_length=200), AfterValidator(_one_line)]
+    title: Annotated[
+        Text,
+        StringConstraints(max_length=200),
+        requires(
+            lambda text: len(text.splitlines()) == 1,
+            "must be one line of text: put more into the key description",
+        ),
+    ]
     description: Text = ""
 
 
@@ -197,18 +186,14 @@ def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]])
     path = [*line["loc"], *context["key"].split(".")] if kind == "at_key" else [*line["loc"]]
     parent, present, value = _value_at(data, path)
     if kind == "extra_forbidden":
-        reason = _no_such_key(path[-1], keys[id(parent)])
+        looked_for = (say for like, say in _NOT_HERE.items() if re.fullmatch(like, str(path[-1])))
+        reason = next(looked_for, None) or unknown("key", path[-1], keys[id(parent)])
     elif kind == "value_error":
         reason = str(context["error"])
     else:
         reason = _WORDS.get(kind, line["msg"])
     shown = {"value": value} if present and not isinstance(value, dict) else {}
     return Problem(file, dotted(path), reason, **shown)
-
-
-def _no_such_key(key: Any, allowed: Sequence[str]) -> str:
-    looked_for = (words for like, words in _NOT_HERE.items() if re.fullmatch(like, str(key)))
-    return next(looked_for, None) or unknown("key", key, allowed)
 
 
 def _value_at(data: Any, path: Sequence[Any]) -> tuple[Any, bool, Any]:

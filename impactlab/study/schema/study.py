@@ -3,37 +3,149 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import MISSING, dataclass, fields
+from functools import reduce
 from pathlib import Path
-from typing import Annotated
+from types import SimpleNamespace as Namespace
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, PlainValidator, StrictBool
+from pydantic import (
+    Field,
+    PlainValidator,
+    StrictBool,
+    ValidationInfo,
+    WrapValidator,
+    create_model,
+)
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
+from impactlab.model.impact import Impact, paper_impact
+from impactlab.model.parameters import PARAMETERS, Parameter, with_values
+from impactlab.study.sampling import sampling_reader
 from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.methods import sampling_reader
 from impactlab.study.sampling.sections import Sample
 from impactlab.study.sampling.sobol import Sobol
-from impactlab.study.schema.model import (
-    Auto,
-    DiscretisationSection,
-    read_discretisation,
-    read_impact,
-)
-from impactlab.study.schema.parameters import FACTORS
+from impactlab.study.schema.parameters import FACTORS, VALUES
 from impactlab.study.schema.section import (
+    ABOVE_ZERO,
     Heading,
     Number,
     Section,
     Whole,
-    above_zero,
+    at_key,
     between,
     names,
     one_of,
     quantity,
 )
+from impactlab.study.validity import Base, refusal
 from impactlab.variables import ANALYSES, RESPONSES
+
+BASES = {"paper": paper_impact}
+"""Impacts that a study may start from, by name."""
+
+
+class Auto(Section):
+    """The key `auto`: a discretisation to be found by pilot runs on corner cases of the study.
+
+    tolerance: relative numerical uncertainty; responses: those that it limits; None: all.
+    """
+
+    tolerance: Annotated[Number, between(1e-4, 0.5)] = 0.01
+    responses: Annotated[tuple[str, ...], names("response", RESPONSES)] | None = None
+
+
+def _default(parameter: Parameter) -> Any:
+    """Return the default that the model's class gives a field, or MISSING."""
+    roots = {"impact": paper_impact(), "discretisation": Discretisation()}
+    owner: Any = reduce(getattr, parameter.path[:-1], Namespace(**roots))
+    return next(field.default for field in fields(owner) if field.name == parameter.path[-1])
+
+
+def _section(*path: str, **others: Any) -> type[Section]:
+    """Return the section of a part of the model, with a key per field, from PARAMETERS.
+
+    A value may be null where that is the default.
+    """
+    nothing = WrapValidator(lambda value, read: None if value is None else read(value))
+    keys: dict[str, Any] = {}
+    for name, entry in PARAMETERS.items():
+        if entry.path[: len(path)] == path:
+            key, *deeper = entry.path[len(path) :]
+            optional = not deeper and _default(entry) is None
+            kind = _section(*path, key) if deeper else VALUES[name]
+            keys[key] = (Annotated[kind, nothing] if optional else kind, None)
+    return create_model("_".join(path), __base__=Section, **(others | keys))
+
+
+_DEFAULTS = {
+    name: _default(entry) for name, entry in PARAMETERS.items() if entry.path[0] == "impact"
+}
+_IMPACT = _section("impact", base=(Annotated[str, one_of("base", BASES)], None))
+_DISCRETISATION = _section("discretisation", auto=(Auto | None, None))
+
+
+def read_impact(data: Any, info: ValidationInfo) -> Impact:
+    """Read an impact: a base with changes, or every value spelled out.
+
+    Raises ValueError (pydantic's ValidationError among them) that names the keys at fault.
+    """
+    section: Any = _IMPACT.model_validate(data, context=info.context)
+    given = _given_values(section, "impact")
+    if section.base is None:
+        required = [name for name, value in _DEFAULTS.items() if value is MISSING]
+        if missing := [_key(name) for name in required if name not in given]:
+            raise ValueError(f"without `base: paper` these are required too: {', '.join(missing)}")
+        given = _DEFAULTS | given
+    return _changed((BASES[section.base or "paper"](), Discretisation()), given)[0]
+
+
+@dataclass(frozen=True)
+class DiscretisationSection:
+    """The section `discretisation`: its values, and how to find the others, if at all."""
+
+    discretisation: Discretisation
+    auto: Auto | None = None
+
+
+def read_discretisation(data: Any, info: ValidationInfo) -> DiscretisationSection:
+    """Read a discretisation; a value that is left out has the model's default.
+
+    Raises ValueError (pydantic's ValidationError among them) that names the keys at fault.
+    """
+    section: Any = _DISCRETISATION.model_validate(
+        {"auto": {}} if data == "auto" else data, context=info.context
+    )
+    given = _given_values(section, "discretisation")
+    for name in given.keys() & {"nodes", "points", "courant"} if section.auto else ():
+        raise at_key(name, "cannot be given beside auto, which finds it: take out one of the two")
+    _, discretisation = _changed((paper_impact(), Discretisation()), given)
+    return DiscretisationSection(discretisation, section.auto)
+
+
+def _given_values(section: Section, root: str) -> dict[str, Any]:
+    """Return the values in a section, by the name of the parameter."""
+    tree = {root: section.model_dump(exclude_unset=True)}
+    given = {}
+    for name, entry in PARAMETERS.items():
+        node: Any = tree
+        for step in entry.path:
+            node = node.get(step, MISSING) if isinstance(node, dict) else MISSING
+        if node is not MISSING:
+            given[name] = node
+    return given
+
+
+def _changed(base: Base, values: Mapping[str, Any]) -> Base:
+    if found := refusal(base, values):
+        raise at_key(_key(found.name), found.reason)
+    return with_values(*base, values)
+
+
+def _key(name: str) -> str:
+    """Return the key of a parameter, below its section."""
+    return ".".join(PARAMETERS[name].path[1:])
 
 
 class Store(Section):
@@ -68,7 +180,7 @@ class StudyFile(Heading):
     discretisation: Annotated[DiscretisationSection, PlainValidator(read_discretisation)] = (
         DiscretisationSection(Discretisation())
     )
-    duration: Annotated[quantity("s"), AfterValidator(above_zero)]  # type: ignore[valid-type]
+    duration: Annotated[quantity("s"), ABOVE_ZERO]  # type: ignore[valid-type]
     sampling: Annotated[Grid | Sample, PlainValidator(sampling_reader(FACTORS))]
     responses: Annotated[tuple[str, ...], names("response", RESPONSES)] = tuple(RESPONSES)
     analyses: Annotated[tuple[str, ...], names("analysis", ANALYSES)] = tuple(ANALYSES)
@@ -77,23 +189,36 @@ class StudyFile(Heading):
 
 
 @dataclass(frozen=True)
-class StudyBase:
-    """The part of a study of runs that does not depend on its solver.
+class Declared:
+    """What a file declares, of any kind.
 
-    name: the file's name without its ending; path: as given. responses: names of the responses of
-    each run; analyses: names out of ANALYSES. analysis: settings of sensitivity indices. text: the
-    file as it was read.
+    name: the file's name without its ending; path: as given. text: the file as it was read.
     """
 
     name: str
     path: Path
     title: str
     description: str
+    text: str
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of the text, in hexadecimal digits."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class StudyBase(Declared):
+    """The part of a study of runs that does not depend on its solver.
+
+    responses: names of the responses of each run; analyses: names out of ANALYSES. analysis:
+    settings of sensitivity indices.
+    """
+
     sampling: Grid | Sample
     responses: tuple[str, ...]
     analyses: tuple[str, ...]
     analysis: Analysis
-    text: str
 
     @property
     def size(self) -> str:
@@ -105,11 +230,6 @@ class StudyBase:
     def runs(self) -> int:
         """Number of runs of the study."""
         return self.sampling.runs
-
-    @property
-    def sha256(self) -> str:
-        """SHA-256 of the text, in hexadecimal digits."""
-        return hashlib.sha256(self.text.encode()).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -136,26 +256,12 @@ class FunctionStudy(StudyBase):
 
 
 @dataclass(frozen=True)
-class Verification:
-    """Checks of the solver to make, and why.
+class Verification(Declared):
+    """Checks of the solver to make. checks: names out of verification.catalogue, in file order."""
 
-    name: the file's name without its ending; path: as given. checks: names out of
-    verification.catalogue, in the file's order. text: the file as it was read.
-    """
-
-    name: str
-    path: Path
-    title: str
-    description: str
     checks: tuple[str, ...]
-    text: str
 
     @property
     def size(self) -> str:
         """Describe the amount of work."""
         return f"{len(self.checks)} check{'s' * (len(self.checks) > 1)}"
-
-    @property
-    def sha256(self) -> str:
-        """SHA-256 of the text, in hexadecimal digits."""
-        return hashlib.sha256(self.text.encode()).hexdigest()

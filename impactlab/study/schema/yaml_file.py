@@ -37,23 +37,14 @@ class Source:
 
 
 def read_source(path: str | Path) -> Source:
-    """Read name, text and data of a study file. Raises StudyError, naming the file."""
+    """Read a study file. Raises StudyError, naming it; also unless its name is that of a folder."""
     path = Path(path)
-    name, text = read_name(path), read_text(path)
-    return Source(name, path, text, read_mapping(text, str(path)))
-
-
-def read_name(path: Path) -> str:
-    """Return the name of the study: that of its file, without the ending.
-
-    Raises StudyError unless it is a plain word, because it names folders.
-    """
     if path.suffix != ".yaml":
-        raise StudyError(
-            Problem(str(path), "", "the name of a study file must end in .yaml: rename it")
-        )
+        reason = "the name of a study file must end in .yaml: rename it"
+        raise StudyError(Problem(str(path), "", reason))
     check_name(path.stem, str(path))
-    return path.stem
+    text = read_text(path)
+    return Source(path.stem, path, text, read_mapping(text, str(path)))
 
 
 def check_name(name: str, file: str) -> None:
@@ -75,9 +66,8 @@ def read_text(path: Path) -> str:
         with path.open("rb") as file:
             raw = file.read(LARGEST + 1)
         if len(raw) > LARGEST:
-            raise StudyError(
-                Problem(str(path), "", f"is larger than {LARGEST // 1024} KiB: shorten it")
-            )
+            reason = f"is larger than {LARGEST // 1024} KiB: shorten it"
+            raise StudyError(Problem(str(path), "", reason))
         return raw.decode("utf-8")
     except OSError as error:
         raise StudyError(Problem(str(path), "", f"cannot be read: {error.strerror}")) from None
@@ -91,7 +81,12 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
     file: named in errors. Raises StudyError when the text is not YAML, or not a mapping.
     """
     try:
-        data = _parsed(text)
+        yaml = YAML(typ="safe", pure=True)
+        yaml.Composer, yaml.Constructor = BoundedComposer, Constructor
+        data, root = None, yaml.compose(text)
+        if root is not None:
+            _Counter().measured(root, ())  # before anything is built
+            data = yaml.constructor.construct_document(root)
     except RefusedError as error:
         raise StudyError(Problem(file, error.key, str(error))) from None
     except MarkedYAMLError as error:
@@ -105,17 +100,6 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise StudyError(Problem(file, "", "holds no keys such as `title: ...`"))
     return data
-
-
-def _parsed(text: str) -> Any:
-    """Build the data only after the size of the graph is known to be within limits."""
-    yaml = YAML(typ="safe", pure=True)
-    yaml.Composer, yaml.Constructor = BoundedComposer, Constructor
-    root = yaml.compose(text)
-    if root is None:
-        return None
-    check_size(root)
-    return yaml.constructor.construct_document(root)
 
 
 def _no_yaml(file: str, words: str) -> StudyError:
@@ -169,17 +153,12 @@ class Constructor(SafeConstructor):
             raise ConstructorError(None, None, reason, node.start_mark) from None
 
 
-def check_size(root: Node) -> None:
-    """Check a graph with its aliases expanded.
+class _Counter:
+    """Sizes and heights of expanded nodes; each node is visited once.
 
     Raises RefusedError for too many nodes, or a node too deep; also for a tag, a number or a key of
     a kind that no study needs.
     """
-    _Counter().measured(root, ())
-
-
-class _Counter:
-    """Sizes and heights of expanded nodes; each node is visited once."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[int, int]] = {}
@@ -215,23 +194,17 @@ def _children(node: Node) -> Iterator[tuple[str, Node]]:
 def _check_kind(node: Node, path: Key) -> None:
     """Raise RefusedError for anything but plain keys, lists and values."""
     tag = str(node.tag)
-    if tag.removeprefix(_CORE) not in _TAGS:
+    kind = tag.removeprefix(_CORE)
+    if kind not in _TAGS:
         raise RefusedError(path, f"has the tag {dotted([tag.replace(_CORE, '!!')])}: take it out")
-    if isinstance(node, ScalarNode) and not _whole_letters(node.value):
-        raise RefusedError(
-            path, "holds half of a character (\\ud800 to \\udfff): write the whole character"
-        )
-    number = tag.removeprefix(_CORE) in ("int", "float")
-    if number and len(node.value) > _DIGITS:
-        raise RefusedError(
-            path, f"is a number of {len(node.value):,} characters: write at most {_DIGITS:,}"
-        )
+    if isinstance(node, ScalarNode):
+        if any("\ud800" <= letter <= "\udfff" for letter in node.value):  # as escapes allow
+            reason = "holds half of a character (\\ud800 to \\udfff): write the whole character"
+            raise RefusedError(path, reason)
+        if kind in ("int", "float") and len(node.value) > _DIGITS:
+            reason = f"is a number of {len(node.value):,} characters: write at most {_DIGITS:,}"
+            raise RefusedError(path, reason)
     if isinstance(node, MappingNode):
         for key, _ in node.value:
             if not isinstance(key, ScalarNode):
                 raise RefusedError(path, "a key must be a word, not a list or a mapping")
-
-
-def _whole_letters(text: str) -> bool:
-    """Return False if the text holds half of a character, as the escapes of YAML allow."""
-    return not any("\ud800" <= letter <= "\udfff" for letter in text)

@@ -8,30 +8,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.study.design import flattened, run_shape
-from impactlab.study.netcdf import Columns
-from impactlab.study.solvers import Solver
+from impactlab.study.netcdf import Array, Columns
+from impactlab.study.solvers import Solver, flattened, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import described, provenance
 from impactlab.verification.functions import FUNCTIONS, sources_hash
-
-Array = np.ndarray[Any, Any]
 
 VALUE = "value"
 """The name of the one response."""
 _MOST = max(len(function.ranges) for function in FUNCTIONS.values())
 _CASE = np.dtype([("function", "U20"), ("x", "f8", (_MOST,))])
-_COST = 100.0
-
-
-def columns(design: xr.Dataset) -> tuple[str, ...]:
-    """Return the names of the value and its status, for any function."""
-    return (VALUE, "status")
-
-
-def failures(design: xr.Dataset) -> int:
-    """Return no bits: every run has its value."""
-    return 0
 
 
 def cases(design: xr.Dataset, runs: Array) -> Array:
@@ -42,16 +28,6 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
     table["function"] = name
     table["x"][:, : len(points)] = points.T
     return table
-
-
-def cost(cases: Array) -> Array:
-    """Return the same cost for all cases."""
-    return np.full(cases.size, _COST)
-
-
-def values(cases: Array, output: OutputSpec) -> int:
-    """Return two: the value and its status."""
-    return 2
 
 
 def solve(cases: Array, output: OutputSpec) -> Columns:
@@ -75,4 +51,13 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     return described(dataset.assign_attrs(provenance()))
 
 
-SOLVER = Solver(sources_hash(), columns, failures, cases, cost, values, solve, labelled)
+SOLVER = Solver(
+    version=sources_hash(),
+    columns=lambda design: (VALUE, "status"),
+    failures=lambda design: 0,
+    cases=cases,
+    cost=lambda cases: np.full(cases.size, 100.0),
+    values=lambda cases, output: 2,
+    solve=solve,
+    labelled=labelled,
+)

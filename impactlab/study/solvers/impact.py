@@ -20,9 +20,8 @@ from impactlab.simulate import (
 )
 from impactlab.simulate import solve as solve_cases
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.design import flattened, run_shape, varied_names
-from impactlab.study.netcdf import Columns
-from impactlab.study.solvers import Solver
+from impactlab.study.netcdf import Array, Columns
+from impactlab.study.solvers import Solver, flattened, run_shape, varied_names
 from impactlab.study.store import OutputSpec
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 
@@ -43,7 +42,7 @@ def failures(design: xr.Dataset) -> int:
     return status_bits(_responses(design))
 
 
-def cases(design: xr.Dataset, runs: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def cases(design: xr.Dataset, runs: Array) -> Array:
     """Return the kernels' case table of these runs.
 
     Raises ValueError naming the run when the model refuses a value.
@@ -53,33 +52,37 @@ def cases(design: xr.Dataset, runs: np.ndarray[Any, Any]) -> np.ndarray[Any, Any
     return case_table(*base(design), duration=duration, varied=varied, first_run=int(runs[0]))
 
 
-def cost(cases: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def cost(cases: Array) -> Array:
     """Return the cost in node-steps of the paper's beam, with a constant part per run."""
-    found: np.ndarray[Any, Any] = work(cases) + _OF_ANY_RUN
+    found: Array = work(cases) + _OF_ANY_RUN
     return found
 
 
-def values(cases: np.ndarray[Any, Any], output: OutputSpec) -> int:
+def values(cases: Array, output: OutputSpec) -> int:
     """Count the responses, histories and profiles of a run; all have the first one's mesh."""
     profile = int(cases[0].nodes) * int(cases[0].points) if output.profiles else 0
     return len(RESPONSES) + len(HISTORIES) * output.samples + len(PROFILES) * profile
 
 
-def solve(cases: np.ndarray[Any, Any], output: OutputSpec) -> Columns:
+def solve(cases: Array, output: OutputSpec) -> Columns:
     """Return the kernels' answers."""
     return solve_cases(cases, samples=output.samples, profiles=output.profiles).columns()
 
 
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """Return the answers of a design's runs, in its order, under its labels and with provenance."""
-    dims, shape = run_shape(design)
+    (dims, shape), output = run_shape(design), OutputSpec.of(design)
     flat = answer_variables(answers, _responses(design), ("run",))
     variables = {
         name: ((*dims, *others[1:]), values.reshape(*shape, *values.shape[1:]))
         for name, (others, values) in flat.items()
     }
-    coordinates = _answer_coordinates(design, OutputSpec.of(design))
-    dataset = design.assign(variables).assign_coords(coordinates)
+    dataset = design.assign(variables)
+    if output.samples:
+        times = sample_coordinates(design["duration"].item(), output.samples)
+        dataset = dataset.assign_coords(times)
+    if output.profiles:
+        dataset = dataset.assign_coords(profile_coordinates(*base(design)))
     return described(dataset.assign_attrs(provenance()))
 
 
@@ -94,15 +97,6 @@ def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
     stated = [name for name in PARAMETERS if name in variables and name not in varied]
     fixed = {name: variables[name].values.item() for name in stated}
     return with_values(paper_impact(), Discretisation(), fixed)
-
-
-def _answer_coordinates(design: xr.Dataset, output: OutputSpec) -> dict[str, Any]:
-    coordinates: dict[str, Any] = {}
-    if output.samples:
-        coordinates |= sample_coordinates(design["duration"].item(), output.samples)
-    if output.profiles:
-        coordinates |= profile_coordinates(*base(design))
-    return coordinates
 
 
 SOLVER = Solver(SOURCES_HASH, columns, failures, cases, cost, values, solve, labelled)

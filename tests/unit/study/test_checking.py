@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.checking import check, failure
 from impactlab.study.schema.study import Verification
+from impactlab.study.steps import check, failure
 from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.finding import Check, Finding, relative
 from impactlab.verification.stored import unpacked
@@ -28,7 +28,7 @@ def verification(monkeypatch):
     for name, value in {"first": 1.0, "second": float("nan"), "third": 2.0}.items():
         monkeypatch.setitem(CATALOGUE, name, made(name, value))
     checks = ("first", "second", "third")
-    return Verification("some", Path("studies/some.yaml"), "Title", "Words", checks, "title: x\n")
+    return Verification("some", Path("studies/some.yaml"), "Title", "Words", "title: x\n", checks)
 
 
 def test_an_error_does_not_stop_the_others(verification):

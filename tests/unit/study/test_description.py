@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from impactlab.study.description import describe
+from impactlab.study.schema.files import describe
 
 GRID = """
 title: Small  # no auto here, nor until: or solid

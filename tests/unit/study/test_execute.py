@@ -21,7 +21,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.execute import Batches, execute, solve_batch
 from impactlab.study.runs import Work
 from impactlab.study.solvers import impact
-from impactlab.study.store import OutputSpec
+from impactlab.study.store import OutputSpec, Shards
 from impactlab.variables import RESPONSES
 
 RESPONSES_ASKED = ["peak_force", "contact_duration", "restitution"]
@@ -119,7 +119,7 @@ def test_a_change_solves_just_what_it_touches(tmp_path, solved):
 
 def test_interrupted_studies_go_on(tmp_path, solved, monkeypatch):
     monkeypatch.setattr(executing, "_RUNS", 1)
-    write = executing.Shards.write
+    write = Shards.write
     kept = []
 
     def failing(self, keys, columns):
@@ -129,7 +129,7 @@ def test_interrupted_studies_go_on(tmp_path, solved, monkeypatch):
         return write(self, keys, columns)
 
     with monkeypatch.context() as interrupted:
-        interrupted.setattr(executing.Shards, "write", failing)
+        interrupted.setattr(Shards, "write", failing)
         with pytest.raises(KeyboardInterrupt):
             execute(design(), tmp_path, Engine())
     solved.clear()

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from impactlab.study.runs import Work
-from impactlab.study.sampling.doubling import doubled
+from impactlab.study.sampling.design import doubled
 
 
 @pytest.mark.parametrize("second_order", [True, False])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 
 from impactlab.analysis.sensitivity.indices import METHODS as INDICES
-from impactlab.study.sampling.methods import METHODS
+from impactlab.study.sampling import METHODS
 
 SETTINGS = {
     "sobol": {"base_samples": 16, "second_order": False},
@@ -23,24 +22,15 @@ SETTINGS = {
 methods = pytest.mark.parametrize("method", SETTINGS)
 
 
-def test_every_method_but_the_grid_draws_and_is_analysed():
+def test_every_method_but_the_grid_is_analysed():
     assert SETTINGS.keys() == METHODS.keys() - {"grid"} == INDICES.keys()
-    for name, method in METHODS.items():
-        assert method.name == name
-        assert (method.draws is None) == (not method.indices) == (name == "grid")
+    assert all(INDICES[name].name == name for name in INDICES)
 
 
 @methods
-def test_a_method_names_the_analysis_of_its_runs(method):
-    module, _, record = METHODS[method].indices.rpartition(".")
-    assert getattr(importlib.import_module(module), record) is INDICES[method]
-    assert INDICES[method].name == method
-
-
-@methods
-def test_the_docs_list_every_method_with_its_summary(method):
+def test_the_docs_list_every_method(method):
     table = Path(__file__).parents[4] / "docs" / "studies.md"
-    assert f"| `{method}` | {METHODS[method].summary} |" in table.read_text(encoding="utf-8")
+    assert f"| `{method}` | " in table.read_text(encoding="utf-8")
 
 
 @methods

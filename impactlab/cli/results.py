@@ -1,0 +1,104 @@
+"""From solved runs to their analysis, predictions, figures and reports."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from impactlab.cli.options import RESULTS, RunsFile, assigned, given
+
+StoredFiles = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="STORED...",
+        help="Of a study: runs.nc and analysis.nc. Of a verification: findings.nc.",
+    ),
+]
+
+
+def analyse(
+    runs: RunsFile,
+    resolution: Annotated[
+        Path | None, typer.Option(help="What `recommend` found: numerical uncertainty.")
+    ] = None,
+    refinement: Annotated[
+        Path | None, typer.Option(help="What `refine` solved: the same of Sobol indices, measured.")
+    ] = None,
+    output: Annotated[Path | None, typer.Option(help="Default: beside the runs.")] = None,
+) -> None:
+    """Convergence and sensitivity from solved runs.
+
+    Of a sample also, beside the output: every index with its interval (indices.csv, indices.nc),
+    and surrogate.nc for `impactlab predict`.
+    """
+    from impactlab.study.steps import analyse_runs
+
+    analyse_runs(runs, output or runs.with_name("analysis.nc"), resolution, refinement)
+
+
+def predict(
+    surrogate: Annotated[
+        Path, typer.Argument(metavar="SURROGATE", help="results/NAME/surrogate.nc.")
+    ],
+    values: Annotated[
+        list[str],
+        typer.Argument(metavar="NAME=VALUE...", help="Such as velocity=2 beam_depth='27 mm'."),
+    ],
+) -> None:
+    """Predict the responses of one run without solving it.
+
+    All parameters that the study varied have to be given. Beside each response stands the
+    surrogate's error on runs that it was not fitted to.
+    """
+    from impactlab.analysis.surrogate import load_surrogate
+    from impactlab.report.console import print_predictions
+
+    model = load_surrogate(surrogate)
+    texts = assigned(values)
+    numbers = {name: given(name, text, model.units(name)) for name, text in texts.items()}
+    print_predictions(model.predict(**numbers))
+
+
+def figures(
+    stored: StoredFiles,
+    output: Annotated[
+        Path | None, typer.Option(help="Default: figures/ beside the first of them.")
+    ] = None,
+) -> None:
+    """Draw every figure that a study's answers, or findings, allow."""
+    from impactlab.report.results import read_stored
+
+    kind, datasets = read_stored(stored)
+    kind.draw(*datasets, output or stored[0].with_name("figures"))
+
+
+def report(
+    stored: StoredFiles,
+    figures: Annotated[
+        Path | None, typer.Option(help="Default: figures/ beside the first of them.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option(help="Default: report.html beside the first of them.")
+    ] = None,
+) -> None:
+    """Write a study's report."""
+    from impactlab.report.results import read_stored
+
+    kind, datasets = read_stored(stored)
+    kind.write(
+        *datasets,
+        figures or stored[0].with_name("figures"),
+        output or stored[0].with_name("report.html"),
+    )
+
+
+def index(
+    results: Annotated[Path, typer.Argument(help="Folder of results.")] = RESULTS,
+    output: Annotated[Path | None, typer.Option(help="Default: index.html in it.")] = None,
+) -> None:
+    """Write the index over all reports."""
+    from impactlab.report.results import write_index
+
+    write_index(results, output or results / "index.html")

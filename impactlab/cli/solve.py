@@ -1,0 +1,175 @@
+"""From a study file to solved runs."""
+
+from __future__ import annotations
+
+import logging
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from impactlab.cli.interrupt import stop_at_once
+from impactlab.cli.options import RunsFile, StudyFile, chosen, given, results_file
+
+if TYPE_CHECKING:
+    from impactlab.study.engine import Engine
+    from impactlab.study.steps import AnyStudy
+
+Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
+_ALL = os.cpu_count() or 1
+
+
+def recommend(
+    study: StudyFile,
+    tolerance: Annotated[
+        str,
+        typer.Option(
+            help="Numerical uncertainty that is good enough, such as '0.5 %'. Default: the "
+            "study's, or 1 %."
+        ),
+    ] = "",
+    responses: Annotated[
+        str,
+        typer.Option(
+            help="Which it is asked of, such as peak_force,impulse. Default: those of the study."
+        ),
+    ] = "",
+    output: Annotated[
+        Path | None, typer.Option(help="Default: results/NAME/resolution.nc.")
+    ] = None,
+    workers: Threads = _ALL,
+) -> None:
+    """Find the cheapest discretisation that is fine enough.
+
+    The study's corner cases are solved with finer and finer discretisations; the file keeps the
+    evidence.
+    """
+    from impactlab.report.console import print_recommendation
+    from impactlab.study import RESOLUTION, steps
+    from impactlab.study.engine import Engine
+    from impactlab.study.schema.files import read_impacts
+    from impactlab.study.schema.study import Auto
+
+    declared = read_impacts(study)
+    path = output or results_file(declared.name, RESOLUTION)
+    stop_at_once()
+    wishes = declared.auto or Auto()
+    if tolerance:
+        limit = given("--tolerance", tolerance, "1")
+        if not 0 < limit < 1:
+            raise ValueError(f"--tolerance = {tolerance!r}: must lie between 0 and 100 %")
+        wishes = wishes.model_copy(update={"tolerance": limit})
+    if asked := chosen("--responses", responses, declared.responses):
+        wishes = wishes.model_copy(update={"responses": asked})
+    print_recommendation(steps.recommend(declared, path, Engine("threads", workers), wishes))
+
+
+def design(
+    study: StudyFile,
+    output: Annotated[Path | None, typer.Option(help="Default: results/NAME/design.nc.")] = None,
+) -> None:
+    """Sample a study into its runs.
+
+    A discretisation that is `auto` is found first, as by `impactlab recommend`.
+    """
+    from impactlab.study.engine import Engine
+    from impactlab.study.netcdf import write_netcdf
+    from impactlab.study.sampling.design import design as design_of
+    from impactlab.study.schema.files import read_study
+
+    declared = read_study(study)
+    path = output or results_file(declared.name, "design.nc")
+    stop_at_once()
+    write_netcdf(design_of(_resolved(declared, path.parent, Engine(workers=_ALL))), path)
+
+
+def _resolved(study: AnyStudy, folder: Path, engine: Engine) -> AnyStudy:
+    """Return the study with its discretisation, found by pilot runs and printed where `auto`."""
+    from impactlab.report.console import print_recommendation
+    from impactlab.study import steps
+
+    found = steps.find_resolution(study, folder, engine)
+    if found is not None:
+        print_recommendation(found)
+    return steps.apply_resolution(study, found)
+
+
+def run(
+    design_file: Annotated[
+        Path, typer.Argument(metavar="STUDY", help="A study file, or its design.nc.")
+    ],
+    output: Annotated[Path | None, typer.Option(help="Default: results/NAME/runs.nc.")] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Threads or processes.")] = _ALL,
+    processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
+    scheduler: Annotated[str, typer.Option(help="Address of a running dask scheduler.")] = "",
+    cluster: Annotated[
+        Path | None, typer.Option(help="Slurm jobs as in this file; see profiles/slurm.")
+    ] = None,
+    batch_seconds: Annotated[
+        float, typer.Option(min=0.001, help="Of a task, about; more for hundreds of threads.")
+    ] = 1.0,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Tell runs, time, memory and disk, and solve nothing.")
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Also what takes a month of one core, or all memory.")
+    ] = False,
+) -> None:
+    """Solve the runs of a study that have not been solved yet.
+
+    Finished batches are kept in results/NAME/shards: an interrupted study resumes there.
+    """
+    stop_at_once()
+    from impactlab.report.console import print_estimate
+    from impactlab.study import steps
+    from impactlab.study.engine import Engine, read_profile
+    from impactlab.study.errors import StudyError
+    from impactlab.study.netcdf import read_netcdf
+    from impactlab.study.sampling.design import design, study_of_design
+    from impactlab.study.schema.files import read_study
+
+    stored = read_netcdf(design_file) if design_file.suffix == ".nc" else None
+    study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
+    path = output or results_file(study.name, "runs.nc")
+    price = steps.price(study, path.parent, workers)
+    for problem in price.implausible:
+        logging.getLogger("impactlab").warning("%s", problem)
+    if dry_run:
+        print_estimate(price.cost, workers, price.free, price.exceeded)
+        return
+    if price.exceeded and not force:
+        raise StudyError(*price.exceeded)
+    profile = read_profile(cluster) if cluster else None
+    engine = Engine(
+        "processes" if processes else "threads", workers, scheduler, profile, batch_seconds
+    )
+    if stored is not None:
+        steps.solve(stored, path, engine)
+    else:
+        study = _resolved(study, path.parent, engine)
+        steps.solve(design(study), path, engine, file=design_file)
+
+
+def refine(
+    runs: RunsFile,
+    output: Annotated[
+        Path | None, typer.Option(help="Default: refinement.nc, beside the runs.")
+    ] = None,
+    base_samples: Annotated[
+        int | None,
+        typer.Option(min=16, help="How many are solved again. Default: N/8, from 16 to 64."),
+    ] = None,
+    workers: Threads = _ALL,
+) -> None:
+    """Solve the first runs of a Sobol sample on finer grids.
+
+    `impactlab analyse --refinement` estimates the numerical error of the indices from them; more
+    base samples narrow the estimate.
+    """
+    stop_at_once()
+    from impactlab.study import steps
+    from impactlab.study.engine import Engine
+
+    path = output or runs.with_name("refinement.nc")
+    steps.refine(runs, path, Engine("threads", workers), base_samples)
