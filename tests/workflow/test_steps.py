@@ -163,7 +163,7 @@ def test_trials_of_an_auto_discretisation_are_solved_where_the_study_is(folder, 
     monkeypatch.chdir(folder)
     engines = []
 
-    def looking(study, trials, engine):
+    def looking(study, trials, engine, wishes):
         engines.append(engine)
         raise OSError("seen enough")
 
