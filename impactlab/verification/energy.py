@@ -13,7 +13,6 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import Value, with_values
 from impactlab.simulate import case_table, simulate
 from impactlab.solver import RULES
-from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
@@ -28,6 +27,7 @@ from impactlab.verification.finding import (
     absolute,
 )
 from impactlab.verification.solutions import quadrature
+from impactlab.verification.solutions.contact_laws import LAWS
 from impactlab.verification.solutions.stronge import stronge_impact
 
 
@@ -180,7 +180,7 @@ def drawn(random: np.random.Generator) -> dict[str, Value]:
             10.0 ** (random.uniform(0.0, 1.4) if soft else random.uniform(-2.3, -0.7))
         ),
         "gravity": float(random.choice([0.0, 9.81, 50.0])),
-        "contact": str(random.choice(LAWS)),
+        "contact": str(random.choice(list(LAWS))),
         "sphere_radius": float(random.uniform(0.01, 0.05)),
         "sphere_yield_stress": float(random.uniform(300e6, 3e9)),
         "beam_span": float(random.uniform(0.4, 1.0)),
