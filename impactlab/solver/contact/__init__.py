@@ -191,6 +191,22 @@ _REGISTRY = (
             jumps=((1.9, 0.00470),), restitution=1.0047, creates=(1.9, 2.0011), dent=-0.0047
         ),
     ),
+    ContactLaw(
+        name="abbott_firestone",
+        title="Abbott and Firestone, after Hertz",
+        source=(
+            "Abbott and Firestone 1933 (Mechanical Engineering 55, 569), as in Jackson and Green "
+            "2005 (J. Tribology 127, 343)"
+        ),
+        holds=f"full plasticity, {_CIRCLE} (indentation up to half its radius)",
+        unconfirmed=(
+            "that it describes contact at all, since it was meant for wear; the hardness of 2.8 "
+            "yield stresses; the onset of full plasticity, which is put where its force is that of "
+            "Hertz; the unloading, for which Hertz's curve is taken"
+        ),
+        flaws="Stiff, and elastic too long: nothing yields before full plasticity.",
+        measured=Measured(yield_pressure=3.0 * 2.8),
+    ),
 )
 CONTACT_LAWS: dict[str, ContactLaw] = {law.name: law for law in _REGISTRY}
 """The laws by name."""
