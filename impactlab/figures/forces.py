@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -18,6 +20,7 @@ from impactlab.figures.record import Figure
 _FORCE, _INDENTATION = "contact_force", "indentation"
 _FEW, _MANY = 32.0, 21.0
 """Height of a row of panels where there are few or many rows, mm."""
+_COLUMNS_OF_HISTORIES = 4
 _WIDE = 3
 """Columns up to which a panel's title has room on one line."""
 _DISPLACEMENTS = {
@@ -88,14 +91,14 @@ def _history_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
 
 @style.paper
 def _plot_history(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
-    """Draw a panel per run, in a column per law, as sub-impacts would hide each other."""
+    """Draw a panel per run, as sub-impacts would hide each other; a row or more per velocity."""
     selected, force = curves.chosen(runs, _FORCE), usable(runs, _FORCE)
     shown = [(panel, curve) for curve in selected.curves for panel in selected.panels]
-    height = _FEW if len(shown) <= 3 * len(selected.panels) else _MANY
-    figure, axes = style.panels(
-        len(shown), columns=len(selected.panels), height=height, sharex=True
-    )
-    between = ", " if len(selected.panels) <= _WIDE else "\n"
+    rows = math.ceil(len(selected.panels) / _COLUMNS_OF_HISTORIES)
+    columns = math.ceil(len(selected.panels) / rows)
+    height = _FEW if len(shown) <= 3 * columns else _MANY
+    figure, axes = style.panels(len(shown), columns=columns, height=height, sharex=True)
+    between = ", " if columns <= _WIDE else "\n"
     for ax, (panel, curve) in zip(axes, shown, strict=True):
         texts = (labels.sentence(panel.label), curve.label)
         ax.set_title(between.join(filter(None, texts)), loc="left")
