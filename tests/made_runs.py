@@ -40,7 +40,10 @@ def design_of(varied: Mapping[str, Any], **attrs: Any) -> xr.Dataset:
 
 
 def answers(design: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Return every response, smooth in velocity, yield stress, modulus and nodes, in SI."""
+    """Return every response, smooth in velocity, yield stress, modulus and nodes, in SI.
+
+    A response without a line of its own follows the base.
+    """
     whole = xr.DataArray(np.empty(tuple(design.sizes.values())), dims=tuple(design.sizes))
     velocity = design["velocity"]
     size = (design["beam_yield_stress"] / 345e6) ** 0.1 * (design["beam_youngs_modulus"] / 210e9)
@@ -53,7 +56,7 @@ def answers(design: xr.Dataset) -> dict[str, xr.DataArray]:
     softer = xr.where(design["contact"] == "hertz", 1.2, 1.0)
     base = velocity * size * error * softer
     plastic = (base - 5.0).clip(min=0.0) * 1e-3
-    found = {
+    found = dict.fromkeys(RESPONSES, base) | {
         "peak_force": 8e3 * base,
         "time_of_peak_force": 1.5e-4 * base**-0.2,
         "contact_duration": 4e-4 * base**-0.2,

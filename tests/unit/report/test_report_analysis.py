@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.figures.catalogue import CATALOGUE
+from impactlab.variables import RESPONSES
 
 Study = Any
 NODES = "Convergence in nodes along the span"
@@ -26,7 +27,7 @@ def _list(page: Any, start: str) -> str:
 
 def test_verdicts_a_row_a_response(report: Any, discretisation_study: Study) -> None:
     runs, analysis = discretisation_study
-    tally = xr.DataArray(np.full((17, 2), 3), dims=("response", "nodes_outcome"))
+    tally = xr.DataArray(np.full((len(RESPONSES), 2), 3), dims=("response", "nodes_outcome"))
     page = report(
         runs,
         analysis.assign(nodes_tally=tally).assign_coords(nodes_outcome=["converged", "divergent"]),
@@ -43,7 +44,7 @@ def test_verdicts_a_row_a_response(report: Any, discretisation_study: Study) -> 
     assert _row(page, NODES, "Peak plastic strain")[1] == "divergent"
     assert _row(page, POINTS, "Peak plastic strain")[1] == "not yet converged"
     assert "meaning of divergent" in page.text
-    assert len(page.tables[NODES]) == len(page.tables[POINTS]) == 18
+    assert len(page.tables[NODES]) == len(page.tables[POINTS]) == 1 + len(RESPONSES)
 
 
 def test_what_is_not_converged_is_a_caution(report: Any, discretisation_study: Study) -> None:
