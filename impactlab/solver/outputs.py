@@ -66,6 +66,12 @@ RESPONSES = (
     Response("maximum_deflection", "m", "largest mid-span deflection", "deflection_still_growing"),
     Response("impulse", "N s", "impulse of the contact force, all contacts", "in_contact_at_end"),
     Response(
+        "mean_force",
+        "N",
+        "mean contact force: impulse over the time in contact",
+        "in_contact_at_end",
+    ),
+    Response(
         "rebound_velocity",
         "m s-1",
         "sphere's velocity away from the beam when the last contact ends",

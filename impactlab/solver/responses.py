@@ -51,6 +51,7 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
         answer.total_contact_time = events.time_in_contact
         answer.permanent_indentation = contact.delta_r
         answer.impulse = events.impulse
+        answer.mean_force = events.impulse / events.time_in_contact
         _, answer.contact_dissipation = energies(contact, pair, events.delta)
         if answer.contact_dissipation < -_ROUNDING * contact.work:
             answer.remarks |= CONTACT_CREATED_ENERGY

@@ -63,7 +63,7 @@ def history_responses(history: History, pause: float) -> tuple[dict[str, float],
     deflected_at, deflection = peak(time, axis)
     # Each force acts from mid-step to mid-step.
     middles = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])
-    impulse = float(np.sum(force * np.diff(middles)))
+    impulse = np.nan if np.isnan(end) else float(np.sum(force * np.diff(middles)))
     dents = ((top - axis) + (sphere - pole))[time > end]
     growing = indented_at >= time[-1]  # the force may go on rising with it
     return {
@@ -72,7 +72,8 @@ def history_responses(history: History, pause: float) -> tuple[dict[str, float],
         "contact_duration": float(lasting[0]),
         "number_of_contacts": float(len(touches)),
         "total_contact_time": float(np.sum(lasting)),
-        "impulse": np.nan if np.isnan(end) else impulse,
+        "impulse": impulse,
+        "mean_force": impulse / float(np.sum(lasting)),
         "maximum_indentation": np.nan if growing else indentation,
         "permanent_indentation": float(np.mean(dents)) if dents.size else np.nan,
         "maximum_deflection": np.nan if deflected_at >= time[-1] else deflection,
