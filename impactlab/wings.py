@@ -20,7 +20,7 @@ COMMANDS = {
 SOLVERS = {"witness": "impactlab.fem3d.study.solver:SOLVER"}
 """Solvers of runs, see study.solvers, by the name that designs hold."""
 SOLID = {
-    "cases": "impactlab.fem3d.study.cases",
+    "cases": "impactlab.fem3d.study.solver",
     "figures": "impactlab.fem3d.figures:FIGURES",
     "sections": "impactlab.fem3d.study.report:sections",
 }

@@ -63,27 +63,21 @@ def side(runs: xr.Dataset, analysis: xr.Dataset, name: str, model: str) -> Side:
     """Return a response of one model against the velocity, in the order of the runs."""
     values = usable(runs, name).sel(beam_model=model).isel(finest(runs), missing_dims="ignore")
     found = values.values.astype(float)
-    axis = "element_size" if model == SOLID else "nodes"
-    width: Array = abs(found) * _share(analysis, name, model, axis)
-    return Side(found, width)
-
-
-def difference(ours: Side, solid: Side) -> Side:
-    """Return ours over that of the 3-D FE model, minus one, with both uncertainties; NaN for 0."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(solid.value != 0.0, ours.value / solid.value, np.nan)
-        shares = [abs(each.uncertainty / each.value) for each in (ours, solid)]
-    return Side(ratio - 1.0, np.asarray(abs(ratio) * (shares[0] + shares[1])))
-
-
-def _share(analysis: xr.Dataset, name: str, model: str, axis: str) -> Array:
-    """Return the relative numerical uncertainty of the finest value, NaN where not judged."""
-    variable = f"{axis}_uncertainty"
+    variable = f"{'element_size' if model == SOLID else 'nodes'}_uncertainty"
     if variable not in analysis or not known(analysis, name):
-        return np.array(np.nan)
-    chosen = analysis[variable].sel(response=name, beam_model=model)
-    chosen = chosen.isel({dim: 0 for dim in AXES if dim in chosen.dims})
-    return np.asarray(chosen.values, dtype=float)
+        return Side(found, np.full(found.shape, np.nan))
+    share = analysis[variable].sel(response=name, beam_model=model)
+    share = share.isel(dict.fromkeys(AXES, 0), missing_dims="ignore")
+    return Side(found, abs(found) * share.values.astype(float))
+
+
+def difference(over: list[Side], under: list[Side]) -> Side:
+    """Return product over product, minus one, with the uncertainties of all; NaN over 0."""
+    below = np.prod([each.value for each in under], axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.prod([each.value for each in over], axis=0) / np.where(below, below, np.nan)
+        share = sum(abs(each.uncertainty / each.value) for each in (*over, *under))
+    return Side(ratio - 1.0, abs(ratio) * share)
 
 
 EULER, TIMOSHENKO = "euler_bernoulli", "timoshenko"
@@ -118,22 +112,13 @@ def effects(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> dict[str, Side
     """
     soft, hard = np.argsort(runs[_YIELD].values)
     both = {model: side(runs, analysis, name, model) for model in (EULER, TIMOSHENKO, SOLID)}
-    e, t, s = (_at(both[model], int(soft)) for model in (EULER, TIMOSHENKO, SOLID))
-    te, se = (_at(both[model], int(hard)) for model in (TIMOSHENKO, SOLID))
+    (e, _), (t, te), (s, se) = (
+        [Side(curve.value[at], curve.uncertainty[at]) for at in (soft, hard)]
+        for curve in both.values()
+    )
     return {
-        "shear": _product([t], [e]),
-        "flexibility": _product([se], [te]),
-        "law": _product([s, te], [se, t]),
-        "all": _product([s], [e]),
+        "shear": difference([t], [e]),
+        "flexibility": difference([se], [te]),
+        "law": difference([s, te], [se, t]),
+        "all": difference([s], [e]),
     }
-
-
-def _at(curve: Side, where: int) -> Side:
-    return Side(curve.value[where], curve.uncertainty[where])
-
-
-def _product(over: list[Side], under: list[Side]) -> Side:
-    """Return product over product, minus one, with the uncertainties of all."""
-    ratio = np.prod([each.value for each in over]) / np.prod([each.value for each in under])
-    share = sum(abs(each.uncertainty / each.value) for each in (*over, *under))
-    return Side(np.asarray(ratio - 1.0), np.asarray(abs(ratio) * share))

@@ -92,16 +92,14 @@ def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
 def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
     first, *others = differences.models(runs)
     against = differences.side(runs, analysis, name, first)
+    speeds = runs["velocity"].values
     for at, model in enumerate(others, 1):
-        gap = differences.difference(differences.side(runs, analysis, name, model), against)
+        gap = differences.difference([differences.side(runs, analysis, name, model)], [against])
         bars = np.where(np.isfinite(gap.uncertainty), 100.0 * gap.uncertainty, np.nan)
         shift = 1.0 + 0.04 * (at - 0.5 * (len(others) + 1))
         if np.isfinite(gap.value).any():
-            speed = shift * runs["velocity"].values
-            look: dict[str, Any] = {"elinewidth": 0.8, "label": differences.label(model)} | _look(
-                at
-            )
-            ax.errorbar(speed, 100.0 * gap.value, yerr=bars, **look)
+            look = _look(at) | {"label": differences.label(model)}
+            ax.errorbar(shift * speeds, 100.0 * gap.value, yerr=bars, elinewidth=0.8, **look)
     if not ax.containers:
         style.remark(ax, "no finite values")
         return

@@ -65,7 +65,7 @@ def _cell(
     if value and not width <= _NOTHING * abs(value):
         bound = f"{labels.number(100.0 * width / abs(value), 2)} %" if np.isfinite(width) else "?"
         text = f"{text} ± {bound}"
-    gap = float(differences.difference(side, against).value[at])
+    gap = float(differences.difference([side], [against]).value[at])
     shown = alike and side is not against and np.isfinite(gap)
     detail = f"{_signed(gap)} against the 3-D FE model" if shown else ""
     return Cell(text, "number", detail)

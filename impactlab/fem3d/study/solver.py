@@ -1,23 +1,39 @@
-"""The solver of studies in which some runs are of the 3-D FE model, beside the beam models."""
+"""The solver of studies in which some runs are of the 3-D FE model, beside the beam models.
+
+The record of a run is that of the kernels (solver.types.CASE) with the size of the solid elements.
+What a run does not depend on is zero in it, so that runs which differ in that alone are one case.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import logging
 from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from distributed.system import MEMORY_LIMIT
+from numpy.lib.recfunctions import require_fields
 
-from impactlab.fem3d.solver import quarter_mesh
+from impactlab.fem3d.solver import Cost, estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver import solve as solve_alone
 from impactlab.fem3d.solver.jit import SOURCES_HASH as SOLID_HASH
+from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.fem3d.solver.responses import surface_reach
-from impactlab.fem3d.study.cases import impact_of, is_solid, kernel_cases, table, work
-from impactlab.model.impact import Impact
+from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
+from impactlab.model import cost
+from impactlab.model.checks import column, positive
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import SOLID, Impact, paper_impact
+from impactlab.model.parameters import with_values
+from impactlab.simulate import case_table
 from impactlab.simulate import solve as solve_cases
+from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import SOURCES_HASH
+from impactlab.solver.types import CASE
 from impactlab.study.netcdf import Columns
 from impactlab.study.solvers import Solver, flattened, impact, run_shape, varied_names
 from impactlab.study.store import OutputSpec
@@ -25,11 +41,130 @@ from impactlab.variables import FAILURES, HISTORIES, RESPONSES, WITNESS, describ
 
 log = logging.getLogger(__name__)
 
+Array = np.ndarray[Any, Any]
+
+VERSION = hashlib.sha256(f"{SOURCES_HASH} {SOLID_HASH}".encode()).hexdigest()
+"""Hash of the sources of the kernels and of the 3-D FE model."""
+SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
+"""Record type of the table of cases."""
+SOLID_MODEL = len(BEAM_MODELS)
+"""Number of the 3-D FE model, after those of the kernels."""
+_BEAM_MODELS_ONLY = (
+    *("contact", "shear_coefficient"),
+    *("nodes", "points", "rule", "scheme", "courant"),
+)
+"""Fields that the 3-D FE model does not use."""
 STOPPED = FAILURES["stopped"][0]
 _LARGER = 1.5
 """A patch of matched nodes over one that the contact has outgrown."""
 _STEPS = 10_001
 """Samples of a history before it is brought to the study's times: closer than the time steps."""
+_LONG = 3600.0
+"""Duration of a run in s beyond which no mesh is made to estimate it."""
+
+
+def table(
+    impact: Impact,
+    discretisation: Discretisation,
+    *,
+    duration: float,
+    varied: Mapping[str, Any],
+    first_run: int = 0,
+) -> Array:
+    """Return one record per run, each run checked; arguments as those of simulate.case_table.
+
+    Raises ValueError naming the run and its field when the model refuses a value, or a run of the
+    3-D FE model has neither element_size nor elements_per_radius.
+    """
+    models = np.asarray(varied.get("beam_model", [impact.beam_model]))
+    plain = dict(varied)
+    if "beam_model" in plain:
+        plain["beam_model"] = np.where(models == SOLID, BEAM_MODELS[0], models)
+    elif impact.beam_model == SOLID:
+        impact = replace(impact, beam_model=BEAM_MODELS[0])
+    known = case_table(impact, discretisation, duration=duration, varied=plain, first_run=first_run)
+    cases: Array = require_fields(known, SOLID_CASE)
+    solid = np.broadcast_to(models == SOLID, cases.shape)
+    if solid.any():
+        cases["beam_model"][solid] = SOLID_MODEL
+        for name in _BEAM_MODELS_ONLY:
+            cases[name][solid] = 0
+        cases["element_size"][solid] = _sizes(discretisation, varied, cases, solid)
+    return cases
+
+
+def _sizes(
+    discretisation: Discretisation, varied: Mapping[str, Any], cases: Array, solid: Array
+) -> Array:
+    """Return the element size in m of each run of the 3-D FE model."""
+
+    def given(name: str) -> Array | None:
+        values = varied.get(name, [getattr(discretisation, name)])
+        if any(value is None for value in values):
+            return None
+        return np.broadcast_to(positive("Discretisation", name, column(values)), solid.shape)[solid]
+
+    if (sizes := given("element_size")) is not None:
+        return sizes
+    if (counts := given("elements_per_radius")) is None:
+        raise ValueError("Discretisation.element_size: is required for the solid model")
+    return np.array([contact_radius(_impact_of(case)) for case in cases[solid]]) / counts
+
+
+def is_solid(cases: Array) -> Array:
+    """Return which cases are of the 3-D FE model, (cases,)."""
+    return np.asarray(cases["beam_model"] == SOLID_MODEL)
+
+
+def _kernel_cases(cases: Array) -> Array:
+    """Return the cases of the beam models as the kernels take them."""
+    return np.asarray(require_fields(cases[~is_solid(cases)], CASE))
+
+
+def _impact_of(case: Any) -> Impact:
+    """Return the impact of a record of the 3-D FE model."""
+    values = {name: case[name].item() for name in IMPACT_PARAMETERS}
+    return with_values(paper_impact(), Discretisation(), values | {"beam_model": SOLID})[0]
+
+
+def work(cases: Array) -> Array:
+    """Return the estimated time of each run in node-steps; 0 for a run that is listed again."""
+    found = np.zeros(cases.size)
+    solid = is_solid(cases)
+    found[~solid] = cost.work(_kernel_cases(cases))
+    found[solid] = [cost.A_SECOND * _cost(case.tobytes()).cpu_seconds for case in cases[solid]]
+    _, first = np.unique(cases.view(f"V{cases.dtype.itemsize}"), return_index=True)
+    again = np.ones(cases.size, dtype=bool)
+    again[first] = False
+    found[again] = 0.0
+    return found
+
+
+def memory(cases: Array) -> Array:
+    """Return the estimated memory of each run in bytes."""
+    found = np.zeros(cases.size)
+    solid = is_solid(cases)
+    found[~solid] = cost.memory(_kernel_cases(cases))
+    found[solid] = [_cost(case.tobytes()).memory_bytes for case in cases[solid]]
+    return found
+
+
+@lru_cache(maxsize=4096)
+def _cost(record: bytes) -> Cost:
+    """Return elements, steps, seconds and bytes of one 3-D run; zeros where no mesh fits.
+
+    Of one that is long or large, what it takes at the least: its mesh may not fit memory.
+    """
+    case = np.frombuffer(record, dtype=SOLID_CASE)[0]
+    given, size, duration = _impact_of(case), case["element_size"].item(), case["duration"].item()
+    try:
+        least = least_cost(given, element_size=size, duration=duration)
+        if least.cpu_seconds > _LONG or least.memory_bytes > MEMORY_LIMIT:
+            return least
+        mesh = quarter_mesh(given, element_size=size)
+    except ValueError:  # the run will say so in its status
+        return Cost(0, 0, 0.0, 0)
+    return estimate(mesh, given, duration=duration)
 
 
 def solve_one(case: Any, samples: int) -> dict[str, Any]:
@@ -40,8 +175,9 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
     so. Raises KeyboardInterrupt where the run was interrupted: it is no answer.
     """
     given = {"status": STOPPED, "remarks": 0}
+    duration = case["duration"].item()
     try:
-        run = _solved(impact_of(case), case["element_size"].item(), case["duration"].item())
+        run = _solved(_impact_of(case), case["element_size"].item(), duration)
     except ValueError as error:  # no mesh of this size, or no larger patch
         log.warning("a 3-D run was not possible: %s", error)
         return given
@@ -52,9 +188,13 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
         log.warning("a 3-D run stopped: %s", stopped)
         return given | {"status": int(run["status"]) | STOPPED}
     found = {name: float(run[name]) for name in RESPONSES if name in run}
-    histories = _histories(run, case["duration"].item(), samples)
-    own = {"plastic_zone_radius": surface_reach(run)}
-    return given | found | own | histories | {"status": int(run["status"])}
+    if samples:  # the last time may lie within a step of the run's end
+        times = np.linspace(0.0, duration, samples)
+        for name in HISTORIES:
+            if name in run:
+                found[name] = np.interp(times, run["time"].values, run[name].values)
+    own = {"plastic_zone_radius": surface_reach(run), "status": int(run["status"])}
+    return given | found | own
 
 
 def _solved(impact: Impact, size: float, duration: float) -> xr.Dataset:
@@ -69,59 +209,27 @@ def _solved(impact: Impact, size: float, duration: float) -> xr.Dataset:
         )
 
 
-def _histories(run: xr.Dataset, duration: float, samples: int) -> dict[str, Any]:
-    """Return histories on the study's times; the last may lie within a step of the run's end."""
-    if not samples:
-        return {}
-    times = np.linspace(0.0, duration, samples)
-    return {
-        name: np.interp(times, run["time"].values, run[name].values)
-        for name in HISTORIES
-        if name in run
-    }
-
-
-Array = np.ndarray[Any, Any]
-
-VERSION = hashlib.sha256(f"{SOURCES_HASH} {SOLID_HASH}".encode()).hexdigest()
-"""Hash of the sources of the kernels and of the 3-D FE model."""
-
-
 def columns(design: xr.Dataset) -> tuple[str, ...]:
     """Return the columns of the beam models, and those of the 3-D FE model alone."""
     return (*impact.columns(design), *WITNESS)
 
 
-def failures(design: xr.Dataset) -> int:
-    """Return the failure bits of the beam models."""
-    return impact.failures(design)
-
-
 def cases(design: xr.Dataset, runs: Array) -> Array:
-    """Return the table of fem3d.study.cases of these runs.
-
-    Raises ValueError naming the run when the model refuses a value.
-    """
+    """Return the table of these runs. Raises ValueError naming a run that the model refuses."""
     varied = {name: flattened(design, name, runs) for name in varied_names(design)}
     duration = design["duration"].item()
     return table(*impact.base(design), duration=duration, varied=varied, first_run=int(runs[0]))
 
 
-def cost(cases: Array) -> Array:
-    """Return the cost in node-steps of the paper's beam, converted from seconds for 3-D runs."""
-    return work(cases)
-
-
-def values(cases: Array, form: OutputSpec) -> int:
-    """Return the number of values of the beam models."""
-    return impact.values(cases, form)
-
-
 def solve(cases: Array, form: OutputSpec) -> Columns:
     """Return the answers of the kernels and of the 3-D FE model, in the order of the cases."""
     solid = is_solid(cases)
-    found = solve_cases(kernel_cases(cases), samples=form.samples).columns()
-    columns = {name: _spread(values, ~solid) for name, values in found.items()}
+    found = solve_cases(_kernel_cases(cases), samples=form.samples).columns()
+    columns = {}
+    for name, values in found.items():
+        missing = np.nan if values.dtype.kind == "f" else 0
+        columns[name] = np.full((cases.size, *values.shape[1:]), missing, dtype=values.dtype)
+        columns[name][~solid] = values
     columns |= {name: np.full(cases.size, np.nan) for name in WITNESS}
     for at in np.flatnonzero(solid):
         for name, value in solve_one(cases[at], form.samples).items():
@@ -136,12 +244,4 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     return described(impact.labelled(design, answers).assign(own))
 
 
-def _spread(values: Array, where: Array) -> Array:
-    """Return rows of (cases, ...): those given where `where` holds, else NaN (0 for integers)."""
-    missing = np.nan if values.dtype.kind == "f" else 0
-    rows = np.full((where.size, *values.shape[1:]), missing, dtype=values.dtype)
-    rows[where] = values
-    return rows
-
-
-SOLVER = Solver(VERSION, columns, failures, cases, cost, values, solve, labelled)
+SOLVER = Solver(VERSION, columns, impact.failures, cases, work, impact.values, solve, labelled)

@@ -26,7 +26,7 @@ def test_each_side_is_the_finest_with_its_own_uncertainty(study):
     assert beam.value == pytest.approx(1.05e4 * 1.01 * SPEEDS)
     assert solid.value == pytest.approx(1e4 * 1.01 * SPEEDS)
     assert solid.uncertainty == pytest.approx(1.25 * 0.01e4 * SPEEDS, rel=1e-3)
-    gap = differences.difference(beam, solid)
+    gap = differences.difference([beam], [solid])
     assert gap.value == pytest.approx(0.05)
     assert gap.uncertainty == pytest.approx(1.05 * 2 * 1.25 * 0.01 / 1.01, rel=1e-3)
 

@@ -10,7 +10,6 @@ import pytest
 import impactlab as il
 from impactlab.fem3d import solver as solid
 from impactlab.fem3d.solver.mesh.estimates import contact_radius
-from impactlab.fem3d.study import cases as case_tables
 from impactlab.fem3d.study import solver as witness
 from impactlab.model.cost import A_SECOND
 from impactlab.study.engine import Engine
@@ -107,7 +106,7 @@ def test_the_cost_counts_what_is_solved_once(study):
     assert found.seconds == pytest.approx(sum(each.cpu_seconds for each in seconds), rel=0.2)
     assert found.largest_run["beam_model"] == "solid"
     cases = witness.cases(design(study), ALL)
-    assert witness.cost(cases).sum() / A_SECOND == pytest.approx(found.seconds)
+    assert witness.work(cases).sum() / A_SECOND == pytest.approx(found.seconds)
 
 
 def only_solid(study):
@@ -167,7 +166,7 @@ def test_what_does_not_fit_memory_is_priced_without_a_mesh(monkeypatch):
         assert element_size > 1e-4
         return solid.quarter_mesh(impact, element_size=element_size)
 
-    monkeypatch.setattr(case_tables, "quarter_mesh", watched)
+    monkeypatch.setattr(witness, "quarter_mesh", watched)
     fine = TEXT.replace("[4 mm, 3 mm]", "[0.01 mm]")
     found = estimate(study_of_text("fine", fine), workers=1)
     assert found.memory > 1e10
