@@ -20,7 +20,7 @@ from impactlab.figures.labels import Display, display
 from impactlab.figures.record import Figure
 from impactlab.files import replaced
 from impactlab.paper.statements import judge_all
-from impactlab.paper.statements.statement import Judgement, Number, Statement, Verdict
+from impactlab.paper.statements.statement import Judgement, Statement, Verdict
 from impactlab.report.page import Cell, Row, Table, pictures, provenance, write_page
 from impactlab.study.netcdf import read_netcdf
 from impactlab.variables import provenance as made_now
@@ -126,7 +126,7 @@ def _cases(judgements: Iterable[Judgement]) -> Table:
     rows: list[Row] = [
         [
             judgement.case,
-            _numbers_text(judgement) or "–",
+            _numbers(judgement) or "–",
             Cell(judgement.verdict, kinds.get(judgement.verdict, "")),
             judgement.why,
         ]
@@ -157,7 +157,7 @@ def _write_tables(judged: Judged, output: Path) -> None:
     for statement, judgements in judged:
         for each in judgements:
             about = [statement.name, statement.text, each.case, statement.test]
-            claims.append([*about, _numbers_text(each), str(each.verdict), each.why])
+            claims.append([*about, _numbers(each), str(each.verdict), each.why])
             for one in each.numbers:
                 values = [f"{one.value:.9g}", f"{one.uncertainty:.3g}"]
                 numbers.append([statement.name, each.case, one.name, *values, one.units])
@@ -167,24 +167,23 @@ def _write_tables(judged: Judged, output: Path) -> None:
             csv.writer(file, lineterminator="\n").writerows(rows)
 
 
-def _numbers_text(judgement: Judgement) -> str:
-    return "; ".join(map(_number_text, judgement.numbers))
+def _numbers(judgement: Judgement) -> str:
+    """Return names, values and uncertainties: "peak force: 12.34 ± 0.11 kN".
 
-
-def _number_text(number: Number) -> str:
-    """Return name, value and uncertainty: "peak force: 12.34 ± 0.11 kN".
-
-    The value has the significant digits down to the second of the uncertainty, 2 to 5.
+    The values have the significant digits down to the second of the uncertainty, 2 to 5.
     """
-    unit = display(xr.DataArray([number.value], attrs={"units": number.units}))
-    if number.percent:
-        unit = Display(100.0, "%")
-    value, width = float(unit(number.value)), float(unit(number.uncertainty))
-    digits = 5
-    if value and width and np.isfinite(value) and np.isfinite(width):
-        value_power, width_power = np.floor(np.log10([abs(value), width]))
-        digits = int(np.clip(value_power - width_power + 2, 2, 5))
-    text = labels.number(value, digits)
-    if width:
-        text = f"{text} ± {labels.number(width, 2) if np.isfinite(width) else 'unknown'}"
-    return f"{number.name}: {text} {unit.symbol}".strip()
+    texts = []
+    for number in judgement.numbers:
+        unit = display(xr.DataArray([number.value], attrs={"units": number.units}))
+        if number.percent:
+            unit = Display(100.0, "%")
+        value, width = float(unit(number.value)), float(unit(number.uncertainty))
+        digits = 5
+        if value and width and np.isfinite(value) and np.isfinite(width):
+            value_power, width_power = np.floor(np.log10([abs(value), width]))
+            digits = int(np.clip(value_power - width_power + 2, 2, 5))
+        text = labels.number(value, digits)
+        if width:
+            text = f"{text} ± {labels.number(width, 2) if np.isfinite(width) else 'unknown'}"
+        texts.append(f"{number.name}: {text} {unit.symbol}".strip())
+    return "; ".join(texts)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -121,17 +120,9 @@ def _values(runs: xr.Dataset) -> Iterator[str]:
             yield f"In {number} of {count(runs)} runs {text}."
 
 
-@dataclass(frozen=True)
-class Note:
-    """A text, and a test whether it matters for given runs."""
-
-    applies: Callable[[xr.Dataset], bool]
-    text: str
-
-
 def notes(runs: xr.Dataset) -> list[str]:
     """Return the texts that matter for these runs, in the order of NOTES."""
-    return [note.text for note in NOTES if note.applies(runs)]
+    return [text for applies, text in NOTES if applies(runs)]
 
 
 def _holds(runs: xr.Dataset, name: str, values: list[Any]) -> bool:
@@ -153,30 +144,30 @@ def _about(law: str) -> str:
 
 
 _AT_THE_END = ("rebound_velocity", "restitution", "impulse", "permanent_indentation")
-NOTES = (
-    Note(
+NOTES: tuple[tuple[Callable[[xr.Dataset], bool], str], ...] = (
+    (
         lambda runs: "contact_duration" in runs,
         "One impact consists of several sub-impacts: contact ends and begins again. The contact "
         "duration is that of the first contact; the total contact time adds up all contacts within "
         "the simulated time.",
     ),
-    Note(
+    (
         lambda runs: any(name in runs for name in _AT_THE_END),
         "Rebound velocity, restitution, impulse and permanent indentation refer to the last "
         "contact within the simulated time and do not include a later contact.",
     ),
     *(
-        Note(partial(_holds, name="contact", values=[law]), _about(law))
+        (partial(_holds, name="contact", values=[law]), _about(law))
         for law in LAWS
         if CONTACT_LAWS[law].flaws or CONTACT_LAWS[law].unconfirmed
     ),
-    Note(
+    (
         lambda runs: "peak_plastic_strain" in runs,
         "In a perfectly plastic section the peak plastic strain (PEEQ) at mid-span does not "
         "converge as the nodes get closer: with 3 Lobatto points it doubles with each halving of "
         "the spacing, with 5 it still grows, and with 9 or more it grows slowly.",
     ),
-    Note(
+    (
         lambda runs: _holds(runs, "scheme", ["semi_implicit"]),
         "The semi-implicit scheme takes time steps of half the time that a bar wave needs to cross "
         "one spacing: with many nodes they are longer than those of leapfrog, with few they are "
@@ -184,10 +175,10 @@ NOTES = (
         "same nodes. Do not compare the peak plastic strain of a perfectly plastic beam between "
         "the two schemes, because it does not converge.",
     ),
-    Note(
+    (
         lambda runs: _holds(runs, "points", [2, 3]) and _holds(runs, "rule", ["lobatto"]),
         "Few Lobatto points change the beam itself: 2 points make it 3 times too stiff, and "
         "with 3 points its full plastic moment equals the yield moment.",
     ),
 )
-"""Every note there is; a new note is one more entry."""
+"""Every note: a test whether it matters for given runs, and its text."""

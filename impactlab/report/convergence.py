@@ -11,7 +11,7 @@ import xarray as xr
 
 from impactlab.figures import access, labels
 from impactlab.figures.measures import analysed
-from impactlab.report.page import Cell, Refinement, Row, Section, Table, largest
+from impactlab.report.page import Cell, Row, Section, Table, largest
 
 _ORDERS = (
     "The observed order, the grid convergence index (GCI) and the asymptotic ratio come from the "
@@ -32,17 +32,15 @@ _AXES = {
     "points": ("Convergence in integration points over the depth", _RULES),
 }
 """Caption and explanation of each axis, in the order space, time, depth."""
-Columns = dict[str, Callable[[xr.Dataset], Cell]]
-"""Heads, and functions from the analysis of one response to its cell."""
 
 
 def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the section on the axes that the analysis has, or none."""
-    refinements = []
+    tables = []
     for axis, (caption, explanation) in _AXES.items():
         if f"{axis}_summary" not in analysis:
             continue
-        columns = _points_columns(analysis) if axis == "points" else _refined_columns(axis)
+        columns = _columns(analysis, axis)
         rows: list[Row] = []
         for name in analysed(runs, analysis):
             found = analysis.sel(response=name)
@@ -63,10 +61,8 @@ def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             if f"{axis}_{kind}" in analysis:
                 flags = access.occurring(analysis[f"{axis}_{kind}"])
                 meanings |= {flag.words: flag.meaning for flag in flags if flag.meaning}
-        refinements.append(
-            Refinement(Table(caption, head, rows), remarks, sorted(meanings.items()))
-        )
-    return [Section("convergence", "Convergence", refinements=refinements)] if refinements else []
+        tables.append(Table(caption, head, rows, remarks, sorted(meanings.items())))
+    return [Section("convergence", "Convergence", tables=tables)] if tables else []
 
 
 def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:
@@ -81,28 +77,25 @@ def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:
     return remarks
 
 
-def _refined_columns(axis: str) -> Columns:
-    """Return the columns of an axis with an order of convergence."""
-    return {
-        "Observed order": partial(_spread, variable=f"{axis}_observed_order"),
-        "Largest GCI": partial(_gci, axis=axis),
-        "Order of the fit": partial(_spread, variable=f"{axis}_fit_order"),
-        "Uncertainty by the fit": partial(largest, variable=f"{axis}_fit_uncertainty"),
-        "Numerical uncertainty": partial(largest, variable=f"{axis}_uncertainty"),
-    }
-
-
-def _points_columns(analysis: xr.Dataset) -> Columns:
-    """Return the columns of integration points: how many each rule needs, where it is varied."""
-    columns: Columns = {}
-    needed = analysis.get("points_needed")
-    if needed is None or "rule" not in needed.dims:
-        columns["Points needed for 1 %"] = _needed
-    else:
-        for at, rule in enumerate(labels.values(analysis["rule"], range(analysis.sizes["rule"]))):
-            columns[f"Points needed for 1 %, {rule}"] = partial(_needed, rule=at)
+def _columns(analysis: xr.Dataset, axis: str) -> dict[str, Callable[[xr.Dataset], Cell]]:
+    """Return heads, and functions from the analysis of one response to its cell."""
+    if axis != "points":
+        return {
+            "Observed order": partial(_spread, variable=f"{axis}_observed_order"),
+            "Largest GCI": partial(_gci, axis=axis),
+            "Order of the fit": partial(_spread, variable=f"{axis}_fit_order"),
+            "Uncertainty by the fit": partial(largest, variable=f"{axis}_fit_uncertainty"),
+            "Numerical uncertainty": partial(largest, variable=f"{axis}_uncertainty"),
+        }
+    needed: dict[str, Callable[[xr.Dataset], Cell]] = {"Points needed for 1 %": _needed}
+    if "points_needed" in analysis and "rule" in analysis["points_needed"].dims:
+        rules = labels.values(analysis["rule"], range(analysis.sizes["rule"]))
+        needed = {
+            f"Points needed for 1 %, {rule}": partial(_needed, rule=at)
+            for at, rule in enumerate(rules)
+        }
     head = "Numerical uncertainty with the most points"
-    return columns | {head: partial(largest, variable="points_uncertainty")}
+    return needed | {head: partial(largest, variable="points_uncertainty")}
 
 
 def _over_the_grid(found: xr.Dataset, axis: str) -> Cell:

@@ -41,7 +41,6 @@ _PROVENANCE = {
 }
 _SCREEN = 1.3
 """Figures are 8 pt at the width of a paper; on a screen that is small."""
-_FILES = {".csv": "CSV", ".nc": "netCDF", ".svg": "SVG", ".png": "PNG"}
 _MOST = 80
 """Largest number of curve points in a table; bars with names are all listed."""
 _COLUMNS = {
@@ -68,24 +67,16 @@ Row = Sequence[Cell | str]
 
 @dataclass(frozen=True)
 class Table:
-    """A caption, the column heads, and rows as wide as the head."""
+    """A caption, the column heads, and rows as wide as the head.
+
+    remarks: paragraphs below it. meanings: words of its cells, each with its meaning.
+    """
 
     caption: str
     head: list[str]
     rows: Sequence[Row] = ()
-
-
-@dataclass(frozen=True)
-class Refinement:
-    """One refined axis.
-
-    table: one row per response. remarks: how to read it. meanings: verdicts and behaviours that
-    occur, each with its meaning.
-    """
-
-    table: Table
-    remarks: list[str]
-    meanings: list[tuple[str, str]]
+    remarks: Sequence[str] = ()
+    meanings: Sequence[tuple[str, str]] = ()
 
 
 @dataclass(frozen=True)
@@ -94,8 +85,7 @@ class Section:
 
     name: the anchor. lead: a paragraph. sentences: a list. tables: shown in full. files: names of
     files beside the page. figures: names of figures (those that were not drawn are left out).
-    folded: tables that the reader opens. refinements: of a convergence study. grave: it stands
-    out as a warning.
+    folded: tables that the reader opens. grave: it stands out as a warning.
     """
 
     name: str
@@ -106,7 +96,6 @@ class Section:
     figures: Sequence[str] = ()
     folded: list[Table] = field(default_factory=list)
     files: list[str] = field(default_factory=list)
-    refinements: list[Refinement] = field(default_factory=list)
     grave: bool = False
 
 
@@ -115,7 +104,7 @@ class Picture:
     """A numbered figure, as an image of its own, so that names inside SVGs cannot clash.
 
     alt: what it shows, in words. uri: the whole SVG as a data URI. width: on a screen, in CSS
-    pixels. data: its numbers, thinned; None for maps. files: (kind, name) of those in its folder.
+    pixels. data: its numbers, thinned; None for maps.
     """
 
     number: int
@@ -126,7 +115,6 @@ class Picture:
     uri: str
     width: int
     data: Table | None
-    files: list[tuple[str, str]]
 
 
 def write_page(
@@ -219,7 +207,6 @@ def pictures(folder: Path, placed: Sequence[str] = ()) -> dict[str, Picture]:
             f"data:image/svg+xml;base64,{base64.b64encode(svg).decode('ascii')}",
             round(float(root.group(1)) * 96 / 72 * _SCREEN) if root else 0,
             drawn_data(numbers) if numbers.exists() else None,
-            [(kind, f"{name}{suffix}") for suffix, kind in _FILES.items()],
         )
     return found
 

@@ -44,12 +44,12 @@ def _runs(runs: xr.Dataset) -> tuple[str, str]:
 
 def _findings(findings: xr.Dataset) -> tuple[str, str]:
     found = tally(unpacked(findings))
-    pairs = (found.checks, found.comparisons), (found.bad_checks, found.failed)
-    size, failed = (
-        [labels.counted(checks, "check"), labels.counted(comparisons, "comparison")]
-        for checks, comparisons in pairs
-    )
-    return ", ".join(size), "" if found.passed else f"{labels.listing(failed)} failed"
+    size = [labels.counted(found[f"{what}s"], what) for what in ("check", "comparison")]
+    if found["checks"] and not found["bad_checks"]:
+        return ", ".join(size), ""
+    bad = labels.counted(found["bad_checks"], "check")
+    failed = labels.counted(found["failed"], "comparison")
+    return ", ".join(size), f"{bad} and {failed} failed"
 
 
 RUNS = Kind(("runs.nc", "analysis.nc"), draw_all, write_report, _runs)

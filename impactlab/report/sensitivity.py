@@ -194,28 +194,23 @@ def sentences(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[st
     said = []
     for name in analysed(runs, analysis):
         verdict = access.verdict(analysis, "sensitivity_verdict", name)
-        why = (verdict.meaning or verdict.words) if verdict else ""
-        values = analysis[measures.ranking(family).name].sel(response=name).values
-        if not np.isfinite(values).any():
-            reason = f": {why}" if why else ""
-            said.append(f"The indices of the {labels.response(name)} are undefined{reason}.")
-            continue
-        text = " ".join(_WRITERS[family.title](runs, analysis, name))
-        if verdict and not verdict.sound:
-            text += f" Use these indices with caution: {why}."
+        why = f": {verdict.meaning or verdict.words}" if verdict else ""
+        index = measures.index(analysis, measures.ranking(family).name, name)
+        text = f"The indices of the {labels.response(name)} are undefined{why}."
+        if np.isfinite(index.values).any():
+            text = " ".join(_WRITERS[family.title](runs, analysis, name, index))
+            if verdict and not verdict.sound:
+                text += f" Use these indices with caution{why}."
         said.append(text)
     return said
 
 
-def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
+def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str, total: Index) -> Iterator[str]:
     """Yield the shares of single parameters, the largest first; then interactions.
 
     Interactions are told where a total index exceeds its first order by more than their errors.
     """
-    response = labels.response(name)
-    index, total = (
-        measures.index(analysis, order, name) for order in ("first_order", "total_order")
-    )
+    response, index = labels.response(name), measures.index(analysis, "first_order", name)
     found = _strongest(analysis, index, index.significant)[:_NAMED]
     lost = _strongest(analysis, index, index.numerically_lost)[:_NAMED]
     if found:
@@ -240,9 +235,8 @@ def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
         yield f"With all its interactions, {_the(parameter)} contributes to {_share(total, at)}."
 
 
-def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
+def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str, index: Index) -> Iterator[str]:
     """Yield how far the response moves, and whose effects are uneven."""
-    index = measures.index(analysis, "morris_mu_star", name)
     found = _strongest(analysis, index, index.significant)
     if not found:
         yield f"No parameter changes the {labels.response(name)} significantly."
@@ -262,10 +256,9 @@ def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
 
 
 def _dependence(
-    runs: xr.Dataset, analysis: xr.Dataset, name: str, *, measure: str, label: str
+    runs: xr.Dataset, analysis: xr.Dataset, name: str, index: Index, *, label: str
 ) -> Iterator[str]:
     """Yield the parameters with the largest indices that only measure dependence."""
-    index = measures.index(analysis, measure, name)
     listed = [
         f"{_the(key)} ({label} {with_margin(index.values[at], index.margins[at])})"
         for key, at in _strongest(analysis, index, index.significant)[:_NAMED]
@@ -279,9 +272,9 @@ def _dependence(
         yield f"The {labels.response(name)} depends on {labels.listing(listed)}."
 
 
-def _regression(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[str]:
+def _regression(runs: xr.Dataset, analysis: xr.Dataset, name: str, index: Index) -> Iterator[str]:
     """Yield the parameters that the response rises or falls with, and how well a line fits."""
-    response, index = labels.response(name), measures.index(analysis, "regression", name)
+    response = labels.response(name)
     listed = []
     for key, at in _strongest(analysis, index, index.significant)[:_NAMED]:
         value, margin = index.values[at], index.margins[at]
@@ -297,11 +290,11 @@ def _regression(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Iterator[s
         yield f"The linear fit explains {100 * share:.0f} % of its variance{little}."
 
 
-_WRITERS: dict[str, Callable[[xr.Dataset, xr.Dataset, str], Iterator[str]]] = {
+_WRITERS: dict[str, Callable[[xr.Dataset, xr.Dataset, str, Index], Iterator[str]]] = {
     SOBOL.title: _sobol,
     MORRIS.title: _morris,
-    DELTA.title: partial(_dependence, measure="delta", label="delta"),
-    PAWN.title: partial(_dependence, measure="pawn", label="median distance"),
+    DELTA.title: partial(_dependence, label="delta"),
+    PAWN.title: partial(_dependence, label="median distance"),
     REGRESSION.title: _regression,
 }
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -26,26 +25,14 @@ _PERCENT = 1e-4
 """Smallest relative tolerance that is given in per cent."""
 
 
-@dataclass(frozen=True)
-class Tally:
-    """Numbers of checks and comparisons, and of those that did not pass."""
-
-    checks: int
-    bad_checks: int
-    comparisons: int
-    failed: int
-
-    @property
-    def passed(self) -> bool:
-        """Return whether there is a check, and all pass."""
-        return self.checks > 0 and self.bad_checks == 0
-
-
-def tally(outcomes: Sequence[Outcome]) -> Tally:
-    """Count checks and comparisons."""
-    bad = sum(outcome.verdict != "passed" for outcome in outcomes)
-    total = sum(len(outcome.finding.comparisons) for outcome in outcomes)
-    return Tally(len(outcomes), bad, total, sum(len(outcome.failures) for outcome in outcomes))
+def tally(outcomes: Sequence[Outcome]) -> dict[str, int]:
+    """Count checks and comparisons, and those that did not pass."""
+    return {
+        "checks": len(outcomes),
+        "bad_checks": sum(outcome.verdict != "passed" for outcome in outcomes),
+        "comparisons": sum(len(outcome.finding.comparisons) for outcome in outcomes),
+        "failed": sum(len(outcome.failures) for outcome in outcomes),
+    }
 
 
 def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -> None:

@@ -5,19 +5,19 @@ A new statement is a `Statement` in the module of its subject and a line in STAT
 
 from __future__ import annotations
 
-from impactlab.paper.statements import contact, convergence, misprints, plasticity, three_d
+from impactlab.paper.statements import convergence, misprints, three_d, velocity
 from impactlab.paper.statements.statement import Data, Judgement, Statement
 
 STATEMENTS: tuple[Statement, ...] = (
     convergence.NODES_SUFFICE,
     convergence.POINTS_SUFFICE,
-    contact.DURATION_FALLS,
-    contact.ABOVE_SPRING_MASS,
-    contact.DENT_GROWS,
-    plasticity.ELASTIC_TO_5,
-    plasticity.BELOW_LIMIT_AT_10,
-    plasticity.ABOVE_LIMIT_AT_15,
-    plasticity.PLASTICITY_BEGINS,
+    velocity.DURATION_FALLS,
+    velocity.ABOVE_SPRING_MASS,
+    velocity.DENT_GROWS,
+    velocity.ELASTIC_TO_5,
+    velocity.BELOW_LIMIT_AT_10,
+    velocity.ABOVE_LIMIT_AT_15,
+    velocity.PLASTICITY_BEGINS,
     three_d.FORCE_OF_WITNESS,
     three_d.DISPLACEMENT_OF_WITNESS,
     three_d.DURATION_OF_WITNESS,

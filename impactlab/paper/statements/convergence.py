@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,9 @@ from impactlab.paper.statements.statement import (
     Statement,
     Verdict,
     finest_grid,
+    judged,
     runs_of,
     select_response,
-    verdict,
 )
 
 NODES_STUDY, POINTS_STUDY = "fig06_nodes", "fig06_points"
@@ -44,18 +45,13 @@ READINGS_OF_P = (
 """Readings of P = 2: words, rule, points over the whole depth, whether it is the literal one."""
 
 
-def _response_groups(data: Data, study: str) -> Iterator[tuple[float, str, tuple[str, ...]]]:
-    """Yield velocity, name of the group and its responses; strains only where a fibre yields."""
+def _response_groups(data: Data, study: str) -> Iterator[Case]:
+    """Yield words, velocity and a group of responses; strains only where a fibre yields."""
     for velocity in VELOCITIES:
-        yield velocity, "force and motion", MOTION
+        yield f"{velocity:g} m/s, force and motion", velocity, MOTION
         strains = data[study].get("peak_plastic_strain") if study in data else None
         if strains is None or (strains.where(strains["velocity"] == velocity) > 0).any():
-            yield velocity, "plastic strain (PEEQ)", STRAIN
-
-
-def _nodes_cases(data: Data) -> Iterator[Case]:
-    for velocity, group, names in _response_groups(data, NODES_STUDY):
-        yield f"{velocity:g} m/s, {group}", velocity, names
+            yield f"{velocity:g} m/s, plastic strain (PEEQ)", velocity, STRAIN
 
 
 def _judge_nodes(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> Judgement:
@@ -100,16 +96,16 @@ NODES_SUFFICE = Statement(
         "U: its uncertainty (grid convergence index). Plastic strain (PEEQ) is judged separately."
     ),
     judge_case=_judge_nodes,
-    cases=_nodes_cases,
+    cases=partial(_response_groups, study=NODES_STUDY),
     studies=(NODES_STUDY,),
 )
 
 
 def _points_cases(data: Data) -> Iterator[Case]:
     for reading, rule, points, literal in READINGS_OF_P:
-        for velocity, group, names in _response_groups(data, POINTS_STUDY):
+        for words, velocity, names in _response_groups(data, POINTS_STUDY):
             where = {"velocity": velocity, "rule": rule}
-            yield f"{reading}; {velocity:g} m/s, {group}", where, points, names, literal
+            yield f"{reading}; {words}", where, points, names, literal
 
 
 def _judge_points(
@@ -117,11 +113,9 @@ def _judge_points(
 ) -> Judgement:
     errors = tuple(_points_error(data, where, points, name) for name in names)
     worst = max(errors, key=lambda error: error.high)
-    stands = worst.high <= TOLERANCE
-    why = "Every error is within 1 %."
-    if not stands:
-        why = f"The {worst.name} is {100 * worst.value:,.1f} %."
-    return Judgement(case, errors, verdict(stands, literal=literal), why)
+    within = worst.high <= TOLERANCE
+    beyond = f"The {worst.name} is {100 * worst.value:,.1f} %."
+    return judged(case, errors, within, "Every error is within 1 %.", beyond, literal=literal)
 
 
 def _points_error(data: Data, where: dict[str, Any], points: int, name: str) -> Number:

@@ -19,9 +19,9 @@ from impactlab.paper.statements.statement import (
     Statement,
     UnknownError,
     Verdict,
+    judged,
     runs_of,
     select_response,
-    verdict,
 )
 from impactlab.verification.solutions import bending, explicit_beam, hertz, quadrature
 from impactlab.verification.solutions.stronge import (
@@ -61,14 +61,14 @@ def _judge_time_step(case: str, data: Data, limit: Callable[[Beam, int], float])
         Number("growth of the highest mode per step", explicit_beam.growth(frequency, dt), "1"),
         Number(f"deflection after {STEPS} steps over that after 1", grown, "1"),
     )
-    stands = frequency * dt <= 2.0 and grown < BOUNDED_GROWTH
-    why = "The solution stays bounded."
-    if not stands:
-        why = (
-            "It is the limit of a bar wave; bending is stiffer on a fine grid, and the solution "
-            "diverges."
-        )
-    return Judgement(case, numbers, verdict(stands), why)
+    return judged(
+        case,
+        numbers,
+        frequency * dt <= 2.0 and grown < BOUNDED_GROWTH,
+        "The solution stays bounded.",
+        "It is the limit of a bar wave; bending is stiffer on a fine grid, and the solution "
+        "diverges.",
+    )
 
 
 TIME_STEP = Statement(
@@ -108,12 +108,13 @@ def _judge_unloading_radius(case: str, data: Data, exponent: float | None) -> Ju
         force = hertz.stiffness(law.effective_modulus, radius) * recovered**1.5
         jumps.append(float(force / peak - 1.0))
     worst = max(jumps, key=abs)
-    number = Number("largest jump of the force over F_m", worst, "1")
-    stands = abs(worst) <= EQUAL
-    why = "Loading and unloading forces agree, with this form alone."
-    if not stands:
-        why = "The force would jump where unloading begins."
-    return Judgement(case, (number,), verdict(stands), why)
+    return judged(
+        case,
+        (Number("largest jump of the force over F_m", worst, "1"),),
+        abs(worst) <= EQUAL,
+        "Loading and unloading forces agree, with this form alone.",
+        "The force would jump where unloading begins.",
+    )
 
 
 UNLOADING_RADIUS = Statement(
@@ -143,11 +144,8 @@ def _judge_elastic_phase(case: str, data: Data, begins: float) -> Judgement:
     stiffness = hertz.stiffness(law.effective_modulus, law.effective_radius)
     first, last = (stiffness * (share * law.yield_indentation) ** 1.5 for share in (begins, 1.0))
     numbers = (Number("force at δ = 0", first, "N"), Number("force at δ = δ_y", last, "N"))
-    stands = first == 0.0 < last
-    why = "It grows from zero."
-    if not stands:
-        why = "The printed expression is a constant, not a force law."
-    return Judgement(case, numbers, verdict(stands), why)
+    constant = "The printed expression is a constant, not a force law."
+    return judged(case, numbers, first == 0.0 < last, "It grows from zero.", constant)
 
 
 ELASTIC_PHASE = Statement(
@@ -165,9 +163,8 @@ def _judge_fully_plastic(case: str, data: Data, depth: float) -> Judgement:
     u = 2.0 * depth - 1.0
     jump = HARDNESS / CONSTRAINT / (1.0 + math.log(u) / (3.0 * CONSTRAINT)) - 1.0
     numbers = (Number("δ/δ_y", depth, "1"), Number("jump of the force", jump, "1", percent=True))
-    stands = abs(jump) <= EQUAL
-    why = "The two forces agree." if stands else "The force jumps there."
-    return Judgement(case, numbers, verdict(stands), why)
+    jumps = "The force jumps there."
+    return judged(case, numbers, abs(jump) <= EQUAL, "The two forces agree.", jumps)
 
 
 FULLY_PLASTIC = Statement(
@@ -193,7 +190,7 @@ def _judge_beam_mass(case: str, data: Data) -> Judgement:
     )
     off = PRINTED_MASS / mass - 1.0
     why = f"Printed and computed mass differ by {100 * off:.1f} % of the latter."
-    return Judgement(case, numbers, verdict(abs(off) <= MASS_TOLERANCE), why)
+    return judged(case, numbers, abs(off) <= MASS_TOLERANCE, why)
 
 
 BEAM_MASS = Statement(
@@ -216,8 +213,8 @@ def _judge_few_points(case: str, data: Data, rule: str, points: int, literal: bo
         Number(f"{name} over the exact one", float(ratio), "1") for name, ratio in ratios.items()
     )
     wrong = [name for name, ratio in ratios.items() if abs(ratio - 1.0) > SECTION_TOLERANCE]
-    why = f"Off by more than 5 %: {', '.join(wrong)}." if wrong else "Both agree."
-    return Judgement(case, numbers, verdict(not wrong, literal=literal), why)
+    off = f"Off by more than 5 %: {', '.join(wrong)}."
+    return judged(case, numbers, not wrong, "Both agree.", off, literal=literal)
 
 
 FEW_POINTS = Statement(
@@ -268,8 +265,8 @@ def _judge_sub_impacts(case: str, data: Data) -> Judgement:
     where = {"contact": "stronge"} if "contact" in runs.dims else {}
     count = float(select_response(runs, "number_of_contacts", **where).max())
     number = Number(f"contacts within {float(runs['duration']) * 1e3:g} ms", count, "1")
-    why = "The beam comes back and strikes the sphere again." if count > 1 else "There is one."
-    return Judgement(case, (number,), verdict(count == 1.0), why)
+    again = "The beam comes back and strikes the sphere again."
+    return judged(case, (number,), count == 1.0, "There is one.", again)
 
 
 SUB_IMPACTS = Statement(

@@ -105,11 +105,22 @@ class Statement:
             yield judgement
 
 
-def verdict(stands: bool, *, literal: bool = True) -> Verdict:
-    """Return the verdict on a clear test; literal: the paper states this very case."""
+def judged(
+    case: str,
+    numbers: tuple[Number, ...],
+    stands: bool,
+    why: str,
+    otherwise: str = "",
+    *,
+    literal: bool = True,
+) -> Judgement:
+    """Return the judgement of a clear test; literal: the paper states this very case.
+
+    otherwise: what is said where the statement does not stand, if not the same.
+    """
     if not stands:
-        return Verdict.FAILS
-    return Verdict.HOLDS if literal else Verdict.READING
+        return Judgement(case, numbers, Verdict.FAILS, otherwise or why)
+    return Judgement(case, numbers, Verdict.HOLDS if literal else Verdict.READING, why)
 
 
 @dataclass(frozen=True)

@@ -22,9 +22,9 @@ from impactlab.paper.statements.statement import (
     UnknownError,
     Verdict,
     finest_grid,
+    judged,
     runs_of,
     select_response,
-    verdict,
 )
 from impactlab.types import Floats
 from impactlab.variables import RESPONSES, WITNESS
@@ -137,8 +137,7 @@ def _judge_ratio(
         return Judgement(case, numbers, Verdict.UNKNOWN, _UNDECIDED.format(100 * limit))
     comparative = comparatives[0] if gap.value < 0 else comparatives[1]
     why = f"The beam's is {100 * abs(gap.value):.1f} % {comparative}."
-    literal = (velocity, model) == stated
-    return Judgement(case, numbers, verdict(most <= limit, literal=literal), why)
+    return judged(case, numbers, most <= limit, why, literal=(velocity, model) == stated)
 
 
 FORCE_OF_WITNESS = Statement(
@@ -193,7 +192,7 @@ def _judge_displacement(case: str, data: Data, variable: str, model: str) -> Jud
     than = "more" if gap > width else "no more"
     why = f"They differ by up to {100 * gap:.1f} % of the largest displacement, "
     why += f"{than} than the uncertainty."
-    return Judgement(case, numbers, verdict(gap + width <= DISPLACEMENT_LIMIT, literal=False), why)
+    return judged(case, numbers, gap + width <= DISPLACEMENT_LIMIT, why, literal=False)
 
 
 def _histories(data: Data, variable: str, model: str) -> list[Floats]:
@@ -245,7 +244,7 @@ def _judge_zone(case: str, data: Data, variable: str, factor: float) -> Judgemen
         why = "The elements are too large to tell."
         return Judgement(case, (reach,), Verdict.UNKNOWN, why)
     why = f"The printed extent lies {'within' if within else 'outside'} the uncertainty."
-    return Judgement(case, (reach,), verdict(within, literal=False), why)
+    return judged(case, (reach,), within, why, literal=False)
 
 
 PLASTIC_ZONE_OF_WITNESS = Statement(

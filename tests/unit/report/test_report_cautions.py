@@ -6,7 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from impactlab.report.cautions import NOTES, cautions, notes
+from impactlab.report.cautions import cautions, notes
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
 
 Study = Any
@@ -110,4 +110,4 @@ def test_note_on_the_semi_implicit_scheme(velocity_study: Study) -> None:
 
 
 def test_no_note_applies_to_nothing() -> None:
-    assert [note.text for note in NOTES if note.applies(xr.Dataset())] == []
+    assert notes(xr.Dataset()) == []
