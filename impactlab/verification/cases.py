@@ -1,15 +1,13 @@
-"""Impacts that more than one check uses, and runs in a given number of time steps."""
+"""Impacts that more than one check uses, and the solver's grid for them."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
-
-import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
-from impactlab.simulate import case_table, simulate
+from impactlab.simulate import case_table
+from impactlab.solver.beam import Grid
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
@@ -36,8 +34,7 @@ def elastic(impact: Impact) -> Impact:
     The yield stress is raised to a tenth of Young's modulus: a strain of 0.1 is out of reach.
     """
     beyond = 0.1 * impact.beam.material.youngs_modulus
-    unyielding = with_beam_material(impact, yield_stress=beyond)
-    return replace(unyielding, contact="hertz")
+    return replace(with_beam_material(impact, yield_stress=beyond), contact="hertz")
 
 
 def rigid_backed(velocity: float, contact: str) -> Impact:
@@ -77,9 +74,6 @@ def slimmer(impact: Impact, times: float) -> Impact:
     return replace(impact, beam=slim, sphere=replace(sphere, material=soft))
 
 
-_KGF_PER_CM2 = 98066.5
-
-
 def timoshenko_impact(velocity: float = 0.01) -> Impact:
     """Return a 10 mm-radius steel sphere on a 10 x 10 x 153.5 mm steel beam; velocity in m/s.
 
@@ -87,15 +81,9 @@ def timoshenko_impact(velocity: float = 0.01) -> Impact:
     (1913) 198: E = 2.2e6 kgf/cm2, density 7.96 g/cm3, nu = 0.3, quoted at second hand. Without
     gravity, which would matter: during the contact it adds 15 % of the velocity. The yield stress
     is ours; it plays no part in an elastic impact.
-
-    Raises ValueError when the velocity is not finite and positive.
     """
-    steel = Material(
-        density=7960.0,
-        youngs_modulus=2.2e6 * _KGF_PER_CM2,
-        poissons_ratio=0.3,
-        yield_stress=1e9,
-    )
+    modulus = 2.2e6 * 98066.5  # Pa in a kgf/cm2
+    steel = Material(density=7960.0, youngs_modulus=modulus, poissons_ratio=0.3, yield_stress=1e9)
     return Impact(
         sphere=Sphere(radius=0.01, material=steel),
         beam=Beam(span=0.1535, width=0.01, depth=0.01, material=steel),
@@ -105,51 +93,8 @@ def timoshenko_impact(velocity: float = 0.01) -> Impact:
     )
 
 
-_STRIKER_RADIUS = 3.5
-
-
-def slow_impact(beam: Beam, mass: float, velocity: float, softness: float) -> Impact:
-    """Return a striker of `mass` (kg) at `velocity` (m/s) on `beam`, without gravity.
-
-    Its Hertz contact gives 20 kN at an indentation of `softness` (m), and F ~ delta^1.5 starts
-    without a jump in the rate of loading, so that the beam follows without swinging.
-    """
-    stiffness = 20e3 / softness**1.5
-    modulus = (
-        (1.0 - 0.3**2) * 0.75 * stiffness / math.sqrt(_STRIKER_RADIUS)
-    )  # the beam is rigid beside it
-    soft = Material(
-        density=7800.0, youngs_modulus=modulus, poissons_ratio=0.3, yield_stress=0.1 * modulus
-    )
-    sphere = Sphere(radius=_STRIKER_RADIUS, material=soft, mass=mass)
-    return replace(
-        paper_impact(velocity, "hertz"), sphere=sphere, beam=beam, gravity=0.0, velocity=velocity
-    )
-
-
-def critical_time_step(impact: Impact, grid: Discretisation) -> float:
-    """Return the scheme's largest time step in s, from the number of steps in a second."""
-    return 1.0 / _number_of_steps(impact, replace(grid, courant=1.0), 1.0)
-
-
-def node_steps(impact: Impact, grid: Discretisation, duration: float) -> int:
-    """Return the cost of a run in nodes of the half beam times time steps."""
-    return grid.nodes // 2 * _number_of_steps(impact, grid, duration)
-
-
-def _number_of_steps(impact: Impact, grid: Discretisation, duration: float) -> int:
+def discretised(impact: Impact, grid: Discretisation, duration: float) -> tuple[Grid, int]:
+    """Return the solver's grid, and its number of time steps in `duration` (s)."""
     case = case_table(impact, grid, duration=duration)[0]
-    _, steps = discretise(case, make_pair(case), make_section(case))
-    return int(steps)
-
-
-def simulate_in_steps(
-    impact: Impact, grid: Discretisation, *, duration: float, steps: int, samples: int
-) -> xr.Dataset:
-    """Simulate in `steps` time steps, whatever the grid's Courant number.
-
-    Raises ValueError if so few steps are unstable.
-    """
-    # Half a step of margin, because the kernels round up.
-    courant = duration / ((steps - 0.5) * critical_time_step(impact, grid))
-    return simulate(impact, replace(grid, courant=courant), duration=duration, samples=samples)
+    cut, steps = discretise(case, make_pair(case), make_section(case))
+    return cut, int(steps)

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import logging
 import traceback
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from time import perf_counter
 from typing import Literal
 
 import numpy as np
+import xarray as xr
 
 from impactlab.types import Floats
 
 log = logging.getLogger(__name__)
-
-Verdict = Literal["passed", "failed", "error"]
-_GRAVITY = {"error": 0, "failed": 1, "passed": 2}
 
 
 @dataclass(frozen=True)
@@ -65,6 +64,23 @@ def absolute(
     """Compare by the difference, in `units`."""
     error = ours - independent
     return Comparison(quantity, where, units, ours, independent, error, tolerance, "absolute")
+
+
+def responses(
+    run: xr.Dataset, where: str, expected: Mapping[str, float], tolerance: float
+) -> list[Comparison]:
+    """Compare responses of a run, relatively, with the values `expected` by variable."""
+    return [
+        relative(
+            name.replace("_", " "),
+            where,
+            run[name].attrs["units"],
+            run[name].item(),
+            value,
+            tolerance,
+        )
+        for name, value in expected.items()
+    ]
 
 
 def curve(
@@ -143,7 +159,7 @@ class Outcome:
     reason: str = ""
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> Literal["error", "failed", "passed"]:
         """Passed if every comparison passed, "error" if an error ended the check."""
         if self.reason:
             return "error"
@@ -180,18 +196,19 @@ class Check:
         try:
             finding = self.check()
         except Exception as error:
-            reason = _describe(error)
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            file = Path(place.filename).name
+            reason = f"{type(error).__name__}: {error} ({file}, line {place.lineno})"
             log.debug("the check %s ended in an error", self.name, exc_info=True)
         return Outcome(self.name, self.title, self.source, perf_counter() - start, finding, reason)
 
 
+def check(title: str, source: str) -> Callable[[Callable[[], Finding]], Check]:
+    """Return a decorator that makes a function the `Check` of its name."""
+    return lambda function: Check(function.__name__, title, source, function)
+
+
 def gravest_first(outcomes: Iterable[Outcome]) -> list[Outcome]:
     """Return errors, then failures, then passed checks, each group in the order given."""
-    return sorted(outcomes, key=lambda outcome: _GRAVITY[outcome.verdict])
-
-
-def _describe(error: Exception) -> str:
-    """Return an error in words, with the innermost place that it came from."""
-    place = traceback.extract_tb(error.__traceback__)[-1]
-    file = place.filename.replace("\\", "/").rpartition("/")[2]
-    return f"{type(error).__name__}: {error} ({file}, line {place.lineno})"
+    gravity = ("error", "failed", "passed")
+    return sorted(outcomes, key=lambda outcome: gravity.index(outcome.verdict))

@@ -15,7 +15,6 @@ import xarray as xr
 
 from impactlab.verification.finding import Comparison, Curve, Finding, Outcome, Panel
 
-Row = dict[str, Any]
 Kinds = dict[str, tuple[type, str]]
 _CHECKS: Kinds = {
     "name": (str, "name of the check"),
@@ -54,104 +53,74 @@ _CURVES: Kinds = {
 }
 
 
-def packed(outcomes: Sequence[Outcome]) -> xr.Dataset:
-    """Return a dataset of all outcomes, without global attributes."""
-    panels = [(outcome, panel) for outcome in outcomes for panel in outcome.finding.panels]
-    curves = [(at, curve) for at, (_, panel) in enumerate(panels) for curve in panel.curves]
-    checks = _table("name", _CHECKS, [_check_row(outcome) for outcome in outcomes])
-    compared = _table("comparison", _COMPARISONS, [row for o in outcomes for row in _rows(o)])
-    drawn = _table("panel", _PANELS, [_panel_row(*entry) for entry in panels])
-    lines = _table("curve", _CURVES, [_curve_row(*entry) for entry in curves])
-    points = {axis: ("point", _joined(curves, axis), _AXES[axis]) for axis in _AXES}
-    dataset = xr.Dataset(checks | compared | drawn | lines | points)
-    dataset["curve_points"].attrs["sample_dimension"] = "point"
-    dataset["seconds"].attrs["units"] = "s"
-    return dataset.set_coords([name for name in ("check", "quantity", "where") if name in dataset])
-
-
-def unpacked(dataset: xr.Dataset) -> list[Outcome]:
-    """Return the outcomes that a dataset of `packed` holds, in its order."""
-    return [_outcome(dataset, row) for row in _read(dataset, _CHECKS)]
-
-
-_AXES: dict[str, dict[str, str]] = {
+_POINTS = {
     axis: {"long_name": f"{axis} of the curves' points, in `{axis}_units` of the panel"}
     for axis in ("x", "y")
 }
 
 
-def _table(dim: str, kinds: Kinds, rows: list[Row]) -> Row:
+def packed(outcomes: Sequence[Outcome]) -> xr.Dataset:
+    """Return a dataset of all outcomes, without global attributes."""
+    checks = [[getattr(outcome, name) for name in _CHECKS] for outcome in outcomes]
+    compared: list[list[Any]] = []
+    panels: list[list[Any]] = []
+    curves: list[list[Any]] = []
+    points = {axis: [np.empty(0)] for axis in _POINTS}
+    for outcome in outcomes:
+        for entry in outcome.finding.comparisons:
+            values = (getattr(entry, name) for name in _COMPARISONS if name != "check")
+            compared.append([outcome.name, *values])
+        for panel in outcome.finding.panels:
+            for curve in panel.curves:
+                row = [len(panels), curve.label, curve.independent, np.size(curve.x)]
+                curves.append(row)
+                for axis, parts in points.items():
+                    parts.append(np.asarray(getattr(curve, axis), dtype=float))
+            panels.append([outcome.name, panel.title, *panel.x, *panel.y, panel.log])
+    dataset = xr.Dataset(
+        _table("name", _CHECKS, checks)
+        | _table("comparison", _COMPARISONS, compared)
+        | _table("panel", _PANELS, panels)
+        | _table("curve", _CURVES, curves)
+        | {axis: ("point", np.concatenate(points[axis]), _POINTS[axis]) for axis in _POINTS}
+    )
+    dataset["curve_points"].attrs["sample_dimension"] = "point"
+    dataset["seconds"].attrs["units"] = "s"
+    return dataset.set_coords(["check", "quantity", "where"])
+
+
+def _table(dim: str, kinds: Kinds, rows: Sequence[Sequence[Any]]) -> dict[str, Any]:
     """Return variables on `dim`, one per column, with the right types even without rows."""
     return {
-        name: (dim, np.array([row[name] for row in rows], dtype=kind), {"long_name": words})
-        for name, (kind, words) in kinds.items()
+        name: (dim, np.array([row[at] for row in rows], dtype=kind), {"long_name": words})
+        for at, (name, (kind, words)) in enumerate(kinds.items())
     }
 
 
-def _check_row(outcome: Outcome) -> Row:
-    return {name: getattr(outcome, name) for name in _CHECKS}
+def unpacked(dataset: xr.Dataset) -> list[Outcome]:
+    """Return the outcomes that a dataset of `packed` holds, in its order."""
+    curves, panels = _read(dataset, _CURVES), list(enumerate(_read(dataset, _PANELS)))
+    ends = np.cumsum([points for *_, points in curves], dtype=int)[:-1]
+    parts = [np.split(dataset[axis].values, ends) for axis in _POINTS]
+    drawn: dict[int, list[Curve]] = {at: [] for at, _ in panels}
+    for (at, label, independent, _), x, y in zip(curves, *parts, strict=False):
+        drawn[at].append(Curve(label, x, y, independent))  # no curve: one empty part
+    outcomes = []
+    for name, title, source, _, reason, seconds in _read(dataset, _CHECKS):
+        compared = [row for row in _read(dataset, _COMPARISONS) if row[0] == name]
+        finding = Finding(
+            [Comparison(*values) for _, *values, _ in compared],
+            [
+                Panel(words, (x, x_units), (y, y_units), drawn[at], log)
+                for at, (check, words, x, x_units, y, y_units, log) in panels
+                if check == name
+            ],
+        )
+        outcomes.append(Outcome(name, title, source, seconds, finding, reason))
+    return outcomes
 
 
-def _rows(outcome: Outcome) -> list[Row]:
-    names = _COMPARISONS.keys() - {"check"}
-    return [
-        {"check": outcome.name} | {name: getattr(entry, name) for name in names}
-        for entry in outcome.finding.comparisons
-    ]
-
-
-def _panel_row(outcome: Outcome, panel: Panel) -> Row:
-    values = (outcome.name, panel.title, *panel.x, *panel.y, panel.log)
-    return dict(zip(_PANELS, values, strict=True))
-
-
-def _curve_row(panel: int, curve: Curve) -> Row:
-    values = (panel, curve.label, curve.independent, np.size(curve.x))
-    return dict(zip(_CURVES, values, strict=True))
-
-
-def _joined(curves: list[tuple[int, Curve]], axis: str) -> np.ndarray[Any, Any]:
-    parts = [np.asarray(getattr(curve, axis), dtype=float) for _, curve in curves]
-    return np.concatenate([np.empty(0), *parts])
-
-
-def _read(dataset: xr.Dataset, kinds: Kinds) -> list[Row]:
+def _read(dataset: xr.Dataset, kinds: Kinds) -> list[tuple[Any, ...]]:
     """Return the rows of a table as plain Python values."""
     columns = [dataset[name].values.astype(kind).tolist() for name, (kind, _) in kinds.items()]
-    return [dict(zip(kinds, row, strict=True)) for row in zip(*columns, strict=True)]
-
-
-def _outcome(dataset: xr.Dataset, row: Row) -> Outcome:
-    comparisons = [
-        Comparison(**{key: entry[key] for key in entry.keys() - {"check", "passed"}})
-        for entry in _read(dataset, _COMPARISONS)
-        if entry["check"] == row["name"]
-    ]
-    finding = Finding(comparisons, _panels(dataset, row["name"]))
-    given = {key: row[key] for key in row.keys() - {"verdict"}}
-    return Outcome(finding=finding, **given)
-
-
-def _panels(dataset: xr.Dataset, check: str) -> list[Panel]:
-    curves = _curves(dataset)
-    return [
-        Panel(
-            row["panel_title"],
-            (row["x_name"], row["x_units"]),
-            (row["y_name"], row["y_units"]),
-            [curve for panel, curve in curves if panel == at],
-            row["log"],
-        )
-        for at, row in enumerate(_read(dataset, _PANELS))
-        if row["panel_check"] == check
-    ]
-
-
-def _curves(dataset: xr.Dataset) -> list[tuple[int, Curve]]:
-    rows = _read(dataset, _CURVES)
-    ends = np.cumsum([row["curve_points"] for row in rows], dtype=int)[:-1]
-    parts = [np.split(dataset[axis].values, ends) for axis in _AXES]
-    return [
-        (row["curve_panel"], Curve(row["curve_label"], x, y, row["curve_independent"]))
-        for row, x, y in zip(rows, *parts, strict=False)  # no curve: one empty part
-    ]
+    return list(zip(*columns, strict=True))

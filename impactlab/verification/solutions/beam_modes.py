@@ -7,7 +7,7 @@ deflection, F L^3/(48 EI) and what shear adds to it.
 
 Timoshenko's theory: rho A w_tt = Q_x + p, rho I psi_tt = M_x + Q, Q = a (w_x - psi), M = EI psi_x,
 a = k G A; w = M = 0 at both ends. With w = W sin(q x), psi = Psi cos(q x), q = n pi/L, and the load
-2 F/L of a point load F (N) at mid-span (signs as in BeamModes.shapes), n odd:
+2 F/L of a point load F (N) at mid-span (signs make each mode 1 there), n odd:
 
     rho A W'' = -a q (q W - Psi) + 2 F/L,   rho I Psi'' = a (q W - Psi) - EI q^2 Psi,
 
@@ -24,7 +24,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from impactlab.model.checks import integer
 from impactlab.model.impact import Beam
 from impactlab.types import Floats
 from impactlab.verification.solutions.shear import shear_stiffness
@@ -59,76 +58,41 @@ class BeamModes:
         whole = -self.beam.span / (4.0 * self.beam.bending_stiffness)
         return float(whole - self.curvatures @ self.flexibilities)
 
-    def shapes(self, x: Floats) -> Floats:
-        """Return the mode shapes, 1 at mid-span, at `x` (m, shape (x,)): shape (modes, x)."""
-        signs = np.sign(np.sin(0.5 * self.beam.span * self.wave_numbers))
-        return np.asarray(signs[:, np.newaxis] * np.sin(np.outer(self.wave_numbers, x)))
-
-    def residual_shape(self, x: Floats) -> Floats:
-        """Return the deflection per load of the modes left out at `x` (m, shape (x,)), in m/N."""
-        near = np.minimum(x, self.beam.span - x)
-        cubic = near * (3.0 * self.beam.span**2 - 4.0 * near**2)
-        bending = cubic / (48.0 * self.beam.bending_stiffness)
-        whole = bending + 0.5 * near * self.shear_compliance
-        return np.asarray(whole - self.flexibilities @ self.shapes(x))
-
 
 def odd_modes(beam: Beam, count: int) -> BeamModes:
-    """Return the first `count` odd modes of the Euler-Bernoulli beam: n = 1, 3, 5, ...
-
-    Raises ValueError when count is not a whole number of at least 1.
-    """
-    wave_numbers = odd_wave_numbers(beam, count)
+    """Return the first `count` odd modes of the Euler-Bernoulli beam: n = 1, 3, 5, ..."""
+    wave_numbers = _odd_wave_numbers(beam, count)
     squares = wave_numbers**2
     frequencies = squares * math.sqrt(beam.bending_stiffness / beam.mass_per_length)
     mass = 0.5 * beam.mass_per_length * beam.span
     return BeamModes(beam, wave_numbers, frequencies, 1.0 / (mass * frequencies**2), -squares)
 
 
-def odd_wave_numbers(beam: Beam, count: int) -> Floats:
-    """Return n pi/L in 1/m for the first `count` odd n, shape (count,).
-
-    Raises ValueError when count is not a whole number of at least 1.
-    """
-    last = 2 * integer("odd_modes", "count", count, 1) - 1
-    return np.arange(1, last + 1, 2, dtype=np.float64) * (math.pi / beam.span)
+def _odd_wave_numbers(beam: Beam, count: int) -> Floats:
+    return np.arange(1, 2 * count, 2, dtype=np.float64) * (math.pi / beam.span)
 
 
 def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
     """Return both spectra of the first `count` odd n: the lower frequencies, then the higher.
 
-    Mode masses: 1/m = 2/(rho A L) times W's share in the mode, the square of W's entry in the unit
-    eigenvector of (sqrt(rho A) W, sqrt(rho I) Psi); the shares of one n add up to 1. Curvatures:
-    psi_x = -q Psi, q Psi = (q^2 - rho A omega^2/a) W, by the first equation without load.
-
-    Raises ValueError when count is not a whole number of at least 1.
+    omega^2 are the eigenvalues of ((r, -c), (-c, p)), r and p the squares of each oscillator's own
+    frequency, where p > r. Mode masses: 1/m = 2/(rho A L) times W's share in the mode, the square
+    of W's entry in the unit eigenvector of (sqrt(rho A) W, sqrt(rho I) Psi); the shares of one n
+    add up to 1. Curvatures: psi_x = -q Psi, q Psi = (q^2 - rho A omega^2/a) W, by the first
+    equation without load.
     """
-    q, a = odd_wave_numbers(beam, count), shear_stiffness(beam)
-    squares, shares = _two_oscillators(beam, q, a)
-    flexibilities = 2.0 * shares / (beam.mass_per_length * beam.span * squares)
-    curvatures = beam.mass_per_length * squares / a - q**2
-    return BeamModes(
-        beam,
-        np.tile(q, 2),
-        np.sqrt(squares).ravel(),
-        flexibilities.ravel(),
-        curvatures.ravel(),
-        1.0 / a,
-    )
-
-
-def _two_oscillators(beam: Beam, q: Floats, a: float) -> tuple[Floats, Floats]:
-    """Return omega^2 (1/s2) and W's share in each of the two spectra, shape (2, n).
-
-    Eigenvalues and vectors of ((r, -c), (-c, p)), r and p the squares of each oscillator's own
-    frequency, where p > r; lower root and smaller share without taking differences.
-    """
+    q, a = _odd_wave_numbers(beam, count), shear_stiffness(beam)
     EI, mu = beam.bending_stiffness, beam.mass_per_length
     inertia = mu * beam.depth**2 / 12.0
     r, p = a * q**2 / mu, (a + EI * q**2) / inertia
     half, coupling = 0.5 * (p - r), (a * q) ** 2 / (mu * inertia)
     root = np.sqrt(half**2 + coupling)
+    # Lower root and smaller share without taking differences.
     upper = 0.5 * (p + r) + root
     lower = a * EI * q**4 / (mu * inertia) / upper
     small = coupling / (2.0 * root * (root + half))
-    return np.stack((lower, upper)), np.stack((1.0 - small, small))
+    squares, shares = np.concatenate((lower, upper)), np.concatenate((1.0 - small, small))
+    both = np.tile(q, 2)
+    flexibilities = 2.0 * shares / (mu * beam.span * squares)
+    curvatures = mu * squares / a - both**2
+    return BeamModes(beam, both, np.sqrt(squares), flexibilities, curvatures, 1.0 / a)

@@ -20,7 +20,6 @@ import math
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from impactlab.model.checks import positive
 from impactlab.model.impact import Beam, Impact
 from impactlab.verification.solutions import bending
 
@@ -34,12 +33,19 @@ def midspan_deflection(beam: Beam, load: float) -> float:
     w = integral of kappa x dx over half the span; with M = P x/2 and by parts
     w = 2/P^2 (kappa_m M_m^2 - integral of M^2 over kappa from 0 to kappa_m), m: at mid-span.
 
-    Raises ValueError when the load is not above zero, or the beam cannot carry it.
+    Raises ValueError when the beam cannot carry the load.
     """
-    highest = positive("collapse", "load", load) * beam.span / 4.0
+    highest = load * beam.span / 4.0
     curvature = _curvature(beam, highest)
     first = min(curvature, bending.yield_curvature(beam))
-    work = beam.bending_stiffness**2 * first**3 / 3.0 + _squares(beam, first, curvature)
+
+    def integrand(logarithm: float) -> float:
+        kappa = math.exp(logarithm)
+        return float(bending.moment(beam, kappa)) ** 2 * kappa
+
+    # In the logarithm of the curvature, which may grow by orders beyond yield.
+    beyond, _ = quad(integrand, math.log(first), math.log(curvature), epsrel=1e-11)
+    work = beam.bending_stiffness**2 * first**3 / 3.0 + float(beyond)
     return float(2.0 / load**2 * (curvature * highest**2 - work))
 
 
@@ -48,19 +54,16 @@ def load_at(beam: Beam, deflection: float) -> float:
 
     Without hardening it ends at the collapse load, which deflections of 20/9 times that of first
     yield and more share.
-
-    Raises ValueError when the deflection is not above zero.
     """
-    target = positive("collapse", "deflection", deflection)
-    elastic = target / bending.static_deflection(beam, 1.0)  # no beam carries more
-    farthest = 4.0 / beam.span * float(bending.moment(beam, 0.5 * _hinge(beam)))
-    most = min(elastic, farthest)
-    if midspan_deflection(beam, most) <= target:
+    elastic = deflection / bending.static_deflection(beam, 1.0)  # no beam carries more
+    hinge = 0.5 * _FAR * bending.yield_curvature(beam)
+    most = min(elastic, 4.0 / beam.span * float(bending.moment(beam, hinge)))
+    if midspan_deflection(beam, most) <= deflection:
         return most
     least = 2.0 / 3.0 * most  # the plastic moment is 1.5 times that of first yield
-    while midspan_deflection(beam, least) > target:
+    while midspan_deflection(beam, least) > deflection:
         least *= 0.5
-    return float(brentq(lambda load: midspan_deflection(beam, load) - target, least, most))
+    return float(brentq(lambda load: midspan_deflection(beam, load) - deflection, least, most))
 
 
 def missing_work(beam: Beam) -> float:
@@ -76,26 +79,12 @@ def missing_work(beam: Beam) -> float:
     return float(elastic + beyond)
 
 
-def _hinge(beam: Beam) -> float:
-    return _FAR * bending.yield_curvature(beam)
-
-
-def _squares(beam: Beam, start: float, stop: float) -> float:
-    """Return the integral of M^2 over the curvature, which may grow by orders: in its logarithm."""
-
-    def integrand(logarithm: float) -> float:
-        kappa = math.exp(logarithm)
-        return float(bending.moment(beam, kappa)) ** 2 * kappa
-
-    value, _ = quad(integrand, math.log(start), math.log(stop), epsrel=1e-11)
-    return float(value)
-
-
 def _curvature(beam: Beam, moment: float) -> float:
     """Return the curvature (1/m) at which the section carries `moment` (N m)."""
     if moment <= bending.yield_moment(beam):
         return moment / beam.bending_stiffness
-    first, far = bending.yield_curvature(beam), _hinge(beam)
+    first = bending.yield_curvature(beam)
+    far = _FAR * first
     if moment > float(bending.moment(beam, far)):
         raise ValueError(f"the beam cannot carry a moment of {moment:g} N m")
     return float(brentq(lambda kappa: float(bending.moment(beam, kappa)) - moment, first, far))
@@ -140,5 +129,6 @@ def elastic_plastic_deflection(impact: Impact) -> float:
     striker is so slow that inertia forces are those of the mode alone. Holds above its collapse.
     """
     beam, load = impact.beam, bending.collapse_load(impact.beam)
-    rise = missing_work(beam) / load
-    return mode_deflection(impact) + rise - bending.static_deflection(beam, load)
+    return (
+        mode_deflection(impact) + missing_work(beam) / load - bending.static_deflection(beam, load)
+    )

@@ -17,7 +17,6 @@ from itertools import pairwise
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from impactlab.model.checks import one_of, positive
 from impactlab.model.impact import Impact
 from impactlab.verification.solutions import hertz as hertz_forms
 
@@ -41,31 +40,29 @@ def stronge(d: float, E: float, R: float, S: float, nu: float) -> float:
 
 def jackson_green(d: float, E: float, R: float, S: float, nu: float) -> float:
     """Return the force of Jackson and Green 2005."""
-    C = 1.295 * math.exp(0.736 * nu)
-    d_c = R * (math.pi * C * S / (2.0 * E)) ** 2
-    if d <= 1.9 * d_c:
-        return hertz(d, E, R, S, nu)
-    a = math.sqrt(R * d * (d / (1.9 * d_c)) ** (0.14 * math.exp(23.0 * S / E)))
-    H = 2.84 * S * (1.0 - math.exp(-0.82 / (a / R) ** 0.7))
-    return _fitted(d / d_c, 4.0 * H / (C * S), C, E, R, S)
+    return _fitted(d, E, R, S, nu, False)
 
 
 def mjg(d: float, E: float, R: float, S: float, nu: float) -> float:
     """Return the force of Ghaednia, Brake, Berryhill and Jackson 2019, without hardening."""
+    return _fitted(d, E, R, S, nu, True)
+
+
+def _fitted(d: float, E: float, R: float, S: float, nu: float, modified: bool) -> float:
+    """Return the force of Jackson and Green with their hardness H, or that of the modified law."""
     C = 1.295 * math.exp(0.736 * nu)
     d_c = R * (math.pi * C * S / (2.0 * E)) ** 2
     if d <= 1.9 * d_c:
         return hertz(d, E, R, S, nu)
     a = math.sqrt(R * d * (d / (1.9 * d_c)) ** (0.14 * math.exp(23.0 * S / E)))
-    H = S * (1.92 + 0.92 * math.cos(math.pi * a / R))
-    return _fitted(d / d_c, 4.0 * H / (C * S), C, E, R, S)
-
-
-def _fitted(y: float, factor: float, C: float, E: float, R: float, S: float) -> float:
-    F_c = 4.0 / 3.0 * (R / E) ** 2 * (math.pi * C * S / 2.0) ** 3
+    if modified:
+        H = S * (1.92 + 0.92 * math.cos(math.pi * a / R))
+    else:
+        H = 2.84 * S * (1.0 - math.exp(-0.82 / (a / R) ** 0.7))
+    y, F_c = d / d_c, 4.0 / 3.0 * (R / E) ** 2 * (math.pi * C * S / 2.0) ** 3
     faded = math.exp(-math.pow(y, 5.0 / 12.0) / 4.0)
     grown = 1.0 - math.exp(-math.pow(y, 5.0 / 9.0) / 25.0)
-    return F_c * (faded * math.pow(y, 1.5) + factor * grown * y)
+    return F_c * (faded * math.pow(y, 1.5) + 4.0 * H / (C * S) * grown * y)
 
 
 def thornton(d: float, E: float, R: float, S: float, nu: float) -> float:
@@ -92,19 +89,16 @@ def kogut_etsion(d: float, E: float, R: float, S: float, nu: float) -> float:
     return F_c * 3.0 / K * y
 
 
-# Unloading from d: (force at its start in N, indentation at its end in m, exponent).
+Unloading = tuple[float, float, float]
+"""Unloading from d: (force at its start in N, indentation at its end in m, exponent)."""
 
 
-def elastic_unloading(
-    d: float, F: float, E: float, R: float, S: float, nu: float
-) -> tuple[float, float, float]:
+def elastic_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
     """Return the unloading of Hertz's law."""
     return F, 0.0, 1.5
 
 
-def wang_unloading(
-    d: float, F: float, E: float, R: float, S: float, nu: float
-) -> tuple[float, float, float]:
+def wang_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
     """Return the paper's Eqs. 15 to 17: R_e = sqrt(3 F/(4 E)) (R/d_y)^(3/4)."""
     d_y = R * (0.825 * math.pi * S / E) ** 2
     if d <= d_y:
@@ -113,9 +107,7 @@ def wang_unloading(
     return F, d - d_y * R_e / R, 1.5
 
 
-def stronge_unloading(
-    d: float, F: float, E: float, R: float, S: float, nu: float
-) -> tuple[float, float, float]:
+def stronge_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
     """Recover d_y sqrt(2 d/d_y - 1) from the force F_y (2 d/d_y - 1) on (Stronge 2000)."""
     d_y = R * (0.825 * math.pi * S / E) ** 2
     if d <= d_y:
@@ -124,9 +116,7 @@ def stronge_unloading(
     return 1.1 * math.pi * S * R * d_y * u, d - d_y * math.sqrt(u), 1.5
 
 
-def jackson_unloading(
-    d: float, F: float, E: float, R: float, S: float, nu: float
-) -> tuple[float, float, float]:
+def jackson_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
     """Return Jackson, Chusoipin and Green 2005; at least 1 % is recovered."""
     d_c = R * (math.pi * 1.295 * math.exp(0.736 * nu) * S / (2.0 * E)) ** 2
     if d <= d_c:
@@ -135,9 +125,7 @@ def jackson_unloading(
     return F, d * min(share, 0.99), 1.5
 
 
-def thornton_unloading(
-    d: float, F: float, E: float, R: float, S: float, nu: float
-) -> tuple[float, float, float]:
+def thornton_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
     """Follow Hertz on R_p = (4 E/(3 F)) ((2 F + F_y)/(2 pi p_y))^1.5 (Thornton 1997)."""
     p_y = 1.6 * S
     F_y = (R / E) ** 2 * (math.pi * p_y) ** 3 / 6.0
@@ -148,9 +136,7 @@ def thornton_unloading(
     return F, d - (9.0 * F**2 / (16.0 * E**2 * R_p)) ** (1.0 / 3.0), 1.5
 
 
-def etsion_unloading(
-    d: float, F: float, E: float, R: float, S: float, nu: float
-) -> tuple[float, float, float]:
+def etsion_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
     """Return Etsion, Kligerman and Kadin 2005."""
     y = d / (R * (1.4 * math.pi * (0.454 + 0.41 * nu) * S / E) ** 2)
     if y <= 1.0:
@@ -158,9 +144,7 @@ def etsion_unloading(
     return F, d * (1.0 - 1.0 / y**0.28) * (1.0 - 1.0 / y**0.69), 1.5 / y**0.0331
 
 
-def brake_unloading(
-    d: float, F: float, E: float, R: float, S: float, nu: float
-) -> tuple[float, float, float]:
+def brake_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
     """Return Brake 2015, elastic until the loading leaves Hertz's."""
     onset = 1.9 * R * (math.pi * 1.295 * math.exp(0.736 * nu) * S / (2.0 * E)) ** 2
     if d <= onset:
@@ -168,10 +152,7 @@ def brake_unloading(
     return F, d * (1.0 - F / hertz(d, E, R, S, nu)), 1.5
 
 
-Loading = Callable[[float, float, float, float, float], float]
-Unloading = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
-
-LAWS: dict[str, tuple[Loading, Unloading]] = {
+LAWS: dict[str, tuple[Callable[..., float], Callable[..., Unloading]]] = {
     "hertz": (hertz, elastic_unloading),
     "stronge": (stronge, wang_unloading),
     "stronge_original": (stronge, stronge_unloading),
@@ -191,22 +172,13 @@ def joints(E: float, R: float, S: float, nu: float) -> list[float]:
     thornton_y = R * (0.8 * math.pi * S / E) ** 2
     kogut_c = R * (1.4 * math.pi * (0.454 + 0.41 * nu) * S / E) ** 2
     plastic = 0.5 * (math.exp(5.1) + 1.0)
-    return sorted(
-        [
-            *(stronge_y * x for x in (1.0, plastic)),
-            *(jackson_c * x for x in (1.0, 1.9)),
-            thornton_y,
-            *(kogut_c * x for x in (1.0, 6.0, 110.0)),
-        ]
-    )
+    steps = (stronge_y, (1.0, plastic)), (jackson_c, (1.0, 1.9)), (kogut_c, (1.0, 6.0, 110.0))
+    return sorted([thornton_y, *(d * x for d, shares in steps for x in shares)])
 
 
 @dataclass(frozen=True)
 class LawOnHalfSpace:
-    """A law between two bodies: effective_modulus, yield_stress in Pa, effective_radius in m.
-
-    Raises ValueError for an unknown law, or where a number is not finite and positive.
-    """
+    """A law between two bodies: effective_modulus, yield_stress in Pa, effective_radius in m."""
 
     law: str
     effective_modulus: float
@@ -214,27 +186,18 @@ class LawOnHalfSpace:
     yield_stress: float
     poissons_ratio: float
 
-    def __post_init__(self) -> None:
-        one_of("LawOnHalfSpace", "law", self.law, tuple(LAWS))
-        for field in ("effective_modulus", "effective_radius", "yield_stress"):
-            positive("LawOnHalfSpace", field, getattr(self, field))
-
     @property
     def pair(self) -> tuple[float, float, float, float]:
         """E, R, S, nu, as the functions above take them."""
-        return (
-            self.effective_modulus,
-            self.effective_radius,
-            self.yield_stress,
-            self.poissons_ratio,
-        )
+        bodies = self.effective_modulus, self.effective_radius
+        return (*bodies, self.yield_stress, self.poissons_ratio)
 
     def loading_force(self, indentation: float) -> float:
         """Return F in N at a monotonically reached indentation (m)."""
         return LAWS[self.law][0](indentation, *self.pair)
 
-    def unloading(self, indentation: float) -> tuple[float, float, float]:
-        """Return (initial force in N, residual indentation in m, exponent) after `indentation`."""
+    def unloading(self, indentation: float) -> Unloading:
+        """Return the unloading after `indentation` (m)."""
         return LAWS[self.law][1](indentation, self.loading_force(indentation), *self.pair)
 
     def residual_indentation(self, indentation: float) -> float:
@@ -254,9 +217,8 @@ class LawOnHalfSpace:
 
     def maximum_indentation(self, velocity: float, mass: float) -> float:
         """Find where the loading work is the energy of `mass` (kg) at `velocity` (m/s), in m."""
-        speed = positive("LawOnHalfSpace", "velocity", velocity)
-        energy = 0.5 * positive("LawOnHalfSpace", "mass", mass) * speed**2
-        high = hertz_forms.maximum_indentation(mass, speed, *self.pair[:2])
+        energy = 0.5 * mass * velocity**2
+        high = hertz_forms.maximum_indentation(mass, velocity, *self.pair[:2])
         while self.loading_work(high) < energy:
             high *= 2.0
         low = 0.5 * high
@@ -281,10 +243,7 @@ def law_on_half_space(impact: Impact) -> LawOnHalfSpace:
     """Return the law and the bodies of `impact` as if the beam were a half-space."""
     sphere, beam = impact.sphere.material, impact.beam.material
     softer = beam if beam.yield_stress <= sphere.yield_stress else sphere
+    modulus, radius = hertz_forms.effective_modulus(impact), hertz_forms.effective_radius(impact)
     return LawOnHalfSpace(
-        impact.contact,
-        hertz_forms.effective_modulus(impact),
-        hertz_forms.effective_radius(impact),
-        softer.yield_stress,
-        softer.poissons_ratio,
+        impact.contact, modulus, radius, softer.yield_stress, softer.poissons_ratio
     )

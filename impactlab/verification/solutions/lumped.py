@@ -29,22 +29,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
-from impactlab.model.checks import not_negative, positive
 from impactlab.model.impact import Beam, Impact
 from impactlab.types import Floats
 from impactlab.verification.solutions import hertz
-
-_RTOL = 1e-12
-_STEPS = 50
-"""Least number of steps in Hertz's contact time, so that no contact is stepped over."""
-
-
-@dataclass(frozen=True)
-class Oscillator:
-    """The struck body: mass in kg (infinite: it does not move), stiffness K in N/m."""
-
-    mass: float
-    stiffness: float
 
 
 @dataclass(frozen=True)
@@ -91,57 +78,56 @@ _HISTORIES: dict[str, Callable[[Floats, float], Floats]] = {
 }
 
 
-def solve(impact: Impact, struck: Oscillator, duration: float) -> LumpedSolution:
-    """Solve the impact of the sphere on `struck` over `duration` (s); the beam gives E* alone.
+def solve(
+    impact: Impact, duration: float, mass: float = math.inf, stiffness: float = 0.0
+) -> LumpedSolution:
+    """Solve the impact over `duration` (s) on a `mass` (kg) on a spring of `stiffness` (N/m).
 
-    Raises ValueError when the contact is not "hertz", the mass or the duration is not positive, or
-    the stiffness is negative or not finite.
+    An infinite mass does not move: a rigid beam. The beam gives E* alone.
+
+    Raises ValueError when the contact is not "hertz".
     """
     if impact.contact != "hertz":
         raise ValueError(f"Impact.contact = {impact.contact!r}: lumped masses need 'hertz'")
-    _check(struck)
-    end, k = positive("lumped", "duration", duration), hertz.contact_stiffness(impact)
-    found = _integrate(impact, struck, end)
-    touches, turns = found.t_events
-    depths = [state[0] - state[1] for state in (*found.y_events[1], found.y[:, -1])]
-    deepest = int(np.argmax(depths))
-    return LumpedSolution(
-        impact,
-        end,
-        _contacts(touches),
-        float(_force(depths[deepest], k)),
-        float([*turns, end][deepest]),
-        found.sol,
-    )
-
-
-def _integrate(impact: Impact, struck: Oscillator, duration: float) -> Any:
-    """Return solve_ivp's solution, with events: touch and parting; turns of the indentation."""
-    mass, k = impact.sphere.total_mass, hertz.contact_stiffness(impact)
+    k, striker, v0 = hertz.contact_stiffness(impact), impact.sphere.total_mass, impact.velocity
 
     def motion(_: float, state: Floats) -> list[float]:
         w_s, w, v_s, v = state
         F = _force(w_s - w, k)
-        return [v_s, v, impact.gravity - F / mass, (F - struck.stiffness * w) / struck.mass]
+        return [v_s, v, impact.gravity - F / striker, (F - stiffness * w) / mass]
 
-    def gap(_: float, state: Floats) -> float:
+    def touch_and_parting(_: float, state: Floats) -> float:
         return float(state[0] - state[1])
 
-    def closing(_: float, state: Floats) -> float:
+    def turn(_: float, state: Floats) -> float:
         return float(state[2] - state[3])
 
-    closing.direction = -1.0  # type: ignore[attr-defined]
-    v0, scales = impact.velocity, _scales(impact)
-    return solve_ivp(
+    turn.direction = -1.0  # type: ignore[attr-defined]
+    args, tolerance = hertz.arguments(impact), 1e-12
+    depth = hertz.maximum_indentation(*args)
+    found = solve_ivp(
         motion,
         (0.0, duration),
         [0.0, 0.0, v0, 0.0],
         method="DOP853",
-        rtol=_RTOL,
-        atol=_RTOL * np.array([scales[0], scales[0], v0, v0]),
-        max_step=scales[1] / _STEPS,
-        events=(gap, closing),
+        rtol=tolerance,
+        atol=tolerance * np.array([depth, depth, v0, v0]),
+        max_step=hertz.contact_duration(*args) / 50,  # no contact is stepped over
+        events=(touch_and_parting, turn),
         dense_output=True,
+    )
+    touches, turns = found.t_events
+    later = touches[touches > 0.0]  # the first touch is at 0
+    ends = np.concatenate(([0.0], later, [np.nan] * ((later.size + 1) % 2)))
+    depths = [state[0] - state[1] for state in (*found.y_events[1], found.y[:, -1])]
+    deepest = int(np.argmax(depths))
+    return LumpedSolution(
+        impact,
+        duration,
+        np.asarray(ends.reshape(-1, 2)),
+        float(_force(depths[deepest], k)),
+        float([*turns, duration][deepest]),
+        found.sol,
     )
 
 
@@ -151,53 +137,12 @@ def _force(delta: Any, k: float) -> Any:
     return k * depth * np.sqrt(depth)
 
 
-def _scales(impact: Impact) -> tuple[float, float]:
-    """Return the indentation (m) and contact time (s) on a half-space."""
-    args = hertz.arguments(impact)
-    return hertz.maximum_indentation(*args), hertz.contact_duration(*args)
-
-
-def _contacts(touches: Floats) -> Floats:
-    """Return the start and end of each contact, the first touch at 0 included."""
-    later = touches[touches > 0.0]
-    ends = np.concatenate(([0.0], later, [np.nan] * ((later.size + 1) % 2)))
-    return np.asarray(ends.reshape(-1, 2))
-
-
-def _check(struck: Oscillator) -> None:
-    if not math.isinf(struck.mass):
-        positive("Oscillator", "mass", struck.mass)
-    not_negative("Oscillator", "stiffness", struck.stiffness)
-
-
-MASS_SHARE = 17.0 / 35.0
-"""The moving mass over the beam's mass."""
-
-
-def spring_mass(beam: Beam) -> Oscillator:
+def spring_mass(beam: Beam) -> tuple[float, float]:
     """Return m = (17/35) rho A L in kg and K = 48 EI/L^3 in N/m."""
-    return Oscillator(
-        MASS_SHARE * beam.mass_per_length * beam.span,
-        48.0 * beam.bending_stiffness / beam.span**3,
-    )
-
-
-def midspan_curvature(beam: Beam, deflection: float) -> float:
-    """Return w_xx at mid-span in 1/m with that `deflection` (m) there: phi'' w = -12 w/L^2."""
-    return -12.0 * deflection / beam.span**2
+    mass = 17.0 / 35.0 * beam.mass_per_length * beam.span
+    return mass, 48.0 * beam.bending_stiffness / beam.span**3
 
 
 def solve_spring_mass(impact: Impact, duration: float) -> LumpedSolution:
-    """Solve the beam's spring-mass model over `duration` (s); yield stresses are ignored.
-
-    Raises ValueError when the contact is not "hertz" or the duration is not positive.
-    """
-    return solve(impact, spring_mass(impact.beam), duration)
-
-
-def solve_rigid_beam(impact: Impact, duration: float) -> LumpedSolution:
-    """Solve the impact on a rigid beam of the same contact modulus over `duration` (s).
-
-    Raises ValueError when the contact is not "hertz" or the duration is not positive.
-    """
-    return solve(impact, Oscillator(math.inf, 0.0), duration)
+    """Solve the beam's spring-mass model over `duration` (s); yield stresses are ignored."""
+    return solve(impact, duration, *spring_mass(impact.beam))

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
-from impactlab.model.checks import not_negative, positive
 from impactlab.model.impact import Impact
 from impactlab.verification.solutions import hertz
 
@@ -29,19 +28,11 @@ U_PLASTIC = math.exp(3.0 * (HARDNESS - CONSTRAINT))
 
 @dataclass(frozen=True)
 class StrongeImpact:
-    """Closed forms for one pair of bodies: E* and sigma_y (of the softer body) in Pa, R* in m.
-
-    Raises ValueError naming the field when one is not finite and positive; the methods likewise
-    for their arguments.
-    """
+    """Closed forms for one pair of bodies: E* and sigma_y (of the softer body) in Pa, R* in m."""
 
     effective_modulus: float
     effective_radius: float
     yield_stress: float
-
-    def __post_init__(self) -> None:
-        for field in ("effective_modulus", "effective_radius", "yield_stress"):
-            positive("StrongeImpact", field, getattr(self, field))
 
     @property
     def yield_indentation(self) -> float:
@@ -57,18 +48,22 @@ class StrongeImpact:
 
     def loading_force(self, indentation: float) -> float:
         """Return the force in N at a monotonically reached `indentation` (m, zero or more)."""
-        x = not_negative("StrongeImpact", "indentation", indentation) / self.yield_indentation
-        return self.yield_force * _force(x)
+        x = indentation / self.yield_indentation
+        if x <= 1.0:
+            return self.yield_force * math.pow(x, 1.5)
+        u = 2.0 * x - 1.0
+        if u <= U_PLASTIC:
+            return self.yield_force * (u * (1.0 + math.log(u) / (3.0 * CONSTRAINT)))
+        return self.yield_force * (HARDNESS * u / CONSTRAINT)
 
     def loading_work(self, indentation: float) -> float:
         """Return the energy in J put in up to a monotonically reached `indentation` (m)."""
-        x = not_negative("StrongeImpact", "indentation", indentation) / self.yield_indentation
+        x = indentation / self.yield_indentation
         return self.yield_force * self.yield_indentation * _work(x)
 
     def maximum_indentation(self, velocity: float, mass: float) -> float:
         """Return delta_m in m, where the loading work is the energy of `mass` (kg)."""
-        speed = positive("StrongeImpact", "velocity", velocity)
-        energy = 0.5 * positive("StrongeImpact", "mass", mass) * speed**2
+        energy = 0.5 * mass * velocity**2
         scaled = energy / (self.yield_force * self.yield_indentation)
         if scaled <= 0.4:
             return self.yield_indentation * math.pow(scaled / 0.4, 0.4)
@@ -127,16 +122,6 @@ def stronge_impact(impact: Impact) -> StrongeImpact:
         hertz.effective_radius(impact),
         min(impact.sphere.material.yield_stress, impact.beam.material.yield_stress),
     )
-
-
-def _force(x: float) -> float:
-    """Return F/F_y."""
-    u = 2.0 * x - 1.0
-    if x <= 1.0:
-        return math.pow(x, 1.5)
-    if u <= U_PLASTIC:
-        return u * (1.0 + math.log(u) / (3.0 * CONSTRAINT))
-    return HARDNESS * u / CONSTRAINT
 
 
 def _work(x: float) -> float:

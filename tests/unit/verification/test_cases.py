@@ -15,9 +15,3 @@ def test_values_are_those_of_the_example_in_si():
     assert impact.beam.material.youngs_modulus == pytest.approx(215.75e9, rel=5e-5)
     assert impact.sphere.total_mass == pytest.approx(0.03334, rel=5e-4)
     assert impact.beam.mass_per_length * impact.beam.span == pytest.approx(0.12219, rel=5e-5)
-
-
-def test_velocity_can_be_chosen():
-    assert timoshenko_impact(velocity=0.5).velocity == 0.5
-    with pytest.raises(ValueError, match="velocity"):
-        timoshenko_impact(velocity=0.0)

@@ -100,18 +100,6 @@ def test_three_lobatto_points_have_their_plastic_moment_at_the_yield_moment():
     assert float(moment) == pytest.approx(bending.yield_moment(BEAM), rel=1e-12)
 
 
-def test_wrong_values_are_named():
-    with pytest.raises(ValueError, match="curvature"):
-        bending.moment(BEAM, [0.0, np.nan])
-    with pytest.raises(ValueError, match="weights"):
-        bending.rule_moment(BEAM, 0.1, [-1.0, 1.0], [1.0])
-    with pytest.raises(ValueError, match="load"):
-        bending.static_deflection(BEAM, -1.0)
-    with pytest.raises(ValueError, match="strain"):
-        bending.fibre_stress(BEAM.material, np.inf)
-
-
-BEAM = paper_impact().beam
 E, S_Y, H = 210e9, 345e6, 10e9
 TANGENT = E * H / (E + H)
 

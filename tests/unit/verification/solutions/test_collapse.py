@@ -62,10 +62,6 @@ def test_missing_work_is_the_area_above_the_curve():
 def test_what_the_beam_cannot_carry_is_refused():
     with pytest.raises(ValueError, match="cannot carry a moment"):
         collapse.midspan_deflection(BEAM, 1.001 * bending.collapse_load(BEAM))
-    with pytest.raises(ValueError, match="load = 0"):
-        collapse.midspan_deflection(BEAM, 0.0)
-    with pytest.raises(ValueError, match="deflection = -1"):
-        collapse.load_at(BEAM, -1.0)
 
 
 BASE = paper_impact(2.0)

@@ -96,8 +96,3 @@ def test_bodies_of_an_impact(name):
     ours = law_on_half_space(il.paper_impact(contact=name))
     assert (ours.law, ours.yield_stress, ours.poissons_ratio) == (name, 345e6, 0.3)
     assert ours.effective_modulus == hertz.effective_modulus(il.paper_impact())
-
-
-def test_an_unknown_law_is_named():
-    with pytest.raises(ValueError, match=r"herz.*must be one of hertz, stronge"):
-        law("herz")

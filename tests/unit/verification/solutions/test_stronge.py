@@ -155,14 +155,3 @@ def test_bodies_of_an_impact_yield_at_the_softer_one():
     assert bodies.yield_stress == 345e6
     assert bodies.effective_radius == 0.035
     assert bodies.effective_modulus == pytest.approx(208e9 * 210e9 / (418e9 * 0.91), rel=1e-12)
-
-
-def test_wrong_values_are_named():
-    with pytest.raises(ValueError, match="yield_stress"):
-        StrongeImpact(effective_modulus=1e11, effective_radius=0.01, yield_stress=-1.0)
-    with pytest.raises(ValueError, match="velocity"):
-        BODIES.restitution(0.0, MASS)
-    with pytest.raises(ValueError, match="mass"):
-        BODIES.restitution(1.0, math.nan)
-    with pytest.raises(ValueError, match="indentation"):
-        BODIES.loading_work(-1e-6)
