@@ -12,9 +12,8 @@ from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
-from impactlab.model.parameters import Value, flatten, with_values
-from impactlab.solver import BEAM_MODELS, RULES, SCHEMES
-from impactlab.solver.contact import LAWS
+from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
+from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.leapfrog import run_all
@@ -26,21 +25,11 @@ from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, kept_
 if TYPE_CHECKING:
     import xarray as xr
 
-_NUMBERED = {
-    "contact": LAWS,
-    "beam_model": BEAM_MODELS,
-    "rule": RULES,
-    "scheme": SCHEMES,
-}
 _COMPILE = """
 import impactlab as il
 from impactlab.simulate import case_table, solve
 solve(case_table(il.paper_impact(), il.Discretisation(nodes=5), duration=1e-6))
 """
-
-
-Columns = dict[str, np.ndarray[Any, Any]]
-"""Answers by name."""
 
 
 @dataclass(frozen=True)
@@ -55,10 +44,9 @@ class Answers:
     histories: dict[str, np.ndarray[Any, Any]]
     profiles: dict[str, np.ndarray[Any, Any]]
 
-    def columns(self) -> Columns:
+    def columns(self) -> dict[str, np.ndarray[Any, Any]]:
         """Return every response, history and profile by name, each of shape (R, ...)."""
-        names = self.responses.dtype.names or ()
-        responses = {name: self.responses[name].copy() for name in names}
+        responses = {name: self.responses[name].copy() for name in self.responses.dtype.names or ()}
         return responses | self.histories | self.profiles
 
 
@@ -150,8 +138,18 @@ def case_table(
     except (TypeError, ValueError):  # some run may be wrong, or right in a way of its own
         each = _one_by_one(impact, discretisation, varied, first_run)
         tables = [np.zeros(0, CASE), *(_table(*run, duration, 1) for run in each)]
-        return _compatible(np.concatenate(tables), first_run)
-    return _compatible(_table(*many, duration, lengths.pop() if lengths else 1), first_run)
+        cases = np.concatenate(tables)
+    else:
+        cases = _table(*many, duration, lengths.pop() if lengths else 1)
+    leapfrog_only = cases["beam_model"] > BEAM_MODELS.index("elastic")
+    wrong = np.flatnonzero(leapfrog_only & (cases["scheme"] != SCHEMES.index("leapfrog")))
+    if wrong.size:
+        case = cases[wrong[0]]
+        raise ValueError(
+            f"run {first_run + wrong[0]}: Discretisation.scheme = {SCHEMES[case.scheme]!r}: "
+            f"Impact.beam_model = {BEAM_MODELS[case.beam_model]!r} has 'leapfrog' alone"
+        )
+    return cases
 
 
 def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False) -> Answers:
@@ -174,7 +172,13 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
     return Answers(
         responses,
         dict(zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)) if samples else {},
-        _whole_beam(deflection, strains[0], strains[1], points) if profiles else {},
+        {
+            "equivalent_plastic_strain": _mirror(_depth(strains[1], 1.0, points)),
+            "plastic_strain": _mirror(_depth(strains[0], -1.0, points)),
+            "deflection": _mirror(deflection),
+        }
+        if profiles
+        else {},
     )
 
 
@@ -214,12 +218,6 @@ def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[
     }
 
 
-def _plain(value: Any) -> Value:
-    """Return NumPy scalars as the Python values that the model checks."""
-    plain: Value = value.item() if isinstance(value, np.generic) else value
-    return plain
-
-
 def _one_by_one(
     impact: Impact,
     discretisation: Discretisation,
@@ -228,7 +226,9 @@ def _one_by_one(
 ) -> Iterator[tuple[Impact, Discretisation]]:
     """Yield the impact of every run. Raises ValueError naming the first one the model refuses."""
     for run, row in enumerate(zip(*varied.values(), strict=True), first_run):
-        values = dict(zip(varied, map(_plain, row), strict=True))
+        # NumPy's scalars as the Python values that the model checks
+        plain = (value.item() if isinstance(value, np.generic) else value for value in row)
+        values: dict[str, Any] = dict(zip(varied, plain, strict=True))
         try:
             yield with_values(impact, discretisation, values)
         except ValueError as error:
@@ -246,39 +246,17 @@ def _table(
         )
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
     values["sphere_mass"] = impact.sphere.total_mass
-    for name, words in _NUMBERED.items():
-        values[name] = sum(at * (values[name] == word) for at, word in enumerate(words))
+    for name, entry in PARAMETERS.items():
+        if entry.choices:
+            numbered = enumerate(entry.choices)
+            values[name] = sum(at * (values[name] == word) for at, word in numbered)
     cases = np.zeros(runs, dtype=CASE)
     for name in (*WHOLE, *REAL):
         cases[name] = values[name]
     return cases
 
 
-def _compatible(cases: np.ndarray[Any, Any], first_run: int) -> np.ndarray[Any, Any]:
-    """Return the cases unless one asks for a scheme that its beam model does not have."""
-    leapfrog_only = cases["beam_model"] > BEAM_MODELS.index("elastic")
-    wrong = np.flatnonzero(leapfrog_only & (cases["scheme"] != SCHEMES.index("leapfrog")))
-    if wrong.size:
-        case = cases[wrong[0]]
-        raise ValueError(
-            f"run {first_run + wrong[0]}: Discretisation.scheme = {SCHEMES[case.scheme]!r}: "
-            f"Impact.beam_model = {BEAM_MODELS[case.beam_model]!r} has 'leapfrog' alone"
-        )
-    return cases
-
-
-def _whole_beam(
-    deflection: np.ndarray[Any, Any],
-    plastic_strain: np.ndarray[Any, Any],
-    peeq: np.ndarray[Any, Any],
-    points: int,
-) -> dict[str, np.ndarray[Any, Any]]:
-    """Return whole beams from half beams with half depths, outermost fibre first."""
-    return {
-        "equivalent_plastic_strain": _mirror(_depth(peeq, 1.0, points)),
-        "plastic_strain": _mirror(_depth(plastic_strain, -1.0, points)),
-        "deflection": _mirror(deflection),
-    }
+# Whole beams from half beams with half depths, outermost fibre first
 
 
 def _mirror(half: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

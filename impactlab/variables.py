@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 import subprocess
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
@@ -112,23 +113,6 @@ RESPONSES: dict[str, Variable] = {
 }
 """The scalar answers of a run, by name."""
 
-_TIME = (
-    Variable("contact_force", ("time",), "N", "contact force"),
-    Variable("midspan_deflection", ("time",), "m", "deflection of the beam at mid-span"),
-    Variable(
-        "midspan_curvature",
-        ("time",),
-        "m-1",
-        "curvature of the beam at mid-span (w_xx; psi_x of a Timoshenko beam)",
-    ),
-    Variable("sphere_displacement", ("time",), "m", "displacement of the sphere since first touch"),
-    Variable("indentation", ("time",), "m", "indentation (approach of sphere and beam axis)"),
-)
-_FIELDS = (
-    Variable("equivalent_plastic_strain", ("x", "z"), "1", "equivalent plastic strain (PEEQ)"),
-    Variable("plastic_strain", ("x", "z"), "1", "plastic strain along the beam"),
-    Variable("deflection", ("x",), "m", "deflection at the end of the duration"),
-)
 ANALYSES: dict[str, str] = {
     "convergence_in_nodes": "a grid that varies `nodes` over at least 3 values",
     "convergence_in_time_step": "a grid that varies `courant` over at least 3 values",
@@ -140,16 +124,6 @@ ANALYSES: dict[str, str] = {
 }
 """Names of the analyses (modules of impactlab.analysis), and what runs each one needs."""
 
-WITNESS: dict[str, Variable] = {
-    "plastic_zone_radius": Variable(
-        "plastic_zone_radius",
-        (),
-        "m",
-        "distance from the centre of the impact to which the struck surface has a PEEQ above 0.2 %",
-        comment="of the 3-D model alone: NaN for models of the beam",
-    )
-}
-"""What comes with the runs of the 3-D model beside the responses, by name."""
 UNLIKE: dict[str, str] = {
     "peak_plastic_strain": "with the contact in 3-D, of bending alone in the beam models",
     "plastic_zone_length": "with the contact in 3-D, of bending alone in the beam models",
@@ -157,18 +131,48 @@ UNLIKE: dict[str, str] = {
     "energy_error": "of each model's own balance",
 }
 """Responses that are not the same quantity in the 3-D model and in those of the beam, and why."""
-HISTORIES: dict[str, Variable] = {entry.name: entry for entry in _TIME}
-"""Answers on `time`, by name."""
-PROFILES: dict[str, Variable] = {entry.name: entry for entry in _FIELDS}
-"""Answers along the beam at the end of the run, by name."""
 
-COORDINATES: dict[str, Variable] = {
-    "time": Variable("time", ("time",), "s", "time since first touch"),
-    "x": Variable("x", ("x",), "m", "distance from the left support"),
-    "z": Variable("z", ("z",), "m", "distance below the beam's axis"),
-    "duration": Variable("duration", (), "s", "simulated time"),
-    "run": Variable("run", ("run",), "1", "number of the run"),
-}
+
+def _table(*entries: Variable) -> dict[str, Variable]:
+    return {entry.name: entry for entry in entries}
+
+
+WITNESS = _table(
+    Variable(
+        "plastic_zone_radius",
+        (),
+        "m",
+        "distance from the centre of the impact to which the struck surface has a PEEQ above 0.2 %",
+        comment="of the 3-D model alone: NaN for models of the beam",
+    )
+)
+"""What comes with the runs of the 3-D model beside the responses, by name."""
+HISTORIES = _table(
+    Variable("contact_force", ("time",), "N", "contact force"),
+    Variable("midspan_deflection", ("time",), "m", "deflection of the beam at mid-span"),
+    Variable(
+        "midspan_curvature",
+        ("time",),
+        "m-1",
+        "curvature of the beam at mid-span (w_xx; psi_x of a Timoshenko beam)",
+    ),
+    Variable("sphere_displacement", ("time",), "m", "displacement of the sphere since first touch"),
+    Variable("indentation", ("time",), "m", "indentation (approach of sphere and beam axis)"),
+)
+"""Answers on `time`, by name."""
+PROFILES = _table(
+    Variable("equivalent_plastic_strain", ("x", "z"), "1", "equivalent plastic strain (PEEQ)"),
+    Variable("plastic_strain", ("x", "z"), "1", "plastic strain along the beam"),
+    Variable("deflection", ("x",), "m", "deflection at the end of the duration"),
+)
+"""Answers along the beam at the end of the run, by name."""
+COORDINATES = _table(
+    Variable("time", ("time",), "s", "time since first touch"),
+    Variable("x", ("x",), "m", "distance from the left support"),
+    Variable("z", ("z",), "m", "distance below the beam's axis"),
+    Variable("duration", (), "s", "simulated time"),
+    Variable("run", ("run",), "1", "number of the run"),
+)
 VARIABLES = RESPONSES | WITNESS | HISTORIES | PROFILES | COORDINATES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
@@ -203,16 +207,13 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
     return dataset
 
 
-def contact_attributes(laws: Iterable[str]) -> dict[str, str]:
+def contact_attributes(laws: Sequence[str]) -> dict[str, str]:
     """Return the attributes of `contact`: source, range, flaws and doubts, one line per law."""
-    found = [(law, CONTACT_LAWS[law]) for law in laws]
-    texts = {
-        "source": [(law, about.source) for law, about in found],
-        "holds_for": [(law, about.holds) for law, about in found],
-        "flaws": [(law, about.flaws) for law, about in found],
-        "unconfirmed": [(law, about.unconfirmed) for law, about in found],
+    fields = {"source": "source", "holds_for": "holds", "flaws": "flaws"}
+    lines = {
+        key: [f"{law}: {text}" for law in laws if (text := getattr(CONTACT_LAWS[law], field))]
+        for key, field in (fields | {"unconfirmed": "unconfirmed"}).items()
     }
-    lines = {key: [f"{law}: {text}" for law, text in entry if text] for key, entry in texts.items()}
     return {key: "\n".join(entry) for key, entry in lines.items() if entry}
 
 
@@ -245,49 +246,38 @@ def warnings_in(bits: int) -> list[str]:
     return [words for bit, words in WARNINGS.values() if bits & bit]
 
 
-_PACKAGES = (
-    *("impactlab", "numpy", "numba", "xarray", "netCDF4", "dask", "SALib", "scikit-learn", "scipy"),
-)
+_PACKAGES = "impactlab numpy numba xarray netCDF4 dask SALib scikit-learn scipy"
 
 
 def provenance() -> dict[str, str]:
     """Return where numbers come from: versions, source revision, time and class of processor."""
     return {
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "versions": _versions(),
-        "source_revision": _revision(Path(__file__).resolve().parent),
-        "processor": _processor(),
+        **_of_this_process(Path(__file__).resolve().parent),
         "Conventions": "CF-1.11",
     }
 
 
-# What a process has loaded stays as it is, so each of these is found out once.
+@cache  # what a process has loaded stays as it is
+def _of_this_process(here: Path) -> dict[str, str]:
+    """Return what provenance tells of versions, processor and the source tree `here` is in.
 
-
-@cache
-def _versions() -> str:
-    packages = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
-    return f"{packages}, python {platform.python_version()}"
-
-
-@cache
-def _revision(here: Path) -> str:
-    """Return the source tree's commit, marked if it has changes; "release" outside a checkout."""
-    command = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
-    if not (here.parent / ".git").exists():
-        return f"release {version('impactlab')}"
-    try:
-        result = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
-    except (OSError, subprocess.SubprocessError):
-        return "unknown (git did not answer)"
-    return result.stdout.strip()
-
-
-@cache
-def _processor() -> str:
+    Of the tree its commit, marked if it has changes; "release" outside a checkout.
+    """
+    packages = ", ".join(f"{name} {version(name)}" for name in _PACKAGES.split())
     info = Path("/proc/cpuinfo")
-    if info.exists():
-        for line in info.read_text().splitlines():
-            if line.startswith("model name"):
-                return f"{line.split(':', 1)[1].strip()}, {os.cpu_count()} cores"
-    return f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores"
+    told = re.search("^model name.*?: *(.*?) *$", info.read_text() if info.exists() else "", re.M)
+    processor = told[1] if told else platform.processor() or platform.machine()
+    command = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
+    revision = f"release {version('impactlab')}"
+    if (here.parent / ".git").exists():
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
+            revision = done.stdout.strip()
+        except (OSError, subprocess.SubprocessError):
+            revision = "unknown (git did not answer)"
+    return {
+        "versions": f"{packages}, python {platform.python_version()}",
+        "source_revision": revision,
+        "processor": f"{processor}, {os.cpu_count()} cores",
+    }

@@ -183,7 +183,7 @@ def test_source_revision_is_the_commit_and_says_when_the_tree_differs(source_tre
     assert provenance()["source_revision"] == commit
     file.write_text("another")
     assert provenance()["source_revision"] == commit  # what this process has loaded
-    dataset._revision.cache_clear()
+    dataset._of_this_process.cache_clear()
     assert provenance()["source_revision"] == f"{commit}-dirty"
 
 
