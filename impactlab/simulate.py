@@ -18,7 +18,7 @@ from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.leapfrog import run_all
 from impactlab.solver.outputs import blank
-from impactlab.solver.quadrature import rule_points
+from impactlab.solver.section import rule_points
 from impactlab.solver.types import CASE, REAL, WHOLE
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
 

@@ -153,59 +153,6 @@ def contact_force(
     return contact_history.force(contact, pair, delta)
 
 
-@allocating
-def run(
-    case: Record,
-    answer: Record,
-    contact: Record,
-    events: Record,
-    samples: Array,
-    deflection: Array,
-    plastic_strain: Array,
-    peeq: Array,
-) -> None:
-    """Solve one case.
-
-    case: a CASE record. answer: a blank RESPONSE record, filled. contact, events: zeros, of CONTACT
-    and EVENTS, for the run to work in. samples: shape (5, S), filled with force, mid-span
-    deflection, mid-span curvature, sphere displacement and indentation at S equal intervals from 0
-    to the duration; S = 0 for none. deflection (n + 1,), plastic_strain and peeq (n + 1, P // 2):
-    filled with the half beam's final state; length 0 for none. A run that diverges leaves NaN and
-    its status.
-    """
-    pair, section = make_pair(case), make_section(case)
-    grid, steps = discretise(case, pair, section)
-    filtered = case.beam_model <= ELASTIC and case.scheme == SEMI_IMPLICIT
-    state = State(
-        pair,
-        section,
-        grid,
-        make_beam(grid),
-        make_plastic_state(grid, section),
-        make_filter(grid, section.stiffness) if filtered else no_filter(),
-        make_shear(case, grid.mid + 3 if case.beam_model == TIMOSHENKO else 0),
-        make_lumped(case, section.stiffness, grid),
-    )
-    now = march(case, state, contact, events, samples, steps)
-    if now < 0:
-        answer.status = DIVERGED
-        samples[:] = np.nan
-        return
-    answer.energy_error = events.energy_error
-    if events.energy_error > WORST_ENERGY_ERROR:
-        answer.status = ENERGY_OUT_OF_BALANCE
-    else:
-        _, dissipated = plastic_energy(state.plastic, section, grid)
-        responses.read_contact(answer, events, contact, pair)
-        responses.read_rebound(answer, case, events)
-        responses.read_beam(answer, case, events, state.plastic.peeq, grid, dissipated)
-    if deflection.size > 0:
-        along = slice(1, grid.mid + 1)
-        deflection[:] = state.beam.w[now, along]
-        plastic_strain[:] = state.plastic.plastic_strain[along]
-        peeq[:] = state.plastic.peeq[along]
-
-
 @compiled
 def march(
     case: Record, state: State, contact: Record, events: Record, samples: Array, steps: int
@@ -284,19 +231,48 @@ def run_all(
     plastic_strain: Array,
     peeq: Array,
 ) -> None:
-    """Solve every case; the arrays of `run` with one more dimension in front, the run.
+    """Solve every case: R runs, by records and arrays of as many rows.
+
+    cases: CASE records. answers: blank RESPONSE records, filled. contacts, events: zeros, CONTACT
+    and EVENTS records to work in. samples: shape (R, 5, S), filled with force, mid-span
+    deflection, mid-span curvature, sphere displacement and indentation at S equal intervals from 0
+    to the duration; S = 0 for none. deflection (R, n + 1), plastic_strain and peeq
+    (R, n + 1, P // 2): filled with the half beam's final state; length 0 for none. A run that
+    diverges leaves NaN and its status.
 
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
     those of all runs are the caller's, who holds them until this returns.
     """
     for r in range(cases.size):
-        run(
-            cases[r],
-            answers[r],
-            contacts[r],
-            events[r],
-            samples[r],
-            deflection[r],
-            plastic_strain[r],
-            peeq[r],
+        case, answer = cases[r], answers[r]
+        pair, section = make_pair(case), make_section(case)
+        grid, steps = discretise(case, pair, section)
+        filtered = case.beam_model <= ELASTIC and case.scheme == SEMI_IMPLICIT
+        state = State(
+            pair,
+            section,
+            grid,
+            make_beam(grid),
+            make_plastic_state(grid, section),
+            make_filter(grid, section.stiffness) if filtered else no_filter(),
+            make_shear(case, grid.mid + 3 if case.beam_model == TIMOSHENKO else 0),
+            make_lumped(case, section.stiffness, grid),
         )
+        now = march(case, state, contacts[r], events[r], samples[r], steps)
+        if now < 0:
+            answer.status = DIVERGED
+            samples[r] = np.nan
+            continue
+        answer.energy_error = events[r].energy_error
+        if answer.energy_error > WORST_ENERGY_ERROR:
+            answer.status = ENERGY_OUT_OF_BALANCE
+        else:
+            _, dissipated = plastic_energy(state.plastic, section, grid)
+            responses.read_contact(answer, events[r], contacts[r], pair)
+            responses.read_rebound(answer, case, events[r])
+            responses.read_beam(answer, case, events[r], state.plastic.peeq, grid, dissipated)
+        if deflection.size > 0:
+            along = slice(1, grid.mid + 1)
+            deflection[r] = state.beam.w[now, along]
+            plastic_strain[r] = state.plastic.plastic_strain[along]
+            peeq[r] = state.plastic.peeq[along]

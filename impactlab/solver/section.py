@@ -1,4 +1,7 @@
-"""The fibre section: from curvature to bending moment.
+"""The fibre section: its integration rule, and from curvature to bending moment.
+
+The rules, on [-1, 1] over the depth with weights that sum to 2, are computed for any number of
+points P by Newton's method on the Legendre polynomials.
 
 strain(z) = -z kappa, M = B * integral of z stress dz (N m). The section and its strains are
 antisymmetric about the axis, so only the fibres with z > 0 are kept, each counted twice.
@@ -19,9 +22,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from impactlab.solver import RULES
 from impactlab.solver.jit import allocating, compiled, vectorised
-from impactlab.solver.quadrature import upper_half
 from impactlab.solver.types import ELASTIC, Array, Record
+
+_LOBATTO = RULES.index("lobatto")
+_LEGENDRE = RULES.index("legendre")
+_NEWTON_STEPS = 100
 
 FAR = 1e300
 """A curvature that no section reaches (1/m)."""
@@ -53,6 +60,56 @@ class Section(NamedTuple):
     stiffness: float
     yield_curvature: float
     moduli: Moduli
+
+
+@compiled
+def legendre_pair(degree: int, x: float) -> tuple[float, float]:
+    """Return (P_n(x), P_{n-1}(x)), n = degree >= 1, by the three-term recurrence."""
+    previous, current = 1.0, x
+    for k in range(2, degree + 1):
+        previous, current = current, ((2 * k - 1) * x * current - (k - 1) * previous) / k
+    return current, previous
+
+
+@compiled
+def upper_half(rule: int, points: int, positions: Array, weights: Array) -> None:
+    """Fill `positions`, `weights`, shape (points // 2,), with the points above 0, outermost first.
+
+    The rest of the rule is their mirror image, and for odd P the point 0, which bends nothing.
+    Legendre: the roots of P_n, n = P, with the weights 2 (1 - x^2)/(n P_{n-1})^2. Lobatto: those of
+    (1 - x^2) P'_n, n = P - 1, with 2/(n (n + 1) P_n^2).
+    """
+    lobatto = rule == _LOBATTO
+    n = points - 1 if lobatto else points
+    for j in range(points // 2):
+        if not (lobatto or rule == _LEGENDRE):
+            positions[j], weights[j] = 1.0 - (2 * j + 1) / points, 2.0 / points
+            continue
+        if lobatto:
+            x = math.cos(math.pi * j / (points - 1))
+        else:
+            x = math.cos(math.pi * (j + 0.75) / (points + 0.5))
+        for _ in range(_NEWTON_STEPS):
+            value, lower = legendre_pair(n, x)
+            step = x * value - lower
+            step = step / (points * value) if lobatto else value * (x * x - 1.0) / (points * step)
+            x -= step
+            if abs(step) < 1e-15:
+                break
+        value, lower = legendre_pair(n, x)
+        positions[j] = x
+        if lobatto:
+            weights[j] = 2.0 / (n * points * value * value)
+        else:
+            weights[j] = 2.0 * (1.0 - x * x) / (points * lower) ** 2
+
+
+def rule_points(rule: str, points: int) -> np.ndarray:
+    """Return the positions of a rule's fibres in [-1, 1], ascending, shape (points,)."""
+    half = np.empty((2, points // 2))
+    upper_half(RULES.index(rule), points, half[0], half[1])
+    middle = np.zeros(points % 2)
+    return np.concatenate([-half[0], middle, half[0][::-1]])
 
 
 @allocating

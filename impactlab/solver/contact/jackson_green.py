@@ -62,12 +62,6 @@ def indentation_at(radius: float, E: float, R: float, S_y: float, nu: float) -> 
 
 
 @compiled
-def unloading_limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Return the indentation (m) at which the fit of the residual indentation ends."""
-    return LARGEST_INDENTATION * critical_indentation(E, R, S_y, nu)
-
-
-@compiled
 def force_ratio(y: float, hardness: float, nu: float) -> float:
     """Return F/F_c beyond the onset; hardness: H/S_y."""
     elastic = math.exp(-0.25 * y ** (5.0 / 12.0)) * y * math.sqrt(y)
@@ -103,4 +97,5 @@ def curve(
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
     """Return where (m) a/R reaches 0.41, or the fit of the residual indentation ends."""
-    return min(indentation_at(LARGEST_RADIUS, E, R, S_y, nu), unloading_limit(E, R, S_y, nu))
+    end = LARGEST_INDENTATION * critical_indentation(E, R, S_y, nu)
+    return min(indentation_at(LARGEST_RADIUS, E, R, S_y, nu), end)

@@ -13,13 +13,13 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.contact.jackson_green import (
+    LARGEST_INDENTATION,
     ONSET,
     contact_radius,
     critical_indentation,
     force_ratio,
     indentation_at,
     residual,
-    unloading_limit,
 )
 from impactlab.solver.jit import compiled
 
@@ -51,4 +51,5 @@ def curve(
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
     """Return where (m) the hardness would rise again (a/R = 1), or the fit of the residual ends."""
-    return min(indentation_at(1.0, E, R, S_y, nu), unloading_limit(E, R, S_y, nu))
+    end = LARGEST_INDENTATION * critical_indentation(E, R, S_y, nu)
+    return min(indentation_at(1.0, E, R, S_y, nu), end)

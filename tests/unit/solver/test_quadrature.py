@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.solver import RULES
-from impactlab.solver.quadrature import legendre_pair, rule_points, upper_half
+from impactlab.solver.section import legendre_pair, rule_points, upper_half
 from impactlab.verification.solutions import quadrature
 
 COUNTS = [*range(2, 22), 32, 33, 48, 63, 64]
