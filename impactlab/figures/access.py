@@ -54,12 +54,12 @@ def is_sample(runs: xr.Dataset) -> bool:
 
 def physical(runs: xr.Dataset) -> list[str]:
     """Return the varied parameters that are numbers and belong to the impact, not the numerics."""
-    return [name for name in varied(runs) if _physical(name) and runs[name].dtype.kind in "if"]
-
-
-def _physical(name: str) -> bool:
-    """Return False for parameters of the discretisation; parameters of functions are physical."""
-    return name not in PARAMETERS or PARAMETERS[name].path[0] == "impact"
+    return [
+        name
+        for name in varied(runs)
+        if runs[name].dtype.kind in "if"  # parameters of functions are physical
+        and (name not in PARAMETERS or PARAMETERS[name].path[0] == "impact")
+    ]
 
 
 def count(runs: xr.Dataset) -> int:
@@ -156,19 +156,13 @@ def occurring(flags: xr.DataArray) -> list[Verdict]:
 
 
 def _read(array: xr.DataArray, value: int) -> Verdict:
-    flags = dict(zip(_integers(array), str(array.attrs["flag_meanings"]).split(), strict=True))
+    numbers = [int(flag) for flag in np.atleast_1d(array.attrs["flag_values"])]
+    flags = dict(zip(numbers, str(array.attrs["flag_meanings"]).split(), strict=True))
     flag = flags.get(value, "unknown")
     sound = str(array.attrs.get("sound_flags", "converged usable")).split()
-    return Verdict(flag, flag in sound, _descriptions(array).get(flag, ""), value)
-
-
-def _integers(array: xr.DataArray) -> list[int]:
-    return [int(flag) for flag in np.atleast_1d(array.attrs["flag_values"])]
-
-
-def _descriptions(array: xr.DataArray) -> dict[str, str]:
     lines = str(array.attrs.get("flag_descriptions", "")).splitlines()
-    return {line.partition(": ")[0]: line.partition(": ")[2] for line in lines}
+    meanings = {name: meaning for name, _, meaning in (line.partition(": ") for line in lines)}
+    return Verdict(flag, flag in sound, meanings.get(flag, ""), value)
 
 
 def confidence(analysis: xr.Dataset) -> str:

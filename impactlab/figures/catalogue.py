@@ -5,52 +5,47 @@ from __future__ import annotations
 import xarray as xr
 
 from impactlab import wings
-from impactlab.figures import (
-    convergence,
-    effects,
-    failures,
-    forces,
-    index_maps,
-    measures,
-    samples,
-    strains,
-    velocity,
+from impactlab.figures import convergence, grids, measures, samples, single_runs
+from impactlab.figures.indices import (
+    index_bars,
+    index_convergence,
+    morris_plane,
+    sobol_second_order,
 )
-from impactlab.figures.indices import index_bars, index_convergence
 from impactlab.figures.record import Figure
 
 ANSWERS = (
-    velocity.CONTACT_LAWS,
-    forces.FIRST_CONTACT,
-    forces.FORCE_HISTORY,
-    forces.DISPLACEMENT_HISTORY,
-    forces.FORCE_INDENTATION,
-    forces.FORCE_INDENTATION_BY_LAW,
-    velocity.CONTACT_DURATION,
-    velocity.RESTITUTION_VELOCITY,
-    strains.PLASTIC_STRAIN,
-    strains.PLASTIC_STRAIN_DEPTH,
-    effects.SHEAR,
-    effects.PARAMETER_EFFECTS,
-    convergence.NODES,
-    convergence.TIME_STEP,
-    convergence.ELEMENT_SIZE,
-    convergence.POINTS,
-    convergence.COST,
-    samples.DISTRIBUTIONS,
+    grids.contact_laws,
+    single_runs.first_contact,
+    single_runs.force_history,
+    single_runs.displacement_history,
+    single_runs.force_indentation,
+    single_runs.force_indentation_by_law,
+    grids.contact_duration,
+    grids.restitution_velocity,
+    single_runs.plastic_strain,
+    single_runs.plastic_strain_depth,
+    grids.shear,
+    grids.parameter_effects,
+    convergence.nodes_convergence,
+    convergence.time_step_convergence,
+    convergence.element_size_convergence,
+    convergence.points_convergence,
+    convergence.convergence_cost,
+    samples.response_distributions,
 )
 INDICES = (
     index_bars("sobol_indices", measures.SOBOL),
-    index_maps.SECOND_ORDER,
+    sobol_second_order,
     *(index_convergence(measure) for measure in measures.SOBOL.measures),
-    index_maps.MORRIS_PLANE,
+    morris_plane,
     index_bars("delta_indices", measures.DELTA),
     index_bars("pawn_indices", measures.PAWN),
     index_bars("regression_indices", measures.REGRESSION),
     index_bars("surrogate_indices", measures.SURROGATE),
-    samples.SURROGATE_VALIDATION,
-    failures.FAILURE_SHARES,
-    failures.FAILURE_MAP,
+    samples.surrogate_validation,
+    samples.failure_shares,
+    samples.failure_map,
 )
 CATALOGUE = {figure.name: figure for figure in (*ANSWERS, *INDICES)}
 """Every figure by name, in the order of the report, but for the scatter plots of each response."""

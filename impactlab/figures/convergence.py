@@ -2,26 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as MplFigure
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
-from impactlab.figures import access, curves, labels, refinement, responses_grid, scales, style
-from impactlab.figures.access import known, responses
-from impactlab.figures.curves import Plan, plan
+from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
+from impactlab.figures.access import known, responses, usable
+from impactlab.figures.curves import Choice, Plan, plan
 from impactlab.figures.labels import display
-from impactlab.figures.record import Figure
+from impactlab.figures.measures import analysed
 from impactlab.model.cost import node_steps
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS
 from impactlab.solver import BEAM_MODELS, SCHEMES
 
-_NODES = refinement.Refined("nodes", "nodes", ("velocity", "points"))
-_TIME_STEP = refinement.Refined("time_step", "courant", ("scheme", "nodes", "velocity"))
+Array = NDArray[np.float64]
+_FEWEST = 3
+_CAPTION = (
+    "Difference to the limit, relative to it: Richardson's value, or where there is none that of "
+    "the least-squares fit, or else the finest value. Thin dashes: the order p of that limit (in "
+    "brackets where it is assumed, not observed). The bar at the finest value reaches up to its "
+    "numerical uncertainty. Grey: second order. A verdict is the worst over the whole grid, also "
+    "over what is not drawn."
+)
+_DASHED: dict[str, Any] = {"linestyle": (0, (2, 1.5)), "linewidth": 0.6}
 _POINTS_TOLERANCE = 1.0
 """Error that the analysis asks for, in %."""
-_COST = refinement.Refined("nodes", "nodes", ("scheme", "courant", "velocity"), most=6)
+_COST_TOLERANCE = 0.01
 _INPUTS = (
     "beam_span",
     "beam_depth",
@@ -33,106 +47,81 @@ _INPUTS = (
     "courant",
     "duration",
 )
-_COST_TOLERANCE = 0.01
 
 
-def _nodes_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the grid has at least three numbers of nodes."""
-    return _NODES.applies(runs)
+@dataclass(frozen=True)
+class Refined:
+    """An axis of refinement. name: prefix of the analysis's variables; dim: of the runs.
+
+    prefer: dimensions that get curves first; most: the largest number of curves.
+    """
+
+    name: str
+    dim: str
+    prefer: tuple[str, ...]
+    most: int = 4
+
+    def names(self, runs: xr.Dataset) -> list[str]:
+        """Return the responses that vary on it."""
+        return [name for name in responses(runs) if self.dim in runs[name].dims]
+
+    def plan(self, runs: xr.Dataset) -> Plan:
+        """Return the plan of the curves."""
+        first = self.names(runs)[0]
+        return plan(runs, first, along=[self.dim], prefer=self.prefer, most=self.most)
+
+    def applies(self, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+        """Return whether the grid has at least three values on it."""
+        return runs.sizes.get(self.dim, 0) >= _FEWEST and bool(self.names(runs))
+
+    def sentences(self, runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
+        """Return a caption's sentences on what is shown, held and missing."""
+        return self.plan(runs).note(runs), access.missing_note(runs, self.names(runs))
 
 
-def _nodes_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    return (
-        f"{refinement.CAPTION} {_NODES.plan(runs).note(runs)} "
-        f"{access.missing_note(runs, _NODES.names(runs))}".strip()
-    )
+_NODES = Refined("nodes", "nodes", ("velocity", "points"))
+_TIME_STEP = Refined("time_step", "courant", ("scheme", "nodes", "velocity"))
+_COST = Refined("nodes", "nodes", ("scheme", "courant", "velocity"), most=6)
 
 
-@style.paper
-def _plot_nodes(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
-    """Draw a panel per response, a curve for each of a few other settings."""
-    return refinement.draw(runs, analysis, _NODES, *_spacing(runs))
+@dataclass(frozen=True)
+class Trend:
+    """An error that follows scale h^order; uncertainty: of the finest value; observed: the order.
+
+    NaN where there is none.
+    """
+
+    order: float
+    uncertainty: float
+    observed: bool
 
 
-def _spacing(runs: xr.Dataset) -> tuple[refinement.Array, str]:
-    """Return the spacing of the nodes and its label; over the span where that is varied."""
-    relative = 1.0 / (runs["nodes"].values - 1.0)
-    if runs["beam_span"].ndim:
-        return relative, "Spacing of the nodes over the span (–)"
-    spacing = (runs["beam_span"] * xr.DataArray(relative)).assign_attrs(units="m").rename("spacing")
-    unit = display(spacing)
-    return unit(spacing), labels.axis("spacing of the nodes", unit.symbol)
+@record.figure("Convergence in nodes", _CAPTION, _NODES.applies, _NODES.sentences)
+def nodes_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw against the spacing of the nodes, over the span where that is varied."""
+    spacing, label = 1.0 / (runs["nodes"].values - 1.0), "Spacing of the nodes over the span (–)"
+    if not runs["beam_span"].ndim:
+        metres = runs["beam_span"].values * spacing
+        unit = display(xr.DataArray(metres, attrs={"units": "m"}, name="spacing"))
+        spacing, label = unit(metres), labels.axis("spacing of the nodes", unit.symbol)
+    return _draw(runs, analysis, _NODES, spacing, label)
 
 
-NODES = Figure(
-    "nodes_convergence",
-    "Convergence in nodes",
-    _nodes_applies,
-    _plot_nodes,
-    _nodes_caption,
-)
-
-
-def _time_step_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the grid has at least three values of courant."""
-    return _TIME_STEP.applies(runs)
-
-
-def _time_step_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    return (
-        "The nodes of a curve stay the same: its limit is the answer of these nodes. "
-        f"{refinement.CAPTION} {_TIME_STEP.plan(runs).note(runs)} "
-        f"{access.missing_note(runs, _TIME_STEP.names(runs))}".strip()
-    )
-
-
-@style.paper
-def _plot_time_step(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
-    """Draw a panel per response, a curve for each of a few other settings."""
-    label = labels.axis(labels.parameter("courant"), "")
-    return refinement.draw(runs, analysis, _TIME_STEP, runs["courant"].values.astype(float), label)
-
-
-TIME_STEP = Figure(
-    "time_step_convergence",
+@record.figure(
     "Convergence in the time step",
-    _time_step_applies,
-    _plot_time_step,
-    _time_step_caption,
+    f"The nodes of a curve stay the same: its limit is the answer of these nodes. {_CAPTION}",
+    _TIME_STEP.applies,
+    _TIME_STEP.sentences,
 )
+def time_step_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw against the Courant number."""
+    label = labels.axis(labels.parameter("courant"), "")
+    return _draw(runs, analysis, _TIME_STEP, runs["courant"].values.astype(float), label)
 
 
-def _element_size_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the grid has at least three sizes of solid elements."""
-    return _element_axis(runs).applies(runs) and SOLID in runs["beam_model"].values
-
-
-def _element_size_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    chosen, axis = _solid(runs), _element_axis(runs)
-    return (
-        "Three-dimensional model alone; elements beyond the contact keep their largest size. "
-        f"{refinement.CAPTION} {axis.plan(chosen).note(chosen)} "
-        f"{access.missing_note(runs, axis.names(chosen))}".strip()
-    )
-
-
-@style.paper
-def _plot_element_size(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
-    """Draw a panel per response, a curve for each of a few other settings."""
-    axis = _element_axis(runs)
-    values = runs[axis.dim].values
-    if axis.dim == "element_size":
-        unit = display(runs[axis.dim])
-        sizes, label = unit(values), labels.axis("element size", unit.symbol)
-    else:
-        sizes = np.round(100.0 / values, 1)
-        label = labels.axis("element size over expected contact radius", "%")
-    return refinement.draw(_solid(runs), _solid(analysis), axis, sizes, label)
-
-
-def _element_axis(runs: xr.Dataset) -> refinement.Refined:
+def _elements(runs: xr.Dataset) -> Refined:
     dim = next((name for name in ELEMENTS if name in runs.dims), ELEMENTS[0])
-    return refinement.Refined("element_size", dim, ("velocity", "beam_yield_stress"))
+    return Refined("element_size", dim, ("velocity", "beam_yield_stress"))
 
 
 def _solid(dataset: xr.Dataset) -> xr.Dataset:
@@ -142,38 +131,189 @@ def _solid(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.isel(nodes=0) if "nodes" in dataset.dims else dataset
 
 
-ELEMENT_SIZE = Figure(
-    "element_size_convergence",
+def _has_elements(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether the grid has at least three sizes of solid elements."""
+    return _elements(runs).applies(runs, analysis) and SOLID in runs["beam_model"].values
+
+
+@record.figure(
     "Convergence in the size of the solid elements",
-    _element_size_applies,
-    _plot_element_size,
-    _element_size_caption,
+    "Three-dimensional model alone; elements beyond the contact keep their largest size. "
+    f"{_CAPTION}",
+    _has_elements,
+    lambda runs, analysis: (
+        _elements(runs).plan(_solid(runs)).note(_solid(runs)),
+        access.missing_note(runs, _elements(runs).names(_solid(runs))),
+    ),
 )
+def element_size_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw against the size of the elements, or over the radius that the contact is to have."""
+    axis = _elements(runs)
+    values = runs[axis.dim].values
+    if axis.dim == "element_size":
+        unit = display(runs[axis.dim])
+        sizes, label = unit(values), labels.axis("element size", unit.symbol)
+    else:
+        sizes = np.round(100.0 / values, 1)
+        label = labels.axis("element size over expected contact radius", "%")
+    return _draw(_solid(runs), _solid(analysis), axis, sizes, label)
 
 
-def _points_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+def _draw(
+    runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, spacing: Array, label: str
+) -> Figure:
+    """Draw a panel per response, a curve for each of a few other settings.
+
+    spacing: of each value on the axis, in the unit of the label, in the order of the runs.
+    """
+    selected = axis.plan(runs)
+    figure, axes = responses_grid.panels(axis.names(runs), height=44)
+    for name, ax in axes.items():
+        responses_grid.write_verdict(ax, analysis, f"{axis.name}_summary", name)
+        difference = _relative_difference(runs, analysis, axis, name)
+        orders = []
+        for curve, errors in _above_round_off(difference, selected):
+            curves.add(ax, spacing, errors, curve)
+            line, trend = ax.lines[-1], _trend(analysis, axis, name, selected.held | curve.where)
+            _draw_trend(ax, spacing, errors, trend, line)
+            if np.isfinite(trend.order):
+                orders.append((line, trend))
+        if orders:
+            _write_orders(ax, orders)
+        _finish(ax, spacing, difference, axis.dim)
+    figure.supxlabel(label)
+    figure.supylabel("Relative difference (–)")
+    selected.legend(figure)
+    return figure
+
+
+def _above_round_off(difference: xr.DataArray, selected: Plan) -> Iterator[tuple[Choice, Array]]:
+    """Yield each curve that has an error above round-off, with its errors along the axis."""
+    for curve in selected.curves:
+        errors = scales.positive(
+            difference.isel(selected.held | curve.where), above=responses_grid.ROUND_OFF
+        )
+        if np.isfinite(errors).any():
+            yield curve, errors
+
+
+def _relative_difference(
+    runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, name: str
+) -> xr.DataArray:
+    """Return |f - f0|/|f0| on (axis, ...), NaN where f0 is 0.
+
+    f0: the limit, or else the value of most nodes, or of the smallest courant or element size.
+    """
+    values, refined = usable(runs, name), runs[axis.dim].values
+    smallest = axis.dim in ("courant", "element_size")
+    finest = int(np.argmin(refined) if smallest else np.argmax(refined))
+    reference = values.isel({axis.dim: finest}, drop=True)
+    for kind in ("fit_extrapolated", "extrapolated"):
+        limit = _of(analysis, f"{axis.name}_{kind}", name)
+        reference = reference if limit is None else limit.where(np.isfinite(limit), reference)
+    ratio = abs(values - reference) / abs(reference).where(reference != 0)
+    return ratio.where((values != 0) | (reference != 0), 0.0).transpose(axis.dim, ...)
+
+
+def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray | None:
+    if variable not in analysis or not known(analysis, name):
+        return None
+    return analysis[variable].sel(response=name, drop=True)
+
+
+def _trend(analysis: xr.Dataset, axis: Refined, name: str, where: dict[str, int]) -> Trend:
+    """Return the trend of one curve by the analysis."""
+
+    def read(key: str) -> float:
+        found = _of(analysis, f"{axis.name}_{key}", name)
+        return float("nan") if found is None else float(found.isel(where))
+
+    if np.isfinite(read("extrapolated")):
+        return Trend(read("observed_order"), read("uncertainty"), True)
+    return Trend(read("fit_order"), read("uncertainty"), read("fit_expansion") == 0)
+
+
+def _draw_trend(ax: Axes, spacing: Array, errors: Array, trend: Trend, line: Line2D) -> None:
+    """Draw the order through the errors of the three finest values, and the bar of the finest."""
+    near, colour = np.argsort(spacing)[:_FEWEST], line.get_color()
+    scale = np.log(errors[near]) - trend.order * np.log(spacing[near])
+    if np.isfinite(scale).any():
+        ends = np.array([spacing.min(), spacing.max()])
+        power = np.exp(np.nanmedian(scale)) * ends**trend.order
+        ax.plot(ends, power, color=colour, label="_order", **_DASHED)
+    if np.isfinite(trend.uncertainty) and trend.uncertainty > responses_grid.ROUND_OFF:
+        at, low = spacing[near[0]], errors[near[0]]
+        bar = [low if np.isfinite(low) else trend.uncertainty, trend.uncertainty]
+        ax.plot([at, at], bar, color=colour, linewidth=0.8, label="_bar")
+        ax.plot(at, trend.uncertainty, color=colour, marker="_", markersize=6, label="_bar")
+
+
+def _write_orders(ax: Axes, orders: list[tuple[Line2D, Trend]]) -> None:
+    """Write the order of each curve beside its marker, to the right of the panel."""
+    ax.legend(
+        [line for line, _ in orders],
+        [
+            f"p = {trend.order:.2f}" if trend.observed else f"[p = {trend.order:g}]"
+            for _, trend in orders
+        ],
+        loc="lower left",
+        bbox_to_anchor=(1.0, 0.0),
+        borderaxespad=0.0,
+        fontsize=6,
+        handlelength=1.0,
+        handletextpad=0.4,
+        labelspacing=0.2,
+        borderpad=0.1,
+    )
+
+
+def _finish(ax: Axes, spacing: Array, difference: xr.DataArray, dim: str) -> None:
+    """Make the axes logarithmic, and draw a guide of second order above the curves."""
+    if not ax.lines:
+        enough = bool((difference.count(dim) > 1).any())
+        responses_grid.empty(ax, "same on every grid" if enough else "too few values")
+        return
+    shown = scales.drawn(ax, "y")
+    ends = np.array([spacing.min(), spacing.max()])
+    guide = 1.6 * np.nanmax(shown) * (ends / ends[1]) ** 2
+    ax.plot(ends, guide, label="_guide", linestyle="-", **style.GUIDE)
+    scales.logarithmic(ax, "x", spacing)
+    scales.logarithmic(ax, "y", [*shown, *guide])
+    if spacing.size <= 5:
+        scales.at(ax, "x", scales.apart(spacing))
+    ax.set_xlim(0.85 * ends[0], 1.18 * ends[1])
+
+
+def _points_names(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    return [name for name in analysed(runs, analysis) if "points" in runs[name].dims]
+
+
+def _has_points(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Return whether the analysis has errors in points, for responses of these runs."""
-    return (
-        "points_error" in analysis and "points" in runs.dims and bool(_points_names(runs, analysis))
-    )
+    given = "points_error" in analysis and "points" in runs.dims
+    return given and bool(_points_names(runs, analysis))
 
 
-def _points_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    names = _points_names(runs, analysis)
-    return (
-        "Difference to the value with the most integration points over the depth (which is left "
-        f"out, being its own reference), relative to it. Grey: {_POINTS_TOLERANCE:g} %. A verdict "
-        "is the worst over the whole grid, also over what is not drawn. "
-        f"{_plan_points(runs, names).note(runs)} {access.missing_note(runs, names)}".strip()
-    )
+def _plan_points(runs: xr.Dataset, analysis: xr.Dataset) -> Plan:
+    first = _points_names(runs, analysis)[0]
+    return plan(runs, first, along=["points"], prefer=["rule", "velocity"])
 
 
-@style.paper
-def _plot_points(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
+@record.figure(
+    "Convergence in integration points",
+    "Difference to the value with the most integration points over the depth (which is left "
+    f"out, being its own reference), relative to it. Grey: {_POINTS_TOLERANCE:g} %. A verdict "
+    "is the worst over the whole grid, also over what is not drawn.",
+    _has_points,
+    lambda runs, analysis: (
+        _plan_points(runs, analysis).note(runs),
+        access.missing_note(runs, _points_names(runs, analysis)),
+    ),
+)
+def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response, a curve per rule (and velocity)."""
-    names = _points_names(runs, analysis)
-    selected, points = _plan_points(runs, names), analysis["points"].values
-    figure, axes = responses_grid.panels(names, height=40)
+    selected, points = _plan_points(runs, analysis), analysis["points"].values
+    figure, axes = responses_grid.panels(_points_names(runs, analysis), height=40)
     for name, ax in axes.items():
         responses_grid.write_verdict(ax, analysis, "points_summary", name)
         error = 100.0 * abs(analysis["points_error"].sel(response=name)).transpose("points", ...)
@@ -181,90 +321,67 @@ def _plot_points(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
             values = scales.positive(
                 error.isel(selected.held | curve.where), above=100 * responses_grid.ROUND_OFF
             )
-            if np.isfinite(values).any():
-                ax.plot(points, values, label=curve.label or "_only", **curves.marked(curve))
-        _finish_points(ax, points, error)
+            curves.add(ax, points, values, curve)
+        if not ax.lines:
+            enough = bool((error.count("points") > 1).any())
+            responses_grid.empty(ax, "same for every number" if enough else "too few values")
+            continue
+        scales.logarithmic(ax, "x", points)
+        scales.at(ax, "x", points)
+        ax.set_xlim(0.9 * points.min(), 1.1 * points.max())
+        _tolerance(ax, _POINTS_TOLERANCE)
     figure.supxlabel(labels.axis(labels.parameter("points"), ""))
     figure.supylabel("Error (%)")
-    style.legend(figure, selected.title(), selected.labels())
+    selected.legend(figure)
     return figure
 
 
-def _points_names(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    named = (name for name in responses(runs) if known(analysis, name))
-    return [name for name in named if "points" in runs[name].dims]
+def _tolerance(ax: Axes, tolerance: float) -> None:
+    """Make the vertical axis logarithmic, to hold a line at the tolerance."""
+    scales.logarithmic(ax, "y", [*scales.drawn(ax, "y"), tolerance])
+    ax.axhline(tolerance, label="_guide", linestyle="--", **style.GUIDE)
 
 
-def _plan_points(runs: xr.Dataset, names: list[str]) -> Plan:
-    return plan(runs, names[0], along=["points"], prefer=["rule", "velocity"])
-
-
-def _finish_points(ax: Axes, points: np.ndarray, error: xr.DataArray) -> None:
-    """Scale the axes: ticks at the numbers of points, logarithmic errors."""
-    if not ax.lines:
-        enough = bool((error.count("points") > 1).any())
-        responses_grid.empty(ax, "same for every number" if enough else "too few values")
-        return
-    drawn = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
-    scales.logarithmic(ax, "x", points)
-    scales.at(ax, "x", points)
-    scales.logarithmic(ax, "y", [*drawn, _POINTS_TOLERANCE])
-    ax.set_xlim(0.9 * points.min(), 1.1 * points.max())
-    ax.axhline(_POINTS_TOLERANCE, label="_guide", linestyle="--", **style.GUIDE)
-
-
-POINTS = Figure(
-    "points_convergence",
-    "Convergence in integration points",
-    _points_applies,
-    _plot_points,
-    _points_caption,
-)
-
-
-def _cost_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+def _has_cost(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Return whether the nodes are refined and all runs are of beams whose cost is known."""
-    known = _COST.applies(runs) and all(name in runs.coords for name in _INPUTS)
-    return known and set(np.ravel(runs["beam_model"].values).tolist()) <= set(BEAM_MODELS)
+    refined = _COST.applies(runs, analysis) and all(name in runs.coords for name in _INPUTS)
+    return refined and set(np.ravel(runs["beam_model"].values).tolist()) <= set(BEAM_MODELS)
 
 
-def _cost_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    return (
-        "Difference to the limit at zero spacing (Richardson's value, that of the least-squares "
-        "fit, or else the finest value) against the estimated work of a run: half its nodes times "
-        "its time steps. What a step costs grows with the integration points, and is larger with "
-        f"the semi-implicit scheme. Grey: {100 * _COST_TOLERANCE:g} %. "
-        f"{_COST.plan(runs).note(runs)} {access.missing_note(runs, _COST.names(runs))}".strip()
-    )
-
-
-@style.paper
-def _plot_cost(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
+@record.figure(
+    "Cost against error",
+    "Difference to the limit at zero spacing (Richardson's value, that of the least-squares "
+    "fit, or else the finest value) against the estimated work of a run: half its nodes times "
+    "its time steps. What a step costs grows with the integration points, and is larger with "
+    f"the semi-implicit scheme. Grey: {100 * _COST_TOLERANCE:g} %.",
+    _has_cost,
+    _COST.sentences,
+)
+def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response, a curve for each of a few other settings."""
-    selected, work = _COST.plan(runs), _work(runs)
-    figure, axes = responses_grid.panels(_COST.names(runs), height=40)
-    for name, ax in axes.items():
-        difference = refinement.relative_difference(runs, analysis, _COST, name)
-        for curve, errors in refinement.drawn(difference, selected):
-            where = {d: at for d, at in (selected.held | curve.where).items() if d in work.dims}
-            ax.plot(
-                work.isel(where).values,
-                errors,
-                label=curve.label or "_only",
-                **curves.marked(curve),
-            )
-        _finish_cost(ax)
-    figure.supxlabel("Work (node-steps)")
-    figure.supylabel("Relative difference (–)")
-    style.legend(figure, selected.title(), selected.labels())
-    return figure
-
-
-def _work(runs: xr.Dataset) -> xr.DataArray:
-    """Return the node-steps of every run, on the dimensions that they depend on."""
+    selected = _COST.plan(runs)
     inputs = xr.broadcast(*(_coded(runs[name]) for name in _INPUTS))
     steps = node_steps({name: field.values for name, field in zip(_INPUTS, inputs, strict=True)})
-    return xr.DataArray(steps, dims=inputs[0].dims)
+    work = xr.DataArray(steps, dims=inputs[0].dims)
+    figure, axes = responses_grid.panels(_COST.names(runs), height=40)
+    for name, ax in axes.items():
+        difference = _relative_difference(runs, analysis, _COST, name)
+        for curve, errors in _above_round_off(difference, selected):
+            where = selected.held | curve.where
+            curves.add(ax, work.isel(where, missing_dims="ignore").values, errors, curve)
+        if not ax.lines:
+            responses_grid.empty(ax, "no error to show")
+            continue
+        powers = np.log10(scales.drawn(ax, "x"))
+        decades = 10.0 ** np.arange(np.floor(powers.min()), np.ceil(powers.max()) + 1)
+        scales.logarithmic(ax, "x", decades)
+        scales.at(ax, "x", decades)
+        ax.set_xlim(decades[0], decades[-1])
+        _tolerance(ax, _COST_TOLERANCE)
+    figure.supxlabel("Work (node-steps)")
+    figure.supylabel("Relative difference (–)")
+    selected.legend(figure)
+    return figure
 
 
 def _coded(parameter: xr.DataArray) -> xr.DataArray:
@@ -274,28 +391,3 @@ def _coded(parameter: xr.DataArray) -> xr.DataArray:
         return parameter.reset_coords(drop=True)
     codes = np.array([words.index(str(word)) for word in np.ravel(parameter.values)])
     return xr.DataArray(codes.reshape(parameter.shape), dims=parameter.dims)
-
-
-def _finish_cost(ax: Axes) -> None:
-    if not ax.lines:
-        responses_grid.empty(ax, "no error to show")
-        return
-    work, errors = (
-        np.concatenate([np.asarray(data, dtype=float) for data in axis])
-        for axis in zip(*(line.get_data() for line in ax.lines), strict=True)
-    )
-    decades = 10.0 ** np.arange(np.floor(np.log10(work.min())), np.ceil(np.log10(work.max())) + 1)
-    scales.logarithmic(ax, "x", decades)
-    scales.at(ax, "x", decades)
-    ax.set_xlim(decades[0], decades[-1])
-    scales.logarithmic(ax, "y", [*errors, _COST_TOLERANCE])
-    ax.axhline(_COST_TOLERANCE, label="_guide", linestyle="--", **style.GUIDE)
-
-
-COST = Figure(
-    "convergence_cost",
-    "Cost against error",
-    _cost_applies,
-    _plot_cost,
-    _cost_caption,
-)

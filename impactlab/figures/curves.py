@@ -16,14 +16,13 @@ from numpy.typing import NDArray
 from impactlab.figures import access, labels, style
 from impactlab.figures.access import design_dims, usable
 
-Points = tuple[NDArray[np.float64], NDArray[np.float64]]
-Line = Callable[[xr.Dataset], Points]
+Array = NDArray[np.float64]
+Line = Callable[[xr.Dataset], tuple[Array, Array]]
 """From one run's dataset (no design dimensions) to the x and y of its curve."""
 
-
 _LARGE, _SMALL = ("nodes", "points", "elements_per_radius"), ("courant", "element_size")
-MOST_CURVES = 6
-MOST_PANELS = 6
+_MOST = 6
+"""Largest number of panels, and of curves if no other is asked for."""
 
 
 @dataclass(frozen=True)
@@ -51,13 +50,10 @@ class Plan:
         """Return the indexers of a curve in a panel, for `isel`."""
         return self.held | panel.where | curve.where
 
-    def title(self) -> str:
-        """Return the legend's title, the parameters in which the curves differ."""
-        return labels.sentence(", ".join(labels.parameter(dim) for dim in self.shown))
-
-    def labels(self) -> list[str]:
-        """Return the curves' labels, in order."""
-        return [curve.label for curve in self.curves]
+    def legend(self, figure: Figure) -> None:
+        """Add the legend of the curves, headed by the parameters in which they differ."""
+        title = labels.sentence(", ".join(labels.parameter(dim) for dim in self.shown))
+        style.legend(figure, title, [curve.label for curve in self.curves])
 
     def note(self, runs: xr.Dataset) -> str:
         """Return a caption's sentences on the values that are shown and held."""
@@ -74,7 +70,7 @@ def plan(
     along: Sequence[str] = (),
     panel: str | None = None,
     prefer: Sequence[str] = ("velocity",),
-    most: int = MOST_CURVES,
+    most: int = _MOST,
 ) -> Plan:
     """Choose what to show of a variable of the runs.
 
@@ -82,8 +78,12 @@ def plan(
     per value. prefer: dimensions that get curves first. most: the largest number of curves.
     """
     dims = [dim for dim in design_dims(runs, runs[variable].dims) if dim not in along]
-    panels = _panels(runs, panel) if panel in dims else [Choice({}, "")]
-    left = sorted((dim for dim in dims if dim != panel), key=lambda dim: _rank(dim, prefer))
+    panels = [Choice({}, "")]
+    if panel is not None and panel in dims:
+        where = spread(runs.sizes[panel], _MOST)
+        panels = [Choice({panel: at}, labels.value(runs[panel], at)) for at in where]
+    rank = {dim: at for at, dim in enumerate(prefer)}
+    left = sorted((dim for dim in dims if dim != panel), key=lambda dim: rank.get(dim, len(rank)))
     shown = _shown({dim: runs.sizes[dim] for dim in left if runs.sizes[dim] > 1}, most)
     held = {d: _held(runs[d]) for d in left if d not in shown and runs.sizes[d] > 1}
     single = {dim: 0 for dim in left if runs.sizes[dim] == 1}
@@ -96,19 +96,14 @@ def _shown(sizes: dict[str, int], most: int) -> dict[str, list[int]]:
     room = min(most, max(most // 2, 2)) if len(sizes) > 1 else most
     for dim, size in list(sizes.items())[:2]:
         if min(size, room) > 1:
-            shown[dim] = spread(size, min(size, room))
+            shown[dim] = spread(size, room)
         room = most // len(shown.get(dim, [0]))
     return shown
 
 
-def spread(size: int, count: int) -> list[int]:
-    """Return `count` positions of `size`, evenly spread, with the first and the last."""
-    return [int(at) for at in np.unique(np.linspace(0, size - 1, count).round())]
-
-
-def _panels(runs: xr.Dataset, dim: str | None) -> list[Choice]:
-    where = spread(runs.sizes[dim], min(runs.sizes[dim], MOST_PANELS))
-    return [Choice({str(dim): at}, labels.value(runs[dim], at)) for at in where]
+def spread(size: int, most: int) -> list[int]:
+    """Return at most `most` positions of `size`, evenly spread, with the first and the last."""
+    return [int(at) for at in np.unique(np.linspace(0, size - 1, min(size, most)).round())]
 
 
 def _curves(runs: xr.Dataset, shown: dict[str, list[int]], single: dict[str, int]) -> list[Choice]:
@@ -121,10 +116,6 @@ def _curves(runs: xr.Dataset, shown: dict[str, list[int]], single: dict[str, int
     return chosen
 
 
-def _rank(dim: str, prefer: Sequence[str]) -> int:
-    return prefer.index(dim) if dim in prefer else len(prefer)
-
-
 def _held(coordinate: xr.DataArray) -> int:
     """Return the position of the finest numerics, the middle number, or the first name."""
     if coordinate.name in _SMALL:
@@ -132,6 +123,31 @@ def _held(coordinate: xr.DataArray) -> int:
     if coordinate.name in _LARGE:
         return int(np.argmax(coordinate.values))
     return coordinate.size // 2 if coordinate.dtype.kind in "if" else 0
+
+
+def look(curve: Choice, *, markers: bool = False) -> dict[str, Any]:
+    """Return the colour by the first shown dimension, the line style by the second (or the first).
+
+    Later curves lie below, as they are the larger ones where the values rise. Markers are for few
+    points.
+    """
+    colour, line = curve.place
+    line_style = line + colour // len(style.COLOURS)  # one further each time round
+    found = {
+        "color": style.COLOURS[colour % len(style.COLOURS)],
+        "linestyle": style.LINES[line_style % len(style.LINES)],
+        "zorder": 3.0 - 0.01 * colour - 0.001 * line,
+    }
+    marker = {"marker": style.MARKERS[line_style % len(style.MARKERS)]} if markers else {}
+    return found | marker
+
+
+def add(ax: Axes, x: Array, y: Array, curve: Choice, *, markers: bool = True) -> bool:
+    """Draw a curve that has finite points; return whether it has."""
+    found = bool(np.isfinite(x + y).any())
+    if found:
+        ax.plot(x, y, label=curve.label or "_only", **look(curve, markers=markers))
+    return found
 
 
 def chosen(runs: xr.Dataset, variable: str) -> Plan:
@@ -144,33 +160,13 @@ def chosen(runs: xr.Dataset, variable: str) -> Plan:
     return plan(runs, variable, panel=None if alone else "contact")
 
 
-def look(curve: Choice) -> dict[str, Any]:
-    """Return the colour by the first shown dimension, the line style by the second (or the first).
-
-    Later curves lie below, as they are the larger ones where the values rise.
-    """
-    colour, line = curve.place
-    again = colour // len(style.COLOURS)  # one further each time round
-    return {
-        "color": style.COLOURS[colour % len(style.COLOURS)],
-        "linestyle": style.LINES[(line + again) % len(style.LINES)],
-        "zorder": 3.0 - 0.01 * colour - 0.001 * line,
-    }
-
-
-def marked(curve: Choice) -> dict[str, Any]:
-    """Return the look with markers, for few points."""
-    colour, line = curve.place
-    again = colour // len(style.COLOURS)
-    return look(curve) | {"marker": style.MARKERS[(line + again) % len(style.MARKERS)]}
-
-
 def draw(
-    runs: xr.Dataset, variable: str, line: Line, *, markers: bool = False
+    runs: xr.Dataset, variable: str, line: Line, x: str, y: str, *, markers: bool = False
 ) -> tuple[Figure, list[Axes]]:
     """Draw each chosen run that has finite values; the others leave a gap.
 
-    variable: runs without finite values of it have no curve.
+    variable: runs without finite values of it have no curve. x, y: labels of the axes, x below each
+    column, y at the left of each row.
     """
     selected = chosen(runs, variable)
     valid = runs.assign({variable: usable(runs, variable)})
@@ -181,44 +177,28 @@ def draw(
         for curve in selected.curves:
             run = valid.isel(selected.runs(panel, curve))
             if np.isfinite(run[variable]).any():
-                kind = marked(curve) if markers else look(curve)
-                ax.plot(*line(run), label=curve.label or "_only", **kind)
+                look_of = look(curve, markers=markers)
+                ax.plot(*line(run), label=curve.label or "_only", **look_of)
         if not ax.lines:
             style.remark(ax, "no finite values")
-    return figure, axes
-
-
-def label(axes: Sequence[Axes], x: str, y: str) -> None:
-    """Label the axes: x below each column, y at the left of each row."""
-    for ax in axes:
+        ax.label_outer(remove_inner_ticks=False)
         place = ax.get_subplotspec()
         assert place is not None
-        ax.label_outer(remove_inner_ticks=False)
-        if place.is_first_col():
-            ax.set_ylabel(y)
-        ax.set_xlabel(x)
-
-
-def finish(figure: Figure, runs: xr.Dataset, variable: str) -> Figure:
-    """Add the legend of the curves."""
-    selected = chosen(runs, variable)
-    style.legend(figure, selected.title(), selected.labels())
-    return figure
+        ax.set(xlabel=x, ylabel=y if place.is_first_col() else None)
+    selected.legend(figure)
+    return figure, axes
 
 
 def note(runs: xr.Dataset, variable: str) -> str:
     """Return a caption's sentences on the curves, what is held, and chosen runs without a curve."""
     selected = chosen(runs, variable)
-    gaps = labels.listing(_gaps(runs, variable, selected))
-    return f"{selected.note(runs)} {f'No curve for {gaps}.' if gaps else ''}".strip()
-
-
-def _gaps(runs: xr.Dataset, variable: str, selected: Plan) -> list[str]:
-    """Return the labels of the chosen runs that have no finite value."""
     absent = access.absent(usable(runs, variable))
-    return [
+    gaps = [
         ", ".join(filter(None, (curve.label, panel.label)))
         for panel in selected.panels
         for curve in selected.curves
         if bool(absent.isel(selected.runs(panel, curve)))
     ]
+    return (
+        f"{selected.note(runs)} {f'No curve for {labels.listing(gaps)}.' if gaps else ''}".strip()
+    )

@@ -1,4 +1,4 @@
-"""The data behind a figure, as drawn: every curve and every row of bars, in the axes' units.
+"""What a figure shows, as drawn: its curves and bars as files, in the axes' units, and in words.
 
 NAME.csv has a row per point; NAME.nc holds the same as CF's contiguous ragged arrays. Bars of named
 things have the name in `category`. A map of colours has no curves: its numbers are in analysis.nc.
@@ -8,23 +8,26 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.container import BarContainer, ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter
 from numpy.typing import NDArray
 
+from impactlab.figures import labels
 from impactlab.files import replaced
 
 FORMATS = ("csv", "nc")
-Points = tuple[str, NDArray[np.float64], NDArray[np.float64]]
-"""Label, x and y."""
 _LABELS = ("panel", "curve", "x_label", "y_label")
+_PANELS, _CURVES = 5, 3
+"""Largest numbers of panels, and of curves per panel, that are described one by one."""
 
 
 @dataclass(frozen=True)
@@ -40,12 +43,7 @@ class Drawn:
     y_label: str
     x: NDArray[np.float64]
     y: NDArray[np.float64]
-    category: list[str] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        """Fill in empty categories."""
-        if not self.category:
-            object.__setattr__(self, "category", [""] * self.x.size)
+    category: list[str]
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:
@@ -56,24 +54,19 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         for path in paths:
             path.unlink(missing_ok=True)
         return []
-    with replaced(paths[0]) as temporary:
-        _write_csv(found, temporary)
+    with (
+        replaced(paths[0]) as temporary,
+        temporary.open("w", encoding="utf-8", newline="") as file,
+    ):
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*_LABELS, "category", "x", "y"])
+        for one in found:
+            texts = [getattr(one, label) for label in _LABELS]
+            points = zip(one.category, one.x.tolist(), one.y.tolist(), strict=True)
+            writer.writerows([*texts, of, f"{x:.9g}", f"{y:.9g}"] for of, x, y in points)
     with replaced(paths[1]) as temporary:
         dataset(found).to_netcdf(temporary, engine="netcdf4")
     return paths
-
-
-def drawn(figure: Figure) -> Iterator[Drawn]:
-    """Yield the curves and bars of all panels, without guides and points that are not finite."""
-    for number, ax in enumerate(figure.axes, 1):
-        if not _has_data(ax):
-            continue
-        labels = _label(figure, ax, "x"), _label(figure, ax, "y")
-        panel = ax.get_title(loc="left") or _legend_title(ax) or f"panel {number}"
-        for curve, x, y in (*_lines(ax), *_marked(ax), *_bars(ax)):
-            kept = np.isfinite(x) & np.isfinite(y)
-            if kept.any():
-                yield Drawn(panel, curve, *labels, x[kept], y[kept], _categories(ax, y[kept]))
 
 
 def dataset(found: list[Drawn]) -> xr.Dataset:
@@ -95,64 +88,23 @@ def dataset(found: list[Drawn]) -> xr.Dataset:
     return xr.Dataset({**columns, "points": counts, **points, "category": category})
 
 
-def _write_csv(found: list[Drawn], path: Path) -> None:
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*_LABELS, "category", "x", "y"])
-        for one in found:
-            labels = [getattr(one, name) for name in _LABELS]
-            points = zip(one.category, one.x.tolist(), one.y.tolist(), strict=True)
-            writer.writerows([*labels, name, f"{x:.9g}", f"{y:.9g}"] for name, x, y in points)
-
-
-def _lines(ax: Axes) -> Iterator[Points]:
-    for line in ax.lines:
-        label = str(line.get_label())
-        if label == "_only" or not label.startswith("_"):
-            x, y = (np.asarray(values, dtype=float) for values in line.get_data())
-            yield label.removeprefix("_only"), x, y
-
-
-def _marked(ax: Axes) -> Iterator[Points]:
-    """Yield points with lines for their intervals."""
-    for marks in ax.containers:
-        if isinstance(marks, ErrorbarContainer) and marks.lines[0] is not None:
-            x, y = (np.asarray(values, dtype=float) for values in marks.lines[0].get_data())
-            yield _own(str(marks.get_label())), x, y
-
-
-def _bars(ax: Axes) -> Iterator[Points]:
-    """Yield bars by their middles and their ends."""
-    for bars in ax.containers:
-        if not isinstance(bars, BarContainer):
+def drawn(figure: Figure) -> Iterator[Drawn]:
+    """Yield the curves and bars of all panels, without guides and points that are not finite."""
+    for number, ax in enumerate(figure.axes, 1):
+        if not (ax.lines or ax.containers):  # the colour bar of a map
             continue
-        label = str(bars.get_label())
-        boxes = np.array([box.get_bbox().extents for box in bars], dtype=float).reshape(-1, 4)
-        left, bottom, right, top = boxes.T
-        if bars.orientation == "horizontal":
-            x, y = right, 0.5 * (bottom + top)
-        else:
-            x, y = 0.5 * (left + right), top
-        yield _own(label), x, y
-
-
-def _own(label: str) -> str:
-    """Return the label, "" for the names that matplotlib makes up."""
-    return "" if label.startswith("_") else label
-
-
-def _categories(ax: Axes, y: NDArray[np.float64]) -> list[str]:
-    """Return the names on the vertical axis nearest to y; none where it has numbers."""
-    formatter = ax.yaxis.get_major_formatter()
-    if not isinstance(formatter, FixedFormatter):
-        return []
-    names = [str(name) for name in formatter.seq]
-    return [names[int(at)] for at in np.clip(np.rint(y), 0, len(names) - 1)]
-
-
-def _has_data(ax: Axes) -> bool:
-    """Return whether the axes hold data, and are not the colour bar of a map."""
-    return bool(ax.lines or ax.containers)
+        across, up = _label(figure, ax, "x"), _label(figure, ax, "y")
+        legend = ax.get_legend()
+        title = str(legend.get_title().get_text()) if legend else ""
+        panel = ax.get_title(loc="left") or title or f"panel {number}"
+        formatter = ax.yaxis.get_major_formatter()
+        names = [str(of) for of in formatter.seq] if isinstance(formatter, FixedFormatter) else [""]
+        for curve, x, y in _points(ax):
+            kept = np.isfinite(x) & np.isfinite(y)
+            nearest = np.clip(np.rint(y[kept]), 0, len(names) - 1).astype(int)
+            if kept.any():
+                category = [names[at] for at in nearest]
+                yield Drawn(panel, curve, across, up, x[kept], y[kept], category)
 
 
 def _label(figure: Figure, ax: Axes, axis: str) -> str:
@@ -164,6 +116,91 @@ def _label(figure: Figure, ax: Axes, axis: str) -> str:
     return " ".join(found.split())
 
 
-def _legend_title(ax: Axes) -> str:
-    legend = ax.get_legend()
-    return str(legend.get_title().get_text()) if legend else ""
+def _points(ax: Axes) -> Iterator[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:
+    """Yield label, x and y of lines but guides, of points with intervals, and of bars' ends."""
+    for line in ax.lines:
+        label = str(line.get_label())
+        if label == "_only" or not label.startswith("_"):
+            x, y = (np.asarray(values, dtype=float) for values in line.get_data())
+            yield label.removeprefix("_only"), x, y
+    for each in ax.containers:
+        label = str(each.get_label())
+        label = "" if label.startswith("_") else label  # a name that matplotlib makes up
+        if isinstance(each, ErrorbarContainer) and each.lines[0] is not None:
+            x, y = (np.asarray(values, dtype=float) for values in each.lines[0].get_data())
+            yield label, x, y
+        elif isinstance(each, BarContainer):
+            boxes = np.array([box.get_bbox().extents for box in each], dtype=float).reshape(-1, 4)
+            left, bottom, right, top = boxes.T
+            level = each.orientation == "horizontal"
+            x, y = (right, 0.5 * (bottom + top)) if level else (0.5 * (left + right), top)
+            yield label, x, y
+
+
+def alt(figure: Figure) -> str:
+    """Return a sentence per panel: where its bars are longest, or the ranges of its curves."""
+    described, panels = [], set()
+    for panel, group in groupby(drawn(figure), key=lambda curve: curve.panel):
+        found = list(group)
+        panels.add(panel)
+        axes = " against ".join(filter(None, (found[0].y_label, found[0].x_label)))
+        name = axes if panel.startswith("panel ") else panel
+        described.append(f"{name}: {_in_words(found)}.")
+    titles = {ax: ax.get_title(loc="left") or "Panel" for ax in figure.axes}
+    cells = {ax: text for ax in figure.axes if (text := _cells(ax))}
+    meshes = [
+        f"{titles[ax]}: {_mesh(each)}."
+        for ax in figure.axes
+        for each in ax.collections
+        if type(each) is PolyCollection  # and no area below a curve, which is a subclass
+    ]
+    remarks = [  # words in place of data
+        f"{title}: {' '.join(ax.texts[0].get_text().split())}."
+        for ax, title in titles.items()
+        if ax.texts and title not in panels and ax not in cells
+    ]
+    described += [f"{titles[ax]}: {text}." for ax, text in cells.items()] + meshes + remarks
+    shown = " ".join(described[:_PANELS])
+    more = len(described) - _PANELS
+    return f"{shown} And {labels.counted(more, 'more panel')}." if more > 0 else shown
+
+
+def _in_words(found: list[Drawn]) -> str:
+    if len(found) <= _CURVES or any(found[0].category):
+        return "; ".join(map(_curve, found))
+    highest = max(found, key=lambda curve: float(curve.y.max()))
+    return f"highest of {len(found)}: {_curve(highest)}"
+
+
+def _curve(curve: Drawn) -> str:
+    label = f"{curve.curve}: " if curve.curve else ""
+    if any(curve.category):
+        at = int(np.argmax(np.abs(curve.x)))
+        return f"{label}largest for {curve.category[at]} ({labels.number(curve.x[at], 3)})"
+    if curve.x.size == 1:
+        return f"{label}{labels.number(curve.x[0], 3)}, {labels.number(curve.y[0], 3)}"
+    return f"{label}{labels.span(curve.y, 3)} over {labels.span(curve.x, 3)}"
+
+
+def _cells(ax: Axes) -> str:
+    """Return where a map is largest, "" without a map or where no cell has a number."""
+    if not ax.images:
+        return ""
+    found: NDArray[np.float64] = np.ma.filled(np.ma.asarray(ax.images[-1].get_array()), np.nan)
+    if not np.isfinite(found).any():
+        return ""
+    cells = np.where(np.isfinite(found), found, -np.inf)
+    row, column = np.unravel_index(int(cells.argmax()), cells.shape)
+    largest = labels.number(float(cells[row, column]), 3)
+    return f"largest in row {row + 1}, column {column + 1} ({largest})"
+
+
+def _mesh(cells: PolyCollection) -> str:
+    paths, values = cells.get_paths(), cells.get_array()
+    if values is None:
+        return labels.counted(len(paths), "cell")
+    at = int(np.argmax(values))
+    x, y = np.mean(np.asarray(paths[at].vertices)[:-1], axis=0)
+    place, largest = f"{labels.number(x, 3)}, {labels.number(y, 3)}", labels.number(values[at], 3)
+    coloured = labels.counted(len(paths), "coloured cell")
+    return f"{coloured}, the largest value at {place} ({largest})"

@@ -12,7 +12,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from impactlab.figures import data, findings, style
-from impactlab.figures.alt import alt
 from impactlab.figures.catalogue import applicable
 from impactlab.files import replaced
 from impactlab.verification.finding import gravest_first
@@ -75,7 +74,8 @@ def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
     same bytes. Returns the paths written. Raises what drawing raises, with the figure's name added.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    before = _captions(folder / CAPTIONS)
+    listed = folder / CAPTIONS
+    before = set(json.loads(listed.read_bytes())) if listed.exists() else set()
     written: list[Path] = []
     captions: dict[str, dict[str, str]] = {}
     for drawing in drawings:
@@ -86,16 +86,17 @@ def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
             captions[drawing.name] = {
                 "title": drawing.title,
                 "caption": drawing.caption(),
-                "alt": alt(figure),
+                "alt": data.alt(figure),
             }
         except Exception as error:
             error.add_note(f"while drawing the figure {drawing.name} of study {study}")
             raise
-    with replaced(folder / CAPTIONS) as path:
+    with replaced(listed) as path:
         path.write_text(json.dumps(captions, indent=2, ensure_ascii=False) + "\n", "utf-8")
     for name in before - captions.keys():
-        _remove(folder, name)
-    return [*written, folder / CAPTIONS]
+        for kind in (*FORMATS, *data.FORMATS):
+            (folder / f"{name}.{kind}").unlink(missing_ok=True)
+    return [*written, listed]
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:
@@ -107,13 +108,3 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
             figure.savefig(temporary, format=path.suffix[1:], metadata=metadata)
         figure.set_layout_engine("none")  # laid out once: that takes most of the time
     return paths
-
-
-def _captions(path: Path) -> set[str]:
-    """Return the figures that captions.json names; none where there is no such file."""
-    return set(json.loads(path.read_bytes())) if path.exists() else set()
-
-
-def _remove(folder: Path, name: str) -> None:
-    for kind in (*FORMATS, *data.FORMATS):
-        (folder / f"{name}.{kind}").unlink(missing_ok=True)

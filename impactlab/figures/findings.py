@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from impactlab.figures import labels, scales, style
+from impactlab.figures import labels, responses_grid, scales, style
 from impactlab.figures.labels import Display, display
 from impactlab.verification.finding import Curve, Outcome, Panel
 
@@ -41,14 +41,9 @@ def overview_caption(outcomes: Sequence[Outcome]) -> str:
     ratios = np.concatenate([_ratios(outcome) for outcome in outcomes])
     small = int(np.count_nonzero(ratios < _LEAST))
     large = int(np.count_nonzero(ratios > _MOST))
-    edges = [
-        f"{count} {side} {labels.number(limit)} or {tail}"
-        for count, side, limit, tail in (
-            (small, "below", _LEAST, "without any error at the left edge"),
-            (large, "above", _MOST, "without a number at the right edge"),
-        )
-        if count
-    ]
+    left = f"{small} below {labels.number(_LEAST)} or without any error at the left edge"
+    right = f"{large} above {labels.number(_MOST)} or without a number at the right edge"
+    edges = [text for count, text in ((small, left), (large, right)) if count]
     shown = f" Drawn as triangles: {labels.listing(edges)}." if edges else ""
     return (
         "Error over tolerance, a point per comparison and a row per check; right of the line at "
@@ -66,26 +61,46 @@ def plot_overview(outcomes: Sequence[Outcome]) -> Figure:
     for row, outcome in enumerate(outcomes):
         _draw_row(axes, row, outcome)
     axes.axvline(1.0, label="_limit", **style.GUIDE)
-    _finish_overview(axes, outcomes)
+    largest = max((float(_ratios(outcome).max(initial=0.0)) for outcome in outcomes), default=0.0)
+    ratios = np.clip(np.concatenate([*map(_ratios, outcomes), [0.01]]), _LEAST, _MOST)
+    least = 10.0 ** np.floor(np.log10(ratios.min()))  # the decade below all that is drawn
+    limits = 0.6 * float(least), 2.5 * min(max(largest, 4.0), _MOST)
+    scales.logarithmic(axes, "x", limits, ticks=8)
+    axes.set(xlim=limits, ylim=(len(outcomes) - 0.5, -0.5), xlabel="Error over tolerance (–)")
+    axes.set_yticks(
+        range(len(outcomes)), [fill(outcome.title, width=_LETTERS) for outcome in outcomes]
+    )
+    axes.tick_params(axis="y", length=0)
+    axes.grid(visible=False, axis="y")
+    for row in range(1, len(outcomes)):
+        axes.axhline(row - 0.5, color="0.85", linewidth=0.5)
     style.legend(figure, order=["passed", "failed"])
     return figure
 
 
 def _draw_row(axes: Axes, row: int, outcome: Outcome) -> None:
+    """Draw the ratios of a check, triangles at the edges, and write to the right how many fail."""
     ratios = _ratios(outcome)
     places = row + np.linspace(-_SPREAD, _SPREAD, ratios.size) if ratios.size > 1 else row
+    y = np.broadcast_to(places, ratios.shape)
     passed = np.array([entry.passed for entry in outcome.finding.comparisons], dtype=bool)
     shown = np.clip(ratios, _LEAST, _MOST)
+    kinds = {  # by marker
+        "<": ratios < _LEAST,
+        ">": ratios > _MOST,
+        "": (ratios >= _LEAST) & (ratios <= _MOST),
+    }
     for verdict, chosen in (("passed", passed), ("failed", ~passed)):
-        for marker, beyond in (("<", ratios < _LEAST), (">", ratios > _MOST), (None, None)):
-            inside = (ratios >= _LEAST) & (ratios <= _MOST) if beyond is None else beyond
-            if not (mask := chosen & inside).any():
+        for marker, where in kinds.items():
+            if not (mask := chosen & where).any():
                 continue
             look = _LOOKS[verdict] | ({"marker": marker} if marker else {})
-            label = verdict if marker is None else f"_{verdict}"
-            y = np.broadcast_to(places, ratios.shape)[mask]
-            axes.plot(shown[mask], y, linestyle="", markeredgewidth=0.0, label=label, **look)
-    text, failed = _count(outcome)
+            label = f"_{verdict}" if marker else verdict
+            axes.plot(shown[mask], y[mask], linestyle="", markeredgewidth=0.0, label=label, **look)
+    total, failed = len(outcome.finding.comparisons), len(outcome.failures)
+    text = f"{failed} of {total} failed" if failed else f"all {total}"
+    if outcome.verdict == "error" or not total:
+        text, failed = ("error" if outcome.reason else "nothing"), 1
     axes.annotate(
         text,
         (1.0, row),
@@ -101,35 +116,6 @@ def _draw_row(axes: Axes, row: int, outcome: Outcome) -> None:
 
 def _ratios(outcome: Outcome) -> NDArray[np.float64]:
     return np.array([entry.ratio for entry in outcome.finding.comparisons], dtype=float)
-
-
-def _least(outcomes: Sequence[Outcome]) -> float:
-    """Return the decade below all that is drawn."""
-    ratios = np.clip(np.concatenate([_ratios(o) for o in outcomes] + [[0.01]]), _LEAST, _MOST)
-    return float(10.0 ** np.floor(np.log10(ratios.min())))
-
-
-def _count(outcome: Outcome) -> tuple[str, bool]:
-    """Return the text to the right of a row, and whether it is bad news."""
-    total, failed = len(outcome.finding.comparisons), len(outcome.failures)
-    if outcome.verdict == "error" or not total:
-        return ("error" if outcome.reason else "nothing"), True
-    return (f"{failed} of {total} failed", True) if failed else (f"all {total}", False)
-
-
-def _finish_overview(axes: Axes, outcomes: Sequence[Outcome]) -> None:
-    """Scale x in decades to the ratios, and write the checks' titles along y."""
-    largest = max((float(_ratios(outcome).max(initial=0.0)) for outcome in outcomes), default=0.0)
-    limits = 0.6 * _least(outcomes), 2.5 * min(max(largest, 4.0), _MOST)
-    scales.logarithmic(axes, "x", limits, ticks=8)
-    axes.set(xlim=limits, ylim=(len(outcomes) - 0.5, -0.5), xlabel="Error over tolerance (–)")
-    axes.set_yticks(
-        range(len(outcomes)), [fill(outcome.title, width=_LETTERS) for outcome in outcomes]
-    )
-    axes.tick_params(axis="y", length=0)
-    axes.grid(visible=False, axis="y")
-    for row in range(1, len(outcomes)):
-        axes.axhline(row - 0.5, color="0.85", linewidth=0.5)
 
 
 def has_curves(outcome: Outcome) -> bool:
@@ -166,8 +152,29 @@ def _looks(panel: Panel) -> dict[str, dict[str, Any]]:
         dict.fromkeys(_label(c, panel.curves) for c in panel.curves if c.independent == kind)
         for kind in (False, True)
     )
-    looks = {label: _coloured(at) for at, label in enumerate(ours)}
-    return looks | {label: _broken(at) for at, label in enumerate(independent)}
+    count, broken = len(style.COLOURS), style.LINES[1:]
+    looks: dict[str, dict[str, Any]] = {}
+    for at, label in enumerate(ours):
+        looks[label] = {
+            "color": style.COLOURS[at % count],
+            "linestyle": style.LINES[at // count % len(style.LINES)],
+            "linewidth": 1.6,
+            "zorder": 3.0 - 0.01 * at,
+            # one further each time round, so that no colour has its marker twice
+            "marker": style.MARKERS[(at + at // count) % len(style.MARKERS)],
+        }
+    for at, label in enumerate(independent):
+        looks[label] = {
+            "color": "black",
+            "linestyle": broken[at % len(broken)],
+            "linewidth": 0.9,
+            "zorder": 4.0,
+            "marker": style.MARKERS[at % len(style.MARKERS)],
+            "markerfacecolor": "none",
+            "markersize": 6.5,
+            "markeredgewidth": 0.8,
+        }
+    return looks
 
 
 def _label(curve: Curve, others: Sequence[Curve]) -> str:
@@ -176,47 +183,26 @@ def _label(curve: Curve, others: Sequence[Curve]) -> str:
     return f"{curve.label}, independent" if curve.independent and same else curve.label
 
 
-def _coloured(at: int) -> dict[str, Any]:
-    count = len(style.COLOURS)
-    return {
-        "color": style.COLOURS[at % count],
-        "linestyle": style.LINES[at // count % len(style.LINES)],
-        "linewidth": 1.6,
-        "zorder": 3.0 - 0.01 * at,
-        # one further each time round, so that no colour has its marker twice
-        "marker": style.MARKERS[(at + at // count) % len(style.MARKERS)],
-    }
-
-
-def _broken(at: int) -> dict[str, Any]:
-    broken = style.LINES[1:]
-    return {
-        "color": "black",
-        "linestyle": broken[at % len(broken)],
-        "linewidth": 0.9,
-        "zorder": 4.0,
-        "marker": style.MARKERS[at % len(style.MARKERS)],
-        "markerfacecolor": "none",
-        "markersize": 6.5,
-        "markeredgewidth": 0.8,
-    }
-
-
 def _draw_panel(ax: Axes, panel: Panel, looks: dict[str, dict[str, Any]]) -> None:
-    units = [_unit(panel, axis) for axis in ("x", "y")]
+    across, up = _unit(panel, "x"), _unit(panel, "y")
     ax.set_title(fill(labels.sentence(panel.title), width=_TITLE), loc="left")
-    names = panel.x[0], panel.y[0]
-    texts = [labels.axis(n, unit.symbol) for n, unit in zip(names, units, strict=True)]
-    ax.set(xlabel=texts[0], ylabel=fill(texts[1], width=_LABEL))
+    label = fill(labels.axis(panel.y[0], up.symbol), width=_LABEL)
+    ax.set(xlabel=labels.axis(panel.x[0], across.symbol), ylabel=label)
     for curve in sorted(panel.curves, key=lambda curve: curve.independent):
-        x, y = (unit(values) for unit, values in zip(units, (curve.x, curve.y), strict=True))
+        x, y = across(curve.x), up(curve.y)
         if panel.log:
             x, y = scales.positive(x), scales.positive(y)
         label = _label(curve, panel.curves)
-        look = looks[label] | _points(curve, panel.curves)
         if np.isfinite(x + y).any():
-            ax.plot(x, y, label=label, **look)
-    _scale(ax, panel)
+            ax.plot(x, y, label=label, **(looks[label] | _points(curve, panel.curves)))
+    if not ax.lines:
+        words = "no finite values above zero" if panel.log else "no finite values"
+        responses_grid.empty(ax, words)
+    elif panel.log:
+        scales.logarithmic(ax, "x", scales.drawn(ax, "x"))
+        scales.logarithmic(ax, "y", scales.drawn(ax, "y"))
+    else:
+        scales.linear(ax, "xy")
 
 
 def _points(curve: Curve, others: Sequence[Curve]) -> dict[str, Any]:
@@ -224,19 +210,6 @@ def _points(curve: Curve, others: Sequence[Curve]) -> dict[str, Any]:
     if np.size(curve.x) > _FEW:
         return {"marker": ""}
     return {"linestyle": ""} if any(np.size(other.x) > _FEW for other in others) else {}
-
-
-def _scale(ax: Axes, panel: Panel) -> None:
-    """Scale the axes, in decades where the panel asks for them."""
-    if not ax.lines:
-        ax.set(xticks=[], yticks=[])
-        style.remark(ax, "no finite values above zero" if panel.log else "no finite values")
-    elif panel.log:
-        scales.logarithmic(ax, "x", np.concatenate([line.get_xdata() for line in ax.lines]))
-        scales.logarithmic(ax, "y", np.concatenate([line.get_ydata() for line in ax.lines]))
-    else:
-        scales.linear(ax, "x")
-        scales.linear(ax, "y")
 
 
 def _unit(panel: Panel, axis: str) -> Display:

@@ -1,104 +1,94 @@
-"""Figures of sensitivity indices: bars per family, and convergence with the sample."""
+"""Figures of sensitivity indices: bars, convergence with the sample, pairs, elementary effects.
+
+Morris (1991), Technometrics 33, 161; µ* after Campolongo et al. (2007), Environ. Modell. Softw. 22.
+"""
 
 from __future__ import annotations
-
-from functools import partial
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as MplFigure
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure as Drawing
+from matplotlib.image import AxesImage
 from matplotlib.ticker import FixedFormatter
+from numpy.typing import NDArray
 
-from impactlab.figures import access, labels, measures, responses_grid, scales, style
-from impactlab.figures.measures import Family, Measure, analysed
+from impactlab.figures import access, labels, measures, record, responses_grid, scales, style
+from impactlab.figures.labels import display
+from impactlab.figures.measures import MORRIS, Family, Measure, analysed, parameters
 from impactlab.figures.record import Figure
 
 _THICK = 0.76
 """Thickness of all bars of a row together, in rows."""
 _PALE = 0.45
 """Opacity of bars that are within the noise or below the numerical error."""
+_VERDICT = "sensitivity_verdict"
 _SAMPLES = "base_samples"
 _ENDS = (-0.25, 1.25)
 """Largest limits of the axis; intervals from few samples can be many times wider."""
+_PAIRS = "second_order"
+_WEAK = 10.0
+"""Smallest upper end of the colour scale, in %."""
+
+
+def _missing(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    return access.missing_note(runs, analysed(runs, analysis))
 
 
 def index_bars(name: str, family: Family) -> Figure:
     """Return the figure of one family of measures."""
-    return Figure(
-        name,
-        family.title,
-        partial(_bars_apply, family),
-        partial(_plot_bars, family),
-        partial(_bars_caption, family),
-    )
+
+    def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+        return family.given(analysis) and bool(analysed(runs, analysis))
+
+    def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+        return [*_bar_sentences(family, analysis), _missing(runs, analysis)]
+
+    @record.figure(family.title, family.meaning, applies, sentences, name)
+    def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+        """Draw a panel per response, a row per parameter, a bar per measure."""
+        listed, shown = parameters(analysis), family.measures_in(analysis)
+        height = 10 + max(4.2, 1.4 * len(shown)) * len(listed)
+        figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
+        for at, (response, ax) in enumerate(axes.items()):
+            _bars(ax, analysis, family, response)
+            _undefined(ax, analysis, response, shown[0].name)
+            _rows(ax, listed, named=at % responses_grid.COLUMNS == 0)
+            low, high = ax.get_xlim()
+            ax.set_xlim(min(low, 0.0), max(high, 1.0 if family.shares else 0.0))
+            scales.linear(ax, "x")
+        figure.supxlabel(family.axis)
+        style.legend(figure)
+        return figure
+
+    return plot
 
 
-def _bars_apply(family: Family, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the analysis has these indices, for responses of these runs."""
-    return family.given(analysis) and bool(analysed(runs, analysis))
-
-
-def _bars_caption(family: Family, runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    sentences = (
-        family.meaning,
-        _estimator(analysis, family),
+def _bar_sentences(family: Family, analysis: xr.Dataset) -> list[str]:
+    """Return a caption's sentences on what the bars, their lines and their shades are."""
+    estimator = analysis[family.measures_in(analysis)[0].name].attrs.get("estimator")
+    noise = "Pale: the interval holds zero."
+    if any(f"dummy_{measure.name}" in analysis for measure in family.measures):
+        noise = (
+            "Dashed: upper end of the interval of a dummy parameter, which does nothing; what does "
+            "not reach beyond it with its whole interval is noise, and pale."
+        )
+    numerical = any(f"{measure.name}_numerical" in analysis for measure in family.measures)
+    return [
+        f"Estimator: {estimator}." if estimator else "",
         f"Lines on the bars: {access.confidence(analysis)} intervals.",
-        _floor_words(analysis, family),
-        _numerical_words(analysis, family),
-        access.missing_note(runs, analysed(runs, analysis)),
-    )
-    return " ".join(filter(None, sentences))
-
-
-@style.paper
-def _plot_bars(family: Family, runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
-    """Draw a panel per response, a row per parameter, a bar per measure, pale within the noise."""
-    rows, bars = analysis.sizes["parameter"], len(family.measures_in(analysis))
-    height = 10 + max(4.2, 1.4 * bars) * rows
-    figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
-    for at, (name, ax) in enumerate(axes.items()):
-        _bars(ax, analysis, family, name)
-        undefined(ax, analysis, name, family.measures_in(analysis)[0].name)
-        _rows(ax, measures.parameters(analysis), named=at % responses_grid.COLUMNS == 0)
-        _reach(ax, shares=family.shares)
-    figure.supxlabel(family.axis)
-    style.legend(figure)
-    return figure
-
-
-def undefined(ax: Axes, analysis: xr.Dataset, response: str, measure: str) -> None:
-    """Say in the panel why a response has no indices, or that they need care."""
-    if bool(np.isfinite(analysis[measure].sel(response=response)).any()):
-        responses_grid.warn(ax, analysis, "sensitivity_verdict", response)
-        return
-    found = access.verdict(analysis, "sensitivity_verdict", response)
-    style.remark(ax, f"undefined:\n{found.words if found else 'no reason is given'}")
-
-
-def _estimator(analysis: xr.Dataset, family: Family) -> str:
-    found = analysis[family.measures_in(analysis)[0].name].attrs.get("estimator")
-    return f"Estimator: {found}." if found else ""
-
-
-def _floor_words(analysis: xr.Dataset, family: Family) -> str:
-    if not any(f"dummy_{measure.name}" in analysis for measure in family.measures):
-        return "Pale: the interval holds zero."
-    return (
-        "Dashed: upper end of the interval of a dummy parameter, which does nothing; what does not "
-        "reach beyond it with its whole interval is noise, and pale."
-    )
-
-
-def _numerical_words(analysis: xr.Dataset, family: Family) -> str:
-    given = any(f"{measure.name}_numerical" in analysis for measure in family.measures)
-    return "Pale, too: below what the numerical error could change." if given else ""
+        noise,
+        "Pale, too: below what the numerical error could change." if numerical else "",
+    ]
 
 
 def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
+    """Draw a bar per measure, pale within the noise; pairs of measures are dark and light."""
     shown = family.measures_in(analysis)
     rows, count = np.arange(analysis.sizes["parameter"]), len(shown)
-    for at, (measure, colour) in enumerate(zip(shown, _colours(count), strict=True)):
+    colours = style.COLOURS if count < 4 else ("#0072B2", "#56B4E9", "#D55E00", "#E69F00")
+    for at, (measure, colour) in enumerate(zip(shown, colours[:count], strict=True)):
         found = measures.index(analysis, measure.name, response)
         finite = np.isfinite(found.margins)
         bars = ax.barh(
@@ -114,18 +104,18 @@ def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None
             bar.set_alpha(None if stands else _PALE)
         if found.floor:
             ends = [found.floor] if family.shares else [-found.floor, found.floor]
-            ax.vlines(ends, *_span(len(rows)), color=colour, linestyle=(0, (3, 1.5)), linewidth=0.9)
+            dashes = (0, (3, 1.5))
+            ax.vlines(ends, len(rows) - 0.5, -0.5, color=colour, linestyle=dashes, linewidth=0.9)
     ax.axvline(0.0, color="0.15", linewidth=0.6)
 
 
-def _colours(count: int) -> tuple[str, ...]:
-    """Return a colour per measure, or a dark and a light one per pair of measures."""
-    dark_light = ("#0072B2", "#56B4E9", "#D55E00", "#E69F00")
-    return style.COLOURS[:count] if count < 4 else dark_light
-
-
-def _span(rows: int) -> tuple[float, float]:
-    return rows - 0.5, -0.5
+def _undefined(ax: Axes, analysis: xr.Dataset, response: str, measure: str) -> None:
+    """Say in the panel why a response has no indices, or that they need care."""
+    if bool(np.isfinite(analysis[measure].sel(response=response)).any()):
+        responses_grid.warn(ax, analysis, _VERDICT, response)
+        return
+    found = access.verdict(analysis, _VERDICT, response)
+    style.remark(ax, f"undefined:\n{found.words if found else 'no reason is given'}")
 
 
 def _rows(ax: Axes, names: list[str], *, named: bool) -> None:
@@ -134,14 +124,7 @@ def _rows(ax: Axes, names: list[str], *, named: bool) -> None:
     ax.yaxis.set_major_formatter(FixedFormatter([labels.parameter(name) for name in names]))
     ax.tick_params(axis="y", length=0, labelleft=named)
     ax.grid(visible=False, axis="y")
-    ax.set_ylim(*_span(len(names)))
-
-
-def _reach(ax: Axes, *, shares: bool) -> None:
-    """Include zero, and one for shares."""
-    low, high = ax.get_xlim()
-    ax.set_xlim(min(low, 0.0), max(high, 1.0 if shares else 0.0))
-    scales.linear(ax, "x")
+    ax.set_ylim(len(names) - 0.5, -0.5)
 
 
 def index_convergence(measure: Measure) -> Figure:
@@ -149,57 +132,49 @@ def index_convergence(measure: Measure) -> Figure:
 
     It needs `<name>_by_samples` on (response, base_samples, parameter), and no new runs.
     """
-    return Figure(
-        f"{measure.name}_convergence",
-        f"{labels.sentence(measure.words)} indices against the number of samples",
-        partial(_convergence_applies, measure),
-        partial(_plot_convergence, measure),
-        partial(_convergence_caption, measure),
-    )
+    variable = f"{measure.name}_by_samples"
 
+    def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+        """Return whether the analysis has the index from two sizes of the sample or more."""
+        given = variable in analysis and analysis.sizes[_SAMPLES] > 1
+        return given and bool(analysed(runs, analysis))
 
-def _by_samples(measure: Measure) -> str:
-    return f"{measure.name}_by_samples"
+    def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
+        what = (
+            f"The {measure.words} index from the first samples alone, up to all "
+            f"{int(analysis[_SAMPLES].max())} base samples; bands: {access.confidence(analysis)} "
+            "intervals, cut off outside −0.25 to 1.25. Indices that still drift beyond their bands "
+            "at the right need more samples."
+        )
+        return what, _missing(runs, analysis)
 
+    title = f"{labels.sentence(measure.words)} indices against the number of samples"
 
-def _convergence_applies(measure: Measure, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the analysis has the index from two sizes of the sample or more."""
-    given = _by_samples(measure) in analysis and analysis.sizes[_SAMPLES] > 1
-    return given and bool(analysed(runs, analysis))
+    @record.figure(title, "", applies, sentences, f"{measure.name}_convergence")
+    def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+        """Draw a panel per response, a line with its band per parameter."""
+        figure, axes = responses_grid.panels(analysed(runs, analysis), height=44)
+        for name, ax in axes.items():
+            _lines(ax, analysis, variable, name)
+            ax.set_xscale("log", base=2)
+            scales.at(ax, "x", analysis[_SAMPLES].values[::-2])
+            low, high = ax.get_ylim()
+            ax.set_ylim(max(low, _ENDS[0]), min(high, _ENDS[1]))
+            scales.linear(ax, "y")
+            responses_grid.warn(ax, analysis, _VERDICT, name)
+        figure.supxlabel("Base samples (–)")
+        figure.supylabel("Share of the variance (–)")
+        style.legend(figure)
+        return figure
 
-
-def _convergence_caption(measure: Measure, runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    return (
-        f"The {measure.words} index from the first samples alone, up to all "
-        f"{int(analysis[_SAMPLES].max())} base samples; bands: {access.confidence(analysis)} "
-        "intervals, cut off outside −0.25 to 1.25. Indices that still drift beyond their bands "
-        "at the right need more samples. "
-        f"{access.missing_note(runs, analysed(runs, analysis))}".strip()
-    )
-
-
-@style.paper
-def _plot_convergence(measure: Measure, runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
-    """Draw a panel per response, a line with its band per parameter."""
-    figure, axes = responses_grid.panels(analysed(runs, analysis), height=44)
-    for name, ax in axes.items():
-        _lines(ax, analysis, _by_samples(measure), name)
-        ax.set_xscale("log", base=2)
-        scales.at(ax, "x", analysis[_SAMPLES].values[::-2])
-        _cut_off(ax)
-        scales.linear(ax, "y")
-        responses_grid.warn(ax, analysis, "sensitivity_verdict", name)
-    figure.supxlabel("Base samples (–)")
-    figure.supylabel("Share of the variance (–)")
-    style.legend(figure)
-    return figure
+    return plot
 
 
 def _lines(ax: Axes, analysis: xr.Dataset, variable: str, response: str) -> None:
     values = analysis[variable].sel(response=response)
     margins = analysis.get(f"{variable}_interval")
     samples = analysis[_SAMPLES].values
-    for at, name in enumerate(measures.parameters(analysis)):
+    for at, name in enumerate(parameters(analysis)):
         y = values.isel(parameter=at).values
         look = style.distinct(at)
         if np.isfinite(y).any():
@@ -211,6 +186,142 @@ def _lines(ax: Axes, analysis: xr.Dataset, variable: str, response: str) -> None
         style.remark(ax, "no finite values")
 
 
-def _cut_off(ax: Axes) -> None:
-    low, high = ax.get_ylim()
-    ax.set_ylim(max(low, _ENDS[0]), min(high, _ENDS[1]))
+def _has_pairs(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether the analysis has second-order indices of at least two parameters."""
+    given = _PAIRS in analysis and analysis.sizes["parameter"] > 1
+    return given and bool(analysed(runs, analysis))
+
+
+@record.figure(
+    "Sobol indices of second order",
+    "Share of the variance, in %, that two parameters bring together; columns are "
+    "numbered as the rows.",
+    _has_pairs,
+    lambda runs, analysis: (
+        f"Grey: zero lies within the {access.confidence(analysis)} interval.",
+        _missing(runs, analysis),
+    ),
+)
+def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+    """Draw a panel per response, a cell per pair, all on one colour scale."""
+    shown, listed = analysed(runs, analysis), parameters(analysis)
+    figure, axes = responses_grid.panels(shown, 12 + 4.6 * len(listed), beneath=14)
+    values = {name: 100 * pairs(analysis[_PAIRS].sel(response=name)) for name in shown}
+    significant = {n: np.abs(values[n]) > 100 * _margins(analysis, n) for n in shown}
+    # no weaker than _WEAK, to keep noise pale
+    tops = [np.max(values[n], initial=_WEAK, where=significant[n]) for n in shown]
+    colours = Normalize(0.0, max(map(float, tops)))
+    for at, (name, ax) in enumerate(axes.items()):
+        image = _map(ax, values[name], significant[name], colours)
+        _undefined(ax, analysis, name, _PAIRS)
+        _number(ax, listed, named=at % responses_grid.COLUMNS == 0)
+    thin = 20 * min(len(shown), 2)
+    bar = figure.colorbar(
+        image, ax=list(axes.values()), location="bottom", fraction=0.05, aspect=thin, shrink=0.6
+    )
+    bar.set_label("Share of the variance (%)")
+    return figure
+
+
+def pairs(index: xr.DataArray) -> NDArray[np.float64]:
+    """Return each pair once, above the diagonal; NaN elsewhere.
+
+    index: on (parameter, other_parameter).
+    """
+    square = index.transpose("parameter", "other_parameter").values
+    both = np.where(np.isfinite(square), square, square.T)
+    return np.where(np.triu(np.ones_like(both, dtype=bool), 1), both, np.nan)
+
+
+def _margins(analysis: xr.Dataset, name: str) -> NDArray[np.float64]:
+    """Return the half-widths of the intervals, infinite where none is given."""
+    interval = analysis.get(f"{_PAIRS}_interval")
+    if interval is None:
+        return np.full((analysis.sizes["parameter"],) * 2, np.inf)
+    found = pairs(interval.sel(response=name))
+    return np.where(np.isfinite(found), found, np.inf)
+
+
+def _map(
+    ax: Axes, values: NDArray[np.float64], significant: NDArray[np.bool_], colours: Normalize
+) -> AxesImage:
+    """Draw the cells, with their values in whole per cent, as a cell has room for two digits."""
+    shown = np.where(significant, values, np.nan)
+    ax.imshow(np.where(np.isfinite(values), 0.93, np.nan), cmap="gray", vmin=0, vmax=1)
+    image = ax.imshow(shown, cmap="Blues", norm=colours, interpolation="nearest")
+    for row, column in np.argwhere(np.isfinite(values)):
+        value = values[row, column]
+        dark = bool(significant[row, column]) and colours(value) > 0.55
+        colour = "white" if dark else "black" if significant[row, column] else "0.5"
+        text = f"{value:z.0f}".replace("-", "−")
+        ax.text(column, row, text, ha="center", va="center", fontsize=6, color=colour)
+    return image
+
+
+def _number(ax: Axes, listed: list[str], *, named: bool) -> None:
+    """Write numbers along rows and columns, and the names of the parameters beside the rows."""
+    count = len(listed)
+    numbers = [str(at) for at in range(1, count + 1)]
+    rows = [f"{labels.parameter(name)} {at}" for name, at in zip(listed, numbers, strict=True)]
+    ax.set_yticks(range(count), rows if named else numbers)
+    ax.set_xticks(range(count), numbers)
+    ax.set(xlim=(-0.5, count - 0.5), ylim=(count - 0.5, -0.5), aspect="auto")
+    ax.tick_params(length=0)
+    ax.grid(visible=False)
+    for spine in ax.spines.values():
+        spine.set_visible(False)
+
+
+def _has_effects(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether the analysis has the mean magnitudes and the spread of elementary effects."""
+    given = all(name in analysis for name in ("morris_mu_star", "morris_sigma"))
+    return given and bool(analysed(runs, analysis))
+
+
+@record.figure(
+    MORRIS.title,
+    f"{MORRIS.meaning} Above σ = µ* an effect changes its size or sign with the others or "
+    "along the range; below σ = 0.1 µ* it is nearly linear and additive.",
+    _has_effects,
+    lambda runs, analysis: (
+        f"Lines: {access.confidence(analysis)} intervals of µ*.",
+        _missing(runs, analysis),
+    ),
+)
+def morris_plane(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+    """Draw a panel per response, a marker per parameter."""
+    figure, axes = responses_grid.panels(analysed(runs, analysis), height=48)
+    for name, ax in axes.items():
+        _plane(ax, runs, analysis, name)
+    style.legend(figure)
+    return figure
+
+
+def _plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> None:
+    strength = measures.index(analysis, "morris_mu_star", response)
+    spread = analysis["morris_sigma"].sel(response=response).values
+    effects = xr.DataArray(strength.values, attrs=runs[response].attrs, name=response)
+    unit = display(effects)
+    x, y, margin = unit(strength.values), unit(spread), unit(strength.margins)
+    for at, name in enumerate(parameters(analysis)):
+        if np.isfinite(x[at]):
+            ax.errorbar(
+                x[at],
+                y[at],
+                xerr=margin[at] if np.isfinite(margin[at]) else None,
+                label=labels.parameter(name),
+                elinewidth=0.8,
+                **(style.distinct(at) | {"linestyle": ""}),
+            )
+    responses_grid.warn(ax, analysis, _VERDICT, response)
+    if not ax.lines:
+        responses_grid.empty(ax, "no finite values")
+        return
+    ax.set(xlabel=labels.axis("mean µ*", unit.symbol), ylabel=labels.axis("spread σ", unit.symbol))
+    right, top = float(np.nanmax(x + np.nan_to_num(margin, posinf=0.0))), np.nanmax(y)
+    ax.set(xlim=(0.0, 1.1 * right or 1.0), ylim=(0.0, 1.15 * max(top, 0.12 * right) or 1.0))
+    for slope, text in ((1.0, "σ = µ*"), (0.1, "σ = 0.1 µ*")):
+        ax.axline((0.0, 0.0), slope=slope, label="_guide", **style.GUIDE)
+        end = min(0.97 * ax.get_xlim()[1], 0.9 * ax.get_ylim()[1] / slope)
+        ax.text(end, slope * end, text, fontsize=6, color=style.MUTED, ha="right", va="bottom")
+    scales.linear(ax, "xy")

@@ -9,7 +9,6 @@ import math
 import textwrap
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -86,18 +85,12 @@ def display(array: xr.DataArray) -> Display:
     if "plastic_strain" in str(array.name):
         return Display(100.0, "%")
     units = str(array.attrs.get("units", "1"))
-    largest = _largest(array.values)
+    numbers = array.values if array.dtype.kind in "if" else np.empty(0)
+    largest = np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0)
     for smallest, scale, symbol in _STEPS.get(units, ((0.0, 1.0, units),)):
         if largest >= smallest:
             return Display(scale, symbol)
     return Display(1.0, units)
-
-
-def _largest(values: Any) -> float:
-    if values.dtype.kind not in "if":
-        return 0.0
-    finite = np.abs(values[np.isfinite(values)])
-    return float(finite.max()) if finite.size else 0.0
 
 
 def response(name: str) -> str:
@@ -165,19 +158,26 @@ def listing(items: Sequence[str]) -> str:
     return " and ".join(filter(None, (", ".join(items[:-1]), *items[-1:])))
 
 
+def span(values: NDArray[np.float64], digits: int) -> str:
+    """Return the range of some values, "2 to 19", or the one value that all of them have."""
+    low, high = number(float(values.min()), digits), number(float(values.max()), digits)
+    return low if low == high else f"{low} to {high}"
+
+
 def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
-    """Return the values at these positions as text, in the display unit, without its symbol."""
-    if coordinate.dtype.kind not in "if":
-        return [_name(str(coordinate.name), str(coordinate.values[at])) for at in where]
-    shown = display(coordinate)(coordinate.values)
-    return [number(float(shown[at])) for at in where]
+    """Return the values at these positions as text, in the display unit, without its symbol.
 
-
-def _name(parameter: str, value: str) -> str:
-    """Return a word of a study file as papers spell it; laws and beam models have proper names."""
-    if parameter in ("contact", "beam_model"):
-        return _NAMES.get(value) or "-".join(part.capitalize() for part in value.split("_"))
-    return _SPELLED.get(value, value.replace("_", " "))
+    Words of study files are spelt as in papers; contact laws and beam models have proper names.
+    """
+    if coordinate.dtype.kind in "if":
+        shown = display(coordinate)(coordinate.values)
+        return [number(float(shown[at])) for at in where]
+    words = [str(coordinate.values[at]) for at in where]
+    if coordinate.name in ("contact", "beam_model"):
+        return [
+            _NAMES.get(word) or "-".join(map(str.capitalize, word.split("_"))) for word in words
+        ]
+    return [_SPELLED.get(word, word.replace("_", " ")) for word in words]
 
 
 def unit(coordinate: xr.DataArray) -> str:
@@ -203,10 +203,9 @@ def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:
 
 def fixed(runs: xr.Dataset) -> str:
     """Return a sentence on the parameters, numerics included, that are the same in all runs."""
-    single = [name for name in _FIXED if name in runs.coords and runs[name].size == 1]
-    flat = {name: runs[name].variable.values.reshape(1) for name in single}
     listed = [
-        setting(xr.DataArray(array, dims="one", name=name, attrs=runs[name].attrs), [0])
-        for name, array in flat.items()
+        setting(xr.DataArray(runs[name].values.reshape(1), name=name, attrs=runs[name].attrs), [0])
+        for name in _FIXED
+        if name in runs.coords and runs[name].size == 1
     ]
     return f"In all runs: {'; '.join(listed)}." if listed else ""

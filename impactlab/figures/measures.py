@@ -161,11 +161,13 @@ def parameters(analysis: xr.Dataset) -> list[str]:
 def index(analysis: xr.Dataset, measure: str, response: str) -> Index:
     """Return one measure of one response."""
     values = analysis[measure].sel(response=response).values
+    dummy = (f"dummy_{measure}", f"dummy_{measure}_interval")
+    ends = [analysis[name].sel(response=response).item() for name in dummy if name in analysis]
     return Index(
         values,
         _beside(analysis, f"{measure}_interval", response, values, gap=np.inf),
         _beside(analysis, f"{measure}_numerical", response, values, gap=0.0),
-        _floor(analysis, f"dummy_{measure}", response),
+        float(sum(np.nan_to_num(abs(end)) for end in ends)),
     )
 
 
@@ -173,8 +175,3 @@ def _beside(analysis: xr.Dataset, name: str, response: str, values: Array, *, ga
     if name not in analysis:
         return np.full_like(values, gap)
     return np.asarray(np.nan_to_num(analysis[name].sel(response=response).values, nan=gap))
-
-
-def _floor(analysis: xr.Dataset, dummy: str, response: str) -> float:
-    ends = [analysis[name] for name in (dummy, f"{dummy}_interval") if name in analysis]
-    return float(sum(np.nan_to_num(abs(end.sel(response=response).item())) for end in ends))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-import matplotlib.figure
 import xarray as xr
+from matplotlib.figure import Figure as Drawing
 
-Drawer = Callable[[xr.Dataset, xr.Dataset], matplotlib.figure.Figure]
+from impactlab.figures import style
+
+Drawer = Callable[[xr.Dataset, xr.Dataset], Drawing]
 
 
 @dataclass(frozen=True)
@@ -25,3 +27,24 @@ class Figure:
     applies: Callable[[xr.Dataset, xr.Dataset], bool]
     plot: Drawer
     caption: Callable[[xr.Dataset, xr.Dataset], str]
+
+
+def figure(
+    title: str,
+    text: str,
+    applies: Callable[[xr.Dataset, xr.Dataset], bool],
+    sentences: Callable[[xr.Dataset, xr.Dataset], Iterable[str]],
+    name: str = "",
+) -> Callable[[Drawer], Figure]:
+    """Make a function that draws a figure into its record, named after it if there is no `name`.
+
+    text: opens the caption. sentences: follow it, by the datasets; empty ones are left out.
+    """
+
+    def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+        return " ".join(filter(None, (text, *sentences(runs, analysis))))
+
+    def recorded(plot: Drawer) -> Figure:
+        return Figure(name or plot.__name__, title, applies, style.paper(plot), caption)
+
+    return recorded

@@ -1,25 +1,25 @@
-"""Figures of a sample: distributions, scatter plots and tests of the surrogates."""
+"""Figures of a sample: distributions, scatter plots, tests of surrogates, and where runs fail."""
 
 from __future__ import annotations
 
-from functools import partial
+from itertools import combinations
 from typing import Any
 
 import numpy as np
+import scipy  # its stats are loaded when first used
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as MplFigure
+from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
-from impactlab.figures import access, labels, responses_grid, scales, style
-from impactlab.figures.access import is_sample, known, responses, usable, varied
+from impactlab.figures import access, labels, record, responses_grid, scales, style
+from impactlab.figures.access import is_sample, responses, usable, varied
 from impactlab.figures.curves import spread
 from impactlab.figures.labels import display
+from impactlab.figures.measures import analysed
 from impactlab.figures.record import Figure
 
 Array = NDArray[np.float64]
-_HISTOGRAM_BINS = (10, 40)
-"""The fewest and the most bins; between them, the square root of the number of runs."""
 _FEW = 10
 """Number of distinct values up to which each has a bar."""
 _MOSTLY = 0.5
@@ -38,22 +38,24 @@ _BINS, _FEWEST = 20, 30
 """Largest number of bins of the mean, and smallest number of runs in a bin."""
 _MOST = 400
 """Largest number of points in a panel of surrogates; more hide each other."""
+_TELLING = 3
+"""Parameters in the map of failures."""
+_DRAWN = {"good": 2000, "failed": 1000}
+"""Largest numbers of runs in the map."""
+_LOOKS: dict[str, dict[str, Any]] = {
+    "good": {"color": "0.65", "marker": ".", "markersize": 2.0, "markeredgewidth": 0.0},
+    "failed": {"color": _WARNING, "marker": "x", "markersize": 3.0, "markeredgewidth": 0.8},
+}
 
 
-def _distributions_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the runs are a sample."""
-    return is_sample(runs) and bool(responses(runs))
-
-
-def _distributions_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    return (
-        "Histograms of the responses over the sample. Line: median; shaded: from the 5th to the "
-        f"95th percentile.{_jumps(runs)} {access.missing_note(runs, responses(runs))}".strip()
-    )
-
-
-@style.paper
-def _plot_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
+@record.figure(
+    "Distributions of the responses",
+    "Histograms of the responses over the sample. Line: median; shaded: from the 5th to the "
+    "95th percentile.",
+    lambda runs, analysis: is_sample(runs) and bool(responses(runs)),
+    lambda runs, analysis: (*_jumps(runs), access.missing_note(runs, responses(runs))),
+)
+def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, of the runs that have it."""
     figure, axes = responses_grid.panels(responses(runs), height=40)
     for name, ax in axes.items():
@@ -71,66 +73,41 @@ def _distribution(ax: Axes, values: Array) -> None:
         return
     distinct, counts = np.unique(values, return_counts=True)
     if distinct.size <= _FEW:
-        _bars(ax, distinct, counts)
-    elif counts.max() >= _MOSTLY * values.size:
-        _beside(ax, values, float(distinct[counts.argmax()]))
+        width = 0.5 * float(np.diff(distinct).min())
+        ax.bar(distinct, counts, width=width, color=style.COLOURS[0], zorder=2)
+        scales.at(ax, "x", distinct)
+        scales.linear(ax, "y")
+        return
+    if counts.max() >= _MOSTLY * values.size:
+        common, total = float(distinct[counts.argmax()]), values.size
+        values = values[values != common]
+        share = 100 * (1 - values.size / total)
+        text = f"{share:.0f} % of the runs: {labels.number(common)}\n(not drawn)"
+        ax.margins(y=0.35)
+        ax.text(0.98, 0.98, text, transform=ax.transAxes, ha="right", va="top", color=_WARNING)
     else:
-        _histogram(ax, values)
-    scales.linear(ax, "y")
+        low, middle, high = np.percentile(values, [5, 50, 95])
+        ax.axvspan(low, high, color="0.93", zorder=0)
+        ax.axvline(middle, color=style.COLOURS[1], linewidth=1.0, zorder=3)
+    bins = int(np.clip(np.sqrt(values.size), 10, 40))
+    ax.hist(values, bins=bins, color=style.COLOURS[0], zorder=2)
+    scales.linear(ax, "xy")
 
 
-def _bars(ax: Axes, distinct: Array, counts: NDArray[np.int_]) -> None:
-    """Draw a bar per value."""
-    width = 0.5 * float(np.diff(distinct).min())
-    ax.bar(distinct, counts, width=width, color=style.COLOURS[0], zorder=2)
-    scales.at(ax, "x", distinct)
-
-
-def _beside(ax: Axes, values: Array, common: float) -> None:
-    """Draw the histogram of the rest, and state the share of the common value."""
-    rest = values[values != common]
-    ax.hist(rest, bins=_bins(rest), color=style.COLOURS[0], zorder=2)
-    share = 100 * (1 - rest.size / values.size)
-    text = f"{share:.0f} % of the runs: {labels.number(common)}\n(not drawn)"
-    ax.margins(y=0.35)
-    ax.text(0.98, 0.98, text, transform=ax.transAxes, ha="right", va="top", color=_WARNING)
-    scales.linear(ax, "x")
-
-
-def _histogram(ax: Axes, values: Array) -> None:
-    low, middle, high = np.percentile(values, [5, 50, 95])
-    ax.axvspan(low, high, color="0.93", zorder=0)
-    ax.hist(values, bins=_bins(values), color=style.COLOURS[0], zorder=2)
-    ax.axvline(middle, color=style.COLOURS[1], linewidth=1.0, zorder=3)
-    scales.linear(ax, "x")
-
-
-def _bins(values: Array) -> int:
-    return int(np.clip(np.sqrt(values.size), *_HISTOGRAM_BINS))
-
-
-def _jumps(runs: xr.Dataset) -> str:
-    """Return a sentence on the responses that take few values, or mostly one."""
-    found: dict[str, list[str]] = {"few": [], "mostly": []}
+def _jumps(runs: xr.Dataset) -> list[str]:
+    """Return sentences on the responses that take few values, or mostly one."""
+    few, mostly = [], []
     for name in responses(runs):
         values = usable(runs, name).values
         distinct, counts = np.unique(values[np.isfinite(values)], return_counts=True)
         if 1 < distinct.size <= _FEW:
-            found["few"].append(labels.response(name))
+            few.append(labels.response(name))
         elif distinct.size > 1 and counts.max() >= _MOSTLY * counts.sum():
-            found["mostly"].append(labels.response(name))
-    few = f" Bars, for there are few values: {labels.listing(found['few'])}." * bool(found["few"])
-    mostly = f" Mostly one value, drawn without it: {labels.listing(found['mostly'])}."
-    return few + mostly * bool(found["mostly"])
-
-
-DISTRIBUTIONS = Figure(
-    "response_distributions",
-    "Distributions of the responses",
-    _distributions_applies,
-    _plot_distributions,
-    _distributions_caption,
-)
+            mostly.append(labels.response(name))
+    return [
+        f"Bars, for there are few values: {labels.listing(few)}." if few else "",
+        f"Mostly one value, drawn without it: {labels.listing(mostly)}." if mostly else "",
+    ]
 
 
 def scatters(runs: xr.Dataset) -> tuple[Figure, ...]:
@@ -140,46 +117,51 @@ def scatters(runs: xr.Dataset) -> tuple[Figure, ...]:
 
 def scatter(response: str) -> Figure:
     """Return the figure of a response against each parameter."""
-    return Figure(
-        f"scatter_{response}",
-        f"{labels.sentence(labels.response(response))} against each parameter",
-        partial(_scatter_applies, response),
-        partial(_plot_scatter, response),
-        partial(_scatter_caption, response),
-    )
+
+    def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+        return is_sample(runs) and response in runs and bool(varied(runs))
+
+    def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
+        total = runs.sizes["run"]
+        points = f"{_SHOWN} of the {total} runs, drawn at random" if total > _SHOWN else "the runs"
+        what = (
+            f"Points: {points}. Line: mean of the response over all runs with about this value of "
+            "the parameter; where it is flat, the parameter alone changes nothing."
+        )
+        return what, access.missing_note(runs, [response])
+
+    title = f"{labels.sentence(labels.response(response))} against each parameter"
+
+    @record.figure(title, "", applies, sentences, f"scatter_{response}")
+    def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+        """Draw a panel per parameter; points are a bitmap, which keeps the vector file small."""
+        names = varied(runs)
+        figure, axes = style.panels(len(names), columns=3, height=42, sharey=True)
+        values, label = responses_grid.shown(runs, response)
+        for ax, name in zip(axes, names, strict=True):
+            unit = display(runs[name])
+            _scatter(ax, unit(runs[name].values), values.values)
+            ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
+        figure.supylabel(label)
+        style.legend(figure)
+        return figure
+
+    return plot
 
 
-def _scatter_applies(response: str, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the runs are a sample with this response."""
-    return is_sample(runs) and response in runs and bool(varied(runs))
-
-
-def _scatter_caption(response: str, runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    total = runs.sizes["run"]
-    points = f"{_SHOWN} of the {total} runs, drawn at random" if total > _SHOWN else "the runs"
-    return (
-        f"Points: {points}. Line: mean of the response over all runs with about this value of "
-        "the parameter; where it is flat, the parameter alone changes nothing. "
-        f"{access.missing_note(runs, [response])}".strip()
-    )
-
-
-@style.paper
-def _plot_scatter(response: str, runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
-    """Draw a panel per parameter; points are a bitmap, which keeps the vector file small."""
-    names = varied(runs)
-    figure, axes = style.panels(len(names), columns=3, height=42, sharey=True)
-    values, label = responses_grid.shown(runs, response)
-    for ax, name in zip(axes, names, strict=True):
-        unit = display(runs[name])
-        _panel(ax, unit(runs[name].values), values.values)
-        ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
-    if response in runs and not np.isfinite(values.values).any():
-        for ax in axes:
-            style.remark(ax, "no finite values")
-    figure.supylabel(label)
-    style.legend(figure)
-    return figure
+def _scatter(ax: Axes, x: Array, y: Array) -> None:
+    """Draw some of the runs, and the mean of all."""
+    finite = np.isfinite(x) & np.isfinite(y)
+    if not np.isfinite(y).any():
+        style.remark(ax, "no finite values")
+    x, y = x[finite], y[finite]
+    if not x.size:
+        return
+    some = np.random.default_rng(1).permutation(x.size)[:_SHOWN]  # a sample's order has structure
+    ax.plot(x[some], y[some], label="_runs", rasterized=True, **_POINTS)
+    middle, mean = conditional_mean(x, y)
+    ax.plot(middle, mean, label="conditional mean", color=style.COLOURS[1], linewidth=1.5)
+    scales.linear(ax, "xy", 4)
 
 
 def conditional_mean(x: Array, y: Array) -> tuple[Array, Array]:
@@ -196,49 +178,46 @@ def conditional_mean(x: Array, y: Array) -> tuple[Array, Array]:
     return means[0], means[1]
 
 
-def _panel(ax: Axes, x: Array, y: Array) -> None:
-    finite = np.isfinite(x) & np.isfinite(y)
-    x, y = x[finite], y[finite]
-    if not x.size:
-        return
-    some = np.random.default_rng(1).permutation(x.size)[:_SHOWN]  # a sample's order has structure
-    ax.plot(x[some], y[some], label="_runs", rasterized=True, **_POINTS)
-    middle, mean = conditional_mean(x, y)
-    ax.plot(middle, mean, label="conditional mean", color=style.COLOURS[1], linewidth=1.5)
-    scales.linear(ax, "x", 4)
-    scales.linear(ax, "y", 4)
-
-
-def _validation_applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+def _validated(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Return whether the analysis has tested surrogates of these runs' responses."""
-    return "surrogate_held_out" in analysis and bool(_with_surrogates(runs, analysis))
+    return "surrogate_held_out" in analysis and bool(analysed(runs, analysis))
 
 
-def _validation_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+def _validation_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
     tests = analysis.sizes["held_out"]
     shown = f", {_MOST} of them shown" if tests > _MOST else ""
-    return (
+    what = (
         "Prediction of a polynomial chaos against the solver's answer, for "
         f"{labels.counted(tests, 'run')} that it was not fitted to{shown}; on the line both agree. "
-        "Q²: 1 less the mean squared error over the variance of all of them. "
-        f"{access.missing_note(runs, _with_surrogates(runs, analysis))}".strip()
+        "Q²: 1 less the mean squared error over the variance of all of them."
     )
+    return what, access.missing_note(runs, analysed(runs, analysis))
 
 
-@style.paper
-def _plot_validation(runs: xr.Dataset, analysis: xr.Dataset) -> MplFigure:
+@record.figure("Surrogates against the solver", "", _validated, _validation_sentences)
+def surrogate_validation(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, in the same unit on both axes."""
-    figure, axes = responses_grid.panels(_with_surrogates(runs, analysis), height=46)
+    figure, axes = responses_grid.panels(analysed(runs, analysis), height=46)
     for name, ax in axes.items():
         _held_out(ax, runs, analysis, name)
-        _worth(ax, analysis, name)
+        verdict = access.verdict(analysis, "surrogate_verdict", name)
+        if not ax.lines:
+            responses_grid.empty(ax, f"no surrogate:\n{verdict.words if verdict else 'unknown'}")
+            continue
+        text = f"Q² = {labels.number(float(analysis['surrogate_q2'].sel(response=name)))}"
+        warning = verdict is not None and not verdict.sound
+        ax.annotate(  # in the corner that agreement leaves empty
+            f"{text}\n{verdict.words}" if verdict and warning else text,
+            (0.04, 0.96),
+            xycoords="axes fraction",
+            va="top",
+            fontsize=7,
+            fontweight="bold" if warning else "normal",
+            color=_WARNING if warning else style.MUTED,
+        )
     figure.supxlabel("Computed by the solver")
     figure.supylabel("Predicted by the surrogate")
     return figure
-
-
-def _with_surrogates(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    return [name for name in responses(runs) if known(analysis, name)]
 
 
 def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
@@ -246,7 +225,7 @@ def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> No
     unit = display(answers)
     ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
     found = analysis["surrogate_held_out"].sel(response=name)
-    found = found[spread(found.size, min(found.size, _MOST))]
+    found = found[spread(found.size, _MOST)]
     computed = unit(answers.set_index(run="run").sel(run=found["held_out"].values))
     predicted = unit(found)
     given = np.isfinite(computed) & np.isfinite(predicted)
@@ -266,34 +245,120 @@ def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> No
         color=style.COLOURS[0],
         label="runs held out",
     )
-    for which in ("x", "y"):
-        scales.linear(ax, which, ticks=4)
+    scales.linear(ax, "xy", ticks=4)
 
 
-def _worth(ax: Axes, analysis: xr.Dataset, name: str) -> None:
-    """Write Q² in the corner that agreement leaves empty, with a warning where there is one."""
-    verdict = access.verdict(analysis, "surrogate_verdict", name)
-    if not ax.lines:
-        responses_grid.empty(ax, f"no surrogate:\n{verdict.words if verdict else 'unknown'}")
-        return
-    q2 = float(analysis["surrogate_q2"].sel(response=name))
-    sound = verdict is None or verdict.sound
-    text = f"Q² = {labels.number(q2)}"
-    ax.annotate(
-        text if sound or verdict is None else f"{text}\n{verdict.words}",
-        (0.04, 0.96),
-        xycoords="axes fraction",
-        va="top",
-        fontsize=7,
-        fontweight="normal" if sound else "bold",
-        color=style.MUTED if sound else style.COLOURS[1],
-    )
+def _has_failures(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether runs of a sample failed."""
+    return is_sample(runs) and bool(varied(runs)) and bool(access.failed(runs).any())
 
 
-SURROGATE_VALIDATION = Figure(
-    "surrogate_validation",
-    "Surrogates against the solver",
-    _validation_applies,
-    _plot_validation,
-    _validation_caption,
+def _failure_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    failed = access.failed(runs)
+    why = [f"{number} × “{text}”" for text, number in access.causes(runs, failed).items()]
+    count = f"{int(failed.sum())} of {failed.size} runs failed, or are missing a response"
+    return [f"{count}: {labels.listing(why)}."]
+
+
+@record.figure(
+    "Share of failed runs along each parameter",
+    "Share of the runs that failed in each tenth of a parameter's draws, with the 95 % "
+    "interval of a binomial share (Wilson); dashed: the share of all runs. A parameter along "
+    "which the share rises tells where runs fail.",
+    _has_failures,
+    _failure_sentences,
 )
+def failure_shares(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+    """Draw a panel per parameter."""
+    names, failed = varied(runs), access.failed(runs).values
+    figure, axes = style.panels(len(names), columns=3, height=36, sharey=True)
+    for ax, name in zip(axes, names, strict=True):
+        unit = display(runs[name])
+        _shares(ax, unit(runs[name].values), failed)
+        ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
+    figure.supylabel("Failed runs (%)")
+    return figure
+
+
+def wilson(failed: int, total: int) -> tuple[float, float]:
+    """Return the 95 % interval of a binomial share (Wilson 1927, J. Am. Stat. Assoc. 22, 209)."""
+    share, z = failed / total, 1.959963984540054
+    middle = share + z**2 / (2 * total)
+    half = z * np.sqrt(share * (1 - share) / total + (z / (2 * total)) ** 2)
+    scale = 1 + z**2 / total
+    return max(0.0, (middle - half) / scale), (middle + half) / scale
+
+
+def _shares(ax: Axes, x: Array, failed: NDArray[np.bool_]) -> None:
+    edges = np.unique(np.quantile(x, np.linspace(0.0, 1.0, 11)))
+    place = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, max(edges.size - 2, 0))
+    found = []
+    for at in np.unique(place):
+        here = place == at
+        low, high = wilson(int(failed[here].sum()), int(here.sum()))
+        share = failed[here].mean()
+        found.append((x[here].mean(), 100 * share, 100 * (share - low), 100 * (high - share)))
+    middle, share, below, above = np.array(found).T
+    ax.errorbar(
+        middle,
+        share,
+        np.clip([below, above], 0.0, None),
+        label="share",
+        color=style.COLOURS[0],
+        marker="o",
+        linestyle="",
+        elinewidth=0.8,
+    )
+    ax.axhline(100 * failed.mean(), label="_guide", linestyle="--", **style.GUIDE)
+    ax.set_ylim(0.0, None)
+    scales.linear(ax, "xy", 4)
+
+
+def _distances(runs: xr.Dataset) -> dict[str, float]:
+    """Return the Kolmogorov-Smirnov distances of the most telling parameters, the largest first."""
+    failed, found = access.failed(runs).values, {}
+    for name in varied(runs):
+        values = runs[name].values
+        test = scipy.stats.ks_2samp(values[failed], values[~failed], method="asymp")
+        found[name] = float(test.statistic)
+    ranked = sorted(found, key=lambda name: -found[name])
+    return {name: found[name] for name in ranked[:_TELLING]}
+
+
+def _some_failed(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether some runs of a sample of two parameters or more failed, but not all."""
+    several = is_sample(runs) and len(varied(runs)) > 1
+    return several and 0 < int(access.failed(runs).sum()) < runs.sizes["run"]
+
+
+def _map_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    told = [f"{labels.parameter(name)} {value:.2f}" for name, value in _distances(runs).items()]
+    return [
+        f"The {int(access.failed(runs).sum())} failed runs among the good ones (at most "
+        f"{_DRAWN['failed']} and {_DRAWN['good']} are drawn), over the parameters whose values "
+        "differ most between the two. Distance of Kolmogorov and Smirnov between failed and good "
+        f"runs, 1 where they do not overlap: {labels.listing(told)}."
+    ]
+
+
+@record.figure("Where runs failed", "", _some_failed, _map_sentences)
+def failure_map(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+    """Draw a panel per pair of parameters."""
+    pairs = list(combinations(_distances(runs), 2))
+    figure, axes = style.panels(len(pairs), columns=max(len(pairs), 2), height=58)
+    failed = access.failed(runs).values
+    kinds = {"good": np.flatnonzero(~failed), "failed": np.flatnonzero(failed)}
+    for ax, pair in zip(axes, pairs, strict=True):
+        units = [display(runs[name]) for name in pair]
+        for kind, which in kinds.items():
+            some = np.random.default_rng(1).permutation(which)[: _DRAWN[kind]]
+            x, y = (unit(runs[name].values[some]) for name, unit in zip(pair, units, strict=True))
+            ax.plot(x, y, linestyle="", label=kind, rasterized=kind == "good", **_LOOKS[kind])
+        across, up = (
+            labels.wrapped_axis(labels.parameter(name), unit.symbol)
+            for name, unit in zip(pair, units, strict=True)
+        )
+        ax.set(xlabel=across, ylabel=up)
+        scales.linear(ax, "xy", 4)
+    style.legend(figure)
+    return figure

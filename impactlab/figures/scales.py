@@ -28,22 +28,35 @@ def fit(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
         linear(axes, which, ticks)
 
 
-def linear(axes: Axes, which: Which, ticks: int = 5) -> None:
-    """Make the axis linear, with at most `ticks` intervals and numbers without an offset."""
-    axis = _axis(axes, which)
-    axis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 2.5, 5, 10]))
-    axis.set_major_formatter(_PLAIN)
+def linear(axes: Axes, which: Which | Literal["xy"], ticks: int = 5) -> None:
+    """Make one axis or both linear, with at most `ticks` intervals and numbers without offset."""
+    for letter in which:
+        axis: Axis = getattr(axes, f"{letter}axis")
+        axis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 2.5, 5, 10]))
+        axis.set_major_formatter(_PLAIN)
 
 
 def logarithmic(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
     """Make the axis logarithmic, with ticks at powers of ten or, over short ranges, between."""
     shown = _finite(positive(values))
     ratio = float(shown.max() / shown.min()) if shown.size else 10.0
+    if ratio < 3:
+        digits: tuple[float, ...] = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
+    else:
+        digits = (1.0, 2.0, 5.0) if ratio < 120 else (1.0,)
     axes.set(**{f"{which}scale": "log"})
-    axis = _axis(axes, which)
-    axis.set_major_locator(LogLocator(subs=_digits(ratio), numticks=ticks + 1))
+    axis: Axis = getattr(axes, f"{which}axis")
+    axis.set_major_locator(LogLocator(subs=digits, numticks=ticks + 1))
     axis.set_major_formatter(_POWERS)
     axis.set_minor_formatter(NullFormatter())
+
+
+def at(axes: Axes, which: Which, values: ArrayLike) -> None:
+    """Put ticks at just these values."""
+    axis: Axis = getattr(axes, f"{which}axis")
+    axis.set_major_locator(FixedLocator([float(value) for value in np.ravel(values)]))
+    axis.set_minor_locator(FixedLocator([]))
+    axis.set_major_formatter(_PLAIN)
 
 
 def positive(values: ArrayLike, above: float = 0.0) -> NDArray[np.float64]:
@@ -52,12 +65,10 @@ def positive(values: ArrayLike, above: float = 0.0) -> NDArray[np.float64]:
     return np.where(np.isfinite(array) & (array > above), array, np.nan)
 
 
-def at(axes: Axes, which: Which, values: ArrayLike) -> None:
-    """Put ticks at just these values."""
-    axis = _axis(axes, which)
-    axis.set_major_locator(FixedLocator([float(value) for value in np.ravel(values)]))
-    axis.set_minor_locator(FixedLocator([]))
-    axis.set_major_formatter(_PLAIN)
+def drawn(axes: Axes, which: Which) -> NDArray[np.float64]:
+    """Return where the points of all lines are along an axis, shape (points,)."""
+    along = [np.asarray(getattr(line, f"get_{which}data")(), dtype=float) for line in axes.lines]
+    return np.concatenate([np.empty(0), *along])
 
 
 def apart(values: ArrayLike, share: float = 0.18) -> list[float]:
@@ -69,17 +80,6 @@ def apart(values: ArrayLike, share: float = 0.18) -> list[float]:
         if not kept or np.log(kept[-1] / value) >= least:
             kept.append(value)
     return kept
-
-
-def _axis(axes: Axes, which: Which) -> Axis:
-    return axes.xaxis if which == "x" else axes.yaxis
-
-
-def _digits(ratio: float) -> tuple[float, ...]:
-    """Return the ticks within a decade, by the ratio of the largest to the smallest value."""
-    if ratio < 3:
-        return (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
-    return (1.0, 2.0, 5.0) if ratio < 120 else (1.0,)
 
 
 def _finite(values: ArrayLike) -> NDArray[np.float64]:

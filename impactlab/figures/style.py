@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from functools import wraps
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
 import matplotlib.style
 from matplotlib.axes import Axes
@@ -60,8 +59,6 @@ _SETTINGS: dict[str, Any] = {
     "savefig.dpi": 300,
 }
 _LOCK = threading.RLock()
-_P = ParamSpec("_P")
-_R = TypeVar("_R")
 
 
 @contextmanager
@@ -71,15 +68,8 @@ def applied() -> Iterator[None]:
         yield
 
 
-def paper(plot: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Decorate a function so that it draws under the style."""
-
-    @wraps(plot)
-    def styled(*args: _P.args, **kwargs: _P.kwargs) -> _R:
-        with applied():
-            return plot(*args, **kwargs)
-
-    return styled
+paper = applied()
+"""Decorator of functions that draw, so that they do it under the style."""
 
 
 def panels(

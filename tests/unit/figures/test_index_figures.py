@@ -11,8 +11,8 @@ from matplotlib.container import BarContainer
 from matplotlib.figure import Figure
 
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.figures.index_maps import pairs
-from impactlab.figures.samples import SURROGATE_VALIDATION
+from impactlab.figures.indices import pairs
+from impactlab.figures.samples import surrogate_validation
 
 Study = Any
 
@@ -136,7 +136,7 @@ def test_a_value_that_most_runs_share_is_told_and_does_not_hide_the_rest(study: 
 
 def test_points_are_runs_held_out_in_the_panels_unit(study: Study) -> None:
     runs, analysis = study
-    axes = _panel(SURROGATE_VALIDATION.plot(runs, analysis), "Peak force (kN)")
+    axes = _panel(surrogate_validation.plot(runs, analysis), "Peak force (kN)")
     x, y = next(line for line in axes.lines if line.get_label() == "runs held out").get_data()
     held_out = analysis["held_out"].values
     np.testing.assert_allclose(x, runs["peak_force"].sel(run=held_out) / 1e3)
@@ -147,15 +147,15 @@ def test_points_are_runs_held_out_in_the_panels_unit(study: Study) -> None:
 def test_a_run_that_failed_is_no_point(study: Study, failing: Any) -> None:
     runs, analysis = study
     broken = failing(runs, {"run": slice(0, 101)})
-    axes = _panel(SURROGATE_VALIDATION.plot(broken, analysis), "Peak force")
+    axes = _panel(surrogate_validation.plot(broken, analysis), "Peak force")
     line = next(line for line in axes.lines if line.get_label() == "runs held out")
     assert len(line.get_data()[0]) == analysis.sizes["held_out"] - 21
-    assert "101 of 256 runs are missing" in SURROGATE_VALIDATION.caption(broken, analysis)
+    assert "101 of 256 runs are missing" in surrogate_validation.caption(broken, analysis)
 
 
 def test_no_surrogate_says_why_and_an_unsound_one_warns(study: Study) -> None:
     runs, analysis = study
     analysis["surrogate_verdict"].loc[{"response": "restitution"}] = 2
-    figure = SURROGATE_VALIDATION.plot(runs, analysis)
+    figure = surrogate_validation.plot(runs, analysis)
     assert _words(_panel(figure, "Number of contacts")) == ["no surrogate:\nconstant"]
     assert _words(_panel(figure, "Restitution")) == ["Q² = 0.9876\npoor"]

@@ -14,10 +14,9 @@ from matplotlib.container import BarContainer
 from matplotlib.figure import Figure
 
 from impactlab.figures import data, draw
-from impactlab.figures.alt import alt
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.figures.failures import wilson
-from impactlab.figures.samples import conditional_mean, scatter
+from impactlab.figures.data import alt
+from impactlab.figures.samples import conditional_mean, scatter, wilson
 
 Study = tuple[xr.Dataset, xr.Dataset]
 

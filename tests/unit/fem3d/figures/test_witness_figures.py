@@ -8,7 +8,7 @@ from made_solid import DEPTH_OF_STRAIN, beam_models, solid
 from matplotlib.collections import PolyCollection
 
 from impactlab.fem3d.figures.run import FIGURES, draw_witness, faces
-from impactlab.figures.alt import alt
+from impactlab.figures.data import alt
 
 
 def area(polygons):

@@ -1,0 +1,337 @@
+"""Figures of grids: against the impact velocity, and the effects of parameters and of shear."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
+from impactlab.figures.access import is_sample, physical, responses, usable
+from impactlab.figures.curves import Plan, plan
+from impactlab.figures.labels import display
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Beam, paper_impact
+from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.variables import MARKS
+from impactlab.verification.solutions.shear import impact_share
+
+_PEAK, _DURATION, _RESTITUTION = "peak_force", "contact_duration", "restitution"
+_FORCE, _INDENTATION, _DENT = "contact_force", "indentation", "permanent_indentation"
+_FEWEST = 3
+"""Smallest number of values, of a parameter or of contact laws, for a figure."""
+_OUTSIDE = MARKS["outside_contact_law"][0]
+_THRESHOLD = 1.0
+"""Changes by shear that matter, %."""
+_WIDE = 10.0
+"""Largest change in % up to which an axis is linear."""
+_WITHOUT, _WITH = "euler_bernoulli", "timoshenko"
+_SHEARED = (_PEAK, _DURATION)
+_BEAM = [name for name, entry in PARAMETERS.items() if entry.path[:2] == ("impact", "beam")]
+
+Array = NDArray[np.float64]
+
+
+def _on_velocities(name: str, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether a response is on a grid of at least three velocities."""
+    return name in runs and runs[name].sizes.get("velocity", 0) >= _FEWEST
+
+
+def _velocity_plan(runs: xr.Dataset, name: str) -> Plan:
+    return plan(runs, name, along=["velocity"], prefer=["contact"])
+
+
+def _velocity_sentences(name: str, runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
+    return _velocity_plan(runs, name).note(runs), access.missing_note(runs, [name])
+
+
+def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, Axes]:
+    """Draw a curve per contact law, or per value of what else is varied."""
+    selected, valid = _velocity_plan(runs, name), usable(runs, name)
+    unit, speed = display(valid.rename(name)), runs["velocity"].values
+    figure, (ax,) = style.panels(1, columns=1, height=62)
+    for curve in selected.curves:
+        curves.add(ax, speed, unit(valid.isel(selected.held | curve.where)), curve)
+    if not ax.lines:
+        style.remark(ax, "no finite values")
+    ax.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
+    ax.set_ylabel(labels.axis(label, unit.symbol))
+    selected.legend(figure)
+    return figure, ax
+
+
+@record.figure(
+    "Contact duration against velocity",
+    "Duration of the first contact (a later sub-impact does not count) against the impact "
+    "velocity. Grey: the slope −1/5 of Hertz's elastic impact on a half-space.",
+    partial(_on_velocities, _DURATION),
+    partial(_velocity_sentences, _DURATION),
+)
+def contact_duration(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw on logarithmic axes, as durations follow powers of the velocity, with a guide."""
+    figure, ax = _against_velocity(runs, _DURATION, "duration of the first contact")
+    values, speed = scales.drawn(ax, "y"), runs["velocity"].values
+    if values.size:
+        scales.logarithmic(ax, "x", speed)
+        scales.logarithmic(ax, "y", values)
+        ends = np.array([speed.min(), speed.max()])
+        guide = np.nanmax(values) * (ends / ends[0]) ** -0.2 * 1.08
+        ax.plot(ends, guide, label="_guide", linestyle="-", **style.GUIDE)
+    return figure
+
+
+@record.figure(
+    "Restitution against velocity",
+    "Coefficient of restitution, the sphere's rebound velocity over its impact velocity, "
+    "against the impact velocity.",
+    partial(_on_velocities, _RESTITUTION),
+    partial(_velocity_sentences, _RESTITUTION),
+)
+def restitution_velocity(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw with an axis that holds zero and one."""
+    figure, ax = _against_velocity(runs, _RESTITUTION, labels.response(_RESTITUTION))
+    if ax.lines:
+        scales.fit(ax, "x", runs["velocity"].values)
+        scales.linear(ax, "y")
+        ax.set_ylim(min(0.0, ax.get_ylim()[0]), max(1.0, ax.get_ylim()[1]))
+    return figure
+
+
+def _law_variables(runs: xr.Dataset) -> list[str]:
+    """Return what a figure of contact laws can show: histories, then responses."""
+    histories = [_FORCE] if _FORCE in runs and _INDENTATION in runs else []
+    return histories + [name for name in (_RESTITUTION, _DENT) if name in runs]
+
+
+def _has_laws(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether a grid has at least three contact laws and three velocities."""
+    few = [dim for dim in ("contact", "velocity") if runs.sizes.get(dim, 0) < _FEWEST]
+    return not is_sample(runs) and not few and bool(_law_variables(runs))
+
+
+def _plan_laws(runs: xr.Dataset) -> Plan:
+    """Plan a curve for every law."""
+    laws = runs.sizes["contact"]
+    return plan(runs, "status", along=["velocity"], prefer=["contact"], most=laws)
+
+
+def _law_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    names, velocity = _law_variables(runs), runs["velocity"]
+    at = labels.value(velocity, velocity.size // 2)
+    beyond = bool(((runs["status"] & _OUTSIDE) != 0).any())
+    return [
+        f"Force against indentation at {at}, while in contact." if _FORCE in names else "",
+        "Permanent indentations of zero or below are not shown." if _DENT in names else "",
+        "Open markers: beyond the range of the law." if beyond else "",
+        _plan_laws(runs).note(runs),
+        access.missing_note(runs, names),
+    ]
+
+
+@record.figure("Contact laws side by side", "", _has_laws, _law_sentences)
+def contact_laws(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a panel of histories and one per response, with a colour per law."""
+    selected, names = _plan_laws(runs), _law_variables(runs)
+    figure, axes = style.panels(len(names), columns=max(len(names), 2), height=62)
+    for ax, name in zip(axes, names, strict=True):
+        if name == _FORCE:
+            _law_forces(ax, runs, selected)
+        else:
+            _law_responses(ax, runs, name, selected)
+    selected.legend(figure)
+    return figure
+
+
+def _law_forces(ax: Axes, runs: xr.Dataset, selected: Plan) -> None:
+    """Draw force against indentation at the middle velocity."""
+    force, depth = display(runs[_FORCE]), display(runs[_INDENTATION])
+    valid, middle = usable(runs, _FORCE), {"velocity": runs.sizes["velocity"] // 2}
+    for curve in selected.curves:
+        where = selected.held | curve.where | middle
+        values = valid.isel(where).values
+        touching = values > 0
+        x = depth(runs[_INDENTATION].isel(where).values[touching])
+        curves.add(ax, x, force(values[touching]), curve, markers=False)
+    ax.set_xlabel(labels.axis("indentation", depth.symbol))
+    ax.set_ylabel(labels.axis("contact force", force.symbol))
+    if ax.lines:
+        scales.linear(ax, "xy")
+        ax.set(xlim=(0.0, None), ylim=(0.0, None))
+    else:
+        responses_grid.empty(ax, "no finite values")
+
+
+def _law_responses(ax: Axes, runs: xr.Dataset, name: str, selected: Plan) -> None:
+    """Draw a response against the velocity, with open markers beyond the range of a law."""
+    values, label = responses_grid.shown(runs, name)
+    speed = runs["velocity"].values
+    for curve in selected.curves:
+        where = selected.held | curve.where
+        y = values.isel(where).values
+        if curves.add(ax, speed, y, curve):
+            outside = (runs["status"].isel(where).values & _OUTSIDE) != 0
+            hollow = {"linestyle": "", "markerfacecolor": "white", "label": "_open"}
+            look = curves.look(curve, markers=True) | hollow
+            ax.plot(speed[outside], y[outside], **look)
+    ax.set(xlabel=labels.axis("velocity", "m/s"), ylabel=label)
+    if not ax.lines:
+        responses_grid.empty(ax, "no finite values")
+        return
+    scales.fit(ax, "x", speed)
+    # dents span decades, and those of zero (Hertz) or below (some laws, just beyond yield) do not
+    # matter beside the others
+    (scales.logarithmic if name == _DENT else scales.fit)(ax, "y", scales.drawn(ax, "y"))
+
+
+def _along(runs: xr.Dataset) -> str | None:
+    """Return the first physical parameter with enough values to draw a curve."""
+    found = (name for name in physical(runs) if runs.sizes.get(name, 0) >= _FEWEST)
+    return next(found, None)
+
+
+def _has_effects(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether a physical parameter of a grid has at least three values."""
+    return not is_sample(runs) and _along(runs) is not None and bool(responses(runs))
+
+
+def _plan_effects(runs: xr.Dataset) -> Plan:
+    others = [name for name in physical(runs) if name != _along(runs)]
+    return plan(runs, responses(runs)[0], along=[str(_along(runs))], prefer=others)
+
+
+@record.figure(
+    "Effect of the varied parameters",
+    "",
+    _has_effects,
+    lambda runs, analysis: (
+        f"Responses against the {labels.parameter(str(_along(runs)))}; where curves coincide, the "
+        "first in the legend lies on top.",
+        _plan_effects(runs).note(runs),
+        access.missing_note(runs, responses(runs)),
+    ),
+)
+def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a panel per response: colours by the second parameter, line styles by the third."""
+    along, selected = runs[_along(runs)], _plan_effects(runs)
+    unit = display(along)
+    figure, axes = responses_grid.panels(responses(runs), height=38)
+    for name, ax in axes.items():
+        values, label = responses_grid.shown(runs, name)
+        ax.set_title(label, loc="left")
+        for curve in selected.curves:
+            curves.add(ax, unit(along), values.isel(selected.held | curve.where).values, curve)
+        scales.fit(ax, "x", unit(along))
+        scales.fit(ax, "y", scales.drawn(ax, "y"))
+        if not ax.lines:
+            responses_grid.empty(ax, "no finite values")
+    figure.supxlabel(labels.axis(labels.parameter(str(along.name)), unit.symbol))
+    selected.legend(figure)
+    return figure
+
+
+def _has_shear(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether a grid has three depths or more, each with and without shear."""
+    if is_sample(runs) or not all(name in runs for name in _SHEARED):
+        return False
+    models = runs["beam_model"].values.tolist() if "beam_model" in runs.sizes else []
+    return runs.sizes.get("beam_depth", 0) >= _FEWEST and {_WITHOUT, _WITH} <= set(models)
+
+
+def _plan_shear(runs: xr.Dataset) -> Plan:
+    return plan(runs, _PEAK, along=["beam_depth", "beam_model"])
+
+
+def _shear_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, ...]:
+    found = (_shear_finding(runs, name) for name in _SHEARED)
+    return *found, _plan_shear(runs).note(runs), access.missing_note(runs, _SHEARED)
+
+
+@record.figure(
+    "When shear matters",
+    "Relative change by shear and rotary inertia: a Timoshenko beam over an Euler-Bernoulli "
+    "one, minus one. Below, the same changes against how much shear and "
+    "rotary inertia slow the wave that turns by π during the contact, which goes with depth "
+    "over contact duration: if it decided alone, the curves would coincide. Grey: changes of "
+    f"{labels.number(_THRESHOLD)} %.",
+    _has_shear,
+    _shear_sentences,
+)
+def shear(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a column per response: against depth over span above, against the share below."""
+    selected = _plan_shear(runs)
+    figure, axes = style.panels(4, columns=2, height=55)
+    for at, name in enumerate(_SHEARED):
+        above, below = axes[at], axes[at + 2]
+        for curve in selected.curves:  # joined by depth: two pushes may reverse the share
+            slenderness, share, change = _shear_curve(runs, name, selected.held | curve.where)
+            curves.add(above, slenderness, change, curve)
+            curves.add(below, share, change, curve)
+        for ax in (above, below):
+            ax.set_ylabel(labels.axis(f"change of {labels.response(name)}", "%"))
+            _scale_changes(ax)
+        above.set_xlabel(labels.axis("depth of the beam over its span", ""))
+        below.set_xlabel(labels.axis("slowing of the wave of the contact", "%"))
+    selected.legend(figure)
+    return figure
+
+
+def _shear_curve(runs: xr.Dataset, name: str, where: dict[str, int]) -> tuple[Array, Array, Array]:
+    """Return depth over span, the contact's share (NaN without one) and the change, both in %."""
+    run = runs.isel(where)
+    values, durations = usable(run, name), usable(run, _DURATION).sel(beam_model=_WITHOUT)
+    change = values.sel(beam_model=_WITH) / values.sel(beam_model=_WITHOUT) - 1.0
+    plain = run.sel(beam_model=_WITHOUT)
+    beams = [_beam(plain.isel(beam_depth=at)) for at in range(run.sizes["beam_depth"])]
+    share = [
+        100.0 * impact_share(beam, duration) if duration > 0 else np.nan
+        for beam, duration in zip(beams, durations.values.tolist(), strict=True)
+    ]
+    slenderness = np.array([beam.depth / beam.span for beam in beams])
+    return slenderness, np.array(share), 100 * change.values
+
+
+def _beam(run: xr.Dataset) -> Beam:
+    values = {name: float(run[name]) for name in _BEAM if name in run.coords}
+    return with_values(paper_impact(), Discretisation(), values)[0].beam
+
+
+def _scale_changes(ax: Axes) -> None:
+    """Scale the axes to the curves, then draw the thresholds."""
+    if not ax.lines:
+        responses_grid.empty(ax, "no finite values")
+        return
+    scales.logarithmic(ax, "x", scales.drawn(ax, "x"))
+    drawn = scales.drawn(ax, "y")
+    low, high = min(0.0, np.nanmin(drawn)), max(0.0, np.nanmax(drawn))
+    if np.nanmax(abs(drawn)) > _WIDE:
+        ax.set_yscale("symlog", linthresh=_THRESHOLD)
+        steps = [first * 10.0**power for power in range(4) for first in (1.0, 2.0, 5.0)]
+        ticks = sorted([0.0, *steps, *(-step for step in steps)])
+        scales.at(ax, "y", [tick for tick in ticks if low <= tick <= high])
+    else:
+        scales.linear(ax, "y")
+    ax.set_ylim(1.3 * low, 1.3 * high)  # from no change on
+    for sign in (-1.0, 1.0):
+        if (sign * drawn > 0).any():
+            ax.axhline(sign * _THRESHOLD, label="_guide", linestyle=(0, (4, 2)), **style.GUIDE)
+
+
+def _shear_finding(runs: xr.Dataset, name: str) -> str:
+    """Return a sentence on the drawn curves: their change, where it matters, and the share."""
+    selected = _plan_shear(runs)
+    found = [_shear_curve(runs, name, selected.held | curve.where) for curve in selected.curves]
+    slenderness, share, change = (np.concatenate(part) for part in zip(*found, strict=True))
+    known = np.isfinite(change + share)
+    if not known.any():
+        return ""
+    matters = known & (abs(change) >= _THRESHOLD)
+    deep = f" (depth over span {labels.span(slenderness[matters], 2)})" if matters.any() else ""
+    return (
+        f"The {labels.response(name)} changes by {labels.span(change[known], 2)} %, by "
+        f"{labels.number(_THRESHOLD)} % or more in {matters.sum()} of {known.sum()} "
+        f"impacts{deep}, while the slowing goes from {labels.span(share[known], 2)} %."
+    )

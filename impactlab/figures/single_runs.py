@@ -1,0 +1,344 @@
+"""Figures of single runs: histories of force and displacement, and profiles of plastic strain."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from impactlab.figures import access, curves, labels, record, scales, style
+from impactlab.figures.access import design_dims, usable
+from impactlab.figures.curves import Choice, Plan, plan
+from impactlab.figures.labels import Display, display
+
+_FORCE, _INDENTATION = "contact_force", "indentation"
+_TIME = "time since first touch"
+_COLUMNS = 4
+"""Largest number of force histories side by side."""
+_WIDE = 3
+"""Columns up to which a panel's title has room on one line."""
+_DISPLACEMENTS = {
+    "sphere_displacement": "sphere",
+    "midspan_deflection": "beam at mid-span",
+    "indentation": "indentation",
+}
+_STRAIN = "equivalent_plastic_strain"
+_LOWEST = 1e-3
+"""Smallest strain on an axis, in %."""
+_PAPER_LIMIT = 0.2
+"""The plastic strain that the paper compares with, in %."""
+
+
+def _has_force(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    return _FORCE in runs
+
+
+def _force_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
+    return curves.note(runs, _FORCE), access.missing_note(runs, [_FORCE])
+
+
+@record.figure(
+    "Contact force during the first contact",
+    "Contact force from first touch to the end of the longest first contact.",
+    _has_force,
+    _force_sentences,
+)
+def first_contact(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a curve per run, up to the end of the longest first contact."""
+    force, time = display(runs[_FORCE]), display(runs["time"])
+    figure, axes = curves.draw(
+        runs,
+        _FORCE,
+        lambda run: (time(run["time"]), force(run[_FORCE])),
+        labels.axis(_TIME, time.symbol),
+        labels.axis("contact force", force.symbol),
+    )
+    end = 0.0
+    for line in (line for ax in axes for line in ax.lines):
+        x, y = (np.asarray(values, dtype=float) for values in line.get_data())
+        outside = np.flatnonzero(y[1:] <= 0)
+        end = max(end, float(x[outside[0] + 1 if outside.size else -1]))
+    for ax in axes:
+        scales.linear(ax, "xy")
+        ax.set(xlim=(0.0, 1.05 * end or None), ylim=(0.0, None))
+    return figure
+
+
+@record.figure(
+    "Contact force against time",
+    "Contact force from first touch to the end of the last contact; each panel has a scale of "
+    "force of its own, and a peak after a gap is a sub-impact.",
+    _has_force,
+    _force_sentences,
+)
+def force_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a panel per run, as sub-impacts would hide each other; a row or more per velocity."""
+    selected, force = curves.chosen(runs, _FORCE), usable(runs, _FORCE)
+    time, unit = display(runs["time"]), display(runs[_FORCE])
+    laws = len(selected.panels)
+    columns = math.ceil(laws / math.ceil(laws / _COLUMNS))
+    height = 32.0 if laws * len(selected.curves) <= 3 * columns else 21.0
+    figure, panels = _panel_per_run(selected, columns, height)
+    x, end = time(runs["time"]), 0.0
+    for ax, where, curve in panels:
+        scales.linear(ax, "x")
+        scales.linear(ax, "y", ticks=3)
+        y = unit(force.isel(where))
+        if np.isfinite(y).any():
+            look = curves.look(curve) | {"linestyle": "-", "linewidth": 0.9}
+            ax.plot(x, y, label=curve.label or "_only", **look)
+            ax.set_ylim(0.0, None)
+            end = max(end, float(x.max(initial=0.0, where=y > 0)))
+        else:
+            style.remark(ax, "no finite values")
+    figure.supylabel(labels.axis("contact force", unit.symbol))
+    figure.supxlabel(labels.axis(_TIME, time.symbol))
+    panels[0][0].set_xlim(0.0, 1.02 * end or None)
+    return figure
+
+
+def _panel_per_run(
+    selected: Plan, columns: int, height: float
+) -> tuple[Figure, list[tuple[Axes, dict[str, int], Choice]]]:
+    """Return a figure and, for each chosen run, its panel, its place among the runs, its curve."""
+    shown = [(panel, curve) for curve in selected.curves for panel in selected.panels]
+    figure, axes = style.panels(len(shown), columns=columns, height=height, sharex=True)
+    between = ", " if columns <= _WIDE else "\n"
+    panels = []
+    for ax, (panel, curve) in zip(axes, shown, strict=True):
+        texts = labels.sentence(panel.label), curve.label
+        ax.set_title(between.join(filter(None, texts)), loc="left")
+        panels.append((ax, selected.runs(panel, curve), curve))
+    return figure, panels
+
+
+def _has_displacements(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether histories were kept, of no more contact laws than panels fit side by side."""
+    kept = all(name in runs for name in _DISPLACEMENTS)
+    return kept and len(curves.chosen(runs, "sphere_displacement").panels) <= _WIDE
+
+
+@record.figure(
+    "Displacements against time",
+    "Displacement of the sphere since first touch, deflection of the beam at mid-span, and "
+    "their difference, the indentation (below zero: the two are apart); downwards is positive.",
+    _has_displacements,
+    lambda runs, analysis: (
+        curves.note(runs, "sphere_displacement"),
+        access.missing_note(runs, list(_DISPLACEMENTS)),
+    ),
+)
+def displacement_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a panel per run, in a column per contact law."""
+    selected = curves.chosen(runs, "sphere_displacement")
+    laws = len(selected.panels)
+    columns = laws if laws > 1 else min(len(selected.curves), 2)
+    figure, panels = _panel_per_run(selected, columns, height=45)
+    time, unit = display(runs["time"]), display(runs["midspan_deflection"])
+    x = time(runs["time"])
+    for ax, where, _ in panels:
+        scales.linear(ax, "xy")
+        for at, (name, label) in enumerate(_DISPLACEMENTS.items()):
+            y = unit(usable(runs, name).isel(where))
+            if np.isfinite(y).any():
+                ax.plot(x, y, label=label, color=style.COLOURS[at], linestyle=style.LINES[at])
+        if ax.lines:
+            ax.set_xlim(0.0, float(x[-1]))
+            ax.axhline(0.0, label="_guide", linestyle="-", **style.GUIDE)
+        else:
+            style.remark(ax, "no finite values")
+    figure.supylabel(labels.axis("displacement", unit.symbol))
+    figure.supxlabel(labels.axis(_TIME, time.symbol))
+    style.legend(figure, order=list(_DISPLACEMENTS.values()))
+    return figure
+
+
+def _has_loops(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    return _FORCE in runs and _INDENTATION in runs
+
+
+@record.figure(
+    "Contact force against indentation",
+    "Contact force against indentation while in contact; each sub-impact is a loop of its "
+    "own, and the area inside is the energy dissipated in the contact.",
+    _has_loops,
+    _force_sentences,
+)
+def force_indentation(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a curve per run, broken where sphere and beam are apart."""
+    force, depth = display(runs[_FORCE]), display(runs[_INDENTATION])
+    figure, axes = curves.draw(
+        runs,
+        _FORCE,
+        lambda run: _loop(run, depth, force),
+        labels.axis("indentation", depth.symbol),
+        labels.axis("contact force", force.symbol),
+    )
+    for ax in axes:
+        scales.linear(ax, "xy")
+        ax.set(xlim=(0.0, None), ylim=(0.0, None))
+    return figure
+
+
+def _loop(
+    run: xr.Dataset, depth: Display, force: Display
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return indentation and force of one run in display units, NaN where the two are apart.
+
+    In contact counts one sample to either side, so that loops reach the axis.
+    """
+    values = run[_FORCE].values
+    inside = values > 0
+    before, after = np.roll(inside, -1), np.roll(inside, 1)
+    before[-1] = after[0] = False
+    touching = inside | before | after
+    return depth(run[_INDENTATION].where(touching)), force(np.where(touching, values, np.nan))
+
+
+def _several_laws(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    """Return whether histories were kept of several contact laws at several velocities."""
+    kept = _has_loops(runs, analysis)
+    return kept and all(runs[_FORCE].sizes.get(dim, 0) > 1 for dim in ("contact", "velocity"))
+
+
+def _plan_by_law(runs: xr.Dataset) -> Plan:
+    return plan(runs, _FORCE, panel="velocity", prefer=["contact"])
+
+
+@record.figure(
+    "Contact force against indentation under each contact law",
+    "Contact force against indentation while in contact, each panel on scales of its own; the "
+    "area inside a loop is the energy dissipated in the contact.",
+    _several_laws,
+    lambda runs, analysis: (_plan_by_law(runs).note(runs), access.missing_note(runs, [_FORCE])),
+)
+def force_indentation_by_law(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a curve per contact law, broken where sphere and beam are apart."""
+    selected, valid = _plan_by_law(runs), runs.assign({_FORCE: usable(runs, _FORCE)})
+    force, depth = display(runs[_FORCE]), display(runs[_INDENTATION])
+    count = len(selected.panels)
+    figure, axes = style.panels(count, columns=min(count, 2), height=58)
+    for ax, panel in zip(axes, selected.panels, strict=True):
+        ax.set_title(f"At {panel.label}", loc="left")
+        for curve in selected.curves:
+            run = valid.isel(selected.runs(panel, curve))
+            curves.add(ax, *_loop(run, depth, force), curve, markers=False)
+        scales.linear(ax, "xy")
+        if ax.lines:
+            ax.set(xlim=(0.0, None), ylim=(0.0, None))
+        else:
+            style.remark(ax, "no finite values")
+    figure.supxlabel(labels.axis("indentation", depth.symbol))
+    figure.supylabel(labels.axis("contact force", force.symbol))
+    selected.legend(figure)
+    return figure
+
+
+def _has_profiles(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
+    return _STRAIN in runs
+
+
+def _largest(runs: xr.Dataset) -> xr.DataArray:
+    """Return the largest PEEQ of each run."""
+    strain = usable(runs, _STRAIN)
+    return strain.max([dim for dim in strain.dims if dim not in design_dims(runs, strain.dims)])
+
+
+def _plastic(runs: xr.Dataset) -> xr.Dataset:
+    """Return the runs at the velocities with a plastic strain in some run; all if none has."""
+    if "velocity" not in runs[_STRAIN].dims:
+        return runs
+    some = _largest(runs) > 0
+    kept = some.any([dim for dim in some.dims if dim != "velocity"])
+    return runs.isel(velocity=kept.values.nonzero()[0]) if bool(kept.any()) else runs
+
+
+def _elastic(runs: xr.Dataset) -> str:
+    """Return a sentence on the velocities at which no run with a result has a plastic strain."""
+    largest = _largest(runs)
+    if "velocity" not in largest.dims:
+        return "" if bool((largest > 0).any()) else "No fibre yields in these runs."
+    rest = [dim for dim in largest.dims if dim != "velocity"]
+    none = (~(largest > 0)).all(rest) & largest.notnull().any(rest)
+    if not bool(none.any()):
+        return ""
+    where = none.values.nonzero()[0].tolist()
+    return f"No fibre yields at {labels.setting(runs['velocity'], where)}."
+
+
+def _strain_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
+    shown = curves.note(_plastic(runs), _STRAIN)
+    return shown, _elastic(runs), access.missing_note(runs, [_STRAIN])
+
+
+@record.figure(
+    "Equivalent plastic strain along the beam",
+    "Equivalent plastic strain (PEEQ) along the beam at the end of the run, the largest over "
+    "the depth at each place. Dotted: one beam depth from the impact; dashed: the paper's "
+    f"{_PAPER_LIMIT} %.",
+    _has_profiles,
+    _strain_sentences,
+)
+def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a curve per run; zeros, which a logarithmic axis cannot show, leave a gap."""
+    kept = _plastic(runs)
+    strain, place = display(kept[_STRAIN]), display(kept["x"])
+
+    def line(run: xr.Dataset) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        largest = run[_STRAIN].max("z").dropna("x")
+        return place(largest["x"]), strain(largest.where(largest > 0))
+
+    along = labels.axis("distance from the left support", place.symbol)
+    figure, axes = curves.draw(kept, _STRAIN, line, along, labels.axis("PEEQ", "%"))
+    for ax in axes:
+        values = scales.drawn(ax, "y")
+        scales.linear(ax, "x")
+        if np.isfinite(values).any():
+            top = 2 * max(float(np.nanmax(values)), _PAPER_LIMIT)
+            scales.logarithmic(ax, "y", [_LOWEST, top])
+            ax.set_ylim(_LOWEST, top)
+        elif ax.lines:
+            style.remark(ax, "no plastic strain")
+        if not kept["beam_depth"].ndim and not kept["beam_span"].ndim:
+            middle, depth = float(kept["beam_span"]) / 2, float(kept["beam_depth"])
+            for mark in (middle - depth, middle + depth):
+                ax.axvline(place.scale * mark, linestyle=":", label="_guide", **style.GUIDE)
+        ax.axhline(_PAPER_LIMIT, linestyle="--", label="_guide", **style.GUIDE)
+    return figure
+
+
+@record.figure(
+    "Equivalent plastic strain over the depth",
+    "Equivalent plastic strain (PEEQ) over the depth in the section that it is largest in, at "
+    "the end of the run; a marker is an integration point; "
+    "zeros have no place on the logarithmic axis.",
+    _has_profiles,
+    _strain_sentences,
+)
+def plastic_strain_depth(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a curve per run, the depth downwards as in the beam."""
+    kept = _plastic(runs)
+    strain, depth = display(kept[_STRAIN]), display(kept["z"])
+
+    def line(run: xr.Dataset) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        section = run[_STRAIN].isel(x=int(np.argmax(run[_STRAIN].max("z").fillna(-1.0).values)))
+        return scales.positive(strain(section)), depth(section["z"])
+
+    across = labels.axis("PEEQ", strain.symbol)
+    down = labels.axis("distance below the axis", depth.symbol)
+    figure, axes = curves.draw(kept, _STRAIN, line, across, down, markers=True)
+    for ax in axes:
+        values = scales.drawn(ax, "x")
+        if np.isfinite(values).any():
+            limits = _LOWEST, 2.0 * float(np.nanmax(values))
+            scales.logarithmic(ax, "x", limits)
+            ax.set_xlim(limits)
+        elif ax.lines:
+            style.remark(ax, "no plastic strain")
+        scales.linear(ax, "y")
+    axes[0].set_ylim(*sorted(axes[0].get_ylim(), reverse=True))
+    return figure
