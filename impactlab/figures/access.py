@@ -57,7 +57,8 @@ def physical(runs: xr.Dataset) -> list[str]:
     return [
         name
         for name in varied(runs)
-        if runs[name].dtype.kind in "if"  # parameters of functions are physical
+        if runs[name].dtype.kind in "if"
+        # parameters of functions, which are not in the table, are physical
         and (name not in PARAMETERS or PARAMETERS[name].path[0] == "impact")
     ]
 
@@ -97,9 +98,7 @@ def failed(runs: xr.Dataset) -> xr.DataArray:
 
 def causes(runs: xr.Dataset, mask: xr.DataArray) -> Counter[str]:
     """Return the number of the marked runs per reason; mask: bool on the design dimensions."""
-    if "status" not in runs:
-        return Counter({UNEXPLAINED: int(mask.sum())}) if bool(mask.any()) else Counter()
-    status, chosen = xr.broadcast(runs["status"], mask)
+    status, chosen = xr.broadcast(runs.get("status", xr.zeros_like(mask, dtype=int)), mask)
     bits, counts = np.unique(status.values[chosen.values], return_counts=True)
     found: Counter[str] = Counter()
     for bit, number in zip(bits.tolist(), counts.tolist(), strict=True):

@@ -10,7 +10,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
@@ -32,6 +31,17 @@ _CAPTION = (
     "numerical uncertainty. Grey: second order. A verdict is the worst over the whole grid, also "
     "over what is not drawn."
 )
+_BESIDE: dict[str, Any] = {
+    "loc": "lower left",
+    "bbox_to_anchor": (1.0, 0.0),
+    "borderaxespad": 0.0,
+    "fontsize": 6,
+    "handlelength": 1.0,
+    "handletextpad": 0.4,
+    "labelspacing": 0.2,
+    "borderpad": 0.1,
+}
+"""Legend of the orders, to the right of a panel."""
 _DASHED: dict[str, Any] = {"linestyle": (0, (2, 1.5)), "linewidth": 0.6}
 _POINTS_TOLERANCE = 1.0
 """Error that the analysis asks for, in %."""
@@ -82,18 +92,6 @@ class Refined:
 _NODES = Refined("nodes", "nodes", ("velocity", "points"))
 _TIME_STEP = Refined("time_step", "courant", ("scheme", "nodes", "velocity"))
 _COST = Refined("nodes", "nodes", ("scheme", "courant", "velocity"), most=6)
-
-
-@dataclass(frozen=True)
-class Trend:
-    """An error that follows scale h^order; uncertainty: of the finest value; observed: the order.
-
-    NaN where there is none.
-    """
-
-    order: float
-    uncertainty: float
-    observed: bool
 
 
 @record.figure("Convergence in nodes", _CAPTION, _NODES.applies, _NODES.sentences)
@@ -174,12 +172,13 @@ def _draw(
         orders = []
         for curve, errors in _above_round_off(difference, selected):
             curves.add(ax, spacing, errors, curve)
-            line, trend = ax.lines[-1], _trend(analysis, axis, name, selected.held | curve.where)
-            _draw_trend(ax, spacing, errors, trend, line)
-            if np.isfinite(trend.order):
-                orders.append((line, trend))
+            where = selected.held | curve.where
+            order, uncertainty, text = _trend(analysis, axis, name, where)
+            if np.isfinite(order):
+                orders.append((ax.lines[-1], text))
+            _draw_trend(ax, spacing, errors, order, uncertainty)
         if orders:
-            _write_orders(ax, orders)
+            ax.legend(*zip(*orders, strict=True), **_BESIDE)
         _finish(ax, spacing, difference, axis.dim)
     figure.supxlabel(label)
     figure.supylabel("Relative difference (–)")
@@ -221,50 +220,37 @@ def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray | None:
     return analysis[variable].sel(response=name, drop=True)
 
 
-def _trend(analysis: xr.Dataset, axis: Refined, name: str, where: dict[str, int]) -> Trend:
-    """Return the trend of one curve by the analysis."""
+def _trend(
+    analysis: xr.Dataset, axis: Refined, name: str, where: dict[str, int]
+) -> tuple[float, float, str]:
+    """Return the order of one curve by the analysis, the uncertainty of its finest value, a label.
+
+    NaN where there is none. Brackets mark an order that is assumed, not observed.
+    """
 
     def read(key: str) -> float:
         found = _of(analysis, f"{axis.name}_{key}", name)
         return float("nan") if found is None else float(found.isel(where))
 
-    if np.isfinite(read("extrapolated")):
-        return Trend(read("observed_order"), read("uncertainty"), True)
-    return Trend(read("fit_order"), read("uncertainty"), read("fit_expansion") == 0)
+    richardson = bool(np.isfinite(read("extrapolated")))
+    order = read("observed_order" if richardson else "fit_order")
+    observed = richardson or read("fit_expansion") == 0
+    return order, read("uncertainty"), f"p = {order:.2f}" if observed else f"[p = {order:g}]"
 
 
-def _draw_trend(ax: Axes, spacing: Array, errors: Array, trend: Trend, line: Line2D) -> None:
+def _draw_trend(ax: Axes, spacing: Array, errors: Array, order: float, uncertainty: float) -> None:
     """Draw the order through the errors of the three finest values, and the bar of the finest."""
-    near, colour = np.argsort(spacing)[:_FEWEST], line.get_color()
-    scale = np.log(errors[near]) - trend.order * np.log(spacing[near])
+    near, colour = np.argsort(spacing)[:_FEWEST], ax.lines[-1].get_color()
+    scale = np.log(errors[near]) - order * np.log(spacing[near])
     if np.isfinite(scale).any():
         ends = np.array([spacing.min(), spacing.max()])
-        power = np.exp(np.nanmedian(scale)) * ends**trend.order
+        power = np.exp(np.nanmedian(scale)) * ends**order
         ax.plot(ends, power, color=colour, label="_order", **_DASHED)
-    if np.isfinite(trend.uncertainty) and trend.uncertainty > responses_grid.ROUND_OFF:
+    if np.isfinite(uncertainty) and uncertainty > responses_grid.ROUND_OFF:
         at, low = spacing[near[0]], errors[near[0]]
-        bar = [low if np.isfinite(low) else trend.uncertainty, trend.uncertainty]
+        bar = [low if np.isfinite(low) else uncertainty, uncertainty]
         ax.plot([at, at], bar, color=colour, linewidth=0.8, label="_bar")
-        ax.plot(at, trend.uncertainty, color=colour, marker="_", markersize=6, label="_bar")
-
-
-def _write_orders(ax: Axes, orders: list[tuple[Line2D, Trend]]) -> None:
-    """Write the order of each curve beside its marker, to the right of the panel."""
-    ax.legend(
-        [line for line, _ in orders],
-        [
-            f"p = {trend.order:.2f}" if trend.observed else f"[p = {trend.order:g}]"
-            for _, trend in orders
-        ],
-        loc="lower left",
-        bbox_to_anchor=(1.0, 0.0),
-        borderaxespad=0.0,
-        fontsize=6,
-        handlelength=1.0,
-        handletextpad=0.4,
-        labelspacing=0.2,
-        borderpad=0.1,
-    )
+        ax.plot(at, uncertainty, color=colour, marker="_", markersize=6, label="_bar")
 
 
 def _finish(ax: Axes, spacing: Array, difference: xr.DataArray, dim: str) -> None:
@@ -285,13 +271,9 @@ def _finish(ax: Axes, spacing: Array, difference: xr.DataArray, dim: str) -> Non
 
 
 def _points_names(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    return [name for name in analysed(runs, analysis) if "points" in runs[name].dims]
-
-
-def _has_points(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the analysis has errors in points, for responses of these runs."""
-    given = "points_error" in analysis and "points" in runs.dims
-    return given and bool(_points_names(runs, analysis))
+    """Return the responses whose errors in points the analysis has."""
+    given = analysed(runs, analysis, "points_error")
+    return [name for name in given if "points" in runs[name].dims]
 
 
 def _plan_points(runs: xr.Dataset, analysis: xr.Dataset) -> Plan:
@@ -304,7 +286,7 @@ def _plan_points(runs: xr.Dataset, analysis: xr.Dataset) -> Plan:
     "Difference to the value with the most integration points over the depth (which is left "
     f"out, being its own reference), relative to it. Grey: {_POINTS_TOLERANCE:g} %. A verdict "
     "is the worst over the whole grid, also over what is not drawn.",
-    _has_points,
+    lambda runs, analysis: bool(_points_names(runs, analysis)),
     lambda runs, analysis: (
         _plan_points(runs, analysis).note(runs),
         access.missing_note(runs, _points_names(runs, analysis)),

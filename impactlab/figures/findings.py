@@ -27,9 +27,6 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "passed": {"marker": "o", "color": style.COLOURS[0], "alpha": 0.7},
     "failed": {"marker": "X", "color": style.COLOURS[1], "markersize": 6.0},
 }
-_COLUMNS = 2
-_HEIGHT = 58.0
-"""Height of a panel, mm."""
 _FEW = 25
 """Number of points up to which a curve has markers."""
 _TITLE, _LABEL = 46, 32
@@ -135,7 +132,7 @@ def curves_caption(outcome: Outcome) -> str:
 def plot_curves(outcome: Outcome) -> Figure:
     """Draw the check's panels in two columns, with one legend where it is the same in all."""
     panels = [panel for panel in outcome.finding.panels if panel.curves]
-    figure, axes = style.panels(len(panels), columns=_COLUMNS, height=_HEIGHT)
+    figure, axes = style.panels(len(panels), columns=2, height=58.0)
     looks = [_looks(panel) for panel in panels]
     for ax, panel, look in zip(axes, panels, looks, strict=True):
         _draw_panel(ax, panel, look)

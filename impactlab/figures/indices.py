@@ -112,7 +112,7 @@ def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None
 def _undefined(ax: Axes, analysis: xr.Dataset, response: str, measure: str) -> None:
     """Say in the panel why a response has no indices, or that they need care."""
     if bool(np.isfinite(analysis[measure].sel(response=response)).any()):
-        responses_grid.warn(ax, analysis, _VERDICT, response)
+        responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
         return
     found = access.verdict(analysis, _VERDICT, response)
     style.remark(ax, f"undefined:\n{found.words if found else 'no reason is given'}")
@@ -136,8 +136,7 @@ def index_convergence(measure: Measure) -> Figure:
 
     def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
         """Return whether the analysis has the index from two sizes of the sample or more."""
-        given = variable in analysis and analysis.sizes[_SAMPLES] > 1
-        return given and bool(analysed(runs, analysis))
+        return bool(analysed(runs, analysis, variable)) and analysis.sizes[_SAMPLES] > 1
 
     def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
         what = (
@@ -161,7 +160,7 @@ def index_convergence(measure: Measure) -> Figure:
             low, high = ax.get_ylim()
             ax.set_ylim(max(low, _ENDS[0]), min(high, _ENDS[1]))
             scales.linear(ax, "y")
-            responses_grid.warn(ax, analysis, _VERDICT, name)
+            responses_grid.write_verdict(ax, analysis, _VERDICT, name, sound=False)
         figure.supxlabel("Base samples (–)")
         figure.supylabel("Share of the variance (–)")
         style.legend(figure)
@@ -186,17 +185,13 @@ def _lines(ax: Axes, analysis: xr.Dataset, variable: str, response: str) -> None
         style.remark(ax, "no finite values")
 
 
-def _has_pairs(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the analysis has second-order indices of at least two parameters."""
-    given = _PAIRS in analysis and analysis.sizes["parameter"] > 1
-    return given and bool(analysed(runs, analysis))
-
-
 @record.figure(
     "Sobol indices of second order",
     "Share of the variance, in %, that two parameters bring together; columns are "
     "numbered as the rows.",
-    _has_pairs,
+    lambda runs, analysis: (
+        bool(analysed(runs, analysis, _PAIRS)) and analysis.sizes["parameter"] > 1
+    ),
     lambda runs, analysis: (
         f"Grey: zero lies within the {access.confidence(analysis)} interval.",
         _missing(runs, analysis),
@@ -207,7 +202,10 @@ def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     shown, listed = analysed(runs, analysis), parameters(analysis)
     figure, axes = responses_grid.panels(shown, 12 + 4.6 * len(listed), beneath=14)
     values = {name: 100 * pairs(analysis[_PAIRS].sel(response=name)) for name in shown}
-    significant = {n: np.abs(values[n]) > 100 * _margins(analysis, n) for n in shown}
+    # without an interval nothing is significant
+    interval = analysis.get(f"{_PAIRS}_interval", xr.full_like(analysis[_PAIRS], np.inf))
+    margins = {name: 100 * pairs(interval.sel(response=name)) for name in shown}
+    significant = {name: np.abs(values[name]) > margins[name] for name in shown}
     # no weaker than _WEAK, to keep noise pale
     tops = [np.max(values[n], initial=_WEAK, where=significant[n]) for n in shown]
     colours = Normalize(0.0, max(map(float, tops)))
@@ -231,15 +229,6 @@ def pairs(index: xr.DataArray) -> NDArray[np.float64]:
     square = index.transpose("parameter", "other_parameter").values
     both = np.where(np.isfinite(square), square, square.T)
     return np.where(np.triu(np.ones_like(both, dtype=bool), 1), both, np.nan)
-
-
-def _margins(analysis: xr.Dataset, name: str) -> NDArray[np.float64]:
-    """Return the half-widths of the intervals, infinite where none is given."""
-    interval = analysis.get(f"{_PAIRS}_interval")
-    if interval is None:
-        return np.full((analysis.sizes["parameter"],) * 2, np.inf)
-    found = pairs(interval.sel(response=name))
-    return np.where(np.isfinite(found), found, np.inf)
 
 
 def _map(
@@ -272,17 +261,11 @@ def _number(ax: Axes, listed: list[str], *, named: bool) -> None:
         spine.set_visible(False)
 
 
-def _has_effects(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the analysis has the mean magnitudes and the spread of elementary effects."""
-    given = all(name in analysis for name in ("morris_mu_star", "morris_sigma"))
-    return given and bool(analysed(runs, analysis))
-
-
 @record.figure(
     MORRIS.title,
     f"{MORRIS.meaning} Above σ = µ* an effect changes its size or sign with the others or "
     "along the range; below σ = 0.1 µ* it is nearly linear and additive.",
-    _has_effects,
+    lambda runs, analysis: bool(analysed(runs, analysis, "morris_mu_star", "morris_sigma")),
     lambda runs, analysis: (
         f"Lines: {access.confidence(analysis)} intervals of µ*.",
         _missing(runs, analysis),
@@ -313,7 +296,7 @@ def _plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> N
                 elinewidth=0.8,
                 **(style.distinct(at) | {"linestyle": ""}),
             )
-    responses_grid.warn(ax, analysis, _VERDICT, response)
+    responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
         return

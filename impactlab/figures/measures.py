@@ -148,9 +148,13 @@ def ranking(family: Family) -> Measure:
     return family.measures[1] if family is SOBOL else family.measures[0]
 
 
-def analysed(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    """Return the responses of the runs that are in the sensitivity analysis."""
-    return [name for name in responses(runs) if known(analysis, name)]
+def analysed(runs: xr.Dataset, analysis: xr.Dataset, *needed: str) -> list[str]:
+    """Return the responses of the runs that are in the analysis; none if it lacks what is needed.
+
+    needed: variables of the analysis.
+    """
+    given = all(name in analysis for name in needed)
+    return [name for name in responses(runs) if given and known(analysis, name)]
 
 
 def parameters(analysis: xr.Dataset) -> list[str]:

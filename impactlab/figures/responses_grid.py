@@ -39,15 +39,17 @@ def shown(runs: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
     return values * unit.scale, labels.axis(labels.response(name), unit.symbol)
 
 
-def write_verdict(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> None:
-    """Write the response's verdict under the panel's title, bold where it is a warning."""
+def write_verdict(
+    ax: Axes, analysis: xr.Dataset, variable: str, name: str, *, sound: bool = True
+) -> None:
+    """Write the response's verdict under the panel's title, bold where it is a warning.
+
+    sound: also where it is no warning.
+    """
     found = access.verdict(analysis, variable, name)
-    if found is None:
+    if found is None or (found.sound and not sound):
         return
-    title = labels.sentence(labels.response(name))
-    ax.set_title(title, loc="left", pad=12)
-    weight = "normal" if found.sound else "bold"
-    colour = style.MUTED if found.sound else style.COLOURS[1]
+    ax.set_title(labels.sentence(labels.response(name)), loc="left", pad=12)
     ax.annotate(
         found.words,
         (0.0, 1.0),
@@ -55,16 +57,9 @@ def write_verdict(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> N
         xycoords="axes fraction",
         textcoords="offset points",
         fontsize=7,
-        fontweight=weight,
-        color=colour,
+        fontweight="normal" if found.sound else "bold",
+        color=style.MUTED if found.sound else style.COLOURS[1],
     )
-
-
-def warn(ax: Axes, analysis: xr.Dataset, variable: str, name: str) -> None:
-    """Write the response's verdict under the panel's title, where it is a warning."""
-    found = access.verdict(analysis, variable, name)
-    if found and not found.sound:
-        write_verdict(ax, analysis, variable, name)
 
 
 def empty(ax: Axes, text: str) -> None:

@@ -38,8 +38,6 @@ _BINS, _FEWEST = 20, 30
 """Largest number of bins of the mean, and smallest number of runs in a bin."""
 _MOST = 400
 """Largest number of points in a panel of surrogates; more hide each other."""
-_TELLING = 3
-"""Parameters in the map of failures."""
 _DRAWN = {"good": 2000, "failed": 1000}
 """Largest numbers of runs in the map."""
 _LOOKS: dict[str, dict[str, Any]] = {
@@ -178,11 +176,6 @@ def conditional_mean(x: Array, y: Array) -> tuple[Array, Array]:
     return means[0], means[1]
 
 
-def _validated(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the analysis has tested surrogates of these runs' responses."""
-    return "surrogate_held_out" in analysis and bool(analysed(runs, analysis))
-
-
 def _validation_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
     tests = analysis.sizes["held_out"]
     shown = f", {_MOST} of them shown" if tests > _MOST else ""
@@ -194,7 +187,12 @@ def _validation_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, 
     return what, access.missing_note(runs, analysed(runs, analysis))
 
 
-@record.figure("Surrogates against the solver", "", _validated, _validation_sentences)
+@record.figure(
+    "Surrogates against the solver",
+    "",
+    lambda runs, analysis: bool(analysed(runs, analysis, "surrogate_held_out")),
+    _validation_sentences,
+)
 def surrogate_validation(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, in the same unit on both axes."""
     figure, axes = responses_grid.panels(analysed(runs, analysis), height=46)
@@ -322,7 +320,7 @@ def _distances(runs: xr.Dataset) -> dict[str, float]:
         test = scipy.stats.ks_2samp(values[failed], values[~failed], method="asymp")
         found[name] = float(test.statistic)
     ranked = sorted(found, key=lambda name: -found[name])
-    return {name: found[name] for name in ranked[:_TELLING]}
+    return {name: found[name] for name in ranked[:3]}
 
 
 def _some_failed(runs: xr.Dataset, analysis: xr.Dataset) -> bool:

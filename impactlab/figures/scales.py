@@ -71,10 +71,10 @@ def drawn(axes: Axes, which: Which) -> NDArray[np.float64]:
     return np.concatenate([np.empty(0), *along])
 
 
-def apart(values: ArrayLike, share: float = 0.18) -> list[float]:
-    """Return the values at least a share of the logarithmic axis apart, from the largest on."""
+def apart(values: ArrayLike) -> list[float]:
+    """Return the values that have room on a logarithmic axis, from the largest on."""
     ordered = np.sort(np.ravel(np.asarray(values, dtype=float)))[::-1]
-    least = share * np.log(ordered[0] / ordered[-1])
+    least = 0.18 * np.log(ordered[0] / ordered[-1])
     kept: list[float] = []
     for value in ordered.tolist():
         if not kept or np.log(kept[-1] / value) >= least:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -121,22 +120,6 @@ def parts_study() -> tuple[xr.Dataset, xr.Dataset]:
     return witnesses.taken_apart()
 
 
-@pytest.fixture(scope="module")
-def laid_out() -> dict[Any, MplFigure]:
-    """Figures by case: each is drawn once for all tests that look at it."""
-    return {}
-
-
-@pytest.fixture
-def drawn(request: pytest.FixtureRequest, laid_out: dict[Any, MplFigure]) -> MplFigure:
-    """The figure of a case, laid out."""
-    study, name = case = request.param
-    if case not in laid_out:
-        datasets = _study(request, study, name)
-        laid_out[case] = _laid_out(_figure(name, datasets[0]).plot(*datasets))
-    return laid_out[case]
-
-
 def _study(request: pytest.FixtureRequest, study: str, name: str) -> tuple[xr.Dataset, xr.Dataset]:
     """Return the study of a case, or the first to which a figure without a study applies."""
     for each in [study] if study else EXPECTED:
@@ -156,9 +139,6 @@ def _laid_out(figure: MplFigure) -> MplFigure:
     return figure
 
 
-every_figure = pytest.mark.parametrize("drawn", CASES, indirect=True, ids=lambda case: case[1])
-
-
 @pytest.mark.parametrize("study", EXPECTED)
 def test_figures_apply_to_the_studies_they_are_for(
     study: str, request: pytest.FixtureRequest
@@ -172,14 +152,20 @@ def test_nothing_applies_to_empty_datasets() -> None:
     assert applicable(empty, empty) == {}
 
 
-@every_figure
-def test_paper_width(drawn: MplFigure) -> None:
+@pytest.mark.parametrize(("study", "name"), CASES)
+def test_a_figure_is_legible_at_paper_width(
+    study: str, name: str, request: pytest.FixtureRequest
+) -> None:
+    datasets = _study(request, study, name)
+    drawn = _laid_out(_figure(name, datasets[0]).plot(*datasets))
     width = drawn.get_figwidth() / style.MILLIMETRE
     assert min(abs(width - style.SINGLE), abs(width - style.DOUBLE)) < 1e-6
+    _assert_labels_carry_units(drawn)
+    _assert_text_is_large_enough_and_apart(drawn)
+    _assert_panels_and_legends_are_on_the_page_and_apart(drawn)
 
 
-@every_figure
-def test_labels_carry_units(drawn: MplFigure) -> None:
+def _assert_labels_carry_units(drawn: MplFigure) -> None:
     """An axis with ticks has its unit in its label, its title, or a label for all panels."""
     bars = [axes.get_xlabel() for axes in drawn.axes if hasattr(axes, "_colorbar")]
     shared = [drawn.get_supxlabel(), drawn.get_supylabel(), *bars]
@@ -190,8 +176,7 @@ def test_labels_carry_units(drawn: MplFigure) -> None:
             assert not label or label[0].isupper()
 
 
-@every_figure
-def test_text_is_legible_and_does_not_overlap(drawn: MplFigure) -> None:
+def _assert_text_is_large_enough_and_apart(drawn: MplFigure) -> None:
     for axes in drawn.axes:
         for ticks in (axes.get_xticklabels(which="both"), axes.get_yticklabels(which="both")):
             shown = [label for label in ticks if label.get_text() and _inside(axes, label)]
@@ -199,29 +184,22 @@ def test_text_is_legible_and_does_not_overlap(drawn: MplFigure) -> None:
                 (label.get_window_extent() for label in shown), key=lambda b: (b.x0, b.y0)
             )
             assert all(not left.overlaps(right) for left, right in pairwise(boxes))
-        assert all(text.get_fontsize() >= 6 for text in _texts(axes))
+        ticks = (*axes.get_xticklabels(), *axes.get_yticklabels())
+        for text in (*axes.texts, axes.xaxis.label, axes.yaxis.label, *ticks):
+            assert text.get_fontsize() >= 6
 
 
-@every_figure
-def test_all_is_inside_the_page_and_the_legend_clear_of_the_data(drawn: MplFigure) -> None:
-    page = drawn.bbox
-    for axes in drawn.axes:
-        box = axes.get_tightbbox()
+def _assert_panels_and_legends_are_on_the_page_and_apart(drawn: MplFigure) -> None:
+    page, boxes = drawn.bbox, [axes.get_tightbbox() for axes in drawn.axes]
+    shared = [label.get_window_extent() for label in drawn.texts]
+    for at, box in enumerate(boxes):
         assert box is not None
         assert box.x0 >= page.x0 - 1
         assert box.x1 <= page.x1 + 1
+        assert not any(box.padded(-1).overlaps(other.padded(-1)) for other in boxes[at + 1 :])
         for legend in drawn.legends:
-            assert not legend.get_window_extent().overlaps(box)
-    for legend in drawn.legends:
-        for label in drawn.texts:  # the labels that all panels share
-            assert not legend.get_window_extent().overlaps(label.get_window_extent())
-
-
-@every_figure
-def test_panels_do_not_overlap(drawn: MplFigure) -> None:
-    boxes = [axes.get_tightbbox().padded(-1) for axes in drawn.axes]  # type: ignore[union-attr]
-    for at, box in enumerate(boxes):
-        assert not any(box.overlaps(other) for other in boxes[at + 1 :])
+            for other in (box, *shared):
+                assert not legend.get_window_extent().overlaps(other)
 
 
 @pytest.mark.parametrize(
@@ -254,9 +232,3 @@ def _inside(axes: Axes, label: Text) -> bool:
     box = axes.get_window_extent().padded(1)
     x, y = label.get_window_extent().get_points().mean(axis=0)
     return bool(box.x0 <= x <= box.x1 or box.y0 <= y <= box.y1) and label.get_visible()
-
-
-def _texts(axes: Axes) -> Iterator[Text]:
-    yield from axes.texts
-    yield from (axes.xaxis.label, axes.yaxis.label)
-    yield from (*axes.get_xticklabels(), *axes.get_yticklabels())

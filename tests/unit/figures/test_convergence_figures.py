@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawings import curve, panel, words
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from impactlab.figures.catalogue import CATALOGUE
 
@@ -21,22 +21,9 @@ def study(discretisation_study: Study) -> Study:
     return runs[kept], analysis
 
 
-def _panel(figure: Figure, title: str) -> Axes:
-    return next(axes for axes in figure.axes if axes.get_title(loc="left") == title)
-
-
-def _curve(axes: Axes, label: str) -> tuple[np.ndarray, np.ndarray]:
-    line = next(line for line in axes.lines if line.get_label() == label)
-    return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
-
-
-def _words(axes: Axes) -> list[str]:
-    return [text.get_text() for text in axes.texts]
-
-
 def test_differences_are_to_the_extrapolated_value(study: Study) -> None:
     runs, analysis = study
-    spacing, difference = _curve(_panel(NODES.plot(*study), "Peak force"), "15 m/s, 17 points")
+    spacing, difference = curve(panel(NODES.plot(*study), "Peak force"), "15 m/s, 17 points")
     where = {"velocity": 15.0, "points": 17, "rule": "lobatto"}
     limit = float(analysis["nodes_extrapolated"].sel(response="peak_force", **where))
     values = runs["peak_force"].sel(where)
@@ -48,7 +35,7 @@ def test_differences_are_to_the_extrapolated_value(study: Study) -> None:
 
 def test_without_an_extrapolated_value_the_finest_is_the_reference(study: Study) -> None:
     runs, _ = study
-    _, difference = _curve(_panel(NODES.plot(*study), "Peak plastic strain"), "15 m/s, 17 points")
+    _, difference = curve(panel(NODES.plot(*study), "Peak plastic strain"), "15 m/s, 17 points")
     values = runs["peak_plastic_strain"].sel(velocity=15.0, points=17, rule="lobatto").values
     np.testing.assert_allclose(difference[:2], abs(values[:2] - values[2]) / values[2])
     assert np.isnan(difference[2])
@@ -65,7 +52,7 @@ def test_the_legend_keeps_the_order_of_the_curves(study: Study) -> None:
 
 
 def test_elastic_runs_have_no_curve_of_plastic_strain(study: Study) -> None:
-    axes = _panel(NODES.plot(*study), "Peak plastic strain")
+    axes = panel(NODES.plot(*study), "Peak plastic strain")
     labels = {str(line.get_label()) for line in axes.lines}
     curves = {label for label in labels if not label.startswith("_")}
     assert curves == {"15 m/s, 3 points", "15 m/s, 17 points"}
@@ -74,48 +61,48 @@ def test_elastic_runs_have_no_curve_of_plastic_strain(study: Study) -> None:
 def test_verdicts_are_written_and_warnings_stand_out(study: Study) -> None:
     figure = NODES.plot(*study)
     good, bad = (
-        _panel(figure, "Peak force").texts[0],
-        _panel(figure, "Peak plastic strain").texts[0],
+        panel(figure, "Peak force").texts[0],
+        panel(figure, "Peak plastic strain").texts[0],
     )
     assert (good.get_text(), good.get_fontweight()) == ("converged", "normal")
     assert (bad.get_text(), bad.get_fontweight()) == ("divergent", "bold")
-    strain = _panel(POINTS.plot(*study), "Peak plastic strain")
-    assert _words(strain) == ["not yet converged"]
+    strain = panel(POINTS.plot(*study), "Peak plastic strain")
+    assert words(strain) == ["not yet converged"]
 
 
 def test_the_guide_has_second_order(study: Study) -> None:
-    x, y = _curve(_panel(NODES.plot(*study), "Peak force"), "_guide")
+    x, y = curve(panel(NODES.plot(*study), "Peak force"), "_guide")
     assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(2.0)
 
 
 def test_what_does_not_change_says_so(study: Study) -> None:
     contacts = "Number of contacts"
-    assert "same on every grid" in _words(_panel(NODES.plot(*study), contacts))
-    assert "same for every number" in _words(_panel(POINTS.plot(*study), contacts))
+    assert "same on every grid" in words(panel(NODES.plot(*study), contacts))
+    assert "same for every number" in words(panel(POINTS.plot(*study), contacts))
 
 
 def test_one_value_is_not_the_same_everywhere(study: Study, failing: Any) -> None:
     runs, analysis = study
     broken = failing(runs, {"nodes": slice(1, None)})
-    assert "too few values" in _words(_panel(NODES.plot(broken, analysis), "Number of contacts"))
+    assert "too few values" in words(panel(NODES.plot(broken, analysis), "Number of contacts"))
     analysis["points_error"].loc[{"points": [3, 5, 9]}] = np.nan
-    assert "too few values" in _words(_panel(POINTS.plot(runs, analysis), "Number of contacts"))
+    assert "too few values" in words(panel(POINTS.plot(runs, analysis), "Number of contacts"))
 
 
 def test_round_off_is_no_difference(study: Study) -> None:
     runs, analysis = study
     analysis["points_error"].loc[{"response": "number_of_contacts", "points": 3}] = 1e-12
-    axes = _panel(POINTS.plot(runs, analysis), "Number of contacts")
-    assert "same for every number" in _words(axes)
+    axes = panel(POINTS.plot(runs, analysis), "Number of contacts")
+    assert "same for every number" in words(axes)
 
 
 def test_failed_runs_leave_gaps_in_both(study: Study, failing: Any) -> None:
     runs, analysis = study
     broken = failing(runs, {"nodes": 1, "points": 3, "rule": 0, "velocity": 1})
-    _, difference = _curve(_panel(NODES.plot(broken, analysis), "Peak force"), "15 m/s, 17 points")
+    _, difference = curve(panel(NODES.plot(broken, analysis), "Peak force"), "15 m/s, 17 points")
     assert np.isnan(difference).tolist() == [False, True, False]
     analysis["points_error"].loc[{"response": "peak_force", "points": 5}] = np.nan
-    _, error = _curve(_panel(POINTS.plot(runs, analysis), "Peak force"), "Gauss-Legendre, 15 m/s")
+    _, error = curve(panel(POINTS.plot(runs, analysis), "Peak force"), "Gauss-Legendre, 15 m/s")
     assert np.isnan(error).tolist() == [False, True, False, True]
     assert "1 of 72 runs is missing" in NODES.caption(broken, analysis)
 
@@ -123,8 +110,8 @@ def test_failed_runs_leave_gaps_in_both(study: Study, failing: Any) -> None:
 def test_points_errors_are_percent_and_an_infinite_one_is_left_out(study: Study) -> None:
     runs, analysis = study
     analysis["points_error"].loc[{"response": "peak_force", "points": 3}] = np.inf
-    points, error = _curve(
-        _panel(POINTS.plot(runs, analysis), "Peak force"), "uniform layers, 0.99 m/s"
+    points, error = curve(
+        panel(POINTS.plot(runs, analysis), "Peak force"), "uniform layers, 0.99 m/s"
     )
     stored = analysis["points_error"].sel(
         response="peak_force", rule="layers", velocity=0.99, nodes=401, points=5
@@ -148,11 +135,11 @@ def _orders(axes: Axes) -> list[str]:
 def test_the_order_is_drawn_through_the_errors_and_written(study: Study) -> None:
     runs, analysis = study
     analysis["nodes_observed_order"][:] = 1.5
-    axes = _panel(NODES.plot(runs, analysis), "Peak force")
+    axes = panel(NODES.plot(runs, analysis), "Peak force")
     assert _orders(axes) == ["p = 1.50"] * 4
-    x, y = _curve(axes, "_order")
+    x, y = curve(axes, "_order")
     assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(1.5)
-    _, errors = _curve(axes, "0.99 m/s, 3 points")
+    _, errors = curve(axes, "0.99 m/s, 3 points")
     assert errors.min() < y.min() < y.max() < 3 * errors.max()
 
 
@@ -166,15 +153,15 @@ def test_an_assumed_order_is_in_brackets(study: Study) -> None:
         nodes_fit_extrapolated=runs["peak_force"].isel(nodes=-1) * 0.999 + 0 * finest,
         nodes_fit_expansion=0 * finest + 2,
     )
-    axes = _panel(NODES.plot(runs, fitted), "Peak force")
+    axes = panel(NODES.plot(runs, fitted), "Peak force")
     assert _orders(axes) == ["p = 2.00"] * 2 + ["[p = 2]"] * 2
 
 
 def test_the_bar_reaches_up_to_the_uncertainty(study: Study) -> None:
     runs, analysis = study
-    axes = _panel(NODES.plot(runs, analysis), "Peak force")
-    spacing, errors = _curve(axes, "0.99 m/s, 3 points")
-    x, y = _curve(axes, "_bar")
+    axes = panel(NODES.plot(runs, analysis), "Peak force")
+    spacing, errors = curve(axes, "0.99 m/s, 3 points")
+    x, y = curve(axes, "_bar")
     assert x.tolist() == [spacing.min()] * 2
     np.testing.assert_allclose(y, [errors[-1], 2e-3])
 
@@ -182,15 +169,15 @@ def test_the_bar_reaches_up_to_the_uncertainty(study: Study) -> None:
 def test_an_infinite_uncertainty_has_no_bar(study: Study) -> None:
     runs, analysis = study
     analysis["nodes_uncertainty"][:] = np.inf
-    lines = _panel(NODES.plot(runs, analysis), "Peak force").lines
+    lines = panel(NODES.plot(runs, analysis), "Peak force").lines
     assert "_bar" not in {line.get_label() for line in lines}
 
 
 def test_time_steps_at_fixed_nodes(time_step_study: Study) -> None:
     runs, analysis = time_step_study
     runs = runs[["peak_force", "status"]]
-    axes = _panel(TIME.plot(runs, analysis), "Peak force")
-    courant, errors = _curve(axes, "semi-implicit, 201 nodes")
+    axes = panel(TIME.plot(runs, analysis), "Peak force")
+    courant, errors = curve(axes, "semi-implicit, 201 nodes")
     assert courant.tolist() == [0.2, 0.4, 0.8]
     np.testing.assert_allclose(errors, 1e-3 * courant**2)
     assert not NODES.applies(runs, analysis)
@@ -200,8 +187,8 @@ def test_time_steps_at_fixed_nodes(time_step_study: Study) -> None:
 def test_cost_against_error(study: Study) -> None:
     """Leapfrog's steps shrink with the spacing squared: work grows with the cube of the nodes."""
     runs, analysis = study
-    axes = _panel(COST.plot(runs, analysis), "Peak force")
-    work, errors = _curve(axes, "0.99 m/s, 17 points")
+    axes = panel(COST.plot(runs, analysis), "Peak force")
+    work, errors = curve(axes, "0.99 m/s, 17 points")
     np.testing.assert_allclose(work[1:] / work[:-1], 8.0, rtol=0.05)
-    _, same = _curve(_panel(NODES.plot(runs, analysis), "Peak force"), "0.99 m/s, 17 points")
+    _, same = curve(panel(NODES.plot(runs, analysis), "Peak force"), "0.99 m/s, 17 points")
     np.testing.assert_allclose(errors, same)

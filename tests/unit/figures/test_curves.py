@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.axes import Axes
+from drawings import panel, points
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -69,30 +69,21 @@ def test_a_panel_dimension_gets_no_curves(velocity_study: Study, panel: str | No
     assert ("contact" in chosen.shown or "contact" in chosen.held) is (panel is None)
 
 
-Study = Any
 NONE = xr.Dataset()
 
 
 def _curves(figure: Figure, title: str = "") -> dict[str, Line2D]:
     """Curves of the panel whose title starts so, by label; guides are none."""
-    axes = _panel(figure, title)
+    axes = panel(figure, title)
     return {str(line.get_label()): line for line in axes.lines if line.get_label() != "_guide"}
-
-
-def _panel(figure: Figure, title: str) -> Axes:
-    return next(axes for axes in figure.axes if axes.get_title(loc="left").startswith(title))
-
-
-def _xy(line: Line2D) -> tuple[np.ndarray, np.ndarray]:
-    return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
 
 
 def test_force_history_shows_the_stored_numbers(velocity_study: Study) -> None:
     runs, _ = velocity_study
     stored = runs["contact_force"].sel(velocity=20.0, contact="stronge")
-    for name, panel in {"force_history": "Stronge, 20 m/s", "first_contact": "Stronge"}.items():
-        curves = _curves(CATALOGUE[name].plot(runs, NONE), panel)
-        time, force = _xy(curves["20 m/s"])
+    for name, title in {"force_history": "Stronge, 20 m/s", "first_contact": "Stronge"}.items():
+        curves = _curves(CATALOGUE[name].plot(runs, NONE), title)
+        time, force = points(curves["20 m/s"])
         np.testing.assert_allclose(time, 1e3 * runs["time"])
         np.testing.assert_allclose(force, 1e-3 * stored)
 
@@ -115,7 +106,7 @@ def test_force_history_has_a_panel_a_run_and_leaves_failed_ones_empty(
     figure = CATALOGUE["force_history"].plot(broken, NONE)
     assert len(figure.axes) == 12
     assert [len(axes.lines) for axes in figure.axes] == 11 * [1] + [0]
-    failed = _panel(figure, "Stronge, 20 m/s")
+    failed = panel(figure, "Stronge, 20 m/s")
     assert [text.get_text() for text in failed.texts] == ["no finite values"]
     assert "No curve for 20 m/s, Stronge." in CATALOGUE["force_history"].caption(broken, NONE)
 
@@ -130,7 +121,7 @@ def test_force_history_ends_with_the_last_contact(velocity_study: Study) -> None
 def test_force_indentation_breaks_between_contacts(velocity_study: Study) -> None:
     runs, _ = velocity_study
     curve = _curves(CATALOGUE["force_indentation"].plot(runs, NONE), "Hertz")["20 m/s"]
-    depth, force = _xy(curve)
+    depth, force = points(curve)
     loops = np.diff(np.isfinite(force).astype(int), prepend=0, append=0)
     assert (loops == 1).sum() == 2
     np.testing.assert_array_equal(np.isnan(depth), np.isnan(force))
@@ -142,7 +133,7 @@ def test_contact_duration_leaves_a_gap(velocity_study: Study, failing: Any) -> N
     broken = failing(runs, {"velocity": 3, "contact": 0})
     curves = _curves(CATALOGUE["contact_duration"].plot(broken, NONE))
     assert set(curves) == {"Hertz", "Stronge"}
-    speed, duration = _xy(curves["Hertz"])
+    speed, duration = points(curves["Hertz"])
     np.testing.assert_array_equal(speed, runs["velocity"])
     assert np.flatnonzero(np.isnan(duration)).tolist() == [3]
     assert duration[0] == pytest.approx(1e3 * float(runs["contact_duration"][0, 0]))
@@ -150,8 +141,8 @@ def test_contact_duration_leaves_a_gap(velocity_study: Study, failing: Any) -> N
 
 def test_the_guide_of_contact_duration_has_hertzs_slope(velocity_study: Study) -> None:
     runs, _ = velocity_study
-    lines = _panel(CATALOGUE["contact_duration"].plot(runs, NONE), "").lines
-    (guide,) = (_xy(line) for line in lines if line.get_label() == "_guide")
+    lines = panel(CATALOGUE["contact_duration"].plot(runs, NONE), "").lines
+    (guide,) = (points(line) for line in lines if line.get_label() == "_guide")
     x, y = guide
     assert x.tolist() == [0.25, 20.0]
     assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(-0.2)
@@ -166,7 +157,7 @@ def test_restitution_is_the_stored_one_and_leaves_a_gap(
     figure = CATALOGUE["restitution_velocity"].plot(broken, NONE)
     curves = _curves(figure)
     assert set(curves) == {"Hertz", "Stronge"}
-    speed, restitution = _xy(curves["Hertz"])
+    speed, restitution = points(curves["Hertz"])
     np.testing.assert_array_equal(speed, runs["velocity"])
     stored = runs["restitution"].sel(contact="hertz").values
     np.testing.assert_allclose(np.delete(restitution, 3), np.delete(stored, 3))
@@ -178,7 +169,7 @@ def test_restitution_is_the_stored_one_and_leaves_a_gap(
 def test_plastic_strain_is_the_largest_over_the_depth_in_percent(velocity_study: Study) -> None:
     runs, _ = velocity_study
     figure = CATALOGUE["plastic_strain"].plot(runs, NONE)
-    x, strain = _xy(_curves(figure, "Hertz")["15 m/s"])
+    x, strain = points(_curves(figure, "Hertz")["15 m/s"])
     stored = runs["equivalent_plastic_strain"].sel(velocity=15.0, contact="hertz").max("z")
     np.testing.assert_allclose(x, 1e3 * runs["x"])
     np.testing.assert_allclose(np.nan_to_num(strain), 100 * stored)
@@ -187,7 +178,7 @@ def test_plastic_strain_is_the_largest_over_the_depth_in_percent(velocity_study:
 def test_plastic_strain_marks_one_depth_and_the_papers_limit(velocity_study: Study) -> None:
     runs, _ = velocity_study
     axes = CATALOGUE["plastic_strain"].plot(runs, NONE).axes[0]
-    guides = [_xy(line) for line in axes.lines if line.get_label() == "_guide"]
+    guides = [points(line) for line in axes.lines if line.get_label() == "_guide"]
     marks = sorted(float(x[0]) for x, y in guides if x[0] == x[1])
     assert marks == pytest.approx([390.0 - 27.8, 390.0 + 27.8])
     assert [float(y[0]) for x, y in guides if y[0] == y[1]] == [0.2]
@@ -214,7 +205,7 @@ def test_an_elastic_study_says_so(velocity_study: Study) -> None:
 def test_plastic_strain_over_the_depth_is_in_the_worst_section(velocity_study: Study) -> None:
     runs, _ = velocity_study
     figure = CATALOGUE["plastic_strain_depth"].plot(runs, NONE)
-    strain, depth = _xy(_curves(figure, "Hertz")["20 m/s"])
+    strain, depth = points(_curves(figure, "Hertz")["20 m/s"])
     stored = runs["equivalent_plastic_strain"].sel(velocity=20.0, contact="hertz")
     assert np.nanmax(strain) == pytest.approx(100 * float(stored.max()))
     np.testing.assert_allclose(depth, 1e3 * runs["z"])
@@ -240,7 +231,7 @@ def test_histories_without_a_velocity_dimension(velocity_study: Study) -> None:
 def test_parameter_effects_draws_every_response(material_study: Study) -> None:
     runs, _ = material_study
     figure = CATALOGUE["parameter_effects"].plot(runs, NONE)
-    stress, force = _xy(_curves(figure, "Peak force (kN)")["1000 MPa, 210 GPa"])
+    stress, force = points(_curves(figure, "Peak force (kN)")["1000 MPa, 210 GPa"])
     stored = runs["peak_force"].sel(beam_isotropic_hardening_modulus=1e9, beam_youngs_modulus=210e9)
     np.testing.assert_allclose(stress, 1e-6 * runs["beam_yield_stress"])
     np.testing.assert_allclose(force, 1e-3 * stored)
@@ -251,7 +242,7 @@ def test_parameter_effects_leaves_gaps(material_study: Study, failing: Any) -> N
     runs, _ = material_study
     broken = failing(runs, {"beam_youngs_modulus": 0, "beam_yield_stress": 2})
     figure = CATALOGUE["parameter_effects"].plot(broken, NONE)
-    _, force = _xy(_curves(figure, "Peak force")["0 MPa, 200 GPa"])
+    _, force = points(_curves(figure, "Peak force")["0 MPa, 200 GPa"])
     assert np.flatnonzero(np.isnan(force)).tolist() == [2]
     assert "3 of 24 runs are missing" in CATALOGUE["parameter_effects"].caption(broken, NONE)
 

@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 import xarray as xr
+from drawings import curve
 
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.model.impact import paper_impact
@@ -58,22 +59,17 @@ def test_it_needs_three_laws_on_a_grid(laws_study):
     assert not LAWS_FIGURE.applies(runs.isel(velocity=[0]), analysis)
 
 
-def _curve(ax, label):
-    (line,) = (line for line in ax.lines if line.get_label() == label)
-    return np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
-
-
 def test_changes_in_per_cent_against_depth_over_span(shear_study):
     axes = SHEAR_FIGURE.plot(*shear_study).axes
     for ax, change in zip(axes[:2], (-30.0 * DEPTHS, 240.0 * DEPTHS), strict=True):
-        x, y = _curve(ax, "5 m/s")
+        x, y = curve(ax, "5 m/s")
         assert x == pytest.approx(DEPTHS / 0.78)
         assert y == pytest.approx(change)
 
 
 def test_below_the_same_against_the_share_of_the_contact_without_shear(shear_study):
     runs, _ = shear_study
-    x, y = _curve(SHEAR_FIGURE.plot(runs, NONE).axes[2], "0.25 m/s")
+    x, y = curve(SHEAR_FIGURE.plot(runs, NONE).axes[2], "0.25 m/s")
     durations = runs["contact_duration"].sel(velocity=0.25, beam_model="euler_bernoulli").values
     beams = [replace(paper_impact().beam, depth=depth) for depth in DEPTHS.tolist()]
     shares = [impact_share(beam, time) for beam, time in zip(beams, durations, strict=True)]
@@ -91,7 +87,7 @@ def test_the_caption_says_by_the_data_when_shear_matters(shear_study):
 
 def test_a_failed_run_leaves_a_gap_and_is_counted(shear_study, failing):
     runs = failing(shear_study[0], {"velocity": 1, "beam_depth": 2, "beam_model": 0})
-    _, y = _curve(SHEAR_FIGURE.plot(runs, NONE).axes[0], "5 m/s")
+    _, y = curve(SHEAR_FIGURE.plot(runs, NONE).axes[0], "5 m/s")
     assert np.isnan(y).tolist() == [False, False, True, False]
     assert "in 3 of 7 impacts" in SHEAR_FIGURE.caption(runs, NONE)
     assert "1 of 16 runs is missing" in SHEAR_FIGURE.caption(runs, NONE)

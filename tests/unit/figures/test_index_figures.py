@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
+from drawings import panel, words
 from matplotlib.container import BarContainer
-from matplotlib.figure import Figure
 
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.indices import pairs
@@ -23,17 +22,9 @@ def study(sobol_study: Study) -> Study:
     return runs[["peak_force", "number_of_contacts", "restitution", "status"]], analysis
 
 
-def _panel(figure: Figure, title: str) -> Axes:
-    return next(ax for ax in figure.axes if ax.get_title(loc="left").startswith(title))
-
-
-def _words(axes: Axes) -> list[str]:
-    return [text.get_text() for text in axes.texts]
-
-
 def test_bars_and_intervals_are_the_stored_ones(study: Study) -> None:
     _, analysis = study
-    axes = _panel(CATALOGUE["sobol_indices"].plot(*study), "Peak force")
+    axes = panel(CATALOGUE["sobol_indices"].plot(*study), "Peak force")
     bars = [entry for entry in axes.containers if isinstance(entry, BarContainer)]
     for order, container in zip(("first_order", "total_order"), bars, strict=True):
         stored = analysis.sel(response="peak_force")
@@ -53,20 +44,20 @@ def test_parameters_are_in_plain_words(study: Study) -> None:
 
 @pytest.mark.parametrize("name", ["sobol_indices", "sobol_second_order"])
 def test_undefined_indices_say_why_and_draw_nothing(study: Study, name: str) -> None:
-    axes = _panel(CATALOGUE[name].plot(*study), "Number of contacts")
-    assert _words(axes) == ["undefined:\nconstant"]
+    axes = panel(CATALOGUE[name].plot(*study), "Number of contacts")
+    assert words(axes) == ["undefined:\nconstant"]
 
 
 def test_an_unsound_verdict_is_written_beside_numbers(study: Study) -> None:
     runs, analysis = study
     analysis["sensitivity_verdict"].loc[{"response": "restitution"}] = 2
     figure = CATALOGUE["sobol_indices"].plot(runs, analysis)
-    assert "failed runs" in _words(_panel(figure, "Restitution"))
-    assert _words(_panel(figure, "Peak force")) == []
+    assert "failed runs" in words(panel(figure, "Restitution"))
+    assert words(panel(figure, "Peak force")) == []
 
 
 def test_pairs_are_shown_once_and_insignificant_ones_grey(study: Study) -> None:
-    axes = _panel(CATALOGUE["sobol_second_order"].plot(*study), "Peak force")
+    axes = panel(CATALOGUE["sobol_second_order"].plot(*study), "Peak force")
     colours = {text.get_text(): text.get_color() for text in axes.texts}
     assert len(axes.texts) == 6
     assert colours["7"] in ("black", "white")
@@ -86,16 +77,16 @@ def test_pairs_of_a_symmetric_matrix_and_of_its_upper_half_are_the_same(study: S
 def test_without_intervals_no_pair_is_significant(study: Study) -> None:
     runs, analysis = study
     figure = CATALOGUE["sobol_second_order"].plot(runs, analysis.drop_vars("second_order_interval"))
-    assert {text.get_color() for text in _panel(figure, "Peak force").texts} == {"0.5"}
+    assert {text.get_color() for text in panel(figure, "Peak force").texts} == {"0.5"}
 
 
 def test_histograms_count_every_finite_run(study: Study, failing: Any) -> None:
     runs, analysis = study
     broken = failing(runs, {"run": slice(0, 56)})
     figure = CATALOGUE["response_distributions"].plot(broken, analysis)
-    axes = _panel(figure, "Peak force")
+    axes = panel(figure, "Peak force")
     assert sum(patch.get_height() for patch in axes.containers[0].patches) == 200
-    assert _words(_panel(figure, "Number of contacts")) == ["constant: 2"]
+    assert words(panel(figure, "Number of contacts")) == ["constant: 2"]
     caption = CATALOGUE["response_distributions"].caption(broken, analysis)
     assert "56 of 256 runs are missing" in caption
 
@@ -103,7 +94,7 @@ def test_histograms_count_every_finite_run(study: Study, failing: Any) -> None:
 def test_the_shaded_range_holds_nine_runs_of_ten_about_the_median(study: Study) -> None:
     runs, analysis = study
     figure = CATALOGUE["response_distributions"].plot(runs, analysis)
-    axes = _panel(figure, "Peak force")
+    axes = panel(figure, "Peak force")
     (shaded,) = (patch for patch in axes.patches if patch.get_alpha() is None and patch.zorder == 0)
     box = shaded.get_extents().transformed(axes.transData.inverted())
     (median,) = (np.asarray(line.get_xdata()) for line in axes.lines)
@@ -115,7 +106,7 @@ def test_few_values_get_a_bar_each(study: Study) -> None:
     runs, analysis = study
     runs["number_of_contacts"][:100] = 3.0
     runs["number_of_contacts"][100:110] = 5.0
-    axes = _panel(CATALOGUE["response_distributions"].plot(runs, analysis), "Number of contacts")
+    axes = panel(CATALOGUE["response_distributions"].plot(runs, analysis), "Number of contacts")
     bars = axes.containers[0].patches
     assert [bar.get_height() for bar in bars] == [146, 100, 10]
     assert [bar.get_x() + bar.get_width() / 2 for bar in bars] == [2.0, 3.0, 5.0]
@@ -127,27 +118,27 @@ def test_a_value_that_most_runs_share_is_told_and_does_not_hide_the_rest(study: 
     runs, analysis = study
     runs["restitution"][:192] = 0.0
     figure = CATALOGUE["response_distributions"].plot(runs, analysis)
-    axes = _panel(figure, "Restitution")
+    axes = panel(figure, "Restitution")
     assert sum(bar.get_height() for bar in axes.containers[0].patches) == 64
-    assert _words(axes) == ["75 % of the runs: 0\n(not drawn)"]
+    assert words(axes) == ["75 % of the runs: 0\n(not drawn)"]
     caption = CATALOGUE["response_distributions"].caption(runs, analysis)
     assert "Mostly one value, drawn without it: restitution." in caption
 
 
 def test_points_are_runs_held_out_in_the_panels_unit(study: Study) -> None:
     runs, analysis = study
-    axes = _panel(surrogate_validation.plot(runs, analysis), "Peak force (kN)")
+    axes = panel(surrogate_validation.plot(runs, analysis), "Peak force (kN)")
     x, y = next(line for line in axes.lines if line.get_label() == "runs held out").get_data()
     held_out = analysis["held_out"].values
     np.testing.assert_allclose(x, runs["peak_force"].sel(run=held_out) / 1e3)
     np.testing.assert_allclose(y, analysis["surrogate_held_out"].sel(response="peak_force") / 1e3)
-    assert _words(axes) == ["Q² = 0.9876"]
+    assert words(axes) == ["Q² = 0.9876"]
 
 
 def test_a_run_that_failed_is_no_point(study: Study, failing: Any) -> None:
     runs, analysis = study
     broken = failing(runs, {"run": slice(0, 101)})
-    axes = _panel(surrogate_validation.plot(broken, analysis), "Peak force")
+    axes = panel(surrogate_validation.plot(broken, analysis), "Peak force")
     line = next(line for line in axes.lines if line.get_label() == "runs held out")
     assert len(line.get_data()[0]) == analysis.sizes["held_out"] - 21
     assert "101 of 256 runs are missing" in surrogate_validation.caption(broken, analysis)
@@ -157,5 +148,5 @@ def test_no_surrogate_says_why_and_an_unsound_one_warns(study: Study) -> None:
     runs, analysis = study
     analysis["surrogate_verdict"].loc[{"response": "restitution"}] = 2
     figure = surrogate_validation.plot(runs, analysis)
-    assert _words(_panel(figure, "Number of contacts")) == ["no surrogate:\nconstant"]
-    assert _words(_panel(figure, "Restitution")) == ["Q² = 0.9876\npoor"]
+    assert words(panel(figure, "Number of contacts")) == ["no surrogate:\nconstant"]
+    assert words(panel(figure, "Restitution")) == ["Q² = 0.9876\npoor"]

@@ -9,9 +9,8 @@ import pytest
 import samples
 import scipy.stats
 import xarray as xr
-from matplotlib.axes import Axes
+from drawings import panel
 from matplotlib.container import BarContainer
-from matplotlib.figure import Figure
 
 from impactlab.figures import data, draw
 from impactlab.figures.catalogue import CATALOGUE
@@ -26,10 +25,6 @@ def study() -> Study:
     """Two responses, four parameters, the fastest 40 of 400 runs failed."""
     runs = samples.sample(400, 4, failures=40)[["peak_force", "remote_plastic_strain", "status"]]
     return runs, samples.indices(runs)
-
-
-def _panel(figure: Figure, title: str) -> Axes:
-    return next(ax for ax in figure.axes if ax.get_title(loc="left").startswith(title))
 
 
 def test_the_conditional_mean_of_a_known_law() -> None:
@@ -62,7 +57,7 @@ def test_points_are_a_picture_and_the_file_stays_small(tmp_path: Path) -> None:
 
 
 def test_noise_is_pale_and_the_dummy_a_line(study: Study) -> None:
-    axes = _panel(CATALOGUE["sobol_indices"].plot(*study), "Peak force")
+    axes = panel(CATALOGUE["sobol_indices"].plot(*study), "Peak force")
     for bars in (entry for entry in axes.containers if isinstance(entry, BarContainer)):
         assert [bar.get_alpha() for bar in bars.patches] == [None, None, 0.45, 0.45]
     floors = [line.get_segments()[0][0][0] for line in axes.collections if line.get_linestyle()]
@@ -76,7 +71,7 @@ def test_bars_are_told_by_the_name_of_their_parameter(study: Study) -> None:
 
 
 def test_signed_coefficients_have_the_dummy_on_both_sides(study: Study) -> None:
-    axes = _panel(CATALOGUE["regression_indices"].plot(*study), "Peak force")
+    axes = panel(CATALOGUE["regression_indices"].plot(*study), "Peak force")
     ends = {round(float(s[0][0]), 6) for line in axes.collections for s in line.get_segments()}
     assert {-0.03, 0.03} <= ends
 
@@ -84,7 +79,7 @@ def test_signed_coefficients_have_the_dummy_on_both_sides(study: Study) -> None:
 def test_morris_in_the_unit_of_the_response(study: Study) -> None:
     _, analysis = study
     figure = CATALOGUE["morris_plane"].plot(*study)
-    axes = _panel(figure, "Peak force")
+    axes = panel(figure, "Peak force")
     assert axes.get_xlabel() == "Mean µ* (kN)"
     points = [curve for curve in data.drawn(figure) if curve.panel == "Peak force"]
     stored = analysis.sel(response="peak_force")
@@ -94,7 +89,7 @@ def test_morris_in_the_unit_of_the_response(study: Study) -> None:
 
 def test_convergence_of_the_indices_is_the_stored_one(study: Study) -> None:
     _, analysis = study
-    axes = _panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")
+    axes = panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")
     stored = analysis["total_order_by_samples"].sel(response="peak_force")
     for at, line in enumerate(axes.lines):
         np.testing.assert_allclose(np.asarray(line.get_ydata()), stored.isel(parameter=at))
@@ -103,7 +98,7 @@ def test_convergence_of_the_indices_is_the_stored_one(study: Study) -> None:
 
 def test_the_bands_reach_one_interval_to_either_side(study: Study) -> None:
     _, analysis = study
-    axes = _panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")
+    axes = panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")
     stored = analysis.sel(response="peak_force")
     for at, band in enumerate(axes.collections):
         y, margin = (
