@@ -111,8 +111,8 @@ def _curves(runs: xr.Dataset, shown: dict[str, list[int]], single: dict[str, int
     for ordinals in product(*(range(len(where)) for where in shown.values())):
         where = {dim: shown[dim][i] for dim, i in zip(shown, ordinals, strict=True)}
         label = ", ".join(labels.value(runs[dim], at) for dim, at in where.items())
-        place = (*ordinals, *ordinals[:1], 0, 0) if len(ordinals) < 2 else ordinals
-        chosen.append(Choice(where | single, label, (place[0], place[1])))
+        colour, line = (*ordinals, *ordinals, 0, 0)[:2]
+        chosen.append(Choice(where | single, label, (colour, line)))
     return chosen
 
 

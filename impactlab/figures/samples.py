@@ -278,22 +278,14 @@ def failure_shares(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     return figure
 
 
-def wilson(failed: int, total: int) -> tuple[float, float]:
-    """Return the 95 % interval of a binomial share (Wilson 1927, J. Am. Stat. Assoc. 22, 209)."""
-    share, z = failed / total, 1.959963984540054
-    middle = share + z**2 / (2 * total)
-    half = z * np.sqrt(share * (1 - share) / total + (z / (2 * total)) ** 2)
-    scale = 1 + z**2 / total
-    return max(0.0, (middle - half) / scale), (middle + half) / scale
-
-
 def _shares(ax: Axes, x: Array, failed: NDArray[np.bool_]) -> None:
     edges = np.unique(np.quantile(x, np.linspace(0.0, 1.0, 11)))
     place = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, max(edges.size - 2, 0))
     found = []
     for at in np.unique(place):
         here = place == at
-        low, high = wilson(int(failed[here].sum()), int(here.sum()))
+        test = scipy.stats.binomtest(int(failed[here].sum()), int(here.sum()))
+        low, high = test.proportion_ci(method="wilson")
         share = failed[here].mean()
         found.append((x[here].mean(), 100 * share, 100 * (share - low), 100 * (high - share)))
     middle, share, below, above = np.array(found).T

@@ -20,17 +20,12 @@ def test_an_index_stands_out_of_zero_and_of_the_dummy_with_its_whole_interval() 
     assert _index([np.nan], [0.1]).significant.tolist() == [False]
 
 
-def test_an_index_below_the_numerical_error_does_not_stand() -> None:
-    found = Index(np.array([0.1, 0.1]), np.array([0.01, 0.01]), np.array([0.2, 0.0]), 0.0)
-    assert found.significant.tolist() == [False, True]
-    assert found.numerically_lost.tolist() == [True, False]
-
-
 def test_noise_is_told_from_numerical_error() -> None:
-    found = Index(np.array([0.5, 0.02]), np.array([0.1, 0.03]), np.array([0.6, 0.6]), 0.0)
-    assert found.above_noise.tolist() == [True, False]
-    assert found.numerically_lost.tolist() == [True, False]
-    assert found.significant.tolist() == [False, False]
+    values, margins = np.array([0.1, 0.1, 0.5, 0.02]), np.array([0.01, 0.01, 0.1, 0.03])
+    found = Index(values, margins, np.array([0.2, 0.0, 0.6, 0.6]), 0.0)
+    assert found.above_noise.tolist() == [True, True, True, False]
+    assert found.significant.tolist() == [False, True, False, False]
+    assert found.numerically_lost.tolist() == [True, False, True, False]
 
 
 def test_numerical_error_opens_ranks_too() -> None:

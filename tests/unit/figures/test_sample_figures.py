@@ -15,7 +15,7 @@ from matplotlib.container import BarContainer
 from impactlab.figures import data, draw
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.data import alt
-from impactlab.figures.samples import conditional_mean, scatter, wilson
+from impactlab.figures.samples import conditional_mean, scatter
 
 Study = tuple[xr.Dataset, xr.Dataset]
 
@@ -107,12 +107,6 @@ def test_the_bands_reach_one_interval_to_either_side(study: Study) -> None:
         )
         corners = band.get_paths()[0].vertices[:, 1]
         assert set(np.round(corners, 9)) == set(np.round([*(y - margin), *(y + margin)], 9))
-
-
-@pytest.mark.parametrize(("failed", "total"), [(0, 40), (3, 50), (40, 40), (500, 8192)])
-def test_the_interval_of_a_share_is_scipys(failed: int, total: int) -> None:
-    other = scipy.stats.binomtest(failed, total).proportion_ci(method="wilson")
-    assert wilson(failed, total) == pytest.approx((other.low, other.high), abs=1e-12)
 
 
 def test_the_share_of_failures_rises_where_they_are(study: Study) -> None:
