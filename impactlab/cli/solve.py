@@ -5,16 +5,12 @@ from __future__ import annotations
 import logging
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from impactlab.cli.interrupt import stop_at_once
 from impactlab.cli.options import RunsFile, StudyFile, chosen, given, results_file
-
-if TYPE_CHECKING:
-    from impactlab.study.engine import Engine
-    from impactlab.study.steps import AnyStudy
 
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
 _ALL = os.cpu_count() or 1
@@ -73,6 +69,8 @@ def design(
 
     A discretisation that is `auto` is found first, as by `impactlab recommend`.
     """
+    from impactlab.report.console import print_recommendation
+    from impactlab.study import steps
     from impactlab.study.engine import Engine
     from impactlab.study.netcdf import write_netcdf
     from impactlab.study.sampling.design import design as design_of
@@ -81,18 +79,9 @@ def design(
     declared = read_study(study)
     path = output or results_file(declared.name, "design.nc")
     stop_at_once()
-    write_netcdf(design_of(_resolved(declared, path.parent, Engine(workers=_ALL))), path)
-
-
-def _resolved(study: AnyStudy, folder: Path, engine: Engine) -> AnyStudy:
-    """Return the study with its discretisation, found by pilot runs and printed where `auto`."""
-    from impactlab.report.console import print_recommendation
-    from impactlab.study import steps
-
-    found = steps.find_resolution(study, folder, engine)
-    if found is not None:
-        print_recommendation(found)
-    return steps.apply_resolution(study, found)
+    engine = Engine(workers=_ALL)
+    found = steps.resolved(declared, path.parent, engine, print_recommendation)
+    write_netcdf(design_of(found), path)
 
 
 def run(
@@ -121,7 +110,7 @@ def run(
     Finished batches are kept in results/NAME/shards: an interrupted study resumes there.
     """
     stop_at_once()
-    from impactlab.report.console import print_estimate
+    from impactlab.report.console import print_estimate, print_recommendation
     from impactlab.study import steps
     from impactlab.study.engine import Engine, read_profile
     from impactlab.study.errors import StudyError
@@ -147,7 +136,7 @@ def run(
     if stored is not None:
         steps.solve(stored, path, engine)
     else:
-        study = _resolved(study, path.parent, engine)
+        study = steps.resolved(study, path.parent, engine, print_recommendation)
         steps.solve(design(study), path, engine, file=design_file)
 
 

@@ -23,8 +23,8 @@ from impactlab.study.netcdf import Array
 from impactlab.study.quantities import amount, time
 from impactlab.study.runs import disk_size
 from impactlab.study.sampling.grid import Grid
+from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.sampling.sobol import Sobol
 from impactlab.study.schema.checks import has_solid_runs
 from impactlab.study.schema.plausibility import extremes, implausibilities, key_of
 from impactlab.study.schema.study import FunctionStudy, Study
@@ -102,7 +102,7 @@ def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
         kept = parameters + len(RESPONSES) + 2 + len(HISTORIES) * history + len(PROFILES) * profile
         held = kept if until else max(1, history, profile)
         working = workers * float(model.memory(np.append(cases, end)).max())
-        slow, large = _slow(study, end, runs), _large(study, end, runs)
+        slow, large = _drivers(study, end, runs)
     return Estimate(
         file=str(study.path),
         runs=runs,
@@ -127,35 +127,25 @@ def _model(study: Study) -> Any:
     return SimpleNamespace(table=case_table, work=work, memory=memory)
 
 
-def _slow(study: Study, case: Array, runs: int) -> str:
-    """Return the key whose parameter would save most time at the paper's value."""
+def _drivers(study: Study, case: Array, runs: int) -> list[str]:
+    """Return the keys that drive time and space: the usual values of which would save most."""
     model, impact = _model(study), paper_impact()
     if has_solid_runs(study) and model.is_solid(case).all():
         impact = replace(impact, beam_model=SOLID)
     grid = Discretisation(element_size=_USUAL_SIZE)
     usual = model.table(impact, grid, duration=_USUAL_DURATION, varied={})
-    gains = {"sampling": runs / _USUAL_RUNS}
+    slow = {"sampling": runs / _USUAL_RUNS}
+    large = dict(slow)
     for name in usual.dtype.names:
         changed = case.copy()
         changed[name] = usual[name]
-        gains[name] = float((model.work(case) / model.work(changed))[0])
-    return _key(study, gains)
-
-
-def _large(study: Study, case: Array, runs: int) -> str:
-    """Return the key whose parameter would save most space at its usual value."""
-    gains = {"sampling": runs / _USUAL_RUNS}
+        slow[name] = float((model.work(case) / model.work(changed))[0])
     if study.store.histories:
-        gains["store.samples"] = study.store.samples / _USUAL_SAMPLES
+        large["store.samples"] = study.store.samples / _USUAL_SAMPLES
     for name in ("nodes", "points"):
-        gains[name] = float(case[name][0]) / getattr(Discretisation(), name)
-    return _key(study, gains)
-
-
-def _key(study: Study, gains: Mapping[str, float]) -> str:
-    """Return the dotted key in the study file of the largest gain."""
-    name = max(gains, key=gains.__getitem__)
-    return key_of(name, study.sampling) if name in PARAMETERS else name
+        large[name] = float(case[name][0]) / getattr(Discretisation(), name)
+    names = [max(gains, key=gains.__getitem__) for gains in (slow, large)]
+    return [key_of(name, study.sampling) if name in PARAMETERS else name for name in names]
 
 
 def _cost_sample(study: Study) -> dict[str, Array]:

@@ -180,11 +180,6 @@ def _seen(paths: Iterable[Path]) -> Iterator[os.stat_result]:
 
 _STUDY = "study"
 """File beside the folders of shards that names the study file."""
-NO_STUDY = "its study does not exist"
-SET_ASIDE = "was damaged and set aside"
-UNFINISHED = "is unfinished"
-OTHER_RUNS = "holds no run of the study"
-OTHER_SOLVER = "belongs to another version of the solver, or another output"
 
 
 def note_study(shards_folder: Path, file: Path) -> None:
@@ -213,7 +208,7 @@ def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, st
         work = Work.of(design)
         wanted.setdefault(work.shards(shards_folder).folder, []).append(work.keys)
     found = _removable(shards_folder, wanted)
-    return found if designs else dict.fromkeys(found, NO_STUDY)
+    return found if designs else dict.fromkeys(found, "its study does not exist")
 
 
 def outdated(folder: Path) -> dict[Path, str]:
@@ -233,13 +228,13 @@ def _removable(
     found = {}
     for path in sorted(path for path in shards_folder.glob("*/*") if path.is_file()):
         if path.name.startswith("."):
-            found[path] = UNFINISHED
+            found[path] = "is unfinished"
         elif path.name.endswith(DAMAGED):
-            found[path] = SET_ASIDE
+            found[path] = "was damaged and set aside"
         elif path.parent not in wanted:
-            found[path] = OTHER_SOLVER
+            found[path] = "belongs to another version of the solver, or another output"
         elif (needed := wanted[path.parent]) is not None:
             keys = Shards.keys(path)
             if keys.size and not any(np.isin(keys, each).any() for each in needed):
-                found[path] = OTHER_RUNS
+                found[path] = "holds no run of the study"
     return found

@@ -6,7 +6,7 @@ what it needs: compiler and analysis take seconds to load.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from impactlab.verification.finding import Outcome
 
 AnyStudy = Study | FunctionStudy
+Tell = Callable[[xr.Dataset], None]
 
 
 @dataclass(frozen=True)
@@ -68,26 +69,20 @@ def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = No
     return found
 
 
-def find_resolution(study: AnyStudy, folder: Path, engine: Engine) -> xr.Dataset | None:
-    """Return what pilot runs say of a discretisation that is `auto`; None where it is stated.
+def resolved(study: AnyStudy, folder: Path, engine: Engine, tell: Tell) -> AnyStudy:
+    """Return the study with its discretisation, found by pilot runs where it is `auto`.
 
-    They are solved once, and their evidence is kept in resolution.nc in `folder`.
+    They are solved once; their evidence is kept in resolution.nc in `folder`, and told. Raises
+    StudyError where no discretisation meets the tolerance.
     """
     if isinstance(study, FunctionStudy) or study.auto is None:
-        return None
-    found = _kept(study, folder / RESOLUTION)
-    return recommend(study, folder / RESOLUTION, engine) if found is None else found
-
-
-def apply_resolution(study: AnyStudy, found: xr.Dataset | None) -> AnyStudy:
-    """Return the study with the discretisation that `find_resolution` found.
-
-    Raises StudyError where none meets the tolerance.
-    """
-    if found is None or isinstance(study, FunctionStudy):
         return study
     from impactlab.study.adaptive.recommendation import apply_recommendation
 
+    found = _kept(study, folder / RESOLUTION)
+    if found is None:
+        found = recommend(study, folder / RESOLUTION, engine)
+    tell(found)
     return apply_recommendation(study, found)
 
 
@@ -95,8 +90,10 @@ def resolved_before(study: AnyStudy, folder: Path) -> AnyStudy | None:
     """Return the study with its discretisation; None where pilot runs have still to find it."""
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
+    from impactlab.study.adaptive.recommendation import apply_recommendation
+
     found = _kept(study, folder / RESOLUTION)
-    return None if found is None else apply_resolution(study, found)
+    return None if found is None else apply_recommendation(study, found)
 
 
 def _kept(study: Study, file: Path) -> xr.Dataset | None:

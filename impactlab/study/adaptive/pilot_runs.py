@@ -9,10 +9,9 @@ Hunter and Hunter (2005), Statistics for Experimenters, ch. 6), and the case in 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import product
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -37,53 +36,41 @@ _TAIL = 0.005
 """Probability of either tail of a distribution without end, whose quantiles are its extremes."""
 
 
-class Answered(NamedTuple):
-    """Responses of all cases along an axis of the discretisation.
+def solve_along(
+    study: Study,
+    cases: Cases,
+    folder: Path,
+    engine: Engine,
+    axis: str,
+    levels: Sequence[float],
+    at: Discretisation,
+) -> tuple[xr.DataArray, xr.DataArray]:
+    """Solve the corner cases of a study with these values of nodes, points or courant.
 
-    values: on (response, case, axis), NaN where a run failed, in SI units; without_limit: on
-    (response, case), True where the model itself does not converge along this axis.
+    folder: for the shards. levels: the values; the other two are those of `at`. Returns values on
+    (response, case, axis), NaN where a run failed, in SI units; and on (response, case), True where
+    the model itself does not converge along this axis. Raises OSError when the disk is full or no
+    scheduler answers.
     """
-
-    values: xr.DataArray
-    without_limit: xr.DataArray
-
-
-class PilotRuns:
-    """The corner cases of a study, solved with other discretisations; solved runs are kept."""
-
-    def __init__(self, study: Study, cases: Cases, folder: Path, engine: Engine) -> None:
-        """Take the cases, one value per case and parameter, and the folder for the shards."""
-        self._study, self._cases, self._folder, self._engine = study, cases, folder, engine
-
-    def along(self, axis: str, levels: Sequence[float], at: Discretisation) -> Answered:
-        """Return the answers with these values of nodes, points or courant.
-
-        levels: the values; the other two are those of `at`. Raises OSError when the disk is full or
-        no scheduler answers.
-        """
-        study = replace(self._study, discretisation=at)
-        fixed = flatten(study.impact, study.discretisation) | {"duration": study.duration}
-        count = len(next(iter(self._cases.values())))
-        varied: dict[str, Any] = {
-            name: ("case", np.array(values)) for name, values in self._cases.items()
-        }
-        varied |= {"case": np.arange(count), axis: (axis, np.array(levels))}
-        scalars = {name: ((), value) for name, value in fixed.items() if name not in varied}
-        attrs = {
-            "study": study.name,
-            "varied": [*self._cases, axis],
-            "responses": list(study.responses),
-            "histories": 0,
-            "profiles": 0,
-            "history_samples": study.store.samples,
-        }
-        design = described(xr.Dataset(coords=scalars | varied, attrs=attrs))
-        runs = execute(design, self._folder, self._engine)
-        values = usable(runs).transpose("response", "case", axis)
-        without = without_limit(runs, values, axis, axis)
-        labels = [name for name in values.coords if name not in values.dims]
-        others = [name for name in labels if values[name].dims != ("response",)]
-        return Answered(values.drop_vars(others), without.drop_vars(others, errors="ignore"))
+    fixed = flatten(study.impact, at) | {"duration": study.duration}
+    varied: dict[str, Any] = {name: ("case", np.array(values)) for name, values in cases.items()}
+    varied["case"] = np.arange(len(next(iter(cases.values()))))
+    varied[axis] = axis, np.array(levels)
+    scalars = {name: ((), value) for name, value in fixed.items() if name not in varied}
+    attrs = {
+        "study": study.name,
+        "varied": [*cases, axis],
+        "responses": list(study.responses),
+        "histories": 0,
+        "profiles": 0,
+        "history_samples": study.store.samples,
+    }
+    runs = execute(described(xr.Dataset(coords=scalars | varied, attrs=attrs)), folder, engine)
+    values = usable(runs).transpose("response", "case", axis)
+    without = without_limit(runs, values, axis, axis)
+    labels = [name for name in values.coords if name not in values.dims]
+    others = [name for name in labels if values[name].dims != ("response",)]
+    return values.drop_vars(others), without.drop_vars(others, errors="ignore")
 
 
 def corner_cases(study: Study) -> dict[str, list[Value]]:

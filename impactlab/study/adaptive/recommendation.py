@@ -7,8 +7,9 @@ time step (both at the fewest nodes that suffice by themselves).
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import with_values
 from impactlab.simulate import case_table
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.adaptive.pilot_runs import AXES, PilotRuns, corner_cases
+from impactlab.study.adaptive.pilot_runs import AXES, corner_cases, solve_along
 from impactlab.study.engine import Engine
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.schema.study import Auto, Study
@@ -33,6 +34,8 @@ from impactlab.variables import provenance
 
 Levels = Mapping[str, tuple[float, ...]]
 """Refinement levels of each axis, in order of rising cost."""
+Pilots = Callable[[str, tuple[float, ...], Discretisation], tuple[xr.DataArray, xr.DataArray]]
+"""pilot_runs.solve_along of one study: takes axis, levels and discretisation."""
 FLOOR = 0.1
 """Uncertainties are relative to the value, or to this share of the largest over the cases."""
 _COARSEST, _FINEST = 50, 800
@@ -65,7 +68,7 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
     impact, grid = with_values(study.impact, study.discretisation, study.sampling.fixed)
     study = replace(study, impact=impact, discretisation=grid)
     cases = corner_cases(study)
-    pilots = PilotRuns(study, cases, folder, engine)
+    pilots = partial(solve_along, study, cases, folder, engine)
     with locked(folder):  # over all pilot runs
         found = _evidence(study, pilots, wishes.tolerance, wishes.responses or study.responses)
     attrs: dict[str, Any] = {
@@ -105,7 +108,7 @@ def relative(amount: xr.DataArray, value: xr.DataArray) -> xr.DataArray:
 
 
 def _evidence(
-    study: Study, pilots: PilotRuns, tolerance: float, responses: Collection[str]
+    study: Study, pilots: Pilots, tolerance: float, responses: Collection[str]
 ) -> xr.Dataset:
     own = study.discretisation
     levels = _refinement_levels(own)
@@ -119,14 +122,18 @@ def _evidence(
     found = found.assign(_axis(pilots, "points", levels, middle))
     found = found.assign(_axis(pilots, "courant", levels, middle)).assign(asked=asked)
     found = found.assign(_grid_options(found, study, tolerance))
-    found = found.assign(recommended=_cheapest(found, tolerance))
+    # the first candidate that is fine enough for all requested responses that any is for
+    wanted = asked & found["reached"]
+    fine = ((found["candidate_uncertainty"] <= tolerance) | ~wanted).all("response").values
+    best = int(np.argmax(fine)) if wanted.any() and fine.any() else -1
+    found = found.assign(recommended=best)
     chosen = recommended_grid(found, own)
     if chosen is None:
         difference = xr.full_like(found["nodes_value"].isel(nodes=0, drop=True), np.nan)
     else:
         last = replace(own, points=int(levels["points"][-1]), courant=levels["courant"][-1])
-        ours = pilots.along("nodes", (chosen.nodes,), chosen).values
-        theirs = pilots.along("nodes", levels["nodes"][-1:], last).values
+        ours, _ = pilots("nodes", (chosen.nodes,), chosen)
+        theirs, _ = pilots("nodes", levels["nodes"][-1:], last)
         difference = abs(ours.isel(nodes=0, drop=True) - theirs.isel(nodes=0, drop=True))
     return found.assign(check_difference=difference)
 
@@ -151,16 +158,14 @@ def _refinement_levels(own: Discretisation) -> Levels:
     }
 
 
-def _axis(
-    pilots: PilotRuns, axis: str, levels: Levels, at: Discretisation
-) -> dict[str, xr.DataArray]:
+def _axis(pilots: Pilots, axis: str, levels: Levels, at: Discretisation) -> dict[str, xr.DataArray]:
     """Return the values on all levels of an axis, and their uncertainty, infinite where unknown.
 
     Points and time step are judged by the differences to the costliest level: once fibres yield,
     the error is no power of the points; and changes with the time step at fixed nodes are too small
     (about 1e-6) and too irregular for one.
     """
-    values, without_limit = pilots.along(axis, levels[axis], at)
+    values, without_limit = pilots(axis, levels[axis], at)
     finest_first = values.isel({axis: slice(None, None, -1)})
     spacings = 1.0 / (finest_first["nodes"].values.astype(float) - 1.0) if axis == "nodes" else None
 
@@ -211,19 +216,6 @@ def _cost(study: Study, nodes: float, points: float, courant: float) -> float:
     grid = replace(study.discretisation, nodes=int(nodes), points=int(points), courant=courant)
     steps = float(node_steps(case_table(study.impact, grid, duration=study.duration)[0]))
     return steps * (1.0 + _POINT_COST * points)
-
-
-def _cheapest(found: xr.Dataset, tolerance: float) -> int:
-    """Return the first option that is fine enough for all requested responses that any is for.
-
-    Returns -1 where no option is fine enough for any response.
-    """
-    wanted = found["asked"] & found["reached"]
-    if not bool(wanted.any()):
-        return -1
-    meets = (found["candidate_uncertainty"] <= tolerance) | ~wanted
-    enough = meets.all("response").values
-    return int(np.argmax(enough)) if enough.any() else -1
 
 
 def fits(found: xr.Dataset, study: Study) -> bool:

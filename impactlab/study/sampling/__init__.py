@@ -1,18 +1,15 @@
-"""Sampling methods, one file each with its section of the study file and its draws.
+"""Sampling methods: their sections of the study file, and their draws.
 
-The indices of a method are in the file of the same name in analysis.sensitivity.
+The indices of a method are in the file of its name in analysis.sensitivity.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from impactlab.study.sampling.fast import Fast
 from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.latin import Latin
-from impactlab.study.sampling.morris import Morris
+from impactlab.study.sampling.samples import Fast, Latin, Morris, Sobol
 from impactlab.study.sampling.sections import Sampling
-from impactlab.study.sampling.sobol import Sobol
 from impactlab.study.schema.parameters import Factor
 from impactlab.study.schema.section import Reader, section_by
 
@@ -25,7 +22,7 @@ METHODS: Mapping[str, type[Sampling]] = {
     "pawn": Latin,
     "regression": Latin,
 }
-"""Sections by their method's name in study files: a new one is a file here and a line."""
+"""Sections by their method's name in study files: a new one is a class and a line."""
 
 
 def sampling_reader(factors: Mapping[str, Factor]) -> Reader:

@@ -13,13 +13,14 @@ import xarray as xr
 from impactlab.model.parameters import flatten, with_values
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.sections import Draws, Grouped
-from impactlab.study.sampling.sobol import Sobol
+from impactlab.study.sampling.samples import Sobol
+from impactlab.study.sampling.sections import Grouped
 from impactlab.study.schema.checks import has_solid_runs
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.schema.study import FunctionStudy, Study, StudyBase
 from impactlab.study.solvers import run_count, varied_names
 from impactlab.study.validity import Refusal, refused_alone, refused_run
+from impactlab.types import Floats
 from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
 
@@ -70,7 +71,7 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
     return found if isinstance(study, FunctionStudy) else described(found)
 
 
-def _check_draws(study: Study, drawn: dict[str, Draws]) -> None:
+def _check_draws(study: Study, drawn: dict[str, Floats]) -> None:
     """Raise StudyError where the model refuses a run that was drawn."""
     found = None
     for name, values in drawn.items():

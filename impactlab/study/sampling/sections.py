@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from importlib import import_module
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
-import numpy.typing as npt
 from pydantic import (
     BeforeValidator,
     Field,
@@ -22,8 +22,8 @@ from impactlab.model.parameters import Value
 from impactlab.study.errors import unknown
 from impactlab.study.schema.parameters import Distribution, Factor, Fixed, distribution_reader
 from impactlab.study.schema.section import Names, Reader, Section, Whole, at_key, between
+from impactlab.types import Floats
 
-Draws = npt.NDArray[np.float64]
 MOST_RUNS = 10_000_000
 _EDGE = 2.0**-31
 """Half a step of scipy's 30-bit Sobol sequence: keeps draws off 0 and 1, where quantiles may be
@@ -129,25 +129,35 @@ class Sample(Sampling):
         single = {name: (value,) for name, value in self.fixed.items()}
         return {name: values for name, values in (ends | single).items() if values}
 
-    def generator(self) -> np.random.Generator:
-        """Return the source of randomness. SALib ignores some seeds of 0, but no generator."""
-        return np.random.default_rng(self.seed)
+    @property
+    def group_of(self) -> dict[str, str]:
+        """The group of each varied parameter, in their order; empty where there are no groups."""
+        return {}
 
     @abstractmethod
-    def draws(self) -> Draws:
+    def draws(self) -> Floats:
         """Draw in the unit cube, on (run, varied parameter), in the order of SALib's runs."""
 
-    def columns(self) -> dict[str, Draws]:
+    def by_salib(self, sampler: str, number: int, *others: str, **options: Any) -> Floats:
+        """Draw with a module of SALib.sample; others: names of parameters beside the varied ones.
+
+        It is loaded late: that takes a second, with its pandas.
+        """
+        names = [*self.varied, *others]
+        problem: dict[str, Any] = {"num_vars": len(names), "names": names}
+        problem["bounds"] = [[0.0, 1.0]] * len(names)
+        if self.group_of:
+            problem["groups"] = list(self.group_of.values())
+        generator = np.random.default_rng(self.seed)  # SALib ignores some seeds of 0
+        draw = import_module(f"SALib.sample.{sampler}").sample
+        found: Floats = draw(problem, number, seed=generator, **options)
+        return found
+
+    def columns(self) -> dict[str, Floats]:
         """Draw one value per run of each varied parameter, in SI units."""
         unit = np.clip(self.draws(), _EDGE, 1 - _EDGE).T
         columns = zip(self.varied.items(), unit, strict=True)
         return {name: given.quantile(draws) for (name, given), draws in columns}
-
-
-def problem(names: Sequence[str], groups: Sequence[str] = ()) -> dict[str, Any]:
-    """Return SALib's problem of parameters in the unit cube. groups: the group of each one."""
-    found = {"num_vars": len(names), "names": list(names), "bounds": [[0.0, 1.0]] * len(names)}
-    return found | ({"groups": list(groups)} if groups else {})
 
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")

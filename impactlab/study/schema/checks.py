@@ -9,8 +9,8 @@ from impactlab.model.parameters import ELEMENTS, Value
 from impactlab.solver import BEAM_MODELS
 from impactlab.study.errors import Problem, unknown
 from impactlab.study.sampling.grid import Grid
+from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.sampling.sobol import Sobol
 from impactlab.study.schema.plausibility import extremes, implausibilities, key_of
 from impactlab.study.schema.study import Study, StudyFile
 from impactlab.study.validity import refused_corner

@@ -13,8 +13,8 @@ from impactlab.model.parameters import Parameter
 from impactlab.study.errors import Problem, StudyError, unknown
 from impactlab.study.sampling import sampling_reader
 from impactlab.study.sampling.grid import Grid
+from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.sampling.sobol import Sobol
 from impactlab.study.schema import checks
 from impactlab.study.schema.parameters import Factor
 from impactlab.study.schema.section import Heading, names, validation_problems
@@ -136,22 +136,12 @@ def _study(source: Source) -> Study:
     problems += checks.problems(file, path, sound)
     if problems:
         raise StudyError(*problems)
-    return Study(
-        name=source.name,
-        path=source.path,
-        title=file.title,
-        description=file.description,
-        impact=file.impact,
-        discretisation=file.discretisation.discretisation,
-        auto=file.discretisation.auto,
-        duration=file.duration,
-        sampling=file.sampling,
-        responses=file.responses,
-        analyses=file.analyses,
-        store=file.store,
-        analysis=file.analysis or Analysis(),
-        text=source.text,
-    )
+    own: dict[str, Any] = {
+        "discretisation": file.discretisation.discretisation,
+        "auto": file.discretisation.auto,
+        "analysis": file.analysis or Analysis(),
+    }
+    return Study(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 
 
 def _function_study(source: Source) -> FunctionStudy:
@@ -160,18 +150,8 @@ def _function_study(source: Source) -> FunctionStudy:
     if not isinstance(name, str) or name not in FUNCTIONS:
         raise StudyError(Problem(path, "function", unknown("function", name, FUNCTIONS), name))
     file = _valid(_function_file(name), source)
-    return FunctionStudy(
-        name=source.name,
-        path=source.path,
-        title=file.title,
-        description=file.description,
-        sampling=file.sampling,
-        responses=("value",),
-        analyses=("sensitivity", "surrogate"),
-        analysis=file.analysis,
-        text=source.text,
-        function=name,
-    )
+    own: dict[str, Any] = {"responses": ("value",), "analyses": ("sensitivity", "surrogate")}
+    return FunctionStudy(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 
 
 @cache

@@ -24,8 +24,8 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, Parameter, with_values
 from impactlab.study.sampling import sampling_reader
 from impactlab.study.sampling.grid import Grid
+from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.sampling.sobol import Sobol
 from impactlab.study.schema.parameters import FACTORS, VALUES
 from impactlab.study.schema.section import (
     ABOVE_ZERO,

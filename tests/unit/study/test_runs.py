@@ -6,11 +6,6 @@ import pytest
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.runs import (
-    NO_STUDY,
-    OTHER_RUNS,
-    OTHER_SOLVER,
-    SET_ASIDE,
-    UNFINISHED,
     Answers,
     Work,
     disk_size,
@@ -20,6 +15,7 @@ from impactlab.study.runs import (
 )
 from impactlab.study.store import OutputSpec, RunIndex, Shards, locked
 
+OTHER_SOLVER = "belongs to another version of the solver, or another output"
 KEYS = np.array([b"a" * 16, b"b" * 16, b"c" * 16, b"b" * 16])
 
 
@@ -117,9 +113,9 @@ def test_what_is_asked_for_stays(small_design, tmp_path):
 def test_what_is_not_is_named_with_the_reason(small_design, tmp_path):
     execute(small_design(1.0, 2.0), tmp_path, Engine())
     (shard,) = tmp_path.glob("*/*.nc")
-    assert stale(tmp_path, [small_design(3.0)]) == {shard: OTHER_RUNS}
+    assert stale(tmp_path, [small_design(3.0)]) == {shard: "holds no run of the study"}
     assert stale(tmp_path, [small_design(1.0, profiles=1)]) == {shard: OTHER_SOLVER}
-    assert stale(tmp_path, []) == {shard: NO_STUDY}
+    assert stale(tmp_path, []) == {shard: "its study does not exist"}
 
 
 def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path, caplog):
@@ -129,7 +125,7 @@ def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path,
     unfinished.touch()
     damaged.touch()
     shard.write_bytes(shard.read_bytes()[:-10])
-    expected = {unfinished: UNFINISHED, damaged: SET_ASIDE}
+    expected = {unfinished: "is unfinished", damaged: "was damaged and set aside"}
     assert stale(tmp_path, [small_design(3.0)]) == expected
     assert str(shard) in caplog.text
 

@@ -12,7 +12,7 @@ from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten
 from impactlab.study.errors import StudyError
 from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.sobol import Sobol
+from impactlab.study.sampling.samples import Sobol
 from impactlab.study.schema.files import read_any, read_study, read_verification
 from impactlab.study.schema.study import Analysis, Store, Study, Verification
 from impactlab.variables import RESPONSES

@@ -1,0 +1,210 @@
+"""The samples: sections `sampling` with a method that draws the runs, and their draws by SALib."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator, StrictBool, ValidationInfo, model_validator
+
+from impactlab.study.sampling.sections import MOST_RUNS, Grouped, Sample
+from impactlab.study.schema.parameters import Distribution, Factor
+from impactlab.study.schema.section import (
+    Names,
+    Number,
+    Reader,
+    Section,
+    Whole,
+    at_key,
+    between,
+    requires,
+)
+from impactlab.types import Floats
+
+_FEWEST_TO_GROW = 64
+"""Base samples from which on bootstrap intervals are good enough to decide on growth."""
+_SEARCH = 500_000
+"""Limit on trajectories times chosen ones squared: the search then takes about a minute."""
+
+
+class Until(Section):
+    """The key `until`: the sample is doubled until its intervals are narrow enough.
+
+    interval: largest half-width of the interval of a first or total-order index. runs: largest
+    number of runs. responses: those whose indices count; None: all.
+    """
+
+    interval: Annotated[Number, between(0.001, 0.5)]
+    runs: Annotated[Whole, between(1, MOST_RUNS)]
+    responses: Names | None = None
+
+
+def _power_of_two(value: int) -> int:
+    if value & (value - 1):
+        below = 1 << (value.bit_length() - 1)
+        raise ValueError(f"must be a power of two, such as {below} or {2 * below}")
+    return value
+
+
+class Sobol(Grouped):
+    """Saltelli's sample.
+
+    base_samples: N, a power of two. second_order: whether second-order indices are wanted; they
+    take N (2 G + 2) runs of G parameters or groups instead of N (G + 2). until: how far the
+    sample is doubled; None: it is not.
+
+    Raises ValueError when `until` allows fewer runs than the first sample has, or when that
+    sample is too small for its intervals to be trusted.
+    """
+
+    method: Literal["sobol"]
+    base_samples: Annotated[Whole, between(2, MOST_RUNS), AfterValidator(_power_of_two)]
+    second_order: StrictBool = True
+    until: Until | None = None
+
+    @property
+    def runs(self) -> int:
+        """Saltelli's number of runs."""
+        return self.base_samples * ((2 if self.second_order else 1) * self.group_count + 2)
+
+    @model_validator(mode="after")
+    def _check_until(self) -> Self:
+        if self.until and self.base_samples < _FEWEST_TO_GROW:
+            reason = (
+                f"must be at least {_FEWEST_TO_GROW} with until: the intervals of fewer cannot be "
+                "trusted"
+            )
+            raise at_key("base_samples", reason)
+        if self.until and self.until.runs < self.runs:
+            raise at_key("until.runs", f"must be at least the first sample's {self.runs:,} runs")
+        return self
+
+    def draws(self) -> Floats:
+        """Draw base samples one after the other: A, A with B's columns, B with A's columns, B.
+
+        The parameters of a group take their columns together. The first runs of a larger sample
+        are the smaller sample.
+        """
+        return self.by_salib("sobol", self.base_samples, calc_second_order=self.second_order)
+
+
+class Morris(Grouped):
+    """Morris' trajectories, for elementary effects.
+
+    They lie on a grid of levels; along each, every parameter (or group) steps once. trajectories:
+    how many are drawn. levels: number of grid levels, evenly spaced in probability, ends included.
+    optimal_trajectories: how many of them, far apart, are kept (Campolongo et al. 2007; chosen as
+    by Ruano et al. 2012); 0: all.
+
+    Raises ValueError for a distribution without ends, and unless fewer trajectories are chosen
+    than drawn.
+    """
+
+    method: Literal["morris"]
+    trajectories: Annotated[Whole, between(2, 1_000_000)]
+    levels: Annotated[
+        Whole,
+        between(2, 100),
+        requires(
+            lambda levels: levels % 2 == 0,
+            "must be even: the steps would favour some levels otherwise",
+        ),
+    ] = 4
+    optimal_trajectories: Annotated[Whole, between(0, 1000)] = 0
+
+    @staticmethod
+    def entry(factor: Factor) -> Reader:
+        """Return the reader of a distribution with two ends, or of a fixed value."""
+        read_any = Sample.entry(factor)
+
+        def read(data: Any, info: ValidationInfo) -> Any:
+            entry = read_any(data, info)
+            if isinstance(entry, Distribution) and not entry.bounds():
+                reason = (
+                    "has no ends, where method morris has its outer levels: "
+                    "use truncated_normal, or another with low and high"
+                )
+                raise at_key("distribution", reason)
+            return entry
+
+        return read
+
+    @property
+    def runs(self) -> int:
+        """Number of runs: per trajectory a start, and one step per parameter or group."""
+        return (self.optimal_trajectories or self.trajectories) * (self.group_count + 1)
+
+    @model_validator(mode="after")
+    def _check_choice(self) -> Self:
+        """Refuse a choice that SALib cannot make, or that takes it too long."""
+        most, chosen = self.trajectories - 1, self.optimal_trajectories
+        if chosen and not 2 <= chosen <= most:
+            reason = f"must lie from 2 to {most} (below trajectories), or be 0"
+            raise at_key("optimal_trajectories", reason)
+        if self.trajectories * chosen**2 > _SEARCH:
+            reason = (
+                "takes too long to choose: trajectories × optimal_trajectories² may be "
+                f"at most {_SEARCH:,}"
+            )
+            raise at_key("optimal_trajectories", reason)
+        return self
+
+    def draws(self) -> Floats:
+        """Draw the trajectories one after the other: a start, and one step per parameter or group.
+
+        They are levels, 0 and 1 included.
+        """
+        chosen = self.optimal_trajectories or None
+        return self.by_salib(
+            "morris", self.trajectories, num_levels=self.levels, optimal_trajectories=chosen
+        )
+
+
+class Fast(Sample):
+    """Search curves of the extended Fourier amplitude sensitivity test (FAST).
+
+    There is one per parameter, and one for a dummy parameter, whose indices are noise. samples: N,
+    runs per curve. harmonics: M, the multiples of a parameter's frequency that count as its own
+    effect. Raises ValueError unless N > 4 M^2 (Saltelli, Tarantola and Chan 1999).
+    """
+
+    method: Literal["fast"]
+    samples: Annotated[Whole, between(5, MOST_RUNS)]
+    harmonics: Annotated[Whole, between(1, 100)] = 4
+
+    @property
+    def runs(self) -> int:
+        """Number of runs: one curve per parameter, and one for the dummy."""
+        return self.samples * (len(self.varied) + 1)
+
+    @model_validator(mode="after")
+    def _check_resolution(self) -> Self:
+        least = 4 * self.harmonics**2 + 1
+        if self.samples < least:
+            raise at_key("samples", f"must be at least {least:,} (above 4 harmonics²)")
+        return self
+
+    def draws(self) -> Floats:
+        """Draw the curves one after the other, that of the dummy last.
+
+        The dummy has a curve, on which the others have their low frequencies, but no column.
+        """
+        return self.by_salib("fast_sampler", self.samples, "dummy", M=self.harmonics)[:, :-1]
+
+
+class Latin(Sample):
+    """Latin hypercube: the one sample of delta, PAWN and regression. samples: number of runs."""
+
+    method: Literal["delta", "pawn", "regression"]
+    samples: Annotated[Whole, between(64, MOST_RUNS)]
+
+    @property
+    def runs(self) -> int:
+        """Number of runs: that of the samples."""
+        return self.samples
+
+    def draws(self) -> Floats:
+        """Draw one value in each of equal strata of every parameter.
+
+        They do not depend on the method: changing it needs no new run.
+        """
+        return self.by_salib("latin", self.samples)
