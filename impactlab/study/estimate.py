@@ -149,10 +149,7 @@ def _drivers(study: Study, case: Array, runs: int) -> list[str]:
 
 
 def _cost_sample(study: Study) -> dict[str, Array]:
-    """Return varied parameters of some runs: all of a small grid, else _MOST drawn ones.
-
-    No sampler is called, and nothing large is made.
-    """
+    """Return varied parameters of some runs: all of a small grid, else _MOST, without a sampler."""
     sampling, random = study.sampling, np.random.default_rng(0)
     if isinstance(sampling, Sample):
         number = min(study.runs, _MOST)
@@ -179,11 +176,7 @@ def _cases(study: Study, columns: Mapping[str, Sequence[Value] | Array]) -> Arra
 
 
 def _largest_run(study: Study, sample: Mapping[str, Array], cost: Array) -> dict[str, Value]:
-    """Return the parameters of the largest run.
-
-    The search starts at the largest run of a sample and takes each parameter to its costliest end:
-    the least or the greatest value, or any word.
-    """
+    """Return the largest run: that of the sample, each parameter taken to its costliest end."""
     sampling = study.sampling
     found = {name: column[int(np.argmax(cost))].item() for name, column in sample.items()}
     for name in found:

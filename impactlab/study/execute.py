@@ -149,10 +149,7 @@ class WorkerPool:
         return futures
 
     def _count_threads(self) -> None:
-        """Count the threads of all workers now and then; log where there are none, and wait.
-
-        Workers come and go: on a busy cluster the first one may take hours.
-        """
+        """Count the threads of all workers now and then: on a cluster they come and go."""
         if time.monotonic() - self._counted < _LOOK_AGAIN:
             return
         try:

@@ -179,10 +179,7 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
 
 
 def _stale(file: Path, shards: Path) -> dict[Path, str]:
-    """Return the files to remove of one study; no shards while its discretisation is to be found.
-
-    file: the study, perhaps gone; another one may be noted beside its runs.
-    """
+    """Return the files to remove of one study; file: the study, perhaps gone from there."""
     from impactlab.study.runs import noted_study, outdated, stale
     from impactlab.study.sampling.design import design, stages
     from impactlab.study.schema.files import read_study

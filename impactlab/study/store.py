@@ -69,10 +69,7 @@ class Shards:
     """The shards of one study with one output, by one solver, in one folder."""
 
     def __init__(self, folder: Path, output: OutputSpec, version: str) -> None:
-        """Look in `folder`/<hash of solver, output and layout>, made when first written to.
-
-        version: of the solver.
-        """
+        """Look in `folder`/<hash of solver version, output and layout>, made by a first write."""
         given = f"{version} {output} {LAYOUT}"
         self.folder = folder / hashlib.sha256(given.encode()).hexdigest()[:16]
         self._small: dict[Path, tuple[Array, Columns]] = {}  # kept in memory until merged

@@ -67,14 +67,11 @@ def base_samples(whole: int) -> int:
 
 
 def _first(runs: xr.Dataset, count: int | None) -> xr.Dataset:
-    """Return the runs of the first base samples: at A, at A with one column of B each, and at B.
-
-    The other runs of the second order, B with columns of A, are stored between the last two.
-    """
+    """Return the runs of the first base samples: at A, at A with one column of B each, and at B."""
     whole = int(runs.attrs["base_samples"])
     step, second = runs.sizes["run"] // whole, int(runs.attrs["second_order"])
     factors = (step - 2) // (2 if second else 1)
-    wanted = [*range(factors + 1), step - 1]
+    wanted = [*range(factors + 1), step - 1]  # before the last: B with columns of A
     count = min(whole, count or base_samples(whole))
     places = np.add.outer(step * np.arange(count), wanted).ravel()
     attrs: dict[str, Any] = {"base_samples": count, "second_order": 0}

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from math import prod
-from typing import Annotated, Any, Generic, Literal, TypeVar
+from typing import Annotated, Any, Generic, Literal, Self, TypeVar
 
 import numpy as np
-from pydantic import Field, TypeAdapter, ValidationInfo, field_validator
+from pydantic import Field, TypeAdapter, ValidationInfo, model_validator
 
 from impactlab.model.parameters import Value
 from impactlab.study.sampling.sections import Sampling
 from impactlab.study.schema.parameters import Factor
-from impactlab.study.schema.section import Reader, Section, Whole, between, one_of
+from impactlab.study.schema.section import Reader, Section, Whole, at_key, between, one_of
 
 Q = TypeVar("Q", bound=float)
 MOST_VALUES = 10_000
@@ -30,19 +30,13 @@ class Range(Section, Generic[Q]):
     stop: Q
     number: Annotated[Whole, between(2, MOST_VALUES)]
 
-    @field_validator("start")
-    @classmethod
-    def _has_logarithm(cls, value: float, info: ValidationInfo) -> float:
-        if value <= 0 and info.data.get("spacing") == "log":
-            raise ValueError("must be above zero for spacing: log")
-        return value
-
-    @field_validator("stop")
-    @classmethod
-    def _above_start(cls, value: float, info: ValidationInfo) -> float:
-        if "start" in info.data and value <= info.data["start"]:
-            raise ValueError(f"must be above start ({info.data['start']!r})")
-        return value
+    @model_validator(mode="after")
+    def _check_ends(self) -> Self:
+        if self.start <= 0 and self.spacing == "log":
+            raise at_key("start", "must be above zero for spacing: log")
+        if self.stop <= self.start:
+            raise at_key("stop", f"must be above start ({self.start!r})")
+        return self
 
     def values(self, factor: Factor) -> list[Value]:
         """Return the values to 12 significant digits, so that 0.3 is selected as 0.3.

@@ -126,41 +126,29 @@ def _indices_to_grow_by(file: StudyFile) -> Reasons:
             yield f"sampling.until.responses.{at}", unknown("response", name, file.responses)
 
 
-def _corners(file: StudyFile) -> Reasons:
-    """Check that the model accepts all combinations of varied values."""
-    varied = file.sampling.bounds()
-    if refused := refused_corner((file.impact, file.discretisation.discretisation), varied):
+def _impacts(file: StudyFile) -> Reasons:
+    """Check that no corner of varied values is refused or impossible, and that schemes fit."""
+    grid, sampling = file.discretisation.discretisation, file.sampling
+    varied = sampling.bounds()
+    if refused := refused_corner((file.impact, grid), varied):
         name = refused.name if refused.name in varied else next(iter(refused.values))
         values = ", ".join(f"{key} = {value!r}" for key, value in refused.values.items())
         yield f"sampling.parameters.{name}", f"{values}: {refused.name} {refused.reason}"
-
-
-def _physics(file: StudyFile) -> Reasons:
-    """No impact is physically impossible."""
-    base = file.impact, file.discretisation.discretisation
-    for each in implausibilities(extremes(base, file.sampling)):
+    for each in implausibilities(extremes((file.impact, grid), sampling)):
         if each.impossible:
-            yield key_of(each.name, file.sampling), each.reason
-
-
-def _scheme_of_the_beam_model(file: StudyFile) -> Reasons:
-    """Each beam model has the time scheme it is solved by."""
-    schemes = _values(file.sampling, "scheme", file.discretisation.discretisation.scheme)
-    models = _values(file.sampling, "beam_model", file.impact.beam_model)
+            yield key_of(each.name, sampling), each.reason
+    models = _values(sampling, "beam_model", file.impact.beam_model)
     others = [name for name in BEAM_MODELS if name in models and name not in _FIBRES]
-    if others and "semi_implicit" in schemes:
+    if others and "semi_implicit" in _values(sampling, "scheme", grid.scheme):
         reason = (
             f"semi_implicit is for {' and '.join(_FIBRES)}, and {others[0]} has leapfrog alone: "
             "set scheme: leapfrog, or take out the beam model"
         )
-        yield key_of("scheme", file.sampling), reason
+        yield key_of("scheme", sampling), reason
 
 
 def _solid(file: StudyFile) -> Reasons:
-    """Check that runs of the 3-D model have one element size, and others none; and their options.
-
-    They need a grid, and they have neither `auto` nor profiles, nor one of the responses.
-    """
+    """Check that runs of the 3-D model have one element size and its options, and others none."""
     own = file.discretisation.discretisation
     sizes = [
         key_of(name, file.sampling)
@@ -202,9 +190,7 @@ _CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (_runs_for_the_analyses, {"analyses", "sampling"}),
     (_automatic_discretisation, {"discretisation", "responses", "sampling"}),
     (_indices_to_grow_by, {"analyses", "responses", "sampling"}),
-    (_corners, {"impact", "discretisation", "sampling"}),
-    (_physics, {"impact", "discretisation", "sampling"}),
-    (_scheme_of_the_beam_model, {"impact", "discretisation", "sampling"}),
+    (_impacts, {"impact", "discretisation", "sampling"}),
     (_solid, {"impact", "discretisation", "sampling", "responses", "store"}),
 )
 """The checks, and the sections that each reads."""

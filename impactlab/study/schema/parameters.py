@@ -30,10 +30,7 @@ from impactlab.types import Floats
 
 @dataclass(frozen=True)
 class Factor:
-    """A parameter as study files may vary it.
-
-    refused: returns the reason why no run can have a value, or "".
-    """
+    """A parameter as study files may vary it; refused: why no run can have a value, or ""."""
 
     parameter: Parameter
     refused: Callable[[Value], str]
@@ -197,10 +194,7 @@ class Fixed(Section, Generic[V]):
 
 @cache
 def distribution_reader(factor: Factor) -> Reader:
-    """Return the reader of a Distribution within the model's limits, or of a Fixed value.
-
-    Words and whole numbers can only be fixed.
-    """
+    """Return the reader of a Distribution within the model's limits, or of a Fixed value."""
     value_type: Any = factor.type
     sections: dict[str, type[Section]] = {"fixed": Fixed[value_type]}
     what = "a choice of words" if factor.parameter.choices else "a whole number"

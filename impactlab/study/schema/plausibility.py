@@ -31,10 +31,7 @@ _TAILS = np.array([1e-3, 1 - 1e-3])
 
 @dataclass(frozen=True)
 class Implausibility:
-    """A parameter with an implausible value, and the reason.
-
-    impossible: whether the study is refused for it.
-    """
+    """A parameter with an implausible, or even impossible, value, and the reason."""
 
     name: str
     reason: str

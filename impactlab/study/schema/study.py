@@ -64,10 +64,8 @@ def _default(parameter: Parameter) -> Any:
 
 
 def _section(*path: str, **others: Any) -> type[Section]:
-    """Return the section of a part of the model, with a key per field, from PARAMETERS.
-
-    A value may be null where that is the default.
-    """
+    """Return the section of a part of the model, with a key per field, from PARAMETERS."""
+    # a value may be null where that is the default
     nothing = WrapValidator(lambda value, read: None if value is None else read(value))
     keys: dict[str, Any] = {}
     for name, entry in PARAMETERS.items():
@@ -87,10 +85,7 @@ _DISCRETISATION = _section("discretisation", auto=(Auto | None, None))
 
 
 def read_impact(data: Any, info: ValidationInfo) -> Impact:
-    """Read an impact: a base with changes, or every value spelled out.
-
-    Raises ValueError (pydantic's ValidationError among them) that names the keys at fault.
-    """
+    """Read an impact: a base with changes, or every value. Raises ValueError naming the keys."""
     section: Any = _IMPACT.model_validate(data, context=info.context)
     given = _given_values(section, "impact")
     if section.base is None:
@@ -110,10 +105,7 @@ class DiscretisationSection:
 
 
 def read_discretisation(data: Any, info: ValidationInfo) -> DiscretisationSection:
-    """Read a discretisation; a value that is left out has the model's default.
-
-    Raises ValueError (pydantic's ValidationError among them) that names the keys at fault.
-    """
+    """Read a discretisation, defaults included. Raises ValueError naming the keys at fault."""
     section: Any = _DISCRETISATION.model_validate(
         {"auto": {}} if data == "auto" else data, context=info.context
     )

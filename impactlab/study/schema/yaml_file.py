@@ -154,17 +154,13 @@ class Constructor(SafeConstructor):
 
 
 class _Counter:
-    """Sizes and heights of expanded nodes; each node is visited once.
-
-    Raises RefusedError for too many nodes, or a node too deep; also for a tag, a number or a key of
-    a kind that no study needs.
-    """
+    """Sizes and heights of expanded nodes; each node is visited, and its kind checked, once."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[int, int]] = {}
 
     def measured(self, node: Node, path: Key) -> tuple[int, int]:
-        """Return (nodes, levels) of a node with its aliases expanded."""
+        """Return (nodes, levels) of an expanded node. Raises RefusedError for too many of them."""
         if id(node) not in self._known:
             if len(path) > _DEEPEST:  # ends at a node that holds itself, too
                 raise RefusedError(path, "nests too deeply")
