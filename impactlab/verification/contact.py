@@ -24,7 +24,7 @@ from impactlab.verification.solutions.stronge import StrongeImpact, stronge_impa
 
 # With so small a Courant number the contact alone determines the time step.
 _GRID = Discretisation(nodes=11, points=3, courant=0.005)
-_VELOCITY, _INDENTATION = ("velocity", "m s-1"), ("indentation", "m")
+_VELOCITY, _RESTITUTION = ("velocity", "m s-1"), ("coefficient of restitution", "1")
 
 
 @check(
@@ -117,8 +117,8 @@ def stronge_restitution() -> Finding:
         Curve("solver", np.array(velocities), np.array(ours)),
         Curve("closed form", fine, closed, independent=True),
     ]
-    axes = _VELOCITY, ("coefficient of restitution", "1")
-    panel = Panel("the paper's sphere on a half-space", *axes, curves, log=True)
+    title = "the paper's sphere on a half-space"
+    panel = Panel(title, _VELOCITY, _RESTITUTION, curves, log=True)
     return Finding([*restitutions, *map(worst, others)], [panel])
 
 
@@ -168,16 +168,14 @@ def contact_laws() -> Finding:
             curves.append(Curve(name, np.array(VELOCITIES), ours))
             curves.append(Curve(_QUADRATURE, fine, np.array(expected[variable]), independent=True))
     restitutions, dents = against_velocity.values()
-    force, restitution = ("contact force", "N"), ("coefficient of restitution", "1")
-    title, dent = "permanent indentation against velocity", ("permanent indentation", "m")
-    return Finding(
-        found,
-        [
-            Panel(f"force against indentation at {DRAWN} m/s", _INDENTATION, force, forces),
-            Panel("restitution against velocity", _VELOCITY, restitution, restitutions, log=True),
-            Panel(title, _VELOCITY, dent, dents, log=True),
-        ],
-    )
+    axes = ("indentation", "m"), ("contact force", "N")
+    dent = ("permanent indentation", "m")
+    panels = [
+        Panel(f"force against indentation at {DRAWN} m/s", *axes, forces),
+        Panel("restitution against velocity", _VELOCITY, _RESTITUTION, restitutions, log=True),
+        Panel("permanent indentation against velocity", _VELOCITY, dent, dents, log=True),
+    ]
+    return Finding(found, panels)
 
 
 def _force_curves(run: xr.Dataset, law: LawOnHalfSpace, mass: float) -> list[Curve]:

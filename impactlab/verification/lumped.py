@@ -36,11 +36,10 @@ _NODES, _SAMPLES = 101, 401
 _AXES = ("time", "s"), ("contact force", "N")
 
 _PAPER = elastic(paper_impact(0.99))
+_SLENDER = replace(_PAPER, beam=replace(_PAPER.beam, depth=0.008, width=0.02))
 CASES = {
     "the paper's beam": Case(_PAPER, (0.1, 0.99, 5.0, 20.0), 0.5e-3),
-    "a slender beam": Case(
-        replace(_PAPER, beam=replace(_PAPER.beam, depth=0.008, width=0.02)), (0.2, 1.0), 20e-3
-    ),
+    "a slender beam": Case(_SLENDER, (0.2, 1.0), 20e-3),
 }
 """A heavy sphere touches the slender beam more than once."""
 
