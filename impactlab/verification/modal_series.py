@@ -58,9 +58,10 @@ def _finding(
     leaves in it is spread by dispersion, and gathers in part at mid-span, at simple fractions
     of pi/(4 omega_1) (Talbot's effect); there the error has no smooth expansion in dx.
 
-    The panels show the paper's beam; rivals: more curves in them.
+    The panels show the paper's beam at 0.99 m/s; rivals: more curves in them.
     """
     found: list[Comparison] = []
+    panels: list[Panel] = []
     for beam, case in cases.items():
         table = []
         for velocity in case.velocities:
@@ -68,11 +69,10 @@ def _finding(
             runs = {nodes: _run(impact, nodes, case.duration) for nodes in NODES}
             series = solve(impact, case.duration)
             table.append(_compare(f"{beam}, {velocity:g} m/s", runs, series))
+            if (beam, velocity) == ("the paper's beam", 0.99):
+                panels = _panels(title, runs, series, rivals)
         found += map(worst, zip(*table, strict=True))
-    case = cases["the paper's beam"]
-    series = solve(case.impact, case.duration)
-    runs = {nodes: _run(case.impact, nodes, case.duration) for nodes in NODES}
-    return Finding(found, _panels(title, runs, series, rivals))
+    return Finding(found, panels)
 
 
 def _run(impact: Impact, nodes: int, duration: float) -> xr.Dataset:
