@@ -16,7 +16,6 @@ from impactlab.types import Floats
 CONFIDENCE = 0.95
 RESAMPLES = 200
 """Bootstrap resamples: give the width of an interval to 5 % (1/sqrt(2 resamples))."""
-POLICIES = ("fail", "impute")
 
 
 @dataclass(frozen=True)
@@ -62,14 +61,6 @@ class Sample:
     def resamples(self) -> int:
         """Number of bootstrap resamples."""
         return int(self.settings.get("resamples", RESAMPLES))
-
-    @property
-    def policy(self) -> str:
-        """Policy for failed runs. Raises ValueError for an unknown one."""
-        policy = str(self.settings.get("failed_runs", POLICIES[0]))
-        if policy not in POLICIES:
-            raise ValueError(f"{self.study}: failed_runs = {policy!r}: choose from fail, impute")
-        return policy
 
     @property
     def study(self) -> str:

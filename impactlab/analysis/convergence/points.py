@@ -65,11 +65,14 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     difference = abs(values - reference)
     against_zero = difference.where(difference.isnull() | (difference == 0), np.inf)
     error = (difference / abs(reference).where(reference != 0)).where(reference != 0, against_zero)
+    # A missing run ends the stretch of few errors: it is not within anything.
+    within = (error.isel(points=slice(-2, None, -1)) <= TOLERANCE).astype(int)
+    stays = within.cumprod("points")
     dims = ("response", *runs["status"].dims)
     found = {
         "points_error": error.sel(points=runs["points"]).transpose(*dims),
         "points_uncertainty": SAFETY * error.isel(points=-2, drop=True),
-        "points_needed": _points_needed(error),
+        "points_needed": error["points"].where(stays == 1).min("points"),
     }
     verdicts = verdict_variables(
         _verdict(error), PointsVerdict, "points", "convergence with the integration points"
@@ -92,15 +95,6 @@ def numerical_uncertainty(values: npt.ArrayLike) -> Floats:
         return np.full(found.shape, np.inf)
     amounts = SAFETY * np.maximum(abs(found - found[0]), abs(found[1] - found[0]))
     return np.where(np.isfinite(found), amounts, np.inf)
-
-
-def _points_needed(error: xr.DataArray) -> xr.DataArray:
-    """Return the fewest points from which on the error stays within 1 %; NaN if only the most do.
-
-    error: on `points`, rising. A missing run ends the stretch: it is not within anything.
-    """
-    within = (error.isel(points=slice(-2, None, -1)) <= TOLERANCE).astype(int)
-    return error["points"].where(within.cumprod("points") == 1).min("points")
 
 
 def _verdict(error: xr.DataArray) -> xr.DataArray:

@@ -79,7 +79,7 @@ class Estimate:
         """
         if not self.credible:
             return math.nan
-        (f1, f2, f3), (r21, r32), p = self.values, self.ratios, self._order_used
+        (f1, f2, f3), (r21, r32), p = self.values, self.ratios, min(self.order, FORMAL_ORDER)
         fine = grid_convergence_index(f1, f2, r21, p)
         coarse = grid_convergence_index(f2, f3, r32, p)
         return coarse / (r21**p * fine) if 0 < fine < math.inf else math.nan
@@ -91,15 +91,12 @@ class Estimate:
         """
         if self.behaviour not in (Behaviour.MONOTONE, Behaviour.OSCILLATORY):
             return math.nan
-        return safety * _error(*self.values[:2], self.ratios[0], self._order_used)
+        order = min(self.order, FORMAL_ORDER)
+        return safety * _error(*self.values[:2], self.ratios[0], order)
 
     def gci(self, safety: float) -> float:
         """Return the relative GCI of the finest grid; infinite where the finest value is zero."""
         return relative(self.uncertainty(safety), self.values[0])
-
-    @property
-    def _order_used(self) -> float:
-        return min(self.order, FORMAL_ORDER)
 
 
 def relative(amount: float, value: float) -> float:

@@ -42,19 +42,17 @@ _INDICES = {
 }
 
 
-def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    """Return indices of one response and half-widths of their intervals, by variable name.
-
-    outputs: (runs,), finite and varying. NaN for a parameter of which a class holds one value of
-    the response alone: SALib takes such a class for one without influence.
-    """
+def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     runs = len(outputs)
     inputs = np.column_stack([sample.inputs, dummy_column(sample)])
-    edges = np.linspace(0, runs, classes(runs) + 1)
+    exponent = 2.0 / (7.0 + np.tanh((1500.0 - runs) / 500.0))
+    classes = round(min(int(np.ceil(runs**exponent)), 48))  # of a parameter's values, as in SALib
+    edges = np.linspace(0, runs, classes + 1)
     places = np.linspace(outputs.min(), outputs.max(), GRID)
     values = np.full((inputs.shape[1], 2), np.nan)
     for at, column in enumerate(inputs.T):
         ordered = outputs[np.argsort(column, kind="stable")]
+        # SALib takes a class with one value of the response alone for one without influence.
         if min(np.ptp(part) for part in np.split(ordered, edges[1:-1].astype(int))) > 0:
             values[at, 0] = calc_delta(outputs, places, column, edges)
         values[at, 1] = sobol_first(outputs, column, edges)
@@ -64,12 +62,6 @@ def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats
     spread = sample.half_width(replicates)
     delta = apart_from_dummy("delta", values[:, 0], spread[:, 0])
     return delta | apart_from_dummy("delta_first_order", values[:, 1], spread[:, 1])
-
-
-def classes(runs: int) -> int:
-    """Return the number of classes of a parameter's values, as in SALib."""
-    exponent = 2.0 / (7.0 + np.tanh((1500.0 - runs) / 500.0))
-    return round(min(int(np.ceil(runs**exponent)), 48))
 
 
 def resampled(inputs: Floats, outputs: Floats, edges: Floats, places: Floats) -> Floats:
@@ -111,4 +103,4 @@ def _density(outputs: Floats, starts: npt.NDArray[np.intp], places: Floats) -> F
     )
 
 
-METHOD = SensitivityMethod("delta", _INDICES, Sample.ungrouped, estimate)
+METHOD = SensitivityMethod("delta", _INDICES, Sample.ungrouped, _estimate)

@@ -35,8 +35,7 @@ _INDICES = {
 }
 
 
-def check(sample: Sample) -> None:
-    """Raise ValueError where the runs are not a curve for each parameter and the dummy."""
+def _check(sample: Sample) -> None:
     sample.ungrouped()
     curves = len(sample.parameters) + 1
     points, harmonics = len(sample.inputs) // curves, sample.number("harmonics")
@@ -48,26 +47,19 @@ def check(sample: Sample) -> None:
         )
 
 
-def curves(outputs: Floats, sample: Sample) -> list[Floats]:
-    """Return the curves, each of which has to vary: it is divided by its own variance."""
+def _curves(outputs: Floats, sample: Sample) -> list[Floats]:
+    """Return the dummy's curve behind one per parameter; each is divided by its own variance."""
     return list(outputs.reshape(len(sample.parameters) + 1, -1))
 
 
-def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    """Return indices of one response and half-widths of their intervals, by variable name.
-
-    outputs: (runs,), one curve per parameter and the dummy's last, finite and varying.
-    """
-    closed, harmonics = curves(outputs, sample), sample.number("harmonics")
-    points = closed[0].size
+def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
+    curves, harmonics = _curves(outputs, sample), sample.number("harmonics")
+    first, total = np.array([_orders(curve, harmonics) for curve in curves]).T
+    points = curves[0].size
     half = math.ceil(points / 2)
-    first, total = np.array([_orders(curve, harmonics) for curve in closed]).T
-    starts = sample.rng(response).integers(points, size=(sample.resamples, len(closed)))
+    starts = sample.rng(response).integers(points, size=(sample.resamples, len(curves)))
     replicates = [
-        [
-            _orders(np.roll(curve, -at)[:half], harmonics)
-            for curve, at in zip(closed, row, strict=True)
-        ]
+        [_orders(np.roll(one, -at)[:half], harmonics) for one, at in zip(curves, row, strict=True)]
         for row in starts
     ]
     spread = sample.half_width(np.array(replicates)).T
@@ -87,4 +79,4 @@ def _orders(curve: Floats, harmonics: int) -> tuple[float, float]:
     return float(first), float(total)
 
 
-METHOD = SensitivityMethod("fast", _INDICES, check, estimate, varying=curves)
+METHOD = SensitivityMethod("fast", _INDICES, _check, _estimate, _curves)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,6 @@ from impactlab.analysis.sensitivity.method import (
     PAIR,
     Index,
     SensitivityMethod,
-    index_variables,
 )
 from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
 from impactlab.analysis.surrogate import fit
@@ -37,10 +36,9 @@ def applies(runs: xr.Dataset) -> bool:
     return runs.attrs.get("method") in METHODS
 
 
-Predict = Callable[[Floats], Floats]
-"""From places (runs, parameters) in the unit cube to values (runs,)."""
-Fit = Callable[[Floats, Floats, int], Predict]
-"""From places (runs, parameters) in the unit cube, values (runs,), and a seed to a surrogate."""
+Fit = Callable[[Floats, Floats, int], Callable[[Floats], Floats]]
+"""From places (runs, parameters) in the unit cube, values (runs,), and a seed to a surrogate, which
+gives values at other places."""
 
 
 def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
@@ -68,17 +66,18 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
         if index.dims != PAIR or sample.number("second_order")
     }
     coordinates = _coordinates(values, sample, wanted)
-    sizes = {name: len(entry[1]) for name, entry in coordinates.items()}
+    variables = _variables(rows, wanted, sample, coordinates)
     worst = [max(entry, default=SensitivityVerdict.USABLE) for entry in verdicts]
     codes = xr.DataArray([int(judgement) for judgement in worst], dims="response")
-    imputed_words = "share of runs whose value a surrogate supplied"
-    return xr.Dataset(index_variables(rows, wanted, sample, sizes), coords=coordinates).assign(
-        sensitivity_verdict=flagged(
+    supplied = {"long_name": "share of runs whose value a surrogate supplied", "units": "1"}
+    variables |= {
+        "sensitivity_verdict": flagged(
             codes, SensitivityVerdict, "verdict on the sensitivity indices"
         ),
-        sensitivity_remarks=verdict.remarks(verdicts),
-        imputed_share=("response", list(shares), {"long_name": imputed_words, "units": "1"}),
-    )
+        "sensitivity_remarks": verdict.remarks(verdicts),
+        "imputed_share": ("response", list(shares), supplied),
+    }
+    return xr.Dataset(variables, coordinates)
 
 
 def _answer(
@@ -97,6 +96,28 @@ def _answer(
         return verdicts, 0.0, {}
     found = method.estimate(complete, sample, response)
     return verdicts + verdict.of_indices(found), share, found
+
+
+def _variables(
+    rows: Sequence[Mapping[str, Floats]],
+    wanted: Mapping[str, Index],
+    sample: Sample,
+    coordinates: Mapping[str, tuple[Any, ...]],
+) -> dict[str, Any]:
+    """Return indices and half-widths from one mapping per response; an empty one is NaN."""
+    settings = {"confidence": sample.confidence, "resamples": sample.resamples}
+    variables: dict[str, Any] = {}
+    for name, index in wanted.items():
+        attrs = {"long_name": index.long_name, "estimator": index.estimator}
+        attrs |= {"units": index.units} if index.units else {}
+        attrs |= {"comment": index.comment} if index.comment else {}
+        words = f"{100 * sample.confidence:g} % interval of the {index.long_name}"
+        margin = attrs | {"long_name": f"half-width of the {words}"} | settings
+        gap = np.full([len(coordinates[dim][1]) for dim in index.dims], np.nan)
+        for key, own in ((name, attrs), (f"{name}_interval", margin))[: 1 + index.interval]:
+            stacked = np.array([row[key] if row else gap for row in rows], float)
+            variables[key] = (("response", *index.dims), stacked, own)
+    return variables
 
 
 def _coordinates(
@@ -136,7 +157,7 @@ def imputed(outputs: Floats, sample: Sample, fit: Fit, response: str) -> Floats 
     sensitivity analyses, this is the probability to 1/runs, whatever the distribution.
     """
     gaps = np.isnan(outputs)
-    if not gaps.any() or sample.policy != "impute":
+    if not gaps.any() or sample.settings.get("failed_runs") != "impute":
         return outputs
     enough = np.count_nonzero(~gaps) >= FEWEST_PER_PARAMETER * len(sample.parameters)
     if not enough or np.count_nonzero(gaps) > MOST_IMPUTED * outputs.size:

@@ -8,7 +8,7 @@ Bootstrap, sections 6.2 and 20.2.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,31 +55,6 @@ class SensitivityMethod:
     varying: Callable[[Floats, Sample], list[Floats]] = lambda outputs, sample: [outputs]
 
 
-Stored = dict[str, tuple[tuple[str, ...], Floats, dict[str, object]]]
-
-
-def index_variables(
-    rows: Sequence[Mapping[str, Floats]],
-    indices: Mapping[str, Index],
-    sample: Sample,
-    sizes: Mapping[str, int],
-) -> Stored:
-    """Return dataset variables from one mapping of indices per response; an empty one is NaN."""
-    variables: Stored = {}
-    for name, index in indices.items():
-        attrs: dict[str, object] = {"long_name": index.long_name, "estimator": index.estimator}
-        attrs |= {"units": index.units} if index.units else {}
-        attrs |= {"comment": index.comment} if index.comment else {}
-        width = f"half-width of the {100 * sample.confidence:g} % interval of the {index.long_name}"
-        settings = {"confidence": sample.confidence, "resamples": sample.resamples}
-        both = {name: attrs, f"{name}_interval": attrs | {"long_name": width} | settings}
-        gap = np.full([sizes[dim] for dim in index.dims], np.nan)
-        for key in both if index.interval else [name]:
-            stacked = np.array([row[key] if row else gap for row in rows], float)
-            variables[key] = (("response", *index.dims), stacked, both[key])
-    return variables
-
-
 def dummy_column(sample: Sample) -> Floats:
     """Return values of a parameter that the model never saw, (runs,): its indices are noise.
 
@@ -99,8 +74,6 @@ def apart_from_dummy(name: str, values: Floats, margins: Floats) -> dict[str, Fl
     }
 
 
-Estimator = Callable[[Floats], Mapping[str, Floats]]
-"""From means (..., columns) to indices (..., *dims)."""
 _CELLS = 2_000_000
 """Number of counts held at a time: 16 MB, and about three times that while they are drawn."""
 
@@ -119,11 +92,15 @@ def counts(rows: int, resamples: int, rng: np.random.Generator) -> Iterator[Floa
 
 
 def half_widths(
-    columns: Floats, estimator: Estimator, sample: Sample, rng: np.random.Generator
+    columns: Floats,
+    estimator: Callable[[Floats], Mapping[str, Floats]],
+    sample: Sample,
+    rng: np.random.Generator,
 ) -> dict[str, Floats]:
     """Return half-widths of intervals of everything the estimator gives, by `<name>_interval`.
 
-    columns: (rows, columns), resampled by row.
+    columns: (rows, columns), resampled by row. estimator: from means (..., columns) to indices
+    (..., *dims), by name.
     """
     parts = [
         estimator(tally @ columns / len(columns))

@@ -36,8 +36,7 @@ _INDICES = {
 }
 
 
-def check(sample: Sample) -> None:
-    """Raise ValueError when the runs are not trajectories of single steps."""
+def _check(sample: Sample) -> None:
     trajectories, factors = sample.number("trajectories"), len(sample.factors)
     trajectories = sample.number("optimal_trajectories") or trajectories
     sample.expect(trajectories * (factors + 1), f"{trajectories} trajectories of {factors} steps")
@@ -52,11 +51,7 @@ def check(sample: Sample) -> None:
         )
 
 
-def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    """Return elementary effects of one response, by variable name.
-
-    outputs: (runs,), trajectory by trajectory, finite and varying.
-    """
+def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     problem = {
         "num_vars": len(sample.parameters),
         "names": list(sample.parameters),
@@ -94,4 +89,4 @@ def levels(inputs: Floats) -> Floats:
     return found
 
 
-METHOD = SensitivityMethod("morris", _INDICES, check, estimate)
+METHOD = SensitivityMethod("morris", _INDICES, _check, _estimate)

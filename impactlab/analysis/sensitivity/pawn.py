@@ -42,8 +42,7 @@ _INDICES = {
 }
 
 
-def check(sample: Sample) -> None:
-    """Raise ValueError where groups are stated, or the slides would be all but empty."""
+def _check(sample: Sample) -> None:
     sample.ungrouped()
     if (runs := len(sample.inputs)) < SLIDES * FEWEST:
         raise ValueError(
@@ -51,12 +50,7 @@ def check(sample: Sample) -> None:
         )
 
 
-def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    """Return indices of one response and half-widths of their intervals, by variable name.
-
-    outputs: (runs,), finite and varying. In the resamples, runs are drawn anew between the same
-    limits of the slides.
-    """
+def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     inputs = np.column_stack([sample.inputs, dummy_column(sample)])
     names = [*sample.parameters, "dummy"]
     with warnings.catch_warnings():
@@ -64,8 +58,8 @@ def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats
         warnings.filterwarnings("ignore", "ks_2samp", RuntimeWarning)
         found = pawn.analyze({"num_vars": len(names), "names": names}, inputs, outputs, S=SLIDES)
     order = np.argsort(outputs, kind="stable")
-    last = last_of_equals(outputs[order])
-    members = [slides(column)[order] for column in inputs.T]
+    last = np.flatnonzero(np.diff(outputs[order], append=np.inf))
+    members = [slides(column)[order] for column in inputs.T]  # the limits are kept in resamples
     medians = [
         # of the slides that are not empty, as in SALib
         [np.nanmedian(distances(row[order], member, last)) for member in members]
@@ -84,18 +78,14 @@ def slides(column: Floats) -> npt.NDArray[np.bool_]:
     return (column[:, None] >= limits[:-1]) & (column[:, None] < limits[1:])
 
 
-def last_of_equals(ordered: Floats) -> npt.NDArray[np.intp]:
-    """Return the last place of each stretch of equal outputs, where distributions step."""
-    return np.flatnonzero(np.diff(ordered, append=np.inf))
-
-
 def distances(
     weights: Floats, members: npt.NDArray[np.bool_], last: npt.NDArray[np.intp]
 ) -> Floats:
     """Return the Kolmogorov-Smirnov distance of each slide from all runs, (slides,).
 
     weights: (runs,), how often each run counts, by rising output; members: bool (runs, slides) in
-    the same order; last: of `last_of_equals`. NaN where empty.
+    the same order; last: the last place of each stretch of equal outputs, where distributions
+    step. NaN where empty.
     """
     whole = np.cumsum(weights)
     parts = np.cumsum(weights[:, None] * members, axis=0)
@@ -104,4 +94,4 @@ def distances(
     return np.asarray(np.abs(apart).max(axis=0))
 
 
-METHOD = SensitivityMethod("pawn", _INDICES, check, estimate)
+METHOD = SensitivityMethod("pawn", _INDICES, _check, _estimate)

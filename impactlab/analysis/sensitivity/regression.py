@@ -35,8 +35,7 @@ _INDICES = {
 }
 
 
-def check(sample: Sample) -> None:
-    """Raise ValueError where groups are stated, or the runs do not determine a regression."""
+def _check(sample: Sample) -> None:
     sample.ungrouped()
     runs, needed = sample.inputs.shape[0], 2 * (sample.inputs.shape[1] + 2)
     if runs < needed:
@@ -46,44 +45,33 @@ def check(sample: Sample) -> None:
         )
 
 
-def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    """Return coefficients of one response and half-widths of their intervals, by variable name.
-
-    outputs: (runs,), finite and varying. The ranks are those among all runs, in resamples, too.
-    """
+def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     table = np.column_stack([sample.inputs, dummy_column(sample), outputs])
-    found: dict[str, Floats] = {}
-    for name, values in (("regression", table), ("rank_regression", rankdata(table, axis=0))):
-        found |= _regression(name, values, sample, sample.rng(response))
-    return found
+    ranks = rankdata(table, axis=0)  # among all runs, in resamples, too
+    linear = _regression("regression", table, sample, response)
+    return linear | _regression("rank_regression", ranks, sample, response)
 
 
-def _regression(
-    name: str, table: Floats, sample: Sample, rng: np.random.Generator
-) -> dict[str, Floats]:
+def _regression(name: str, table: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     """Regress the last column on the others, of which the last is the dummy."""
     standard = (table - table.mean(axis=0)) / table.std(axis=0)
     products = (standard[:, :, None] * standard[:, None, :]).reshape(len(table), -1)
-    columns = np.column_stack([standard, products])
+    columns, size = np.column_stack([standard, products]), table.shape[1]
 
     def estimator(means: Floats) -> dict[str, Floats]:
-        correlation = _correlations(means, table.shape[1])
+        centre = means[..., :size]
+        second = means[..., size:].reshape(*means.shape[:-1], size, size)
+        covariance = second - centre[..., :, None] * centre[..., None, :]
+        deviation = np.sqrt(np.diagonal(covariance, axis1=-2, axis2=-1))
+        deviation = np.where(deviation > 0, deviation, np.nan)
+        correlation = covariance / deviation[..., :, None] / deviation[..., None, :]
         with_dummy, _ = _coefficients(correlation)
         without = np.delete(np.delete(correlation, -2, axis=-1), -2, axis=-2)
         values, share = _coefficients(without)
         return {name: values, f"dummy_{name}": with_dummy[..., -1], f"{name}_r_squared": share}
 
-    return estimator(columns.mean(axis=0)) | half_widths(columns, estimator, sample, rng)
-
-
-def _correlations(means: Floats, size: int) -> Floats:
-    """Return the matrix (..., size, size) from means of columns and of their products."""
-    centre = means[..., :size]
-    second = means[..., size:].reshape(*means.shape[:-1], size, size)
-    covariance = second - centre[..., :, None] * centre[..., None, :]
-    deviation = np.sqrt(np.diagonal(covariance, axis1=-2, axis2=-1))
-    deviation = np.where(deviation > 0, deviation, np.nan)
-    return np.asarray(covariance / deviation[..., :, None] / deviation[..., None, :])
+    margins = half_widths(columns, estimator, sample, sample.rng(response))
+    return estimator(columns.mean(axis=0)) | margins
 
 
 def _coefficients(correlation: Floats) -> tuple[Floats, Floats]:
@@ -93,4 +81,4 @@ def _coefficients(correlation: Floats) -> tuple[Floats, Floats]:
     return found, np.asarray((found * outer).sum(axis=-1))
 
 
-METHOD = SensitivityMethod("regression", _INDICES, check, estimate)
+METHOD = SensitivityMethod("regression", _INDICES, _check, _estimate)

@@ -149,11 +149,7 @@ def varying(outputs: Floats, sample: Sample) -> list[Floats]:
     return [np.concatenate([outputs[::size], outputs[size - 1 :: size]])]
 
 
-def estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    """Return indices of one response and half-widths of their intervals, by variable name.
-
-    outputs: (runs,) in SALib's order, finite and varying.
-    """
+def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     series = [_of_first(size, outputs, sample, response) for size in base_samples(sample)]
     found, gap = dict(series[-1]), np.full(len(sample.factors), np.nan)
     for order in ("first_order", "total_order"):
@@ -202,4 +198,4 @@ def _matrix(values: Floats, factors: int) -> Floats:
     return np.where(np.isnan(matrix), matrix.T, matrix)
 
 
-METHOD = SensitivityMethod("sobol", _INDICES, check, estimate, varying=varying)
+METHOD = SensitivityMethod("sobol", _INDICES, check, _estimate, varying)

@@ -123,25 +123,19 @@ def of_indices(found: Mapping[str, Floats]) -> list[SensitivityVerdict]:
         explained = (found["regression_r_squared"], found["rank_regression_r_squared"])
         if max(map(float, explained)) < LINEAR:
             verdicts.append(SensitivityVerdict.NOT_LINEAR)
-    if "total_order" in found and _inconsistent(found):
-        verdicts.append(SensitivityVerdict.INCONSISTENT)
+    if "total_order" in found:
+        first, first_margin = found["first_order"], found["first_order_interval"]
+        total, total_margin = found["total_order"], found["total_order_interval"]
+        # Below zero by twice the interval: of many that are zero, some lie outside of it once.
+        if (
+            first.sum() - 1 > first_margin.sum()
+            or (first < -2 * first_margin).any()
+            or (first - total > first_margin + total_margin).any()
+        ):
+            verdicts.append(SensitivityVerdict.INCONSISTENT)
     if "delta" in found and np.isnan(found["delta"]).any():
         verdicts.append(SensitivityVerdict.NO_DENSITY)
     return verdicts
-
-
-def _inconsistent(found: Mapping[str, Floats]) -> bool:
-    """Return True if the indices contradict that they are shares, by more than their intervals.
-
-    Below zero by twice the interval: of many indices that are zero, some lie outside of it once.
-    """
-    first, first_margin = found["first_order"], found["first_order_interval"]
-    total, total_margin = found["total_order"], found["total_order_interval"]
-    return bool(
-        first.sum() - 1 > first_margin.sum()
-        or (first < -2 * first_margin).any()
-        or (first - total > first_margin + total_margin).any()
-    )
 
 
 def remarks(verdicts: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:

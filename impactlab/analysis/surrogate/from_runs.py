@@ -156,7 +156,14 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     sample = divided.sample
     with threadpool_limits(limits=1):  # the same bits on any number of processors
         answers = [surrogate(row, divided) for row in values.values]
-    degrees = _terms(answers, len(sample.parameters))
+    terms = [np.zeros((1, len(sample.parameters)), dtype=np.int64)]
+    terms += [chaos.degrees for _, chaos, _ in answers if chaos]
+    degrees = np.unique(np.concatenate(terms), axis=0)
+    for _, chaos, found in answers:
+        if chaos:
+            at = (degrees[:, np.newaxis] == chaos.degrees).all(axis=-1).argmax(axis=0)
+            found["coefficient"] = np.zeros(len(degrees))
+            found["coefficient"][at] = chaos.coefficients
     labels: dict[str, tuple[Any, str]] = {
         "held_out": (runs["run"].values[divided.tests], "number of a run held out"),
         "parameter": (list(sample.factors), "varied parameter"),
@@ -189,23 +196,6 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     codes = xr.DataArray([int(verdict) for verdict, _, _ in answers], dims="response")
     variables["surrogate_verdict"] = flagged(codes, SurrogateVerdict, "verdict on the surrogate")
     return xr.Dataset(variables, coordinates)
-
-
-def _terms(answers: list[Answer], parameters: int) -> NDArray[np.int64]:
-    """Return the degrees of all terms, and add `coefficient` to what is known of each response.
-
-    It is zero where the response does not have the term.
-    """
-    found = [chaos.degrees for _, chaos, _ in answers if chaos]
-    constant = np.zeros((1, parameters), dtype=np.int64)
-    degrees = np.unique(np.concatenate([constant, *found]), axis=0)
-    at = {tuple(row): position for position, row in enumerate(degrees.tolist())}
-    for _, chaos, known in answers:
-        if chaos:
-            known["coefficient"] = np.zeros(len(degrees))
-            places = [at[tuple(term)] for term in chaos.degrees.tolist()]
-            known["coefficient"][places] = chaos.coefficients
-    return degrees
 
 
 _HALF_WIDTH = "half-width of the {:g} % interval of the "

@@ -148,11 +148,6 @@ def test_a_surrogate_that_fails_is_told(drawn: Build, verdicts_of: Read, unit: A
     assert found["imputed_share"][0] == 0
 
 
-def test_an_unknown_policy_is_refused(drawn: Build, unit: Any) -> None:
-    with pytest.raises(ValueError, match="failed_runs = 'drop': choose from fail, impute"):
-        sensitivity.analysis(_broken(drawn, unit, 0.02, failed_runs="drop"))
-
-
 def test_imputing_without_a_gap_changes_nothing(drawn: Build, unit: Any) -> None:
     kept = sensitivity.analysis(_broken(drawn, unit, 0.0))
     xr.testing.assert_equal(
