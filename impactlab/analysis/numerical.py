@@ -181,16 +181,20 @@ def measured(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
     ]
     gap = np.full(len(sample.factors), np.nan)
     used = f"on the first {refinement.attrs['base_samples']} base samples"
-    variables = {}
+    dataset = xr.Dataset(coords={"response": names, "parameter": list(sample.factors)})
     for order in ORDERS:
         words = f"change of the {order.replace('_', '-')} index with half the spacing, {used}"
-        long_names = {"": "", "_change": words}
-        long_names["_change_interval"] = f"half-width of the interval of the {words}"
-        for ending, long_name in long_names.items():
-            stacked = [row.get(f"{order}{ending}", gap) for row in rows]
-            attrs = {"long_name": long_name, "units": "1"} if long_name else {}
-            variables[f"{order}{ending}"] = (("response", "parameter"), stacked, attrs)
-    return xr.Dataset(variables, {"response": names, "parameter": list(sample.factors)})
+        for name, attrs in (
+            (order, {}),
+            (f"{order}_change", {"long_name": words}),
+            (
+                f"{order}_change_interval",
+                {"long_name": f"half-width of the interval of the {words}"},
+            ),
+        ):
+            stacked = [row.get(name, gap) for row in rows]
+            dataset[name] = (("response", "parameter"), stacked, attrs | {"units": "1"})
+    return dataset
 
 
 def _of_response(

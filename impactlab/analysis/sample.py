@@ -13,10 +13,6 @@ import xarray as xr
 from impactlab.analysis.responses import listed
 from impactlab.types import Floats
 
-CONFIDENCE = 0.95
-RESAMPLES = 200
-"""Bootstrap resamples: give the width of an interval to 5 % (1/sqrt(2 resamples))."""
-
 
 @dataclass(frozen=True)
 class Sample:
@@ -55,12 +51,12 @@ class Sample:
     @property
     def confidence(self) -> float:
         """Confidence level of the intervals, in (0, 1)."""
-        return float(self.settings.get("confidence", CONFIDENCE))
+        return float(self.settings.get("confidence", 0.95))
 
     @property
     def resamples(self) -> int:
-        """Number of bootstrap resamples."""
-        return int(self.settings.get("resamples", RESAMPLES))
+        """Number of bootstrap resamples: 200 give the width of an interval to 5 %."""
+        return int(self.settings.get("resamples", 200))
 
     @property
     def study(self) -> str:
@@ -93,8 +89,7 @@ class Sample:
     def rng(self, *purpose: str) -> np.random.Generator:
         """Return the random stream of a purpose, such as a response, independent of all others."""
         key = tuple("\0".join(purpose).encode())
-        seed = self.number("seed")
-        return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
+        return np.random.default_rng(np.random.SeedSequence(self.number("seed"), spawn_key=key))
 
     def half_width(self, replicates: Floats) -> Floats:
         """Return half-widths of intervals from bootstrap replicates (resamples, ...).

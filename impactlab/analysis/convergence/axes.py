@@ -72,11 +72,22 @@ class Axis:
             for name, field in zip(Judgement._fields, fields, strict=True)
         }
         found["observed_order"] = fields[Judgement._fields.index("observed_order")]
-        return self._described(found, self.comment(runs), _entries(self.name, values))
+        reasons = [
+            f"{entry.response}: {entry.reason}"
+            for entry in WITHOUT_LIMIT
+            if entry.axis == self.name and entry.response in values["response"].values
+        ]
+        comment = self.comment(runs)
+        said = {"tolerance": TOLERANCE, "comment": comment}
+        said |= {"without_limit": "\n".join(reasons)} if reasons else {}
+        dataset = xr.Dataset(self._variables(found, comment))
+        for key in ("verdict", "summary"):
+            dataset[f"{self.name}_{key}"].attrs |= said
+        return dataset
 
-    def _described(
-        self, found: Mapping[str, xr.DataArray], comment: str, reasons: list[WithoutLimit]
-    ) -> xr.Dataset:
+    def _variables(
+        self, found: Mapping[str, xr.DataArray], comment: str
+    ) -> dict[str, xr.DataArray]:
         variables = {}
         for key, (long_name, units, said) in _NUMBERS.items():
             attrs = {"long_name": long_name.format(self.words)}
@@ -85,17 +96,8 @@ class Axis:
         for key, (kind, long_name) in _FLAGS.items():
             flags = flagged(found[key], kind, f"{long_name} {self.words}")
             variables[f"{self.name}_{key}"] = flags
-        variables |= verdict_variables(
-            found["verdict"], AxisVerdict, self.name, f"convergence with {self.words}"
-        )
-        dataset = xr.Dataset(variables)
-        said_of_all = {"tolerance": TOLERANCE, "comment": comment}
-        if reasons:
-            lines = [f"{entry.response}: {entry.reason}" for entry in reasons]
-            said_of_all["without_limit"] = "\n".join(lines)
-        for key in ("verdict", "summary"):
-            dataset[f"{self.name}_{key}"].attrs |= said_of_all
-        return dataset
+        words = f"convergence with {self.words}"
+        return variables | verdict_variables(found["verdict"], AxisVerdict, self.name, words)
 
 
 _FLAGS: dict[str, tuple[type[Verdict], str]] = {
@@ -207,14 +209,11 @@ def without_limit(runs: xr.Dataset, values: xr.DataArray, axis: str, dim: str) -
     """
     largest = values.max(dim)
     found = xr.zeros_like(largest, dtype=bool)
-    for entry in _entries(axis, values):
-        found = found | ((found["response"] == entry.response) & (largest > 0) & entry.where(runs))
+    for entry in WITHOUT_LIMIT:
+        if entry.axis == axis:
+            here = (found["response"] == entry.response) & (largest > 0)
+            found = found | (here & entry.where(runs))
     return found.transpose(*largest.dims).reset_coords(drop=True)
-
-
-def _entries(axis: str, values: xr.DataArray) -> list[WithoutLimit]:
-    there = values["response"].values
-    return [entry for entry in WITHOUT_LIMIT if entry.axis == axis and entry.response in there]
 
 
 _STEPS = {

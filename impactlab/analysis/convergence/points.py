@@ -65,18 +65,22 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     difference = abs(values - reference)
     against_zero = difference.where(difference.isnull() | (difference == 0), np.inf)
     error = (difference / abs(reference).where(reference != 0)).where(reference != 0, against_zero)
-    # A missing run ends the stretch of few errors: it is not within anything.
-    within = (error.isel(points=slice(-2, None, -1)) <= TOLERANCE).astype(int)
-    stays = within.cumprod("points")
+    fewer = error.isel(points=slice(-2, None, -1))  # than the most, the nearest to these first
+    nearest = fewer.isel(points=0, drop=True)
+    # A missing run ends the stretch of small errors: it is not within anything.
+    stays = (fewer <= TOLERANCE).astype(int).cumprod("points") == 1
+    codes = xr.full_like(nearest, PointsVerdict.NOT_CONVERGED, np.int8)
+    codes = codes.where(nearest > TOLERANCE, PointsVerdict.CONVERGED)
+    codes = codes.where(~(fewer <= ROUND_OFF).all("points"), PointsVerdict.AT_ROUND_OFF)
+    codes = codes.where(nearest.notnull(), PointsVerdict.UNDETERMINED)
     dims = ("response", *runs["status"].dims)
     found = {
         "points_error": error.sel(points=runs["points"]).transpose(*dims),
-        "points_uncertainty": SAFETY * error.isel(points=-2, drop=True),
-        "points_needed": error["points"].where(stays == 1).min("points"),
+        "points_uncertainty": SAFETY * nearest,
+        "points_needed": error["points"].where(stays).min("points"),
     }
-    verdicts = verdict_variables(
-        _verdict(error), PointsVerdict, "points", "convergence with the integration points"
-    )
+    words = "convergence with the integration points"
+    verdicts = verdict_variables(codes, PointsVerdict, "points", words)
     dataset = xr.Dataset({key: found[key].assign_attrs(_ATTRS[key]) for key in found} | verdicts)
     for name in ("points_verdict", "points_summary"):
         dataset[name].attrs |= {"tolerance": TOLERANCE, "comment": _COMMENT}
@@ -95,13 +99,3 @@ def numerical_uncertainty(values: npt.ArrayLike) -> Floats:
         return np.full(found.shape, np.inf)
     amounts = SAFETY * np.maximum(abs(found - found[0]), abs(found[1] - found[0]))
     return np.where(np.isfinite(found), amounts, np.inf)
-
-
-def _verdict(error: xr.DataArray) -> xr.DataArray:
-    """Return the PointsVerdict on the rest of the grid; error: on `points`, rising."""
-    fewer = error.isel(points=slice(None, -1))
-    nearest = fewer.isel(points=-1, drop=True)
-    codes = xr.full_like(nearest, PointsVerdict.NOT_CONVERGED, np.int8)
-    codes = codes.where(nearest > TOLERANCE, PointsVerdict.CONVERGED)
-    codes = codes.where(~(fewer <= ROUND_OFF).all("points"), PointsVerdict.AT_ROUND_OFF)
-    return codes.where(nearest.notnull(), PointsVerdict.UNDETERMINED)

@@ -16,7 +16,6 @@ import numpy as np
 from impactlab.analysis.sample import Sample
 from impactlab.types import Floats
 
-FACTOR = ("parameter",)
 PAIR = ("parameter", "other_parameter")
 BY_SAMPLES = ("base_samples", "parameter")
 
@@ -32,7 +31,7 @@ class Index:
 
     long_name: str
     estimator: str
-    dims: tuple[str, ...] = FACTOR
+    dims: tuple[str, ...] = ("parameter",)
     units: str | None = "1"
     interval: bool = True
     comment: str = ""
