@@ -184,16 +184,11 @@ def measured(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
     dataset = xr.Dataset(coords={"response": names, "parameter": list(sample.factors)})
     for order in ORDERS:
         words = f"change of the {order.replace('_', '-')} index with half the spacing, {used}"
-        for name, attrs in (
-            (order, {}),
-            (f"{order}_change", {"long_name": words}),
-            (
-                f"{order}_change_interval",
-                {"long_name": f"half-width of the interval of the {words}"},
-            ),
-        ):
-            stacked = [row.get(name, gap) for row in rows]
-            dataset[name] = (("response", "parameter"), stacked, attrs | {"units": "1"})
+        change = {"long_name": words, "units": "1"}
+        width = change | {"long_name": f"half-width of the interval of the {words}"}
+        for ending, attrs in (("", {}), ("_change", change), ("_change_interval", width)):
+            stacked = [row.get(f"{order}{ending}", gap) for row in rows]
+            dataset[f"{order}{ending}"] = (("response", "parameter"), stacked, attrs)
     return dataset
 
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -72,14 +71,10 @@ class Axis:
             for name, field in zip(Judgement._fields, fields, strict=True)
         }
         found["observed_order"] = fields[Judgement._fields.index("observed_order")]
-        reasons = [
-            f"{entry.response}: {entry.reason}"
-            for entry in WITHOUT_LIMIT
-            if entry.axis == self.name and entry.response in values["response"].values
-        ]
         comment = self.comment(runs)
         said = {"tolerance": TOLERANCE, "comment": comment}
-        said |= {"without_limit": "\n".join(reasons)} if reasons else {}
+        if self.name in WITHOUT_LIMIT and _STRAIN in values["response"].values:
+            said["without_limit"] = f"{_STRAIN}: {WITHOUT_LIMIT[self.name][1]}"
         dataset = xr.Dataset(self._variables(found, comment))
         for key in ("verdict", "summary"):
             dataset[f"{self.name}_{key}"].attrs |= said
@@ -157,18 +152,6 @@ _WITHOUT_LIMIT = {
 """What is stored where there is no limit; of other fields, NaN."""
 
 
-class WithoutLimit(NamedTuple):
-    """A response that has no limit as the grid of an axis is refined, in runs that yield.
-
-    where: in which runs; reason: in words.
-    """
-
-    axis: str
-    response: str
-    where: Callable[[xr.Dataset], xr.DataArray]
-    reason: str
-
-
 def _is_solid(runs: xr.Dataset) -> xr.DataArray:
     return (
         runs.coords["beam_model"] == SOLID if "beam_model" in runs.coords else xr.DataArray(False)
@@ -183,23 +166,20 @@ def _does_not_harden(runs: xr.Dataset) -> xr.DataArray:
     return found
 
 
-WITHOUT_LIMIT = (
-    WithoutLimit(
-        "nodes",
-        "peak_plastic_strain",
+_STRAIN = "peak_plastic_strain"
+WITHOUT_LIMIT = {
+    "nodes": (
         _does_not_harden,
         "in a beam that does not harden, plastic strain gathers at the node that is struck: its "
         "peak grows with the nodes, up to twice as much with each halving of the spacing",
     ),
-    WithoutLimit(
-        "element_size",
-        "peak_plastic_strain",
+    "element_size": (
         _is_solid,
         "in the contact of a solid, plastic strain gathers at the edge of the dent: its peak grows "
         "as the elements shrink",
     ),
-)
-"""Every such response, one entry each."""
+}
+"""By axis, where the peak plastic strain of runs that yield has no limit, and why."""
 
 
 def without_limit(runs: xr.Dataset, values: xr.DataArray, axis: str, dim: str) -> xr.DataArray:
@@ -209,10 +189,9 @@ def without_limit(runs: xr.Dataset, values: xr.DataArray, axis: str, dim: str) -
     """
     largest = values.max(dim)
     found = xr.zeros_like(largest, dtype=bool)
-    for entry in WITHOUT_LIMIT:
-        if entry.axis == axis:
-            here = (found["response"] == entry.response) & (largest > 0)
-            found = found | (here & entry.where(runs))
+    if axis in WITHOUT_LIMIT:
+        where, _ = WITHOUT_LIMIT[axis]
+        found = (found["response"] == _STRAIN) & (largest > 0) & where(runs)
     return found.transpose(*largest.dims).reset_coords(drop=True)
 
 

@@ -9,7 +9,6 @@ over the base samples.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 from SALib.analyze import sobol
@@ -50,17 +49,12 @@ class Outputs:
         size, second = len(outputs) // step(sample), bool(sample.number("second_order"))
         return cls(*separate_output_values(standard, len(sample.factors), size, second))
 
-    @property
-    def pairs(self) -> list[tuple[int, int]]:
-        """Pairs of factors whose second order was sampled."""
-        return list(combinations(range(self.ab.shape[1]), 2)) if self.ba is not None else []
-
     def statistics(self, interactions: bool = True) -> Floats:
         """Return the columns whose means the estimators take, (base samples, columns)."""
         a, b = self.a[:, None], self.b[:, None]
         columns = [a, b, a**2, b**2, a * b, b * (self.ab - a), (a - self.ab) ** 2 / 2]
         if self.ba is not None and interactions:
-            first, second = np.array(self.pairs, int).reshape(-1, 2).T
+            first, second = np.triu_indices(self.ab.shape[1], 1)
             columns.append(self.ba[:, first] * self.ab[:, second] - a * b)
         return np.concatenate(columns, axis=1)
 
@@ -98,7 +92,7 @@ def estimates(means: Floats, factors: int) -> dict[str, Floats]:
         "dummy_total_order": 1 - (squared_b - centre) / variance,
     }
     if joint.shape[-1]:
-        one, other = np.array(list(combinations(range(factors), 2))).T
+        one, other = np.triu_indices(factors, 1)
         found["second_order"] = joint - first[..., one] - first[..., other]
     return found
 
@@ -186,7 +180,8 @@ def points(outputs: Outputs) -> dict[str, Floats]:
         "total_order": np.array([sobol.total_order(a, column, b) for column in ab.T]),
     }
     if ba is not None:
-        joint = [sobol.second_order(a, ab[:, i], ab[:, j], ba[:, i], b) for i, j in outputs.pairs]
+        pairs = zip(*np.triu_indices(ab.shape[1], 1), strict=True)
+        joint = [sobol.second_order(a, ab[:, i], ab[:, j], ba[:, i], b) for i, j in pairs]
         found["second_order"] = _matrix(np.array(joint, float), ab.shape[1])
     return found
 

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from impactlab.analysis.responses import listed, usable
 from impactlab.analysis.sample import Sample
-from impactlab.analysis.surrogate.chaos import Chaos, drawn, fewest_runs, fit, indices, influence
+from impactlab.analysis.surrogate.chaos import drawn, fewest_runs, fit, indices, influence
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
 from impactlab.model.distributions import cumulative, is_distributed
 from impactlab.types import Floats
@@ -104,25 +104,21 @@ def _verdict(found: Floats, runs: int) -> SurrogateVerdict:
     return SurrogateVerdict.JUMPS if jumps else SurrogateVerdict.USABLE
 
 
-Answer = tuple[SurrogateVerdict, Chaos | None, dict[str, Any]]
-"""Verdict on a response, and, where it has one, its surrogate and what is known of it."""
+def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[str, Any]]:
+    """Fit and test a surrogate of one response, (runs,), NaN where missing.
 
-
-def surrogate(values: Floats, divided: Divided) -> Answer:
-    """Fit and test a surrogate of one response; none where constant or with too few runs.
-
-    values: (runs,), NaN where missing. What is known of it is by the names of `analysis`; the
-    predictivity q2 is -inf where the tested values are all equal.
+    Returns the verdict, and by name the chaos and what `analysis` tells of it; nothing where
+    constant or with too few runs. q2 is -inf where the tested values are all equal.
     """
     sample, answered = divided.sample, np.isfinite(values)
     training = np.flatnonzero(answered & ~divided.held_out)
     tested = answered[divided.tests]
     few = training.size < fewest_runs(len(sample.parameters))
     if few or np.count_nonzero(tested) < _FEWEST_TESTS:
-        return SurrogateVerdict.TOO_FEW_RUNS, None, {}
+        return SurrogateVerdict.TOO_FEW_RUNS, {}
     verdict = _verdict(values[answered], values.size)
     if verdict is SurrogateVerdict.CONSTANT:
-        return verdict, None, {}
+        return verdict, {}
     seed = int(sample.rng("surrogate fit").integers(2**31))
     rows = training[drawn(training.size, seed)]
     chaos = fit(divided.unit[rows], values[rows], seed)
@@ -132,11 +128,11 @@ def surrogate(values: Floats, divided: Divided) -> Answer:
     q2, rmse = 1 - square / variance if variance > 0 else -np.inf, float(np.sqrt(square))
     pull = influence(chaos, divided.unit[rows], values[rows], divided.block[rows], rmse)
     missed = min(max(1 - q2, 0.0), 1.0)
-    found = {"q2": q2, "rmse": rmse, "runs": rows.size, "held_out": predicted}
+    found = {"chaos": chaos, "q2": q2, "rmse": rmse, "runs": rows.size, "held_out": predicted}
     found |= indices(chaos, sample.memberships, pull, missed, sample.confidence)
     if verdict is SurrogateVerdict.USABLE and not q2 >= GOOD:  # a NaN is poor, too
         verdict = SurrogateVerdict.POOR
-    return verdict, chaos, found
+    return verdict, found
 
 
 def analysis(runs: xr.Dataset) -> xr.Dataset:
@@ -157,14 +153,13 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     with threadpool_limits(limits=1):  # the same bits on any number of processors
         answers = [surrogate(row, divided) for row in values.values]
     terms = [np.zeros((1, len(sample.parameters)), dtype=np.int64)]
-    terms += [chaos.degrees for _, chaos, _ in answers if chaos]
+    terms += [found["chaos"].degrees for _, found in answers if found]
     degrees = np.unique(np.concatenate(terms), axis=0)
-    for _, chaos, found in answers:
-        if chaos:
-            at = (degrees[:, np.newaxis] == chaos.degrees).all(axis=-1).argmax(axis=0)
-            found["coefficient"] = np.zeros(len(degrees))
-            found["coefficient"][at] = chaos.coefficients
-    labels: dict[str, tuple[Any, str]] = {
+    for found in (found for _, found in answers if found):
+        at = (degrees[:, np.newaxis] == found["chaos"].degrees).all(axis=-1).argmax(axis=0)
+        found["coefficient"] = np.zeros(len(degrees))
+        found["coefficient"][at] = found["chaos"].coefficients
+    labels = {
         "held_out": (runs["run"].values[divided.tests], "number of a run held out"),
         "parameter": (list(sample.factors), "varied parameter"),
         "surrogate_input": (list(sample.parameters), "parameter that the surrogate depends on"),
@@ -177,11 +172,12 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         for name, array in values.coords.items()
         if array.dims == ("response",)
     }
+    sizes = {"held_out": divided.tests.size, "parameter": len(sample.factors)}
+    sizes["surrogate_term"] = len(degrees)
     variables: dict[str, Any] = {}
     for name, (dims, words, units) in _NUMBERS.items():
-        shape = [len(degrees) if dim == "surrogate_term" else len(labels[dim][0]) for dim in dims]
-        gap = 0 if name == "runs" else np.full(shape, np.nan)
-        rows = [found.get(name, gap) for _, _, found in answers]
+        gap = 0 if name == "runs" else np.full([sizes[dim] for dim in dims], np.nan)
+        rows = [found.get(name, gap) for _, found in answers]
         attrs: dict[str, Any] = {"long_name": words.format(100 * sample.confidence)}
         attrs |= {"units": units} if units else {}
         attrs |= {"estimator": "polynomial chaos"} if dims == ("parameter",) else {}
@@ -193,7 +189,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         degrees,
         {"long_name": degree, "units": "1"},
     )
-    codes = xr.DataArray([int(verdict) for verdict, _, _ in answers], dims="response")
+    codes = xr.DataArray([int(verdict) for verdict, _ in answers], dims="response")
     variables["surrogate_verdict"] = flagged(codes, SurrogateVerdict, "verdict on the surrogate")
     return xr.Dataset(variables, coordinates)
 
