@@ -14,7 +14,6 @@ from rich.table import Column, Table
 
 from impactlab.study.quantities import time
 from impactlab.variables import RESPONSES, marks, reasons, warnings_in
-from impactlab.verification.finding import Outcome, gravest_first
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from impactlab.study.errors import Problem
     from impactlab.study.estimate import Estimate
     from impactlab.study.runs import Status
+    from impactlab.verification.finding import Outcome
 
 _AXES = ("nodes", "points", "courant")
 
@@ -96,6 +96,8 @@ def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable
 
 def print_outcomes(outcomes: Iterable[Outcome]) -> None:
     """Print one line per check: verdict, comparisons passed, largest error over tolerance."""
+    from impactlab.verification.finding import gravest_first  # late: it loads xarray
+
     rows = []
     for outcome in gravest_first(outcomes):
         total, worst = len(outcome.finding.comparisons), outcome.worst
