@@ -9,14 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from types import ModuleType
 
 import numpy as np
 
-from impactlab.fem3d.solver.elements import full, one_point
-from impactlab.fem3d.solver.elements.full import full_forces
-from impactlab.fem3d.solver.elements.hexahedron import W
-from impactlab.fem3d.solver.elements.one_point import one_point_forces
+from impactlab.fem3d.solver.elements import (
+    DISSIPATED,
+    FULL_ROWS,
+    HOURGLASS_WORK,
+    ONE_POINT_ROWS,
+    WORK,
+    full_forces,
+    one_point_forces,
+)
+from impactlab.fem3d.solver.hexahedron import W
 from impactlab.fem3d.solver.jit import Array
 from impactlab.fem3d.solver.material import POINT_ROWS, Metal
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
@@ -26,14 +31,15 @@ from impactlab.model.impact import Impact, Material
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """elements: (g,) numbers in the mesh. nodes: (blocks, 8 W), the last element repeated to fill.
+    """Elements of one body with the same number of integration points.
 
-    kind: the module with the rows of `state`, (blocks, kind.ROWS W).
+    elements: (g,) numbers in the mesh. nodes: (blocks, 8 W), the last element repeated to fill.
+    state: (blocks, rows W), the rows of the points first.
     """
 
     elements: Array
     nodes: Array
-    kind: ModuleType
+    points: int
     kernel: Callable[..., None]
     metal: Metal
     state: Array
@@ -43,21 +49,22 @@ class Group:
         """Return the number of blocks."""
         return len(self.nodes)
 
-    def row(self, row: int) -> Array:
-        """Return one row of `state`, by element: (g,)."""
-        values = self.state.reshape(self.blocks, self.kind.ROWS, W)[:, row]
-        return values.reshape(-1)[: self.elements.size]
+    def of_elements(self, row: int) -> Array:
+        """Return a row of `state` after those of the points, by element: (g,)."""
+        return self._row(self.points * POINT_ROWS + row)
 
-    def points(self, row: int) -> Array:
+    def of_points(self, row: int) -> Array:
         """Return one row of every integration point, (points, g)."""
-        starts = POINT_ROWS * np.arange(self.kind.POINTS)
-        return np.stack([self.row(start + row) for start in starts])
+        return np.stack([self._row(point * POINT_ROWS + row) for point in range(self.points)])
+
+    def _row(self, row: int) -> Array:
+        values = self.state.reshape(self.blocks, -1, W)[:, row]
+        return values.reshape(-1)[: self.elements.size]
 
     def works(self) -> Array:
         """Return the works in J of all elements: of stresses, dissipated, against hourglassing."""
-        kind = self.kind
-        rows = (kind.WORK, kind.DISSIPATED, kind.HOURGLASS_WORK)
-        return np.array([self.row(row).sum() for row in rows])
+        rows = (WORK, DISSIPATED, HOURGLASS_WORK)
+        return np.array([self.of_elements(row).sum() for row in rows])
 
 
 def make_groups(mesh: Mesh, impact: Impact) -> list[Group]:
@@ -76,14 +83,13 @@ def make_group(elements: Array, numbers: Array, whole: bool, steel: Metal) -> Gr
     blocks = -(-numbers.size // W)
     filled = np.append(numbers, np.repeat(numbers[-1], blocks * W - numbers.size))
     nodes = elements[filled].reshape(blocks, W, 8).transpose(0, 2, 1).reshape(blocks, 8 * W)
-    kind, kernel = (full, full_forces) if whole else (one_point, one_point_forces)
     return Group(
         elements=numbers,
         nodes=np.ascontiguousarray(nodes),
-        kind=kind,
-        kernel=kernel,
+        points=8 if whole else 1,
+        kernel=full_forces if whole else one_point_forces,
         metal=steel,
-        state=np.zeros((blocks, kind.ROWS * W)),
+        state=np.zeros((blocks, (FULL_ROWS if whole else ONE_POINT_ROWS) * W)),
     )
 
 

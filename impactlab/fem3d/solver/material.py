@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.fem3d.solver.elements.hexahedron import Tensor, Vector, W, load, store
+from impactlab.fem3d.solver.hexahedron import Tensor, Vector, W, load, store
 from impactlab.fem3d.solver.jit import Array, inlined
 
 Six = tuple[float, float, float, float, float, float]

@@ -133,11 +133,11 @@ def fields(groups: list[Group], count: int) -> dict[str, Floats]:
     names = ("equivalent_plastic_strain", "largest_equivalent_plastic_strain", "plastic_strain")
     result = {name: np.full(count, np.nan) for name in (*names, "von_mises_stress")}
     for group in groups:
-        strain = group.points(PEEQ)
+        strain = group.of_points(PEEQ)
         result[names[0]][group.elements] = strain.mean(axis=0)
         result[names[1]][group.elements] = strain.max(axis=0)
-        result[names[2]][group.elements] = group.points(ALONG).mean(axis=0)
-        s = np.stack([group.points(STRESS + row) for row in range(6)])
+        result[names[2]][group.elements] = group.of_points(ALONG).mean(axis=0)
+        s = np.stack([group.of_points(STRESS + row) for row in range(6)])
         squares = np.sum(s[:3] ** 2, axis=0) + 2.0 * np.sum(s[3:] ** 2, axis=0)
         result["von_mises_stress"][group.elements] = np.sqrt(1.5 * squares).mean(axis=0)
     return result

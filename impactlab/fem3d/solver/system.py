@@ -16,7 +16,7 @@ from impactlab.fem3d.solver.assembly import (
     make_groups,
 )
 from impactlab.fem3d.solver.contact import close_gaps
-from impactlab.fem3d.solver.elements.hexahedron import SCRATCH, W
+from impactlab.fem3d.solver.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.jit import Array, compiled
 from impactlab.fem3d.solver.mesh import SPHERE, Mesh
 from impactlab.fem3d.solver.mesh.mesh import NEIGHBOURS, Floats, nodal_masses

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.assembly import force_assembly, make_group, metal
-from impactlab.fem3d.solver.elements import full, one_point
-from impactlab.fem3d.solver.elements.hexahedron import SCRATCH, W
+from impactlab.fem3d.solver.elements import MEAN
+from impactlab.fem3d.solver.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.material import STRESS
 from impactlab.fem3d.solver.mesh.mesh import brick
 from impactlab.model.impact import Material
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
-KINDS = {"one_point": one_point, "full": full}
 
 
 class Body:
@@ -21,7 +20,6 @@ class Body:
 
     def __init__(self, nodes, elements, kind, steel=STEEL):
         self.x, self.elements = nodes.copy(), elements
-        self.kind = KINDS[kind]
         whole = kind == "full"
         self.group = make_group(elements, np.arange(len(elements)), whole, metal(steel))
         self._rows = force_assembly([self.group], len(nodes))
@@ -52,12 +50,12 @@ class Body:
 
     def deviators(self):
         """(6, points, elements)"""
-        return np.stack([self.group.points(STRESS + row) for row in range(6)])
+        return np.stack([self.group.of_points(STRESS + row) for row in range(6)])
 
     def stress(self):
         """(6, points, elements): xx, yy, zz, yz, zx, xy."""
         stress = self.deviators()
-        stress[:3] += self.group.row(self.kind.MEAN)
+        stress[:3] += self.group.of_elements(MEAN)
         return stress
 
 
@@ -66,7 +64,7 @@ def make_body():
     return Body
 
 
-@pytest.fixture(params=list(KINDS))
+@pytest.fixture(params=["one_point", "full"])
 def kind(request):
     return request.param
 

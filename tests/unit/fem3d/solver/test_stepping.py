@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.assembly import MOST_THREADS, blocks_of, force_assembly, make_group
-from impactlab.fem3d.solver.elements.hexahedron import W
+from impactlab.fem3d.solver.hexahedron import W
 from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
 from impactlab.fem3d.solver.mesh.mesh import brick

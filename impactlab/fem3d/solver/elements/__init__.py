@@ -1,1 +1,0 @@
-"""Hexahedra: the forces with which they answer a motion."""
