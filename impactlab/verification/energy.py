@@ -124,18 +124,14 @@ def balances() -> Finding:
     for _ in range(80):
         impact, grid = with_values(paper_impact(), Discretisation(), _drawn(random))
         audits.append(audit(impact, grid, float(random.uniform(1e-3, 5e-3))))
-    elastic = [found.energy for found in audits if not found.plastic]
-    yielding = [found.energy for found in audits if found.plastic]
-    momentum = [found.momentum for found in audits]
-    contact = [
-        (found.answer("contact_dissipation") - found.contact) / found.brought
-        if found.ended
-        else 0.0
-        for found in audits
-    ]
-    plastic = [
-        (found.answer("plastic_dissipation") - found.plastic) / found.brought for found in audits
-    ]
+    elastic = [case.energy for case in audits if not case.plastic]
+    yielding = [case.energy for case in audits if case.plastic]
+    momentum = [case.momentum for case in audits]
+    contact, plastic = [], []
+    for case in audits:
+        lost = case.answer("contact_dissipation") if case.ended else case.contact
+        contact.append((lost - case.contact) / case.brought)
+        plastic.append((case.answer("plastic_dissipation") - case.plastic) / case.brought)
     found = []
     for quantity, errors, tolerance in (
         ("energy in excess, the beam elastic", elastic, 1e-7),
@@ -156,12 +152,9 @@ def balances() -> Finding:
         values = min(least, 0.0), 0.0
         found.append(absolute(name.replace("_", " "), where, "1", *values, 1e-9))
     curves = []
-    for label, errors in (
-        ("energy", [case.energy for case in audits]),
-        ("sphere's momentum", momentum),
-    ):
-        sizes = np.maximum(np.sort(np.abs(errors)), 1e-12)
-        curves.append(Curve(label, np.arange(1.0, len(audits) + 1.0), sizes))
+    energy, rank = [case.energy for case in audits], np.arange(1.0, len(audits) + 1.0)
+    for label, errors in (("energy", energy), ("sphere's momentum", momentum)):
+        curves.append(Curve(label, rank, np.maximum(np.sort(np.abs(errors)), 1e-12)))
     axes = ("cases, the best first", "1"), ("share of what is brought", "1")
     excess = Panel("In excess at the end, case by case", *axes, curves, log=True)
     return Finding([*found, *_created(audits)], [excess, _loop_panel(audits)])

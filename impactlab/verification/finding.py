@@ -70,17 +70,11 @@ def responses(
     run: xr.Dataset, where: str, expected: Mapping[str, float], tolerance: float
 ) -> list[Comparison]:
     """Compare responses of a run, relatively, with the values `expected` by variable."""
-    return [
-        relative(
-            name.replace("_", " "),
-            where,
-            run[name].attrs["units"],
-            run[name].item(),
-            value,
-            tolerance,
-        )
-        for name, value in expected.items()
-    ]
+    found = []
+    for name, value in expected.items():
+        label, units = name.replace("_", " "), run[name].attrs["units"]
+        found.append(relative(label, where, units, run[name].item(), value, tolerance))
+    return found
 
 
 def curve(
