@@ -25,7 +25,9 @@ def _list(page: Any, start: str) -> str:
     return str(page.text[at : at + 400])
 
 
-def test_verdicts_a_row_a_response(report: Any, discretisation_study: Study) -> None:
+def test_verdicts_are_told_by_response_and_as_cautions(
+    report: Any, discretisation_study: Study
+) -> None:
     runs, analysis = discretisation_study
     tally = xr.DataArray(np.full((len(RESPONSES), 2), 3), dims=("response", "nodes_outcome"))
     page = report(
@@ -47,35 +49,24 @@ def test_verdicts_a_row_a_response(report: Any, discretisation_study: Study) -> 
     assert len(page.tables[NODES]) == len(page.tables[POINTS]) == 1 + len(RESPONSES)
 
 
-def test_what_is_not_converged_is_a_caution(report: Any, discretisation_study: Study) -> None:
-    page = report(*discretisation_study)
-    caution = _list(page, "Somewhere in the grid, these responses have not converged in nodes: ")
-    assert "peak plastic strain (divergent: meaning of divergent)" in caution
-    assert "peak force" not in caution.split(").")[0]
-
-
-def test_numbers_that_are_not_defined_are_dashes(report: Any, discretisation_study: Study) -> None:
+def test_the_largest_numbers_over_the_grid_are_shown_and_dashes_where_there_are_none(
+    report: Any, discretisation_study: Study
+) -> None:
     runs, analysis = discretisation_study
     strain = {"response": "peak_plastic_strain"}
     analysis["nodes_observed_order"].loc[strain] = np.nan
     analysis["nodes_gci"].loc[strain] = np.inf
     analysis["points_needed"].loc[strain] = np.nan
     analysis["points_needed"].loc[{"response": "impulse", "velocity": 15.0}] = np.nan
-    page = report(runs, analysis)
-    assert _row(page, NODES, "Peak plastic strain")[3:5] == ["–", "∞ %"]
-    assert _row(page, POINTS, "Peak plastic strain")[3] == "none below the largest"
-    assert _row(page, POINTS, "Impulse")[3] == "5none below the largest at 3 of 6 points"
-
-
-def test_the_index_and_uncertainties_shown_are_the_largest_over_the_grid(
-    report: Any, discretisation_study: Study
-) -> None:
-    runs, analysis = discretisation_study
     first = {"response": "peak_force", "velocity": analysis["velocity"].values[0]}
     analysis["nodes_gci"].loc[first] = 0.07
     analysis["nodes_uncertainty"].loc[first] = 1e-5
-    row = _row(report(runs, analysis), NODES, "Peak force")
+    page = report(runs, analysis)
+    row = _row(page, NODES, "Peak force")
     assert (row[4], row[7]) == ("7 %", "0.2 %")
+    assert _row(page, NODES, "Peak plastic strain")[3:5] == ["–", "∞ %"]
+    assert _row(page, POINTS, "Peak plastic strain")[3] == "none below the largest"
+    assert _row(page, POINTS, "Impulse")[3] == "5none below the largest at 3 of 6 points"
 
 
 def test_what_is_refined_along_and_what_has_no_limit_is_said(
@@ -121,7 +112,9 @@ def test_the_time_step_has_a_table_and_a_caution(report: Any, time_step_study: S
     assert NODES not in page.tables
 
 
-def test_sentences_name_significant_shares_alone(report: Any, sobol_study: Study) -> None:
+def test_sentences_and_tables_tell_significant_shares_alone(
+    report: Any, sobol_study: Study
+) -> None:
     page = report(*sobol_study)
     sentence = _list(page, "Over these ranges, the impact velocity alone explains 71 % (± 3)")
     assert sentence.startswith(
@@ -130,28 +123,23 @@ def test_sentences_name_significant_shares_alone(report: Any, sobol_study: Study
         "impact velocity contributes to 80 % (± 4)."
     )
     assert "radius of the sphere" not in sentence.split("contact duration")[0]
-
-
-def test_small_shares_keep_a_decimal(report: Any, sobol_study: Study) -> None:
-    runs, analysis = sobol_study
-    impulse = {"response": "impulse", "parameter": "sphere_radius"}
-    analysis["first_order"].loc[impulse] = 0.0123
-    analysis["first_order_interval"].loc[impulse] = 0.006
-    assert "the radius of the sphere 1.2 % (± 0.6)" in report(runs, analysis).text
-
-
-def test_nothing_is_minus_zero(report: Any, sobol_study: Study) -> None:
-    runs, analysis = sobol_study
-    analysis["first_order"].loc[{"response": "impulse"}] = -0.001
-    assert "−0.00" not in report(runs, analysis).text
-
-
-def test_undefined_indices_are_not_zero(report: Any, sobol_study: Study) -> None:
-    page = report(*sobol_study)
     assert "The indices of the number of contacts are undefined: meaning of constant." in page.text
     table = "Sobol indices, first order, with half-widths of the 95 % intervals"
     assert _row(page, table, "Number of contacts")[1:] == 4 * ["undefined"]
     assert _row(page, table, "Peak force")[1:4] == ["0.71 ± 0.03", "0.12 ± 0.03", "−0.01 ± 0.03"]
+
+
+def test_small_shares_keep_a_decimal_and_nothing_is_minus_zero(
+    report: Any, sobol_study: Study
+) -> None:
+    runs, analysis = sobol_study
+    analysis["first_order"].loc[{"response": "impulse"}] = -0.001
+    impulse = {"response": "impulse", "parameter": "sphere_radius"}
+    analysis["first_order"].loc[impulse] = 0.0123
+    analysis["first_order_interval"].loc[impulse] = 0.006
+    text = report(runs, analysis).text
+    assert "radius of the sphere alone explains 1.2 % (± 0.6)" in text
+    assert "−0.00" not in text
 
 
 def test_the_confidence_is_that_of_the_analysis(report: Any, sobol_study: Study) -> None:

@@ -20,7 +20,9 @@ STUDIES = ("velocity_study", "material_study", "discretisation_study", "sobol_st
 
 
 @pytest.mark.parametrize("study", STUDIES)
-def test_needs_nothing_else(study: str, report: Any, request: pytest.FixtureRequest) -> None:
+def test_a_page_needs_nothing_else_and_can_be_read_by_keyboard(
+    study: str, report: Any, request: pytest.FixtureRequest
+) -> None:
     page = report(*request.getfixturevalue(study))
     assert page.open == []
     assert page.named("script") == page.named("link") == []
@@ -31,13 +33,6 @@ def test_needs_nothing_else(study: str, report: Any, request: pytest.FixtureRequ
         assert not [key for key in attrs if key.startswith("on")]
     assert "@import" not in page.source
     assert "url(" not in page.source
-
-
-@pytest.mark.parametrize("study", STUDIES)
-def test_links_lead_somewhere_and_headings_step_by_one(
-    study: str, report: Any, request: pytest.FixtureRequest
-) -> None:
-    page = report(*request.getfixturevalue(study))
     ids = [attrs["id"] for _, attrs in page.elements if "id" in attrs]
     assert len(ids) == len(set(ids))
     inside = {attrs["href"] for attrs in page.named("a")} - {"indices.csv"}
@@ -45,6 +40,10 @@ def test_links_lead_somewhere_and_headings_step_by_one(
     levels = [int(tag[1]) for tag, _ in page.elements if tag in ("h1", "h2", "h3", "h4")]
     assert levels.count(1) == 1
     assert all(after - before <= 1 for before, after in pairwise(levels))
+    regions = [attrs for attrs in page.named("div") if attrs.get("role") == "region"]
+    assert len(regions) == len(page.named("table")) > 3
+    assert all(attrs["tabindex"] == "0" and attrs["aria-label"] for attrs in regions)
+    assert all(attrs.get("scope") in ("row", "col") for attrs in page.named("th"))
 
 
 def test_figures_are_inside_numbered_and_described(results: Path, page: Any) -> None:
@@ -78,16 +77,6 @@ def test_a_missing_figure_says_what_to_do(results: Path, velocity_study: Study) 
     (folder / "captions.json").unlink()
     with pytest.raises(FileNotFoundError, match=r"captions\.json is missing: draw"):
         write_report(*velocity_study, folder, results / "velocity" / "report.html")
-
-
-def test_tables_can_be_scrolled_by_keyboard_and_are_named(
-    report: Any, material_study: Study
-) -> None:
-    page = report(*material_study)
-    regions = [attrs for attrs in page.named("div") if attrs.get("role") == "region"]
-    assert len(regions) == len(page.named("table")) > 3
-    assert all(attrs["tabindex"] == "0" and attrs["aria-label"] for attrs in regions)
-    assert all(attrs.get("scope") in ("row", "col") for attrs in page.named("th"))
 
 
 def test_provenance_and_the_study_file_are_told(report: Any, material_study: Study) -> None:
