@@ -88,7 +88,7 @@ def _columns(analysis: xr.Dataset, axis: str) -> dict[str, Callable[[xr.Dataset]
             "Numerical uncertainty": partial(largest, variable=f"{axis}_uncertainty"),
         }
     needed: dict[str, Callable[[xr.Dataset], Cell]] = {"Points needed for 1 %": _needed}
-    if "points_needed" in analysis and "rule" in analysis["points_needed"].dims:
+    if "rule" in analysis["points_needed"].dims:
         rules = labels.values(analysis["rule"], range(analysis.sizes["rule"]))
         needed = {
             f"Points needed for 1 %, {rule}": partial(_needed, rule=at)
@@ -146,8 +146,6 @@ def _gci(found: xr.Dataset, axis: str) -> Cell:
 
 def _needed(found: xr.Dataset, rule: int | None = None) -> Cell:
     """Return the range over the grid; say where not even the second most points stay within 1 %."""
-    if "points_needed" not in found:
-        return Cell("–", "number")
     needed = found["points_needed"].isel({} if rule is None else {"rule": rule}).values
     if np.isnan(needed).all():
         return Cell("none below the largest", "warning")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -47,12 +48,10 @@ def tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Table
         rows: list[Row] = []
         for name in analysed(runs, analysis):
             index = measures.index(analysis, measure.name, name)
+            written = partial(in_units, runs[name]) if family is MORRIS else with_margin
             row = [named(analysis, name)]
             for at, (value, margin) in enumerate(zip(index.values, index.margins, strict=True)):
-                in_unit = family is MORRIS
-                text = (
-                    in_units(runs[name], value, margin) if in_unit else with_margin(value, margin)
-                )
+                text = written(value, margin)
                 detail = "below numerical error" if index.numerically_lost[at] else ""
                 row.append(Cell(text, "number" if index.significant[at] else "muted", detail))
             if dummy in analysis:

@@ -143,29 +143,11 @@ def _environment(package: str) -> Environment:
     )
 
 
-def described(
-    stored: xr.Dataset,
-    what: str = "runs",
-    command: str = "run",
-    purpose: str = "solves this study again",
-) -> dict[str, Any]:
-    """Return what the page of a study says of it: title, description, and how to reproduce it.
-
-    what: the contents of the dataset. command: makes them, for this purpose.
-    """
-    attrs = stored.attrs
-    name = attrs.get("study", "study")
-    return {
-        "title": str(attrs.get("title") or name),
-        "description": str(attrs.get("description", "")),
-        "provenance": provenance(stored, what),
-        "commands": (
-            (f"impactlab {command} studies/{name}.yaml", purpose),
-            (f"make study STUDIES={name}", "reproduces its results, figures and this report"),
-            ("make study", "reproduces all results, figures and reports"),
-        ),
-        "study_text": str(attrs.get("study_text", "")),
-    }
+def described(stored: xr.Dataset, what: str = "runs") -> dict[str, Any]:
+    """Return what every page says of a study; what: the contents of the dataset."""
+    given = {key: str(stored.attrs.get(key, "")) for key in ("study", "description", "study_text")}
+    title = str(stored.attrs.get("title") or given["study"])
+    return given | {"title": title, "provenance": provenance(stored, what)}
 
 
 def provenance(stored: xr.Dataset, what: str = "runs") -> Table:

@@ -44,7 +44,6 @@ _POOR_FIT = 0.7
 """Share of the variance below which a linear fit says little (Saltelli et al. 2008, chapter 1)."""
 _GOOD = 0.9
 """Smallest predictivity of a surrogate that may replace the runs."""
-_PAIRS = (("first_order", "first-order"), ("total_order", "total-order"))
 _FIGURES = {
     MORRIS.title: ("morris", "morris_plane"),
     DELTA.title: ("delta", "delta_indices"),
@@ -154,15 +153,16 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     found = []
     keys = np.array([labels.parameter(key) for key in measures.parameters(analysis)])
     for name in analysed(runs, analysis):
-        for order, label in _PAIRS:
-            sampled = measures.index(analysis, order, name)
-            fitted = measures.index(analysis, f"surrogate_{order}", name)
+        for order in SOBOL.measures:
+            sampled = measures.index(analysis, order.name, name)
+            fitted = measures.index(analysis, f"surrogate_{order.name}", name)
             apart = np.abs(sampled.values - fitted.values) > sampled.margins + fitted.margins
             if apart.any():
-                where = labels.listing(keys[apart].tolist())
+                response = labels.sentence(labels.response(name))
                 found.append(
-                    f"{labels.sentence(labels.response(name))}: the {label} indices of the runs "
-                    f"and of the surrogate differ by more than their intervals for {where}."
+                    f"{response}: the {order.words.replace(' ', '-')} indices of the runs and of "
+                    "the surrogate differ by more than their intervals for "
+                    f"{labels.listing(keys[apart].tolist())}."
                 )
     return found
 

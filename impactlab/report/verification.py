@@ -57,7 +57,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
     write_page(
         "verification.html.j2",
         path,
-        **described(findings, "findings", "verify", "repeats these checks"),
+        **described(findings, "findings"),
         tally=tally(outcomes),
         bad=[outcome for outcome in outcomes if outcome.verdict != "passed"],
         summary=_summary(outcomes),

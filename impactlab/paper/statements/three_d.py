@@ -86,9 +86,8 @@ def _refined_runs(data: Data) -> tuple[xr.Dataset, str]:
 
 
 def _refined_elements(runs: xr.Dataset) -> str:
-    for name in ELEMENTS:
-        if name in runs.dims:
-            return name
+    if found := [name for name in ELEMENTS if name in runs.dims]:
+        return found[0]
     study = runs.attrs.get("study", "?")
     raise UnknownError(f"the study {study} does not vary {ELEMENTS[0]}: its error is unknown")
 
