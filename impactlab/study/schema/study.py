@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
 from functools import reduce
 from pathlib import Path
-from types import SimpleNamespace as Namespace
 from typing import Annotated, Any
 
 from pydantic import (
@@ -58,8 +57,8 @@ class Auto(Section):
 
 def _default(parameter: Parameter) -> Any:
     """Return the default that the model's class gives a field, or MISSING."""
-    roots = {"impact": paper_impact(), "discretisation": Discretisation()}
-    owner: Any = reduce(getattr, parameter.path[:-1], Namespace(**roots))
+    roots: dict[str, Any] = {"impact": paper_impact(), "discretisation": Discretisation()}
+    owner: Any = reduce(getattr, parameter.path[1:-1], roots[parameter.path[0]])
     return next(field.default for field in fields(owner) if field.name == parameter.path[-1])
 
 

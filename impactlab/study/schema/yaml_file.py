@@ -92,18 +92,16 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
     except MarkedYAMLError as error:
         mark = error.problem_mark
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise _no_yaml(file, f"{where}{error.problem}") from None
+        words = f"{where}{error.problem}"
     except RecursionError:
-        raise _no_yaml(file, "nests too deeply") from None
+        words = "nests too deeply"
     except Exception as error:  # a hostile text can make the parser fail in any way
-        raise _no_yaml(file, str(error) or type(error).__name__) from None
-    if not isinstance(data, dict):
+        words = str(error) or type(error).__name__
+    else:
+        if isinstance(data, dict):
+            return data
         raise StudyError(Problem(file, "", "holds no keys such as `title: ...`"))
-    return data
-
-
-def _no_yaml(file: str, words: str) -> StudyError:
-    return StudyError(Problem(file, "", f"is not YAML: {(words.splitlines() or [''])[0]}"))
+    raise StudyError(Problem(file, "", f"is not YAML: {(words.splitlines() or [''])[0]}"))
 
 
 MOST = 50_000
