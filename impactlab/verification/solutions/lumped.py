@@ -57,25 +57,21 @@ class LumpedSolution:
     def at(self, history: str, time: ArrayLike) -> Floats:
         """Return the named history at `time` (s, shape (n,)), in SI units, shape (n,).
 
-        Names: contact_force, midspan_deflection, indentation, sphere_displacement,
-        sphere_velocity, midspan_velocity.
-
         Raises ValueError when a time is outside the solution's, KeyError for another name.
         """
         seconds = np.atleast_1d(np.asarray(time, dtype=np.float64))
         if not np.all((seconds >= 0) & (seconds <= self.duration)):
             raise ValueError(f"time: every value must be within 0 to {self.duration!r} s")
-        return _HISTORIES[history](self._path(seconds), hertz.contact_stiffness(self.impact))
-
-
-_HISTORIES: dict[str, Callable[[Floats, float], Floats]] = {
-    "contact_force": lambda state, k: np.asarray(_force(state[0] - state[1], k)),
-    "midspan_deflection": lambda state, _: state[1],
-    "indentation": lambda state, _: state[0] - state[1],
-    "sphere_displacement": lambda state, _: state[0],
-    "sphere_velocity": lambda state, _: state[2],
-    "midspan_velocity": lambda state, _: state[3],
-}
+        w_s, w, v_s, v = self._path(seconds)
+        histories: dict[str, Floats] = {
+            "contact_force": np.asarray(_force(w_s - w, hertz.contact_stiffness(self.impact))),
+            "midspan_deflection": w,
+            "indentation": w_s - w,
+            "sphere_displacement": w_s,
+            "sphere_velocity": v_s,
+            "midspan_velocity": v,
+        }
+        return histories[history]
 
 
 def solve(
