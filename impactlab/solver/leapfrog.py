@@ -98,27 +98,6 @@ def _sample(
 
 
 @compiled
-def _beam_energy(model: int, state: State, now: int, F: float, u_mid: float) -> float:
-    """Return all energy of the beam in J, stored and dissipated: after a step, at its beginning.
-
-    u_mid (m): u at mid-span before that step.
-    """
-    beam, section, grid = state.beam, state.section, state.grid
-    M_0, EI = state.plastic.M_0, section.stiffness
-    stored, dissipated = plastic_energy(state.plastic, section, grid)
-    if model > TIMOSHENKO:
-        return lumped_energy(beam, state.lumped, grid, now)
-    if model == TIMOSHENKO:
-        return stored + dissipated + shear_energy(beam, state.shear, M_0, EI, grid)
-    elastic = bending_energy(beam, M_0, EI, grid, now)
-    if state.filter.length > 0:
-        moving = filtered_kinetic_energy(beam, grid, state.filter, now, F)
-    else:
-        moving = kinetic_energy(beam, grid, now, u_mid)
-    return stored + dissipated + elastic + moving
-
-
-@compiled
 def _imbalance(
     case: Record,
     state: State,
@@ -130,12 +109,26 @@ def _imbalance(
 ) -> float:
     """Return the energy missing or in excess, over the initial kinetic energy.
 
-    sphere: its displacement (m), velocity before and after the step (m/s), indentation (m).
+    After a step, of its beginning. sphere: its displacement (m), velocity before and after the step
+    (m/s), indentation (m). u_mid (m): u at mid-span before the step.
     """
     w_s, v_before, v_after, delta = sphere
     start = 0.5 * case.sphere_mass * case.velocity**2
     falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
-    in_beam = _beam_energy(case.beam_model, state, now, F, u_mid)
+    beam, section, grid, M_0 = state.beam, state.section, state.grid, state.plastic.M_0
+    stored, dissipated = plastic_energy(state.plastic, section, grid)
+    if case.beam_model > TIMOSHENKO:
+        in_beam = lumped_energy(beam, state.lumped, grid, now)
+    elif case.beam_model == TIMOSHENKO:
+        elastic = shear_energy(beam, state.shear, M_0, section.stiffness, grid)
+        in_beam = stored + dissipated + elastic
+    else:
+        elastic = bending_energy(beam, M_0, section.stiffness, grid, now)
+        if state.filter.length > 0:
+            moving = filtered_kinetic_energy(beam, grid, state.filter, now, F)
+        else:
+            moving = kinetic_energy(beam, grid, now, u_mid)
+        in_beam = stored + dissipated + elastic + moving
     kept, lost = contact_history.energies(contact, state.pair, delta)
     return abs(falling + in_beam + kept + lost - start) / start
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,8 +17,8 @@ Index = Any
 ONE, TWO = np.uint64(1), np.uint64(2)
 """Offsets for an unsigned index. A loop over one gets vectorised from wherever it begins; a signed
 index might be negative, that is, count from the end."""
-Curve = Callable[..., tuple[float, float, float, float]]
-"""A contact law: see contact/hertz.py."""
+Unloading = tuple[float, float, float, float]
+"""What a contact law's `curve` gives: see contact/hertz.py."""
 
 ELASTIC = BEAM_MODELS.index("elastic")
 TIMOSHENKO = BEAM_MODELS.index("timoshenko")

@@ -14,12 +14,11 @@ import math
 from impactlab.solver.contact.jackson_green import ONSET, critical_indentation, indentation_at
 from impactlab.solver.contact.mjg import loading
 from impactlab.solver.jit import compiled
+from impactlab.solver.types import Unloading
 
 
 @compiled
-def curve(
-    delta: float, E: float, R: float, S_y: float, nu: float
-) -> tuple[float, float, float, float]:
+def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
     """Return force and unloading curve (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_c = critical_indentation(E, R, S_y, nu)

@@ -14,12 +14,11 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.jit import compiled
+from impactlab.solver.types import Unloading
 
 
 @compiled
-def curve(
-    delta: float, E: float, R: float, S_y: float, nu: float
-) -> tuple[float, float, float, float]:
+def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
     """Return force and unloading curve of Hertz contact."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     return K * delta * math.sqrt(delta), K, 0.0, 1.5

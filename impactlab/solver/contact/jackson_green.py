@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.jit import compiled
+from impactlab.solver.types import Unloading
 
 ONSET = 1.9
 """y at which the force leaves Hertz's."""
@@ -76,9 +77,7 @@ def residual(y: float) -> float:
 
 
 @compiled
-def curve(
-    delta: float, E: float, R: float, S_y: float, nu: float
-) -> tuple[float, float, float, float]:
+def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
     """Return force and unloading curve of Jackson and Green (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_c = critical_indentation(E, R, S_y, nu)

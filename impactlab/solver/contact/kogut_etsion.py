@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.jit import compiled
+from impactlab.solver.types import Unloading
 
 HARDNESS = 2.8
 """H/S_y."""
@@ -31,9 +32,7 @@ def _critical_indentation(E: float, R: float, S_y: float, nu: float) -> float:
 
 
 @compiled
-def curve(
-    delta: float, E: float, R: float, S_y: float, nu: float
-) -> tuple[float, float, float, float]:
+def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
     """Return force and unloading curve of the law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_c = _critical_indentation(E, R, S_y, nu)

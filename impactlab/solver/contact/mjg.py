@@ -22,6 +22,7 @@ from impactlab.solver.contact.jackson_green import (
     residual,
 )
 from impactlab.solver.jit import compiled
+from impactlab.solver.types import Unloading
 
 
 @compiled
@@ -36,9 +37,7 @@ def loading(delta: float, delta_c: float, E: float, R: float, S_y: float, nu: fl
 
 
 @compiled
-def curve(
-    delta: float, E: float, R: float, S_y: float, nu: float
-) -> tuple[float, float, float, float]:
+def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
     """Return force and unloading curve of the modified law (see contact/hertz.py for the form)."""
     delta_c = critical_indentation(E, R, S_y, nu)
     F = loading(delta, delta_c, E, R, S_y, nu)

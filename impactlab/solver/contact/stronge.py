@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.jit import compiled
+from impactlab.solver.types import Unloading
 
 THETA = 1.1
 MEAN_PRESSURE = 2.8
@@ -37,9 +38,7 @@ def force_ratio(u: float) -> float:
 
 
 @compiled
-def curve(
-    delta: float, E: float, R: float, S_y: float, nu: float
-) -> tuple[float, float, float, float]:
+def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
     """Return force and unloading curve of Stronge's law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_y = yield_indentation(E, R, S_y)

@@ -16,12 +16,11 @@ import math
 from impactlab.solver.contact.stronge import force_ratio, yield_indentation
 from impactlab.solver.contact.stronge import limit as limit
 from impactlab.solver.jit import compiled
+from impactlab.solver.types import Unloading
 
 
 @compiled
-def curve(
-    delta: float, E: float, R: float, S_y: float, nu: float
-) -> tuple[float, float, float, float]:
+def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
     """Return force and unloading curve of Stronge's law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     delta_y = yield_indentation(E, R, S_y)

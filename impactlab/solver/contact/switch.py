@@ -13,10 +13,11 @@ import numpy as np
 
 from impactlab.solver.contact import LAWS
 from impactlab.solver.jit import compiled, linked
+from impactlab.solver.types import Unloading
 
 
 @compiled
-def _no_curve(law: int, *of: float) -> tuple[float, float, float, float]:
+def _no_curve(law: int, *of: float) -> Unloading:
     return np.nan, np.nan, np.nan, 1.5
 
 

@@ -13,15 +13,14 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.jit import compiled
+from impactlab.solver.types import Unloading
 
 LIMITING_PRESSURE = 1.6
 """p_y/S_y."""
 
 
 @compiled
-def curve(
-    delta: float, E: float, R: float, S_y: float, nu: float
-) -> tuple[float, float, float, float]:
+def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
     """Return force and unloading curve of Thornton's law (see contact/hertz.py for the form)."""
     K = 4.0 / 3.0 * E * math.sqrt(R)
     pressure = math.pi * LIMITING_PRESSURE * S_y

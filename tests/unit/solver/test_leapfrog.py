@@ -10,9 +10,9 @@ import impactlab as il
 from impactlab.simulate import case_table, solve
 from impactlab.solver import outputs
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.leapfrog import WORST_ENERGY_ERROR, discretise
+from impactlab.solver.leapfrog import WORST_ENERGY_ERROR
 from impactlab.solver.section import make_section
-from impactlab.solver.stability import largest_time_step
+from impactlab.solver.stability import discretise, largest_time_step
 from impactlab.variables import RESPONSES
 
 GRID = il.Discretisation(nodes=21, points=5)
