@@ -78,9 +78,8 @@ def usable(runs: xr.Dataset, name: str) -> xr.DataArray:
 
 def absent(array: xr.DataArray) -> xr.DataArray:
     """Return True for each run (design dimensions) in which the variable has no finite value."""
-    within = [dim for dim in array.dims if dim in SAMPLED]
-    present = xr.apply_ufunc(np.isfinite, array)
-    return xr.DataArray(~present.any(within))
+    present: xr.DataArray = xr.apply_ufunc(np.isfinite, array)
+    return ~present.any([dim for dim in array.dims if dim in SAMPLED])
 
 
 def failed(runs: xr.Dataset) -> xr.DataArray:

@@ -10,7 +10,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
 from impactlab.figures.access import known, responses, usable
@@ -21,8 +20,8 @@ from impactlab.model.cost import node_steps
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS
 from impactlab.solver import BEAM_MODELS, SCHEMES
+from impactlab.types import Floats
 
-Array = NDArray[np.float64]
 _FEWEST = 3
 _CAPTION = (
     "Difference to the limit, relative to it: Richardson's value, or where there is none that of "
@@ -158,7 +157,7 @@ def element_size_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def _draw(
-    runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, spacing: Array, label: str
+    runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, spacing: Floats, label: str
 ) -> Figure:
     """Draw a panel per response, a curve for each of a few other settings.
 
@@ -180,13 +179,10 @@ def _draw(
         if orders:
             ax.legend(*zip(*orders, strict=True), **_BESIDE)
         _finish(ax, spacing, difference, axis.dim)
-    figure.supxlabel(label)
-    figure.supylabel("Relative difference (–)")
-    selected.legend(figure)
-    return figure
+    return selected.finish(figure, label, "Relative difference (–)")
 
 
-def _above_round_off(difference: xr.DataArray, selected: Plan) -> Iterator[tuple[Choice, Array]]:
+def _above_round_off(difference: xr.DataArray, selected: Plan) -> Iterator[tuple[Choice, Floats]]:
     """Yield each curve that has an error above round-off, with its errors along the axis."""
     for curve in selected.curves:
         errors = scales.positive(
@@ -238,7 +234,9 @@ def _trend(
     return order, read("uncertainty"), f"p = {order:.2f}" if observed else f"[p = {order:g}]"
 
 
-def _draw_trend(ax: Axes, spacing: Array, errors: Array, order: float, uncertainty: float) -> None:
+def _draw_trend(
+    ax: Axes, spacing: Floats, errors: Floats, order: float, uncertainty: float
+) -> None:
     """Draw the order through the errors of the three finest values, and the bar of the finest."""
     near, colour = np.argsort(spacing)[:_FEWEST], ax.lines[-1].get_color()
     scale = np.log(errors[near]) - order * np.log(spacing[near])
@@ -253,7 +251,7 @@ def _draw_trend(ax: Axes, spacing: Array, errors: Array, order: float, uncertain
         ax.plot(at, uncertainty, color=colour, marker="_", markersize=6, label="_bar")
 
 
-def _finish(ax: Axes, spacing: Array, difference: xr.DataArray, dim: str) -> None:
+def _finish(ax: Axes, spacing: Floats, difference: xr.DataArray, dim: str) -> None:
     """Make the axes logarithmic, and draw a guide of second order above the curves."""
     if not ax.lines:
         enough = bool((difference.count(dim) > 1).any())
@@ -312,10 +310,7 @@ def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.at(ax, "x", points)
         ax.set_xlim(0.9 * points.min(), 1.1 * points.max())
         _tolerance(ax, _POINTS_TOLERANCE)
-    figure.supxlabel(labels.axis(labels.parameter("points"), ""))
-    figure.supylabel("Error (%)")
-    selected.legend(figure)
-    return figure
+    return selected.finish(figure, labels.axis(labels.parameter("points"), ""), "Error (%)")
 
 
 def _tolerance(ax: Axes, tolerance: float) -> None:
@@ -360,10 +355,7 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.at(ax, "x", decades)
         ax.set_xlim(decades[0], decades[-1])
         _tolerance(ax, _COST_TOLERANCE)
-    figure.supxlabel("Work (node-steps)")
-    figure.supylabel("Relative difference (–)")
-    selected.legend(figure)
-    return figure
+    return selected.finish(figure, "Work (node-steps)", "Relative difference (–)")
 
 
 def _coded(parameter: xr.DataArray) -> xr.DataArray:

@@ -11,13 +11,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from impactlab.figures import access, labels, style
 from impactlab.figures.access import design_dims, usable
+from impactlab.types import Floats
 
-Array = NDArray[np.float64]
-Line = Callable[[xr.Dataset], tuple[Array, Array]]
+Line = Callable[[xr.Dataset], tuple[Floats, Floats]]
 """From one run's dataset (no design dimensions) to the x and y of its curve."""
 
 _LARGE, _SMALL = ("nodes", "points", "elements_per_radius"), ("courant", "element_size")
@@ -50,10 +49,15 @@ class Plan:
         """Return the indexers of a curve in a panel, for `isel`."""
         return self.held | panel.where | curve.where
 
-    def legend(self, figure: Figure) -> None:
-        """Add the legend of the curves, headed by the parameters in which they differ."""
+    def finish(self, figure: Figure, x: str = "", y: str = "") -> Figure:
+        """Add the legend, headed by the parameters in which curves differ; x, y: for all panels."""
+        if x:
+            figure.supxlabel(x)
+        if y:
+            figure.supylabel(y)
         title = labels.sentence(", ".join(labels.parameter(dim) for dim in self.shown))
         style.legend(figure, title, [curve.label for curve in self.curves])
+        return figure
 
     def note(self, runs: xr.Dataset) -> str:
         """Return a caption's sentences on the values that are shown and held."""
@@ -142,7 +146,7 @@ def look(curve: Choice, *, markers: bool = False) -> dict[str, Any]:
     return found | marker
 
 
-def add(ax: Axes, x: Array, y: Array, curve: Choice, *, markers: bool = True) -> bool:
+def add(ax: Axes, x: Floats, y: Floats, curve: Choice, *, markers: bool = True) -> bool:
     """Draw a curve that has finite points; return whether it has."""
     found = bool(np.isfinite(x + y).any())
     if found:
@@ -185,8 +189,7 @@ def draw(
         place = ax.get_subplotspec()
         assert place is not None
         ax.set(xlabel=x, ylabel=y if place.is_first_col() else None)
-    selected.legend(figure)
-    return figure, axes
+    return selected.finish(figure), axes
 
 
 def note(runs: xr.Dataset, variable: str) -> str:

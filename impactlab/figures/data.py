@@ -19,10 +19,10 @@ from matplotlib.collections import PolyCollection
 from matplotlib.container import BarContainer, ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter
-from numpy.typing import NDArray
 
 from impactlab.figures import labels
 from impactlab.files import replaced
+from impactlab.types import Floats
 
 FORMATS = ("csv", "nc")
 _LABELS = ("panel", "curve", "x_label", "y_label")
@@ -41,8 +41,8 @@ class Drawn:
     curve: str
     x_label: str
     y_label: str
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
+    x: Floats
+    y: Floats
     category: list[str]
 
 
@@ -116,7 +116,7 @@ def _label(figure: Figure, ax: Axes, axis: str) -> str:
     return " ".join(found.split())
 
 
-def _points(ax: Axes) -> Iterator[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:
+def _points(ax: Axes) -> Iterator[tuple[str, Floats, Floats]]:
     """Yield label, x and y of lines but guides, of points with intervals, and of bars' ends."""
     for line in ax.lines:
         label = str(line.get_label())
@@ -186,7 +186,7 @@ def _cells(ax: Axes) -> str:
     """Return where a map is largest, "" without a map or where no cell has a number."""
     if not ax.images:
         return ""
-    found: NDArray[np.float64] = np.ma.filled(np.ma.asarray(ax.images[-1].get_array()), np.nan)
+    found: Floats = np.ma.filled(np.ma.asarray(ax.images[-1].get_array()), np.nan)
     if not np.isfinite(found).any():
         return ""
     cells = np.where(np.isfinite(found), found, -np.inf)

@@ -10,10 +10,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from impactlab.figures import labels, responses_grid, scales, style
 from impactlab.figures.labels import Display, display
+from impactlab.types import Floats
 from impactlab.verification.finding import Curve, Outcome, Panel
 
 _ROW = 8.0
@@ -111,7 +111,7 @@ def _draw_row(axes: Axes, row: int, outcome: Outcome) -> None:
     )
 
 
-def _ratios(outcome: Outcome) -> NDArray[np.float64]:
+def _ratios(outcome: Outcome) -> Floats:
     return np.array([entry.ratio for entry in outcome.finding.comparisons], dtype=float)
 
 
@@ -212,7 +212,7 @@ def _points(curve: Curve, others: Sequence[Curve]) -> dict[str, Any]:
 def _unit(panel: Panel, axis: str) -> Display:
     """Return the display unit of an axis, by all that is drawn along it."""
     name, units = getattr(panel, axis)
-    values: NDArray[np.float64] = np.concatenate(
+    values: Floats = np.concatenate(
         [np.ravel(np.asarray(getattr(curve, axis), dtype=float)) for curve in panel.curves]
     )
     return display(xr.DataArray(values, attrs={"units": units}, name=name.replace(" ", "_")))

@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
 from impactlab.figures.access import is_sample, physical, responses, usable
@@ -17,6 +16,7 @@ from impactlab.figures.labels import display
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.types import Floats
 from impactlab.variables import MARKS
 from impactlab.verification.solutions.shear import impact_share
 
@@ -32,17 +32,13 @@ _WIDE = 10.0
 _WITHOUT, _WITH = "euler_bernoulli", "timoshenko"
 _SHEARED = (_PEAK, _DURATION)
 _BEAM = [name for name, entry in PARAMETERS.items() if entry.path[:2] == ("impact", "beam")]
-
-Array = NDArray[np.float64]
+_velocity_plan = partial(plan, along=["velocity"], prefer=["contact"])
+_plan_shear = partial(plan, variable=_PEAK, along=["beam_depth", "beam_model"])
 
 
 def _on_velocities(name: str, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Return whether a response is on a grid of at least three velocities."""
     return name in runs and runs[name].sizes.get("velocity", 0) >= _FEWEST
-
-
-def _velocity_plan(runs: xr.Dataset, name: str) -> Plan:
-    return plan(runs, name, along=["velocity"], prefer=["contact"])
 
 
 def _velocity_sentences(name: str, runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
@@ -60,8 +56,7 @@ def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, 
         style.remark(ax, "no finite values")
     ax.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
     ax.set_ylabel(labels.axis(label, unit.symbol))
-    selected.legend(figure)
-    return figure, ax
+    return selected.finish(figure), ax
 
 
 @record.figure(
@@ -142,8 +137,7 @@ def contact_laws(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             _law_forces(ax, runs, selected)
         else:
             _law_responses(ax, runs, name, selected)
-    selected.legend(figure)
-    return figure
+    return selected.finish(figure)
 
 
 def _law_forces(ax: Axes, runs: xr.Dataset, selected: Plan) -> None:
@@ -228,9 +222,8 @@ def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.fit(ax, "y", scales.drawn(ax, "y"))
         if not ax.lines:
             responses_grid.empty(ax, "no finite values")
-    figure.supxlabel(labels.axis(labels.parameter(str(along.name)), unit.symbol))
-    selected.legend(figure)
-    return figure
+    label = labels.axis(labels.parameter(str(along.name)), unit.symbol)
+    return selected.finish(figure, label)
 
 
 def _has_shear(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -239,10 +232,6 @@ def _has_shear(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
         return False
     models = runs["beam_model"].values.tolist() if "beam_model" in runs.sizes else []
     return runs.sizes.get("beam_depth", 0) >= _FEWEST and {_WITHOUT, _WITH} <= set(models)
-
-
-def _plan_shear(runs: xr.Dataset) -> Plan:
-    return plan(runs, _PEAK, along=["beam_depth", "beam_model"])
 
 
 def _shear_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, ...]:
@@ -275,11 +264,12 @@ def shear(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             _scale_changes(ax)
         above.set_xlabel(labels.axis("depth of the beam over its span", ""))
         below.set_xlabel(labels.axis("slowing of the wave of the contact", "%"))
-    selected.legend(figure)
-    return figure
+    return selected.finish(figure)
 
 
-def _shear_curve(runs: xr.Dataset, name: str, where: dict[str, int]) -> tuple[Array, Array, Array]:
+def _shear_curve(
+    runs: xr.Dataset, name: str, where: dict[str, int]
+) -> tuple[Floats, Floats, Floats]:
     """Return depth over span, the contact's share (NaN without one) and the change, both in %."""
     run = runs.isel(where)
     values, durations = usable(run, name), usable(run, _DURATION).sel(beam_model=_WITHOUT)

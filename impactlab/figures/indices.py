@@ -18,6 +18,7 @@ from impactlab.figures import access, labels, measures, record, responses_grid, 
 from impactlab.figures.labels import display
 from impactlab.figures.measures import MORRIS, Family, Measure, analysed, parameters
 from impactlab.figures.record import Figure
+from impactlab.types import Floats
 
 _THICK = 0.76
 """Thickness of all bars of a row together, in rows."""
@@ -221,7 +222,7 @@ def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     return figure
 
 
-def pairs(index: xr.DataArray) -> NDArray[np.float64]:
+def pairs(index: xr.DataArray) -> Floats:
     """Return each pair once, above the diagonal; NaN elsewhere.
 
     index: on (parameter, other_parameter).
@@ -231,9 +232,7 @@ def pairs(index: xr.DataArray) -> NDArray[np.float64]:
     return np.where(np.triu(np.ones_like(both, dtype=bool), 1), both, np.nan)
 
 
-def _map(
-    ax: Axes, values: NDArray[np.float64], significant: NDArray[np.bool_], colours: Normalize
-) -> AxesImage:
+def _map(ax: Axes, values: Floats, significant: NDArray[np.bool_], colours: Normalize) -> AxesImage:
     """Draw the cells, with their values in whole per cent, as a cell has room for two digits."""
     shown = np.where(significant, values, np.nan)
     ax.imshow(np.where(np.isfinite(values), 0.93, np.nan), cmap="gray", vmin=0, vmax=1)

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from impactlab.model.parameters import PARAMETERS
+from impactlab.types import Floats
 
 _STEPS: dict[str, tuple[tuple[float, float, str], ...]] = {
     "N": ((100.0, 1e-3, "kN"), (0.0, 1.0, "N")),
@@ -72,7 +73,7 @@ class Display:
     scale: float
     symbol: str
 
-    def __call__(self, values: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, values: ArrayLike) -> Floats:
         """Return SI values in the display unit, in the same shape."""
         return np.asarray(values, dtype=float) * self.scale
 
@@ -158,7 +159,7 @@ def listing(items: Sequence[str]) -> str:
     return " and ".join(filter(None, (", ".join(items[:-1]), *items[-1:])))
 
 
-def span(values: NDArray[np.float64], digits: int) -> str:
+def span(values: Floats, digits: int) -> str:
     """Return the range of some values, "2 to 19", or the one value that all of them have."""
     low, high = number(float(values.min()), digits), number(float(values.max()), digits)
     return low if low == high else f"{low} to {high}"

@@ -9,8 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from impactlab.figures.access import known, responses
-
-Array = NDArray[np.float64]
+from impactlab.types import Floats
 
 
 @dataclass(frozen=True)
@@ -58,9 +57,9 @@ class Index:
     dummy was sampled.
     """
 
-    values: Array
-    margins: Array
-    numerical: Array
+    values: Floats
+    margins: Floats
+    numerical: Floats
     floor: float
 
     @property
@@ -175,7 +174,9 @@ def index(analysis: xr.Dataset, measure: str, response: str) -> Index:
     )
 
 
-def _beside(analysis: xr.Dataset, name: str, response: str, values: Array, *, gap: float) -> Array:
+def _beside(
+    analysis: xr.Dataset, name: str, response: str, values: Floats, *, gap: float
+) -> Floats:
     if name not in analysis:
         return np.full_like(values, gap)
     return np.asarray(np.nan_to_num(analysis[name].sel(response=response).values, nan=gap))

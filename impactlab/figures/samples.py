@@ -18,8 +18,8 @@ from impactlab.figures.curves import spread
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.record import Figure
+from impactlab.types import Floats
 
-Array = NDArray[np.float64]
 _FEW = 10
 """Number of distinct values up to which each has a bar."""
 _MOSTLY = 0.5
@@ -64,7 +64,7 @@ def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     return figure
 
 
-def _distribution(ax: Axes, values: Array) -> None:
+def _distribution(ax: Axes, values: Floats) -> None:
     if values.size == 0 or np.ptp(values) <= responses_grid.ROUND_OFF * np.abs(values).max():
         text = f"constant: {labels.number(float(values[0]))}" if values.size else "no finite values"
         responses_grid.empty(ax, text)
@@ -147,7 +147,7 @@ def scatter(response: str) -> Figure:
     return plot
 
 
-def _scatter(ax: Axes, x: Array, y: Array) -> None:
+def _scatter(ax: Axes, x: Floats, y: Floats) -> None:
     """Draw some of the runs, and the mean of all."""
     finite = np.isfinite(x) & np.isfinite(y)
     if not np.isfinite(y).any():
@@ -162,7 +162,7 @@ def _scatter(ax: Axes, x: Array, y: Array) -> None:
     scales.linear(ax, "xy", 4)
 
 
-def conditional_mean(x: Array, y: Array) -> tuple[Array, Array]:
+def conditional_mean(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     """Return means of x and y in bins of x with about equal numbers of runs.
 
     x, y: (runs,), finite. Runs with the same x share a bin.
@@ -278,7 +278,7 @@ def failure_shares(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     return figure
 
 
-def _shares(ax: Axes, x: Array, failed: NDArray[np.bool_]) -> None:
+def _shares(ax: Axes, x: Floats, failed: NDArray[np.bool_]) -> None:
     edges = np.unique(np.quantile(x, np.linspace(0.0, 1.0, 11)))
     place = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, max(edges.size - 2, 0))
     found = []

@@ -8,9 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from impactlab.figures import labels
+from impactlab.types import Floats
 
 Which = Literal["x", "y"]
 WIDE = 30.0
@@ -59,13 +60,13 @@ def at(axes: Axes, which: Which, values: ArrayLike) -> None:
     axis.set_major_formatter(_PLAIN)
 
 
-def positive(values: ArrayLike, above: float = 0.0) -> NDArray[np.float64]:
+def positive(values: ArrayLike, above: float = 0.0) -> Floats:
     """Return the values above `above`, NaN (a gap) for the rest."""
     array = np.asarray(values, dtype=float)
     return np.where(np.isfinite(array) & (array > above), array, np.nan)
 
 
-def drawn(axes: Axes, which: Which) -> NDArray[np.float64]:
+def drawn(axes: Axes, which: Which) -> Floats:
     """Return where the points of all lines are along an axis, shape (points,)."""
     along = [np.asarray(getattr(line, f"get_{which}data")(), dtype=float) for line in axes.lines]
     return np.concatenate([np.empty(0), *along])
@@ -82,6 +83,6 @@ def apart(values: ArrayLike) -> list[float]:
     return kept
 
 
-def _finite(values: ArrayLike) -> NDArray[np.float64]:
-    flat: NDArray[np.float64] = np.ravel(np.asarray(values, dtype=float))
+def _finite(values: ArrayLike) -> Floats:
+    flat: Floats = np.ravel(np.asarray(values, dtype=float))
     return np.compress(np.isfinite(flat), flat)

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from impactlab.figures import access, curves, labels, record, scales, style
-from impactlab.figures.access import design_dims, usable
+from impactlab.figures.access import usable
 from impactlab.figures.curves import Choice, Plan, plan
 from impactlab.figures.labels import Display, display
+from impactlab.types import Floats
 
 _FORCE, _INDENTATION = "contact_force", "indentation"
 _TIME = "time since first touch"
 _COLUMNS = 4
 """Largest number of force histories side by side."""
+_plan_by_law = partial(plan, variable=_FORCE, panel="velocity", prefer=["contact"])
 _WIDE = 3
 """Columns up to which a panel's title has room on one line."""
 _DISPLACEMENTS = {
@@ -184,9 +186,7 @@ def force_indentation(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     return figure
 
 
-def _loop(
-    run: xr.Dataset, depth: Display, force: Display
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _loop(run: xr.Dataset, depth: Display, force: Display) -> tuple[Floats, Floats]:
     """Return indentation and force of one run in display units, NaN where the two are apart.
 
     In contact counts one sample to either side, so that loops reach the axis.
@@ -203,10 +203,6 @@ def _several_laws(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Return whether histories were kept of several contact laws at several velocities."""
     kept = _has_loops(runs, analysis)
     return kept and all(runs[_FORCE].sizes.get(dim, 0) > 1 for dim in ("contact", "velocity"))
-
-
-def _plan_by_law(runs: xr.Dataset) -> Plan:
-    return plan(runs, _FORCE, panel="velocity", prefer=["contact"])
 
 
 @record.figure(
@@ -232,10 +228,8 @@ def force_indentation_by_law(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             ax.set(xlim=(0.0, None), ylim=(0.0, None))
         else:
             style.remark(ax, "no finite values")
-    figure.supxlabel(labels.axis("indentation", depth.symbol))
-    figure.supylabel(labels.axis("contact force", force.symbol))
-    selected.legend(figure)
-    return figure
+    across = labels.axis("indentation", depth.symbol)
+    return selected.finish(figure, across, labels.axis("contact force", force.symbol))
 
 
 def _has_profiles(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -244,8 +238,7 @@ def _has_profiles(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
 
 def _largest(runs: xr.Dataset) -> xr.DataArray:
     """Return the largest PEEQ of each run."""
-    strain = usable(runs, _STRAIN)
-    return strain.max([dim for dim in strain.dims if dim not in design_dims(runs, strain.dims)])
+    return usable(runs, _STRAIN).max(["x", "z"])
 
 
 def _plastic(runs: xr.Dataset) -> xr.Dataset:
@@ -288,7 +281,7 @@ def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     kept = _plastic(runs)
     strain, place = display(kept[_STRAIN]), display(kept["x"])
 
-    def line(run: xr.Dataset) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def line(run: xr.Dataset) -> tuple[Floats, Floats]:
         largest = run[_STRAIN].max("z").dropna("x")
         return place(largest["x"]), strain(largest.where(largest > 0))
 
@@ -324,7 +317,7 @@ def plastic_strain_depth(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     kept = _plastic(runs)
     strain, depth = display(kept[_STRAIN]), display(kept["z"])
 
-    def line(run: xr.Dataset) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def line(run: xr.Dataset) -> tuple[Floats, Floats]:
         section = run[_STRAIN].isel(x=int(np.argmax(run[_STRAIN].max("z").fillna(-1.0).values)))
         return scales.positive(strain(section)), depth(section["z"])
 
