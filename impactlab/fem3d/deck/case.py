@@ -63,18 +63,6 @@ class Case:
                     f"deck.interval = {self.interval!r} s: must not be above the duration "
                     f"({self.duration!r} s)"
                 )
-        self._check_sizes()
-
-    @property
-    def time_between(self) -> float:
-        """Return the time between results, in s."""
-        if self.interval is not None:
-            return self.interval
-        contact = hertz.contact_duration(*hertz.arguments(self.impact))
-        return min(contact / _SAMPLES, self.duration)
-
-    def _check_sizes(self) -> None:
-        """Raise ValueError unless the mesh's extents are those of the impact's bodies."""
         beam, nodes = self.impact.beam, self.mesh.nodes
         for name, meshed, wanted in (
             ("beam's span", 2.0 * nodes[self.mesh.support, 0].max(), beam.span),
@@ -87,6 +75,14 @@ class Case:
                     f"deck.mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in "
                     "the impact: make the mesh from this impact (quarter_mesh)"
                 )
+
+    @property
+    def time_between(self) -> float:
+        """Return the time between results, in s."""
+        if self.interval is not None:
+            return self.interval
+        contact = hertz.contact_duration(*hertz.arguments(self.impact))
+        return min(contact / _SAMPLES, self.duration)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -79,55 +79,44 @@ def _plot_mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     figure = Figure(figsize=(style.DOUBLE * style.MILLIMETRE, 125 * style.MILLIMETRE))
     figure.set_layout_engine("constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.5])
-    above = figure.add_subplot(grid[0, :])
-    side, top = figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1])
-    reach = _ENLARGED * 1e3 * float(solid["patch"])
-    _draw_mesh(above, solid, 1, width=min(0.15, 0.15e3 * float(solid["element_size"])))
-    _draw_mesh(side, solid, 1, width=0.4)
-    _draw_mesh(top, solid, 2, width=0.4)
+    patch = 1e3 * float(solid["patch"])
+    thin, reach = min(0.15, 0.15e3 * float(solid["element_size"])), _ENLARGED * patch
+    axes = []
+    for place, axis, width, title, label in (
+        (grid[0, :], 1, thin, "Plane of symmetry along the beam", "height"),
+        (grid[1, 0], 1, 0.4, "The same at the contact", "height"),
+        (grid[1, 1], 2, 0.4, "Top of the beam", "from mid-width"),
+    ):
+        ax = figure.add_subplot(place)
+        polygons, elements = faces(solid, axis)
+        body = solid["body"].values[elements]
+        colours = np.where(body == BEAM, _COLOURS["beam"], _COLOURS["sphere"])
+        full = solid["fully_integrated"].values[elements]
+        colours = np.where(full, _COLOURS["fully integrated"], colours)
+        shown = slice(None) if axis == 1 else body == BEAM
+        look: dict[str, Any] = {"edgecolors": _EDGE, "linewidths": width}
+        _draw_faces(ax, polygons[shown], facecolors=colours[shown], **look)
+        ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis(label, "mm"))
+        ax.set_title(title, loc="left")
+        scales.linear(ax, "x")
+        scales.linear(ax, "y")
+        axes.append(ax)
+    above, side, top = axes
     above.autoscale_view()
     above.margins(0.01)
     side.set_anchor("E")  # close to each other, though squares
     top.set_anchor("W")
     side.set(xlim=(0.0, reach), ylim=(-0.6 * reach, 0.4 * reach))
     top.set(xlim=(0.0, reach), ylim=(0.0, reach))
-    _frame(side, solid, (1.0, 2.0), -1.0)
-    _frame(top, solid, (1.0, 1.0), 0.0)
-    for ax, title, label in (
-        (above, "Plane of symmetry along the beam", "height"),
-        (side, "The same at the contact", "height"),
-        (top, "Top of the beam", "from mid-width"),
-    ):
-        ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis(label, "mm"))
-        ax.set_title(title, loc="left")
-        scales.linear(ax, "x")
-        scales.linear(ax, "y")
+    for ax, low in ((side, -patch), (top, 0.0)):  # the patch of matched nodes
+        look = {"fill": False, "color": style.COLOURS[1], "zorder": 3}
+        ax.add_patch(Rectangle((0.0, low), patch, patch - low, **look))
     figure.legend(
         handles=[Patch(facecolor=c, edgecolor=_EDGE, label=n) for n, c in _COLOURS.items()],
         loc="outside upper center",
         ncols=len(_COLOURS),
     )
     return figure
-
-
-def _draw_mesh(ax: Axes, solid: xr.Dataset, axis: int, width: float) -> None:
-    """Draw the faces in a plane: of both bodies, or of the beam where they touch."""
-    polygons, elements = faces(solid, axis)
-    body = solid["body"].values[elements]
-    colours = np.where(body == BEAM, _COLOURS["beam"], _COLOURS["sphere"])
-    full = solid["fully_integrated"].values[elements]
-    colours = np.where(full, _COLOURS["fully integrated"], colours)
-    shown = slice(None) if axis == 1 else body == BEAM
-    _draw_faces(ax, polygons[shown], facecolors=colours[shown], edgecolors=_EDGE, linewidths=width)
-
-
-def _frame(ax: Axes, solid: xr.Dataset, sides: tuple[float, float], low: float) -> None:
-    """Draw the patch of matched nodes."""
-    patch = 1e3 * float(solid["patch"])
-    width, height = (patch * side for side in sides)
-    ax.add_patch(
-        Rectangle((0.0, low * patch), width, height, fill=False, color=style.COLOURS[1], zorder=3)
-    )
 
 
 THRESHOLD = 1e-5

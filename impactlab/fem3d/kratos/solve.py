@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -31,29 +32,14 @@ TIME_STEP, PENALTY = 8e-6, 1e15
 
 
 def solve(
-    impact: Impact,
-    *,
-    element_size: float,
-    duration: float,
-    patch: float | None = None,
-    time_step: float = TIME_STEP,
-    penalty: float = PENALTY,
-    threads: int = 1,
-    progress: Progress | None = None,
+    impact: Impact, *, element_size: float, patch: float | None = None, **options: Any
 ) -> xr.Dataset:
     """Solve one impact on the mesh that quarter_mesh makes of element_size and patch (m).
 
-    The rest, and what is returned and raised, as in solve_on.
+    options, and what is returned and raised, as in solve_on.
     """
-    return solve_on(
-        quarter_mesh(impact, element_size=element_size, patch=patch),
-        impact,
-        duration=duration,
-        time_step=time_step,
-        penalty=penalty,
-        threads=threads,
-        progress=progress,
-    )
+    mesh = quarter_mesh(impact, element_size=element_size, patch=patch)
+    return solve_on(mesh, impact, **options)
 
 
 def solve_on(

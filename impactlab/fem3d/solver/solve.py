@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -20,23 +21,14 @@ from impactlab.variables import described, provenance
 
 
 def solve(
-    impact: Impact,
-    *,
-    element_size: float,
-    duration: float,
-    patch: float | None = None,
-    samples: int = 2001,
-    threads: int = 1,
-    progress: Progress | None = None,
+    impact: Impact, *, element_size: float, patch: float | None = None, **options: Any
 ) -> xr.Dataset:
     """Solve one impact on the mesh that quarter_mesh makes of element_size and patch (m).
 
-    The rest, and what is returned and raised, as in solve_on.
+    options, and what is returned and raised, as in solve_on.
     """
     mesh = quarter_mesh(impact, element_size=element_size, patch=patch)
-    return solve_on(
-        mesh, impact, duration=duration, samples=samples, threads=threads, progress=progress
-    )
+    return solve_on(mesh, impact, **options)
 
 
 def solve_on(

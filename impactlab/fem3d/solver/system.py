@@ -23,26 +23,17 @@ from impactlab.fem3d.solver.mesh.mesh import NEIGHBOURS, Floats, nodal_masses
 from impactlab.model.impact import Impact
 
 
-class ThreadPool:
-    """A pool for compiled functions over ranges of numbers; one of its threads is the caller's.
-
-    Use it as a context: it ends its threads.
-    """
+class ThreadPool(ThreadPoolExecutor):
+    """A pool for compiled functions over ranges of numbers; one of its threads is the caller's."""
 
     def __init__(self, threads: int) -> None:
         """Start that many threads, at least 1."""
+        super().__init__(max(threads - 1, 1))
         self.threads = threads
-        self._pool = ThreadPoolExecutor(max(threads - 1, 1))
-
-    def __enter__(self) -> ThreadPool:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._pool.shutdown(cancel_futures=True)
 
     def run(self, work: Callable[[int], Any]) -> None:
         """Call work(part) for every part from 0 to threads - 1, and wait for all."""
-        others = [self._pool.submit(work, part) for part in range(1, self.threads)]
+        others = [self.submit(work, part) for part in range(1, self.threads)]
         work(0)
         for other in others:
             other.result()

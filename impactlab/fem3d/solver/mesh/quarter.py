@@ -134,7 +134,11 @@ def quarter_sphere(
     lattice = np.stack(np.meshgrid(i, i, k, indexing="ij"), axis=-1).reshape(-1, 3).astype(np.int32)
     most = np.array([sides, sides, height])
     border = np.any(np.abs(lattice) == most, axis=1)
-    inner = radius * _core(lattice / most)
+    # A rounded box over the radius: a cube, places in -1 to 1, blended with a ball.
+    cube = lattice / most
+    one, two = np.roll(cube**2, -1, axis=1), np.roll(cube**2, -2, axis=1)
+    ball = cube * np.sqrt(1.0 - one / 2.0 - two / 2.0 + one * two / 3.0)
+    inner = radius * (_CORE * ((1.0 - _ROUND) * cube + _ROUND * ball))
     outer = radius * _surface(lattice[border], lines / radius, count, height)
     # The share of the way out, (layers, border places): fine at the pole, even elsewhere.
     i, j, k = lattice[border].T
@@ -148,14 +152,6 @@ def quarter_sphere(
     squares = nodes[surface, 0] ** 2 + nodes[surface, 1] ** 2
     nodes[surface, 2] = squares / (radius + np.sqrt(radius**2 - squares))
     return nodes, elements, surface
-
-
-def _core(place: Floats) -> Floats:
-    """Return a rounded box over the radius, from places in -1 to 1: a cube blended with a ball."""
-    squares = place**2
-    one, two = np.roll(squares, -1, axis=1), np.roll(squares, -2, axis=1)
-    ball = place * np.sqrt(1.0 - one / 2.0 - two / 2.0 + one * two / 3.0)
-    return np.asarray(_CORE * ((1.0 - _ROUND) * place + _ROUND * ball))
 
 
 def _surface(lattice: Integers, lines: Floats, patch: int, height: int) -> Floats:
