@@ -148,10 +148,7 @@ def _solved(data: Mapping[str, xr.Dataset]) -> Table:
 
 
 def _write_tables(judged: Judged, output: Path) -> None:
-    """Write claims.csv, one row per judgement, and numbers.csv, one row per number in SI units.
-
-    An unknown uncertainty is "nan".
-    """
+    """Write one row per judgement, and one row per number in SI units."""
     claims = [["claim", "statement", "case", "test", "numbers", "verdict", "why"]]
     numbers = [["claim", "case", "number", "value", "uncertainty", "units"]]
     for statement, judgements in judged:
@@ -168,10 +165,7 @@ def _write_tables(judged: Judged, output: Path) -> None:
 
 
 def _numbers(judgement: Judgement) -> str:
-    """Return names, values and uncertainties: "peak force: 12.34 ± 0.11 kN".
-
-    The values have the significant digits down to the second of the uncertainty, 2 to 5.
-    """
+    """Return "peak force: 12.34 ± 0.11 kN", with the digits that the uncertainty leaves."""
     texts = []
     for number in judgement.numbers:
         unit = display(xr.DataArray([number.value], attrs={"units": number.units}))

@@ -99,10 +99,7 @@ def _columns(analysis: xr.Dataset, axis: str) -> dict[str, Callable[[xr.Dataset]
 
 
 def _over_the_grid(found: xr.Dataset, axis: str) -> Cell:
-    """Return the number of each verdict, and how the three finest grids behave where it is known.
-
-    The text is such as "converged 22, divergent 2".
-    """
+    """Return how often each verdict occurs, and how the three finest grids behave."""
     verdicts = {}
     if f"{axis}_tally" in found:
         tally = found[f"{axis}_tally"]

@@ -206,10 +206,7 @@ def sentences(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[st
 
 
 def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str, total: Index) -> Iterator[str]:
-    """Yield the shares of single parameters, the largest first; then interactions.
-
-    Interactions are told where a total index exceeds its first order by more than their errors.
-    """
+    """Yield the shares of single parameters, then interactions beyond all errors."""
     response, index = labels.response(name), measures.index(analysis, "first_order", name)
     found = _strongest(analysis, index, index.significant)[:_NAMED]
     lost = _strongest(analysis, index, index.numerically_lost)[:_NAMED]

@@ -72,7 +72,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         **described(runs),
         method=labels.method(str(runs.attrs.get("method", "grid"))),
         runs=count(runs),
-        varied=_varied_parameters(runs),
+        varied=len(varied(runs)),
         failed=int(access.failed(runs).sum()),
         pictures=drawn,
         files=os.path.relpath(figures_folder, path.parent),
@@ -164,11 +164,7 @@ def _values(coordinate: xr.DataArray) -> Row:
 
 
 def _outcome(runs: xr.Dataset, analysis: xr.Dataset, figures: list[str] | None = None) -> Section:
-    """Return the section on failed runs: how many, which and why.
-
-    A run failed when its status says so, or when one of its responses is missing. Sentences name
-    the responses whose indices rest on values from a surrogate.
-    """
+    """Return the section on failed runs, and on values that a surrogate supplied."""
     failed, total = access.failed(runs), count(runs)
     imputed = []
     for name in analysed(runs, analysis) if "imputed_share" in analysis else ():
@@ -217,11 +213,7 @@ def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
 
 
 def _ranges(runs: xr.Dataset) -> Table:
-    """Return one row per response: unit, smallest and largest value, number of missing values.
-
-    A grid names the runs of the extremes unless all values are the same; a sample has percentiles
-    between them.
-    """
+    """Return one row per response; a grid names runs, a sample has percentiles."""
     quantiles = _QUANTILES if is_sample(runs) else {}
     rows: list[Row] = []
     for name in responses(runs):
@@ -264,10 +256,10 @@ def _all_values(runs: xr.Dataset) -> list[Table]:
     if count(runs) > _PRINTED_RUNS:
         return []
     dims = [dim for dim in design_dims(runs) if runs.sizes[dim] > 1]
-    varied_heads = []
-    for dim in dims:
-        unit = labels.unit(runs[dim]).strip()
-        varied_heads.append(labels.sentence(labels.parameter(dim)) + (f" ({unit})" if unit else ""))
+    varied_heads = [
+        labels.axis(labels.parameter(dim), labels.unit(runs[dim]).strip()).removesuffix(" (–)")
+        for dim in dims
+    ]
     shown = responses(runs)
     groups = [shown[at : at + _COLUMNS] for at in range(0, len(shown), _COLUMNS)]
     tables = []

@@ -92,10 +92,7 @@ TIME_STEP = Statement(
 
 
 def _judge_unloading_radius(case: str, data: Data, exponent: float | None) -> Judgement:
-    """Judge R_e = sqrt(3 F_m/(4 E*)) (R*/delta_y)^exponent; a length for any exponent.
-
-    The force would jump by (unloading force - F_m)/F_m where unloading begins.
-    """
+    """Judge R_e = sqrt(3 F_m/(4 E*)) (R*/delta_y)^exponent; a length for any exponent."""
     if exponent is None:
         raise UnknownError("The root in Eq. 17 is garbled: what it covers cannot be read.")
     law = stronge_impact(paper_impact())
@@ -136,10 +133,7 @@ UNLOADING_RADIUS = Statement(
 
 
 def _judge_elastic_phase(case: str, data: Data, begins: float) -> Judgement:
-    """Judge the forces where the contact begins and at the yield indentation.
-
-    begins: the depth over the yield indentation that the expression has where the contact begins.
-    """
+    """Judge the expression; begins: its depth over delta_y where the contact begins."""
     law = stronge_impact(paper_impact())
     stiffness = hertz.stiffness(law.effective_modulus, law.effective_radius)
     first, last = (stiffness * (share * law.yield_indentation) ** 1.5 for share in (begins, 1.0))

@@ -48,11 +48,7 @@ _UNDECIDED = "{:g} % lies within the uncertainty of the two models together."
 
 
 def _solid_response(data: Data, response: str, velocity: float, least: float = 0.0) -> Number:
-    """Return the 3-D model's response, its uncertainty from the element sizes, at least `least`.
-
-    At the paper's velocity it comes from the study MESHES, where that is solved. Raises
-    UnknownError where a run is missing or nothing bounds the error.
-    """
+    """Return the 3-D model's response; its uncertainty is `least` or more."""
     runs = _solid_runs(data, velocity)
     if response not in runs:
         study = runs.attrs.get("study", FIRST_CONTACT)
@@ -68,17 +64,14 @@ def _solid_response(data: Data, response: str, velocity: float, least: float = 0
 
 
 def _solid_runs(data: Data, velocity: float) -> xr.Dataset:
-    """Return runs that vary the element size, among them those of the 3-D model."""
+    """Return runs that vary the elements: of MESHES at the paper's velocity, if solved."""
     if velocity == VELOCITY and MESHES in data:
         return data[MESHES].expand_dims("velocity")
     return _refined_runs(data)[0].isel(nodes=0)
 
 
 def _refined_runs(data: Data) -> tuple[xr.Dataset, str]:
-    """Return the runs of FIRST_CONTACT and the dimension on which their elements are refined.
-
-    Raises UnknownError unless nodes and elements vary.
-    """
+    """Return the runs of FIRST_CONTACT and the dimension that refines their elements."""
     runs = runs_of(data, FIRST_CONTACT)
     if "nodes" not in runs.dims:
         raise UnknownError(f"the study {FIRST_CONTACT} does not vary nodes: its error is unknown")
@@ -118,11 +111,7 @@ def _judge_ratio(
     comparatives: tuple[str, str],
     stated: tuple[float, str] | None = None,
 ) -> Judgement:
-    """Judge |beam/3-D − 1| ± U ≤ limit; U: the numerical uncertainties of both.
-
-    comparatives: words for a smaller and a larger value, such as "shorter" and "longer". stated:
-    velocity (m/s) and beam model that the paper speaks of; all others are readings.
-    """
+    """Judge |beam/3-D − 1| ± U ≤ limit; stated: (velocity, beam model) in the paper."""
     runs, elements = _refined_runs(data)
     runs = runs.isel({elements: 0})
     ours = _bounded(finest_grid(runs, response, velocity=velocity, beam_model=model))
