@@ -19,11 +19,10 @@ from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DO
 from impactlab.analysis.responses import usable
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity import sobol
-from impactlab.analysis.sensitivity.indices import Fit, imputed
+from impactlab.analysis.sensitivity.indices import imputed
 from impactlab.analysis.sensitivity.method import half_widths
 from impactlab.analysis.sensitivity.sobol import Outputs, estimates
 from impactlab.analysis.sensitivity.verdict import still, tail
-from impactlab.analysis.surrogate import fit
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
 from impactlab.types import Floats
 
@@ -48,12 +47,11 @@ def numerical(
     analysis: xr.Dataset,
     resolution: xr.Dataset | None = None,
     refinement: xr.Dataset | None = None,
-    fit: Fit = fit,
 ) -> xr.Dataset:
     """Return the numerical uncertainty of each response, and of its indices; no unit.
 
     runs: a sample; analysis: its indices; resolution, refinement: see adaptive.recommendation and
-    adaptive.refining, of the same study; fit: see `sensitivity.analysis`.
+    adaptive.refining, of the same study.
 
     Returns of a resolution numerical_uncertainty (response), relative, the worst over the corner
     cases, and numerical_share (response), (u/sigma)^2 with u the root mean square of the
@@ -72,7 +70,7 @@ def numerical(
     changed, estimator = xr.Dataset(), _BOUND
     if refinement is not None:
         _check_refinement(runs, refinement)
-        changed = measured(refinement, fit)
+        changed = measured(refinement)
         estimator = _MEASURED.format(refinement.attrs["base_samples"]) + _BOUND
     nothing = xr.full_like(analysis["response"], np.inf, dtype=float).reset_coords(drop=True)
     share = found.get("numerical_share", nothing)
@@ -152,11 +150,8 @@ def _check_refinement(runs: xr.Dataset, refinement: xr.Dataset) -> None:
         )
 
 
-def measured(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
+def measured(refinement: xr.Dataset) -> xr.Dataset:
     """Return how far the indices of the used grid may lie from those in the limit.
-
-    refinement: see adaptive.refining. fit: makes the surrogate that supplies failed runs where the
-    study asks for it.
 
     Returns for each of ORDERS, on (response, parameter) and without unit: <order>, that distance;
     <order>_change, from the used to the finer grid, and <order>_change_interval, the half-width of
@@ -176,7 +171,7 @@ def measured(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
     spacings = dict(zip(refinement["grid"].values.tolist(), 1.0 / (nodes - 1.0), strict=True))
     names = [str(name) for name in values["response"].values]
     rows = [
-        _of_response(name, outputs, spacings, sample, fit)
+        _of_response(name, outputs, spacings, sample)
         for name, outputs in zip(names, values.values, strict=True)
     ]
     gap = np.full(len(sample.factors), np.nan)
@@ -193,12 +188,12 @@ def measured(refinement: xr.Dataset, fit: Fit) -> xr.Dataset:
 
 
 def _of_response(
-    name: str, outputs: Floats, spacings: Mapping[str, float], sample: Sample, fit: Fit
+    name: str, outputs: Floats, spacings: Mapping[str, float], sample: Sample
 ) -> dict[str, Floats]:
     """Analyse one response; empty where a grid gives no index. outputs: (grid, run)."""
     statistics = []
     for row in outputs:
-        complete = imputed(row, sample, fit, name)
+        complete = imputed(row, sample, name)
         if complete is None or not np.isfinite(complete).all():
             return {}
         if still(complete, sobol.varying(complete, sample)) or tail(complete) > TAIL_SHARE:
@@ -215,7 +210,7 @@ def _of_response(
 
     columns = np.concatenate(statistics, axis=1)
     found = changes(columns.mean(axis=0))
-    widths = half_widths(columns, changes, sample, sample.rng("refinement", name))
+    widths = half_widths(columns, changes, sample, "refinement", name)
     answer: dict[str, Floats] = {}
     for order in ORDERS:
         change = dict(zip(spacings, found[order], strict=True))

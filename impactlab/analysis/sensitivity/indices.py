@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -36,16 +36,8 @@ def applies(runs: xr.Dataset) -> bool:
     return runs.attrs.get("method") in METHODS
 
 
-Fit = Callable[[Floats, Floats, int], Callable[[Floats], Floats]]
-"""From places (runs, parameters) in the unit cube, values (runs,), and a seed to a surrogate, which
-gives values at other places."""
-
-
-def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
+def analysis(runs: xr.Dataset) -> xr.Dataset:
     """Return sensitivity indices of every response, by the method the sample was drawn for.
-
-    fit: makes the surrogate that supplies failed runs where the study asks for it
-    (`failed_runs: impute`).
 
     Returns the indices of the method, on (response, *dims), with <name>_interval, the half-width
     of the bootstrap interval; sensitivity_verdict, the worst verdict; sensitivity_remarks, all of
@@ -56,9 +48,7 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
     sample, method = Sample.of(runs), METHODS[str(runs.attrs["method"])]
     method.check(sample)
     values = usable(runs).sortby("run").transpose("response", "run")
-    answers = [
-        _answer(str(row["response"].item()), row.values, sample, method, fit) for row in values
-    ]
+    answers = [_answer(str(row["response"].item()), row.values, sample, method) for row in values]
     verdicts, shares, rows = zip(*answers, strict=True)
     wanted = {
         name: index
@@ -81,13 +71,13 @@ def analysis(runs: xr.Dataset, fit: Fit = fit) -> xr.Dataset:
 
 
 def _answer(
-    response: str, outputs: Floats, sample: Sample, method: SensitivityMethod, fit: Fit
+    response: str, outputs: Floats, sample: Sample, method: SensitivityMethod
 ) -> tuple[list[SensitivityVerdict], float, dict[str, Floats]]:
     """Return verdicts, share of the runs that a surrogate supplied, and indices if any.
 
     outputs: (runs,), NaN where a run failed.
     """
-    complete = imputed(outputs, sample, fit, response)
+    complete = imputed(outputs, sample, response)
     if complete is None:
         return [SensitivityVerdict.TOO_FEW_RUNS], 0.0, {}
     share = 0.0 if complete is outputs else float(np.isnan(outputs).mean())
@@ -146,12 +136,12 @@ FEWEST_PER_PARAMETER = 10
 """Good runs that a surrogate needs per parameter."""
 
 
-def imputed(outputs: Floats, sample: Sample, fit: Fit, response: str) -> Floats | None:
+def imputed(outputs: Floats, sample: Sample, response: str) -> Floats | None:
     """Return outputs (runs,) with a surrogate's predictions in the place of NaN.
 
-    They are returned as they are where none is NaN or the study does not ask for it; None where
-    too few runs are left. A mean would take away variance; the share of supplied runs is stored
-    beside the indices.
+    They are returned as they are where none is NaN or the study does not ask for it
+    (`failed_runs: impute`); None where too few runs are left. A mean would take away variance; the
+    share of supplied runs is stored beside the indices.
 
     The surrogate's place of a value is the share of runs below it. In a sample as even as those of
     sensitivity analyses, this is the probability to 1/runs, whatever the distribution.

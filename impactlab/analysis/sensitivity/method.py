@@ -94,16 +94,16 @@ def half_widths(
     columns: Floats,
     estimator: Callable[[Floats], Mapping[str, Floats]],
     sample: Sample,
-    rng: np.random.Generator,
+    *purpose: str,
 ) -> dict[str, Floats]:
     """Return half-widths of intervals of everything the estimator gives, by `<name>_interval`.
 
     columns: (rows, columns), resampled by row. estimator: from means (..., columns) to indices
-    (..., *dims), by name.
+    (..., *dims), by name. purpose: of the draws, see `Sample.rng`.
     """
     parts = [
         estimator(tally @ columns / len(columns))
-        for tally in counts(len(columns), sample.resamples, rng)
+        for tally in counts(len(columns), sample.resamples, sample.rng(*purpose))
     ]
     return {
         f"{name}_interval": sample.half_width(np.concatenate([part[name] for part in parts]))

@@ -70,8 +70,7 @@ def _regression(name: str, table: Floats, sample: Sample, response: str) -> dict
         values, share = _coefficients(without)
         return {name: values, f"dummy_{name}": with_dummy[..., -1], f"{name}_r_squared": share}
 
-    margins = half_widths(columns, estimator, sample, sample.rng(response))
-    return estimator(columns.mean(axis=0)) | margins
+    return estimator(columns.mean(axis=0)) | half_widths(columns, estimator, sample, response)
 
 
 def _coefficients(correlation: Floats) -> tuple[Floats, Floats]:

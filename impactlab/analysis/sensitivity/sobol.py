@@ -163,9 +163,8 @@ def _of_first(size: int, outputs: Floats, sample: Sample, response: str) -> dict
         return {}
     parts = Outputs.of(start, sample)
     statistics = parts.statistics(interactions=start.size == outputs.size)
-    found = points(parts) | half_widths(
-        statistics, lambda means: estimates(means, factors), sample, sample.rng(response)
-    )
+    spread = half_widths(statistics, lambda means: estimates(means, factors), sample, response)
+    found = points(parts) | spread
     if "second_order_interval" in found:
         found["second_order_interval"] = _matrix(found["second_order_interval"], factors)
     floor = estimates(statistics.mean(axis=0), factors)

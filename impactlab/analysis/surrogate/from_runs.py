@@ -91,19 +91,6 @@ class SurrogateVerdict(Verdict):
     CONSTANT = 6, False, "the response does not vary: there is none"
 
 
-def _verdict(found: Floats, runs: int) -> SurrogateVerdict:
-    """Return the verdict from the runs alone; found: the values of those of them that answered."""
-    if np.ptp(found) <= ROUND_OFF * np.abs(found).max():
-        return SurrogateVerdict.CONSTANT
-    if found.size < runs:
-        return SurrogateVerdict.FAILED_RUNS
-    counts = np.unique(found, return_counts=True)[1]
-    if counts.max() >= MOSTLY * found.size:
-        return SurrogateVerdict.MOSTLY_CONSTANT
-    jumps = counts.size <= min(FEW, found.size // 10)
-    return SurrogateVerdict.JUMPS if jumps else SurrogateVerdict.USABLE
-
-
 def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[str, Any]]:
     """Fit and test a surrogate of one response, (runs,), NaN where missing.
 
@@ -116,9 +103,9 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     few = training.size < fewest_runs(len(sample.parameters))
     if few or np.count_nonzero(tested) < _FEWEST_TESTS:
         return SurrogateVerdict.TOO_FEW_RUNS, {}
-    verdict = _verdict(values[answered], values.size)
-    if verdict is SurrogateVerdict.CONSTANT:
-        return verdict, {}
+    known = values[answered]
+    if np.ptp(known) <= ROUND_OFF * np.abs(known).max():
+        return SurrogateVerdict.CONSTANT, {}
     seed = int(sample.rng("surrogate fit").integers(2**31))
     rows = training[drawn(training.size, seed)]
     chaos = fit(divided.unit[rows], values[rows], seed)
@@ -130,9 +117,14 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     missed = min(max(1 - q2, 0.0), 1.0)
     found = {"chaos": chaos, "q2": q2, "rmse": rmse, "runs": rows.size, "held_out": predicted}
     found |= indices(chaos, sample.memberships, pull, missed, sample.confidence)
-    if verdict is SurrogateVerdict.USABLE and not q2 >= GOOD:  # a NaN is poor, too
-        verdict = SurrogateVerdict.POOR
-    return verdict, found
+    counts = np.unique(known, return_counts=True)[1]
+    if known.size < values.size:
+        return SurrogateVerdict.FAILED_RUNS, found
+    if counts.max() >= MOSTLY * known.size:
+        return SurrogateVerdict.MOSTLY_CONSTANT, found
+    if counts.size <= min(FEW, known.size // 10):
+        return SurrogateVerdict.JUMPS, found
+    return SurrogateVerdict.USABLE if q2 >= GOOD else SurrogateVerdict.POOR, found
 
 
 def analysis(runs: xr.Dataset) -> xr.Dataset:

@@ -28,6 +28,7 @@ class Surrogate:
         self.responses: tuple[str, ...] = tuple(map(str, dataset["response"].values))
         self._distributions = [json.loads(text) for text in dataset["distribution"].values]
         self._study = repr(dataset.attrs.get("study", "?"))
+        self._takes = f"the surrogate takes {', '.join(self.parameters)}"
 
     def units(self, parameter: str) -> str:
         """Return the SI unit of a parameter. Raises ValueError where it was not varied."""
@@ -46,28 +47,18 @@ class Surrogate:
         for name in values:
             self._check_known(name)
         if absent := [name for name in self.parameters if name not in values]:
-            raise ValueError(
-                f"{', '.join(absent)}: no value is given; the surrogate takes "
-                f"{', '.join(self.parameters)}"
-            )
+            raise ValueError(f"{', '.join(absent)}: no value is given; {self._takes}")
         arrays = [self._checked(name, values[name]) for name in self.parameters]
         columns = [
             array.drop_vars(self.parameters, errors="ignore") for array in xr.broadcast(*arrays)
         ]
+        pairs = zip(self._distributions, columns, strict=True)
         unit = np.column_stack(
-            [
-                cumulative(distribution, column.values.ravel())
-                for distribution, column in zip(self._distributions, columns, strict=True)
-            ]
+            [cumulative(drawn, column.values.ravel()) for drawn, column in pairs]
         )
         degrees, coefficients = self.dataset["degree"].values, self.dataset["coefficient"].values
-        found = np.concatenate(
-            [
-                coefficients @ basis(unit[start : start + _AT_ONCE], degrees)
-                for start in range(0, max(len(unit), 1), _AT_ONCE)
-            ],
-            axis=1,
-        )
+        batches = [unit[start : start + _AT_ONCE] for start in range(0, len(unit) or 1, _AT_ONCE)]
+        found = np.hstack([coefficients @ basis(batch, degrees) for batch in batches])
         first = columns[0]
         variables = {
             name: (first.dims, row.reshape(first.shape), self._attributes(name))
@@ -89,10 +80,7 @@ class Surrogate:
         if name not in self.parameters:
             held = self.dataset.coords.get(name)
             words = "" if held is None else f" (it is {held.item()!r} in all of its runs)"
-            raise ValueError(
-                f"{name}: was not varied in study {self._study}{words}; the surrogate takes "
-                f"{', '.join(self.parameters)}"
-            )
+            raise ValueError(f"{name}: was not varied in study {self._study}{words}; {self._takes}")
 
     def _checked(self, name: str, value: Any) -> xr.DataArray:
         """Return a parameter's values as floats. Raises ValueError where it cannot take one."""
@@ -142,18 +130,15 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
     dataset = dataset.rename(renamed | {"surrogate_term": "term", "surrogate_input": "parameter"})
     columns = [runs[str(name)] for name in dataset["parameter"].values]
     given = [arguments(column.attrs) for column in columns]
-    ends = np.array(
-        [
-            [float(known.get("low", column.min())), float(known.get("high", column.max()))]
-            for known, column in zip(given, columns, strict=True)
-        ]
-    )
+    pairs = list(zip(given, columns, strict=True))
+    lowest = [float(known.get("low", column.min())) for known, column in pairs]
+    highest = [float(known.get("high", column.max())) for known, column in pairs]
     inputs = {
         "distribution": ([json.dumps(known) for known in given], {}),
         "parameter_units": ([column.attrs.get("units", "1") for column in columns], {}),
         "parameter_long_name": ([column.attrs.get("long_name", "") for column in columns], {}),
-        "lowest": (ends[:, 0], {"long_name": "lowest value trained on, SI"}),
-        "highest": (ends[:, 1], {"long_name": "highest value trained on, SI"}),
+        "lowest": (lowest, {"long_name": "lowest value trained on, SI"}),
+        "highest": (highest, {"long_name": "highest value trained on, SI"}),
     }
     held = {name: array for name, array in runs.coords.items() if array.ndim == 0}
     return (

@@ -5,7 +5,6 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.numerical import measured, numerical
-from impactlab.analysis.surrogate import fit
 from impactlab.study.adaptive.refining import refined
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
@@ -143,7 +142,7 @@ def sample_of(solve, second="false"):
 def test_the_indices_of_the_limit_are_within_the_uncertainty(order, second):
     solve = solver(order)
     refinement = refined(sample_of(solve, second), solve)
-    found = measured(refinement, fit).sel(response="peak_force")
+    found = measured(refinement).sel(response="peak_force")
     here, finer = (shares(slopes(nodes, POINTS, order)) for nodes in (NODES, 2 * NODES - 1))
     for name in ("first_order", "total_order"):
         change, width = found[f"{name}_change"], found[f"{name}_change_interval"]
@@ -158,7 +157,7 @@ def test_an_error_common_to_all_runs_moves_no_index():
 
     solve = solver(common=20.0, own=0.0)
     runs = sample_of(solve)
-    found = measured(refined(runs, solve), fit)
+    found = measured(refined(runs, solve))
     assert float(found["first_order"].max()) < 1e-12
     assert float(found["total_order"].max()) < 1e-12
 
@@ -166,9 +165,9 @@ def test_an_error_common_to_all_runs_moves_no_index():
 def test_one_more_coarse_grid_tells_that_the_changes_fall():
     solve = solver(order=2.0)
     refinement = refined(sample_of(solve), solve)
-    with_it = measured(refinement, fit)["total_order"]
-    without = measured(refinement.sel(grid=["used", "finer", "more_points"]), fit)["total_order"]
-    change = abs(measured(refinement, fit)["total_order_change"])
+    with_it = measured(refinement)["total_order"]
+    without = measured(refinement.sel(grid=["used", "finer", "more_points"]))["total_order"]
+    change = abs(measured(refinement)["total_order_change"])
     np.testing.assert_allclose(without - with_it, (3.0 - 1.25) * change, rtol=1e-9)
 
 
@@ -179,7 +178,7 @@ def test_points_count_too():
     used = refinement["peak_force"].sel(grid="used", drop=True)
     more = refinement["grid"] == "more_points"
     refinement["peak_force"] = refinement["peak_force"].where(more, used)
-    found = measured(refinement, fit).sel(response="peak_force")
+    found = measured(refinement).sel(response="peak_force")
     few, many = (shares(slopes(NODES, points, 1.0)) for points in (POINTS, 10**6))
     assert (found["first_order_change"] == 0).all()
     assert (abs(many - few) <= found["total_order"]).all()
@@ -190,7 +189,7 @@ def test_points_count_too():
 def test_failed_runs_are_dealt_with_as_the_study_says(policy, given):
     solve = solver(lost=[("finer", 3)])
     runs = sample_of(solve).assign_attrs(failed_runs=policy)
-    found = measured(refined(runs, solve), fit)
+    found = measured(refined(runs, solve))
     assert bool(np.isfinite(found["first_order"]).all()) is given
 
 
@@ -205,7 +204,7 @@ def test_it_takes_the_place_of_the_bound_where_it_is_known():
     solve = solver()
     runs = sample_of(solve)
     found = numerical(runs, analysis_of([0.6, np.nan, 0.1]), None, refined(runs, solve))
-    expected = measured(refined(runs, solve), fit)["total_order"]
+    expected = measured(refined(runs, solve))["total_order"]
     amounts = found["total_order_numerical"].values[0]
     np.testing.assert_allclose(amounts, expected.values[0] * [1, np.nan, 1])
     assert found["numerical_from"].item() == 0

@@ -48,6 +48,6 @@ def test_half_width_of_a_mean(confidence: float, quantile: float) -> None:
         return {"mean": means[..., 0]}
 
     sample = _sample(4000, confidence)
-    found = method.half_widths(rows, mean, sample, sample.rng("y"))
+    found = method.half_widths(rows, mean, sample, "y")
     expected = quantile * rows.std() / np.sqrt(400)
     np.testing.assert_allclose(found["mean_interval"], expected, rtol=0.04)

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from SALib.sample import sobol as sampler
-from scipy.interpolate import RBFInterpolator
 from scipy.stats import norm
 
 from impactlab.analysis import sensitivity
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.sensitivity import verdict
+from impactlab.analysis.sensitivity import indices, verdict
 
 Build = Callable[..., xr.Dataset]
 Read = Callable[..., Any]
@@ -105,15 +104,8 @@ def _broken(drawn: Build, unit: Any, share: float, **attrs: Any) -> xr.Dataset:
     return drawn("sobol", unit, named, base_samples=BASE, second_order=1, **attrs)
 
 
-def _fit(places: Any, values: Any, seed: int) -> Any:
-    """A stand-in for the surrogate."""
-    assert seed > 0
-    unique, first = np.unique(places, axis=0, return_index=True)
-    return RBFInterpolator(unique, values[first], neighbors=30)
-
-
 def test_failed_runs_leave_no_index(drawn: Build, verdicts_of: Read, unit: Any) -> None:
-    found = sensitivity.analysis(_broken(drawn, unit, 0.02), fit=_fit)
+    found = sensitivity.analysis(_broken(drawn, unit, 0.02))
     assert verdicts_of(found["sensitivity_verdict"]) == ["failed_runs", "usable"]
     assert np.isnan(found["first_order"][0]).all()
     assert found["imputed_share"].values.tolist() == [0, 0]
@@ -121,7 +113,7 @@ def test_failed_runs_leave_no_index(drawn: Build, verdicts_of: Read, unit: Any) 
 
 def test_imputed_runs_are_marked(drawn: Build, verdicts_of: Read, unit: Any) -> None:
     runs = _broken(drawn, unit, 0.05, failed_runs="impute")
-    found = sensitivity.analysis(runs, fit=_fit)
+    found = sensitivity.analysis(runs)
     assert verdicts_of(found["sensitivity_verdict"]) == ["imputed", "usable"]
     assert "imputed" not in found["sensitivity_verdict"].attrs["sound_flags"].split()
     missing = float(np.isnan(runs["peak_force"]).mean())
@@ -133,17 +125,21 @@ def test_imputed_runs_are_marked(drawn: Build, verdicts_of: Read, unit: Any) -> 
 
 def test_too_few_runs_to_impute(drawn: Build, verdicts_of: Read, unit: Any) -> None:
     runs = _broken(drawn, unit, 0.25, failed_runs="impute")
-    found = sensitivity.analysis(runs, fit=_fit)
+    found = sensitivity.analysis(runs)
     assert verdicts_of(found["sensitivity_verdict"]) == ["too_few_runs", "usable"]
     assert np.isnan(found["first_order"][0]).all()
     assert found["imputed_share"][0] == 0
 
 
-def test_a_surrogate_that_fails_is_told(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+def test_a_surrogate_that_fails_is_told(
+    drawn: Build, verdicts_of: Read, unit: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def fit(places: Any, values: Any, seed: int) -> Any:
+        assert seed > 0
         return lambda new: np.full(len(new), np.nan)
 
-    found = sensitivity.analysis(_broken(drawn, unit, 0.02, failed_runs="impute"), fit=fit)
+    monkeypatch.setattr(indices, "fit", fit)
+    found = sensitivity.analysis(_broken(drawn, unit, 0.02, failed_runs="impute"))
     assert verdicts_of(found["sensitivity_verdict"])[0] == "failed_runs"
     assert found["imputed_share"][0] == 0
 
