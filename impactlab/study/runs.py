@@ -50,11 +50,6 @@ class Work:
             cost.append(solver.cost(cases))
         return Work(design, name, output, np.concatenate(keys), np.concatenate(cost))
 
-    @property
-    def size(self) -> int:
-        """Return the number of runs."""
-        return int(self.keys.size)
-
     def cases(self, runs: Array) -> Array:
         """Return the cases of these runs, by number."""
         return solver_named(self.solver).cases(self.design, runs)
@@ -150,7 +145,7 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
     """Return the status of a design; shards are only read, also while another process writes."""
     work = Work.of(design)
     shards, index = work.shards(shards_folder), RunIndex(work.keys)
-    bits = np.zeros(work.size, dtype=np.int32)
+    bits = np.zeros(index.size, dtype=np.int32)
     for keys, columns in shards.read("status"):
         requested, runs = index.find(keys)
         index.mark(runs)
@@ -158,8 +153,8 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
     failures = solver_named(work.solver).failures(design)
     times = [each.st_mtime for each in _seen(shards.files())]
     return Status(
-        runs=work.size,
-        done=work.size - index.left(),
+        runs=index.size,
+        done=index.size - index.left(),
         failed=int(np.count_nonzero(index.spread(bits) & failures)),
         age=time.time() - max(times) if times else None,
         size=disk_size(shards_folder.rglob("*")),

@@ -168,7 +168,10 @@ def _sound(path: Path, names: Collection[str] = ()) -> tuple[Array, Columns] | N
 
 
 class RunIndex:
-    """The runs of a design by key: which are answered, and which are equal to another."""
+    """The runs of a design by key: which are answered, and which are equal to another.
+
+    size: their number. distinct: the number of those that are equal to none before them.
+    """
 
     def __init__(self, keys: Array) -> None:
         """Take the keys of the design's runs, shape (runs,)."""
@@ -178,16 +181,9 @@ class RunIndex:
         self._repeats = self._order[1:][ascending[1:] == ascending[:-1]]
         self._done = np.zeros(keys.size, dtype=bool)
         self._done[self._repeats] = True
-
-    @property
-    def size(self) -> int:
-        """Return the number of runs."""
-        return int(self._keys.size)
-
-    @property
-    def distinct(self) -> int:
-        """Return the number of runs that are equal to none before them."""
-        return self.size - int(self._repeats.size)
+        self._firsts = self.find(keys[self._repeats])[1]
+        self.size = int(keys.size)
+        self.distinct = self.size - int(self._repeats.size)
 
     def find(self, keys: Array) -> tuple[Array, Array]:
         """Return a mask of the keys that are in the design, shape (keys,), and their first runs."""
@@ -206,15 +202,12 @@ class RunIndex:
 
     def left(self) -> int:
         """Count the runs of the design without an answer, equal ones each."""
-        return int(np.count_nonzero(~self._done) + np.count_nonzero(~self._done[self._firsts()]))
+        return int(np.count_nonzero(~self._done) + np.count_nonzero(~self._done[self._firsts]))
 
     def spread(self, values: Array) -> Array:
         """Copy the row of the first of equal runs to the others, in place; shape (runs, ...)."""
-        values[self._repeats] = values[self._firsts()]
+        values[self._repeats] = values[self._firsts]
         return values
-
-    def _firsts(self) -> Array:
-        return self.find(self._keys[self._repeats])[1]
 
 
 @contextmanager

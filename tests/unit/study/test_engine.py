@@ -60,7 +60,7 @@ class SlurmHere(LocalCluster):
 
 
 def test_jobs_that_ended_are_submitted_again(monkeypatch):
-    cluster = SlurmHere(n_workers=0, processes=False, dashboard_address=None)
+    cluster = SlurmHere(n_workers=0, processes=False, dashboard_address="127.0.0.1:0")
     monkeypatch.setattr(engine, "slurm_cluster", lambda _: cluster)
     monkeypatch.setattr(engine, "_SUBMIT_AGAIN", 0.1)
     profile = Profile(jobs=2, interface="lo", cores=1, memory="1GB", walltime="1:00")

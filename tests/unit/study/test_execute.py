@@ -84,7 +84,12 @@ def test_workers_that_come_later_need_not_wait_for_a_task_to_end(tmp_path, monke
         return solve(cases, output)
 
     monkeypatch.setattr(impact, "SOLVER", replace(impact.SOLVER, solve=together))
-    one = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    one = {
+        "n_workers": 1,
+        "threads_per_worker": 1,
+        "processes": False,
+        "dashboard_address": "127.0.0.1:0",
+    }
     with LocalCluster(**one) as cluster:
         runs = execute(design(), tmp_path, Engine(address=cluster.scheduler_address))
     assert np.isfinite(runs["peak_force"]).all()
