@@ -69,7 +69,7 @@ def lumped_step(beam: Beam, lumped: Lumped, grid: Grid, now: int, F: float) -> N
 
 @compiled
 def lumped_energy(beam: Beam, lumped: Lumped, grid: Grid, now: int) -> float:
-    """Return kinetic (see energy.py) and elastic energy in J, after a step, at its beginning."""
+    """Return kinetic (see beam.py) and elastic energy in J, after a step, at its beginning."""
     u, w = beam.u[grid.mid], beam.w[now, grid.mid]
     moving = lumped.mass * u * (u - beam.du[grid.mid]) / grid.dt**2
     return 0.5 * (moving + lumped.stiffness * w * w)

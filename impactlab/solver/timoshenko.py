@@ -142,7 +142,7 @@ def _shift(
 def shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) -> float:
     """Return the beam's energy in J after a step, at its beginning, without plastic strains'.
 
-    Kinetic as in energy.py, of deflection and rotation; elastic of bending (see there) and shear.
+    Kinetic as in beam.py, of deflection and rotation; elastic of bending (see there) and shear.
     """
     u, du, spin, d_spin, mid = beam.u, beam.du, shear.spin, shear.d_spin, grid.mid
     moved, turned, bent, sheared = 0.0, 0.0, 0.0, 0.0
