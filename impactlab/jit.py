@@ -55,7 +55,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 log = logging.getLogger(__name__)
 
 _COMPILES = "IMPACTLAB_COMPILES"
-"""Environment variable of a process that compiles everything itself, for others to load."""
+"""Environment variable of a process that compiles one kernel, for others to load: its name."""
 _SUFFIX = ".kernel"
 _DIGEST = hashlib.sha256().digest_size
 _FOLDER = re.compile(r"kernels-[0-9a-f]{16}(-[0-9a-f]{8})?(\.[0-9a-f]{32})?")
@@ -105,13 +105,25 @@ def _remove_unused(root: Path) -> None:
             continue
 
 
+def _name(function: Callable[..., Any]) -> str:
+    return f"{function.__module__}.{function.__qualname__}"
+
+
+def _called(name: str) -> bool:
+    """Return whether Python can call a function: in a process that compiles one kernel, that alone.
+
+    What makes the others ready for Python would take half of the time.
+    """
+    return os.environ.get(_COMPILES, name) == name
+
+
 class KernelCache(_Cache):
     """The compiled forms of one function, as numba's dispatchers ask for them."""
 
     def __init__(self, folder: Path, function: Callable[..., Any]) -> None:
         """Cache `function` in `folder`."""
         self.folder = folder
-        self._name = f"{function.__module__}.{function.__qualname__}"
+        self._name = _name(function)
 
     @property
     def cache_path(self) -> str:
@@ -127,8 +139,8 @@ class KernelCache(_Cache):
         return rebuild(target_context, *pickle.loads(payload))
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a compiled form, unless it holds addresses of this process."""
-        if data.library.has_dynamic_globals or data.lifted:
+        """Keep a compiled form that Python can call and that holds no addresses of this process."""
+        if data.library.has_dynamic_globals or data.lifted or not _called(self._name):
             return
         try:
             dumps: Any = serialize.dumps  # without types, as `_rebuild` above
@@ -258,7 +270,13 @@ class Compiler:
     ) -> Function:
         jit: Any = numba.njit  # its types do not list `_nrt`
         dispatcher = jit(
-            nogil=True, error_model="numpy", fastmath=fastmath, forceinline=inline, _nrt=allocates
+            nogil=True,
+            error_model="numpy",
+            fastmath=fastmath,
+            forceinline=inline,
+            _nrt=allocates,
+            no_cfunc_wrapper=True,
+            no_cpython_wrapper=not _called(_name(function)),
         )(function)
         if kept and self.folder is not None and dispatcher is not function:
             dispatcher._cache = KernelCache(self.folder, function)
@@ -283,9 +301,10 @@ def precompile(kernel: Any, program: str) -> None:
             if cache.is_kept():
                 return
             discard(cache.folder)
+            print("impactlab: compiling kernels, once, about 10 s", file=sys.stderr, flush=True)
             done = subprocess.run(
                 [sys.executable, "-c", program],
-                env=os.environ | {_COMPILES: "1", "PYTHONPATH": paths},
+                env=os.environ | {_COMPILES: _name(kernel), "PYTHONPATH": paths},
                 capture_output=True,
                 text=True,
                 check=False,

@@ -163,7 +163,8 @@ def march(
     stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
     # half a step before the first touch
     w_s, v_s, per_mass = 0.0, case.velocity - 0.5 * dt * case.gravity, 1.0 / case.sphere_mass
-    now, first, yielded, to_audit = 0, mid, mid + 1, stride
+    now = int(np.int64(0))  # a plain 0 would be a type of its own, and every callee compiled twice
+    first, yielded, to_audit = mid, mid + 1, stride
     here = (0.0, 0.0, 0.0, 0.0, 0.0)
     contact.n = 1.5
     event_tracker.start(events)
@@ -264,8 +265,9 @@ def run_all(
             responses.read_contact(answer, events[r], contacts[r], pair)
             responses.read_rebound(answer, case, events[r])
             responses.read_beam(answer, case, events[r], state.plastic.peeq, grid, dissipated)
-        if deflection.size > 0:
-            along = slice(1, grid.mid + 1)
-            deflection[r] = state.beam.w[now, along]
-            plastic_strain[r] = state.plastic.plastic_strain[along]
-            peeq[r] = state.plastic.peeq[along]
+        # element by element: slices would compile the message of numpy's error, for seconds
+        for i in range(deflection.shape[1]):
+            deflection[r, i] = state.beam.w[now, i + 1]
+            for j in range(peeq.shape[2]):
+                plastic_strain[r, i, j] = state.plastic.plastic_strain[i + 1, j]
+                peeq[r, i, j] = state.plastic.peeq[i + 1, j]
