@@ -134,7 +134,6 @@ which of them another grid moves, and whether it moves one, so few base samples 
 """
 _TO_LIMIT = 2.0
 """Distance to the limit over change, where each refinement takes half of the error."""
-_FIRST_ORDER = 1.0
 
 
 def _check_refinement(runs: xr.Dataset, refinement: xr.Dataset) -> None:
@@ -170,10 +169,8 @@ def measured(refinement: xr.Dataset) -> xr.Dataset:
     nodes = refinement["nodes"].values.astype(float)
     spacings = dict(zip(refinement["grid"].values.tolist(), 1.0 / (nodes - 1.0), strict=True))
     names = [str(name) for name in values["response"].values]
-    rows = [
-        _of_response(name, outputs, spacings, sample)
-        for name, outputs in zip(names, values.values, strict=True)
-    ]
+    pairs = zip(names, values.values, strict=True)
+    rows = [_of_response(name, outputs, spacings, sample) for name, outputs in pairs]
     gap = np.full(len(sample.factors), np.nan)
     used = f"on the first {refinement.attrs['base_samples']} base samples"
     dataset = xr.Dataset(coords={"response": names, "parameter": list(sample.factors)})
@@ -238,5 +235,5 @@ def _safety(change: Mapping[str, Floats], spacings: Mapping[str, float]) -> Floa
         estimate(three, steps)
         for three in zip(change[FINER], change[USED], change[COARSER], strict=True)
     ]
-    falling = [triple.credible and triple.order >= _FIRST_ORDER for triple in triples]
+    falling = [triple.credible and triple.order >= 1.0 for triple in triples]
     return np.where(falling, SAFETY_CREDIBLE, SAFETY_DOUBTFUL)

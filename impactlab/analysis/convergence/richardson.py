@@ -12,7 +12,6 @@ e21 = f2 - f1, e32 = f3 - f2, p the observed order, s = sign(e32/e21).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -91,8 +90,7 @@ class Estimate:
         """
         if self.behaviour not in (Behaviour.MONOTONE, Behaviour.OSCILLATORY):
             return math.nan
-        order = min(self.order, FORMAL_ORDER)
-        return safety * _error(*self.values[:2], self.ratios[0], order)
+        return safety * _error(*self.values[:2], self.ratios[0], min(self.order, FORMAL_ORDER))
 
     def gci(self, safety: float) -> float:
         """Return the relative GCI of the finest grid; infinite where the finest value is zero."""
@@ -147,7 +145,7 @@ def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
     return found(Behaviour.MONOTONE, order=order, extrapolated=limit)
 
 
-def safety(triples: Sequence[Estimate]) -> float:
+def safety(triples: list[Estimate]) -> float:
     """Return 1.25 where every three successive grids show a credible order, and 3 otherwise."""
     credible = all(triple.credible for triple in triples)
     return SAFETY_CREDIBLE if credible else SAFETY_DOUBTFUL

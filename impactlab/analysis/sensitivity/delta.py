@@ -87,10 +87,8 @@ def resampled(inputs: Floats, outputs: Floats, edges: Floats, places: Floats) ->
 def _density(outputs: Floats, starts: npt.NDArray[np.intp], places: Floats) -> Floats:
     """Return the density of each class of outputs at the places, (places, classes).
 
-    outputs: (runs,), sorted by class; starts: where the classes begin.
-
-    Gaussian kernels of Silverman's width, as scipy.stats.gaussian_kde has them; NaN for a class
-    that does not vary.
+    outputs: (runs,), sorted by class; starts: where the classes begin. Gaussian kernels of
+    Silverman's width, as scipy.stats.gaussian_kde has them; NaN for a class that does not vary.
     """
     sizes = np.diff(starts, append=len(outputs))
     means = np.repeat(np.add.reduceat(outputs, starts) / sizes, sizes)

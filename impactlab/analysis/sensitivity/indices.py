@@ -82,7 +82,7 @@ def _answer(
         return [SensitivityVerdict.TOO_FEW_RUNS], 0.0, {}
     share = 0.0 if complete is outputs else float(np.isnan(outputs).mean())
     verdicts = verdict.of_outputs(complete, method.varying(complete, sample), share)
-    if set(verdicts) & set(verdict.NO_INDEX):
+    if verdicts and max(verdicts) >= SensitivityVerdict.CONSTANT:
         return verdicts, 0.0, {}
     found = method.estimate(complete, sample, response)
     return verdicts + verdict.of_indices(found), share, found

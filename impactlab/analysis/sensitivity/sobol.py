@@ -25,8 +25,7 @@ from impactlab.analysis.sensitivity.method import (
 from impactlab.analysis.sensitivity.verdict import still
 from impactlab.types import Floats
 
-_ALONE = 5
-"""Number of columns of the statistics that belong to no factor: a, b, a^2, b^2, a b."""
+_ALONE = 5  # columns of the statistics that belong to no factor: a, b, a^2, b^2, a b
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,10 @@ _JUDGED = ("first_order", "total_order", "delta", "pawn", "regression", "rank_re
 
 
 class SensitivityVerdict(Verdict):
-    """Verdicts on the indices of a response; where several hold, the worst counts."""
+    """Verdicts on the indices of a response; where several hold, the worst counts.
+
+    From CONSTANT on, nothing is estimated.
+    """
 
     USABLE = 0, True, "every run answered and the response varies"
     JUMPS = 1, False, "the response takes ten values or fewer: its indices are those of jumps"
@@ -67,14 +70,6 @@ class SensitivityVerdict(Verdict):
         False,
         "too many runs are missing for a surrogate to supply their values: no index is given",
     )
-
-
-NO_INDEX = (
-    SensitivityVerdict.CONSTANT,
-    SensitivityVerdict.FAILED_RUNS,
-    SensitivityVerdict.TOO_FEW_RUNS,
-)
-"""Verdicts under which nothing is estimated."""
 
 
 def of_outputs(

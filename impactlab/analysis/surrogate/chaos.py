@@ -188,11 +188,9 @@ def influence(
     """Return the influence of each block of runs on each coefficient, (terms, blocks).
 
     unit (runs, parameters), values (runs,), block (runs,): the runs that the chaos was fitted to.
-    rmse: root mean squared error on runs held out.
-
     Their outer product is the covariance of the coefficients that is robust to dependence within
-    blocks: Liang and Zeger (1986), Biometrika 73, 13. The residuals are scaled to the error on
-    runs held out: a fit of many terms to few blocks leaves residuals far smaller than that.
+    blocks: Liang and Zeger (1986), Biometrika 73, 13. The residuals are scaled to `rmse`, the error
+    on runs held out: a fit of many terms to few blocks leaves residuals far smaller than that.
     """
     columns = basis(unit, chaos.degrees)
     residual = values - chaos.coefficients @ columns

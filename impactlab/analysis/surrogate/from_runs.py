@@ -151,19 +151,17 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         at = (degrees[:, np.newaxis] == found["chaos"].degrees).all(axis=-1).argmax(axis=0)
         found["coefficient"] = np.zeros(len(degrees))
         found["coefficient"][at] = found["chaos"].coefficients
-    labels = {
-        "held_out": (runs["run"].values[divided.tests], "number of a run held out"),
-        "parameter": (list(sample.factors), "varied parameter"),
-        "surrogate_input": (list(sample.parameters), "parameter that the surrogate depends on"),
-    }
     coordinates: dict[str, Any] = {
-        name: (name, entries, {"long_name": words}) for name, (entries, words) in labels.items()
-    }
-    coordinates |= {
         str(name): array.variable
         for name, array in values.coords.items()
         if array.dims == ("response",)
     }
+    for name, entries, words in (
+        ("held_out", runs["run"].values[divided.tests], "number of a run held out"),
+        ("parameter", sample.factors, "varied parameter"),
+        ("surrogate_input", sample.parameters, "parameter that the surrogate depends on"),
+    ):
+        coordinates[name] = (name, np.asarray(entries), {"long_name": words})
     sizes = {"held_out": divided.tests.size, "parameter": len(sample.factors)}
     sizes["surrogate_term"] = len(degrees)
     variables: dict[str, Any] = {}
@@ -175,12 +173,9 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         attrs |= {"estimator": "polynomial chaos"} if dims == ("parameter",) else {}
         attrs |= {"confidence": sample.confidence} if name.endswith("_interval") else {}
         variables[f"surrogate_{name}"] = (("response", *dims), np.array(rows), attrs)
-    degree = "degree of each term's Legendre polynomial in each parameter"
-    variables["surrogate_degree"] = (
-        ("surrogate_term", "surrogate_input"),
-        degrees,
-        {"long_name": degree, "units": "1"},
-    )
+    words = "degree of each term's Legendre polynomial in each parameter"
+    term_dims = ("surrogate_term", "surrogate_input")
+    variables["surrogate_degree"] = (term_dims, degrees, {"long_name": words, "units": "1"})
     codes = xr.DataArray([int(verdict) for verdict, _ in answers], dims="response")
     variables["surrogate_verdict"] = flagged(codes, SurrogateVerdict, "verdict on the surrogate")
     return xr.Dataset(variables, coordinates)

@@ -59,22 +59,18 @@ class Surrogate:
         degrees, coefficients = self.dataset["degree"].values, self.dataset["coefficient"].values
         batches = [unit[start : start + _AT_ONCE] for start in range(0, len(unit) or 1, _AT_ONCE)]
         found = np.hstack([coefficients @ basis(batch, degrees) for batch in batches])
-        first = columns[0]
-        variables = {
-            name: (first.dims, row.reshape(first.shape), self._attributes(name))
-            for name, row in zip(self.responses, found, strict=True)
-        }
+        variables = {}
+        for name, row in zip(self.responses, found, strict=True):
+            entry = self.dataset.sel(response=name)
+            attrs = {
+                "long_name": str(entry["response_long_name"].item()),
+                "units": str(entry["response_units"].item()),
+                "rmse": float(entry["rmse"]),
+                "q2": float(entry["q2"]),
+                "verdict": names(SurrogateVerdict)[int(entry["verdict"])],
+            }
+            variables[name] = (columns[0].dims, row.reshape(columns[0].shape), attrs)
         return xr.Dataset(variables, dict(zip(self.parameters, columns, strict=True)))
-
-    def _attributes(self, response: str) -> dict[str, Any]:
-        entry = self.dataset.sel(response=response)
-        return {
-            "long_name": str(entry["response_long_name"].item()),
-            "units": str(entry["response_units"].item()),
-            "rmse": float(entry["rmse"]),
-            "q2": float(entry["q2"]),
-            "verdict": names(SurrogateVerdict)[int(entry["verdict"])],
-        }
 
     def _check_known(self, name: str) -> None:
         if name not in self.parameters:
