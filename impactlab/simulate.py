@@ -19,7 +19,7 @@ from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.leapfrog import run_all
 from impactlab.solver.outputs import blank
 from impactlab.solver.section import rule_points
-from impactlab.solver.types import CASE, REAL, WHOLE
+from impactlab.solver.types import CASE
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
 
 if TYPE_CHECKING:
@@ -251,7 +251,7 @@ def _table(
             numbered = enumerate(entry.choices)
             values[name] = sum(at * (values[name] == word) for at, word in numbered)
     cases = np.zeros(runs, dtype=CASE)
-    for name in (*WHOLE, *REAL):
+    for name in CASE.names or ():
         cases[name] = values[name]
     return cases
 

@@ -5,34 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from impactlab.solver.jit import compiled
-from impactlab.solver.types import Record
+from impactlab.solver.types import Record, record
 
-EVENTS = np.dtype(
-    (
-        np.record,
-        [
-            (name, float)
-            for name in (
-                "delta",
-                "delta_before",
-                "t_peak",
-                "w",
-                "w_before",
-                "w_max",
-                "F",
-                "contacts",
-                "touching",
-                "t_touch",
-                "t_first_end",
-                "time_in_contact",
-                "v_exit",
-                "v_s",
-                "v_mid",
-                "impulse",
-                "energy_error",
-            )
-        ],
-    )
+EVENTS = record(
+    """
+    delta delta_before t_peak w w_before w_max F contacts touching t_touch t_first_end
+    time_in_contact v_exit v_s v_mid impulse energy_error
+    """
 )
 """At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before
 (m), force F (N). t_peak (s): time of the largest indentation; w_max (m). contacts: number begun;

@@ -26,32 +26,22 @@ SPRING_MASS = BEAM_MODELS.index("spring_mass")
 RIGID = BEAM_MODELS.index("rigid")
 SEMI_IMPLICIT = SCHEMES.index("semi_implicit")
 
-WHOLE = ("contact", "beam_model", "nodes", "points", "rule", "scheme")
-REAL = (
-    "duration",
-    "velocity",
-    "gravity",
-    "sphere_radius",
-    "sphere_mass",
-    "sphere_density",
-    "sphere_youngs_modulus",
-    "sphere_poissons_ratio",
-    "sphere_yield_stress",
-    "beam_span",
-    "beam_width",
-    "beam_depth",
-    "shear_coefficient",
-    "beam_density",
-    "beam_youngs_modulus",
-    "beam_poissons_ratio",
-    "beam_yield_stress",
-    "beam_isotropic_hardening_modulus",
-    "beam_kinematic_hardening_modulus",
-    "courant",
-)
 
-CASE = np.dtype(
-    (np.record, [(name, np.int64) for name in WHOLE] + [(name, float) for name in REAL])
+def record(real: str, whole: str = "") -> np.dtype[Any]:
+    """Return a record type of whole numbers and floats, each given as names with spaces between."""
+    fields = [(name, np.int64) for name in whole.split()] + [(name, float) for name in real.split()]
+    return np.dtype((np.record, fields))
+
+
+CASE = record(
+    """
+    duration velocity gravity sphere_radius sphere_mass
+    sphere_density sphere_youngs_modulus sphere_poissons_ratio sphere_yield_stress
+    beam_span beam_width beam_depth shear_coefficient
+    beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
+    beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus courant
+    """,
+    whole="contact beam_model nodes points rule scheme",
 )
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 

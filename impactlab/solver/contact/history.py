@@ -9,11 +9,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from impactlab.solver.contact.switch import curve
 from impactlab.solver.jit import compiled
-from impactlab.solver.types import Record
+from impactlab.solver.types import Record, record
 
 
 class Pair(NamedTuple):
@@ -30,12 +28,7 @@ class Pair(NamedTuple):
     nu: float
 
 
-CONTACT = np.dtype(
-    (
-        np.record,
-        [(name, float) for name in ("delta_m", "F_m", "K", "delta_r", "n", "work", "delta_w")],
-    )
-)
+CONTACT = record("delta_m F_m K delta_r n work delta_w")
 """delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
 unloading curve from there. work (J): integral of the loading force from 0 to delta_w (m)."""
 
