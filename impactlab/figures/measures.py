@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from impactlab.analysis.verdicts import ROUND_OFF
 from impactlab.figures.access import known, responses
 from impactlab.types import Floats
 
@@ -53,8 +54,8 @@ class Index:
 
     values, margins, numerical: on (parameter,), the index, the half-width of its interval (infinite
     where none is given), and what the numerical error of the runs could change it by (0 where that
-    is not known). floor: the upper end of a dummy parameter's interval, which is noise; 0 where no
-    dummy was sampled.
+    is not known). floor: the upper end of a dummy parameter's interval, which is noise; 0 where the
+    method has no dummy.
     """
 
     values: Floats
@@ -64,8 +65,10 @@ class Index:
 
     @property
     def above_noise(self) -> NDArray[np.bool_]:
-        """True where the whole interval lies beyond zero and the dummy."""
-        return np.asarray(np.abs(self.values) - self.margins > self.floor)
+        """True where the whole interval lies beyond zero, the dummy and round-off."""
+        size = np.abs(self.values)
+        least = max(self.floor, ROUND_OFF * np.max(size, initial=0.0, where=np.isfinite(size)))
+        return np.asarray(size - self.margins > least)
 
     @property
     def significant(self) -> NDArray[np.bool_]:

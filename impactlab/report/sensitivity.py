@@ -1,9 +1,9 @@
 """Sections on sensitivity, in the order of sensobol (Puy et al. 2022, J. Stat. Softw. 102).
 
 The sentences claim no more than is known. A sentence names a parameter where its whole interval
-lies above zero and above the dummy parameter's, and its index exceeds the numerical error; it says
-where only the latter fails. One parameter ranks before another only where their intervals, with the
-numerical error, do not overlap.
+lies above zero (and above the dummy's, where the method has one) and its index exceeds the
+numerical error; it says where only the latter fails. One parameter ranks before another only where
+their intervals, with the numerical error, do not overlap.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             "First and total order",
             "A first-order index is the share of the variance that comes from a parameter "
             "alone; a total-order index adds all its interactions. Indices in grey are not "
-            "distinguishable from zero, or from the dummy parameter where one was sampled.",
+            "distinguishable from zero.",
             tables=indices.tables(runs, analysis, SOBOL),
             figures=["sobol_indices"],
         )
@@ -181,7 +181,8 @@ def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
             else:
                 row.append(Cell("numerical" if index.numerically_lost[at] else "noise", "muted"))
         rows.append(row)
-    explained = "noise: not distinguishable from zero or the dummy"
+    dummy = " or the dummy" * (f"dummy_{measure.name}" in analysis)
+    explained = f"noise: not distinguishable from zero{dummy}"
     if f"{measure.name}_numerical" in analysis:
         explained += "; numerical: not distinguishable from its numerical error"
     caption = f"Ranks of the parameters by {family.title}, {measure.words} ({explained})"

@@ -25,7 +25,7 @@ from impactlab.analysis.sensitivity.method import (
 from impactlab.analysis.sensitivity.verdict import still
 from impactlab.types import Floats
 
-_ALONE = 5  # columns of the statistics that belong to no factor: a, b, a^2, b^2, a b
+_ALONE = 4  # columns of the statistics that belong to no factor: a, b, a^2, b^2
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Outputs:
     def statistics(self, interactions: bool = True) -> Floats:
         """Return the columns whose means the estimators take, (base samples, columns)."""
         a, b = self.a[:, None], self.b[:, None]
-        columns = [a, b, a**2, b**2, a * b, b * (self.ab - a), (a - self.ab) ** 2 / 2]
+        columns = [a, b, a**2, b**2, b * (self.ab - a), (a - self.ab) ** 2 / 2]
         if self.ba is not None and interactions:
             first, second = np.triu_indices(self.ab.shape[1], 1)
             columns.append(self.ba[:, first] * self.ab[:, second] - a * b)
@@ -67,29 +67,20 @@ def estimates(means: Floats, factors: int) -> dict[str, Floats]:
     """Return indices from the means of the statistics, (..., columns); NaN where nothing varies.
 
     first_order, total_order (..., factor): Saltelli et al. (2010), Table 2 (b) and (f);
-    second_order (..., pair): Saltelli (2002), Theorem 2; and the noise floor, dummy_first_order
-    and dummy_total_order (...).
+    second_order (..., pair): Saltelli (2002), Theorem 2.
 
-    A dummy is a parameter that the model never sees, so that its column changes nothing: AB = A,
-    BA = B. Saltelli's B (AB - A) and (A - AB)^2 are then zero to the last digit, whatever the
-    sample, and tell no noise. The dummy is put into the estimators of Khorashadi Zadeh et al.
-    (2017), Environ. Model. Softw. 91, 210, instead, as sensobol's sobol_dummy does:
-    S = (mean(A BA) - f0^2)/V and T = 1 - (mean(B BA) - f0^2)/V, with BA = B and centred outputs.
-    One departure: f0 is the mean of A and B. sensobol takes mean(A B) for f0^2, which cancels the
-    very noise that the first order is to show.
+    Of a parameter that the model never sees, AB = A, and B (AB - A) and (A - AB)^2 are zero to the
+    last digit, whatever the sample: there is no noise that all indices share, and the dummy of
+    Khorashadi Zadeh et al. (2017), whose estimators are other ones, is no floor of these. The
+    noise of an index is its own interval.
     """
-    a, b, squared_a, squared_b, product = np.moveaxis(means[..., :_ALONE], -1, 0)
+    a, b, squared_a, squared_b = np.moveaxis(means[..., :_ALONE], -1, 0)
     centre = ((a + b) / 2) ** 2
     variance = (squared_a + squared_b) / 2 - centre
     variance = np.where(variance > np.finfo(float).eps, variance, np.nan)
     shares = means[..., _ALONE:] / variance[..., None]
     first, total, joint = np.split(shares, [factors, 2 * factors], axis=-1)
-    found = {
-        "first_order": first,
-        "total_order": total,
-        "dummy_first_order": (product - centre) / variance,
-        "dummy_total_order": 1 - (squared_b - centre) / variance,
-    }
+    found = {"first_order": first, "total_order": total}
     if joint.shape[-1]:
         one, other = np.triu_indices(factors, 1)
         found["second_order"] = joint - first[..., one] - first[..., other]
@@ -102,17 +93,11 @@ FEWEST = 8
 """Base samples below which halves are not shown."""
 _2010 = "Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2"
 _2002 = "Saltelli (2002), Comput. Phys. Commun. 145, 280, Theorem 2"
-_DUMMY = (
-    "Khorashadi Zadeh et al. (2017), Environ. Model. Softw. 91, 210: the index of a parameter "
-    "that the model never sees, with the mean of both base samples for f0"
-)
 _NESTED = "from the first base samples alone, which are a smaller sample of the same kind"
 _INDICES = {
     "first_order": Index("first-order Sobol index", f"{_2010} (b)"),
     "total_order": Index("total-order Sobol index", f"{_2010} (f)"),
     "second_order": Index("second-order Sobol index", _2002, PAIR),
-    "dummy_first_order": Index("first-order Sobol index of a dummy", _DUMMY, ()),
-    "dummy_total_order": Index("total-order Sobol index of a dummy", _DUMMY, ()),
     "first_order_by_samples": Index(
         "first-order Sobol index by base samples", f"{_2010} (b)", BY_SAMPLES, comment=_NESTED
     ),
@@ -166,8 +151,7 @@ def _of_first(size: int, outputs: Floats, sample: Sample, response: str) -> dict
     found = points(parts) | spread
     if "second_order_interval" in found:
         found["second_order_interval"] = _matrix(found["second_order_interval"], factors)
-    floor = estimates(statistics.mean(axis=0), factors)
-    return found | {name: floor[name] for name in ("dummy_first_order", "dummy_total_order")}
+    return found
 
 
 def points(outputs: Outputs) -> dict[str, Floats]:

@@ -15,6 +15,7 @@ from SALib.sample import sobol as sampler
 from impactlab.analysis import sensitivity
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity.sobol import Outputs, estimates, points
+from impactlab.figures import measures
 
 Build = Callable[..., xr.Dataset]
 Z95 = 1.959964
@@ -109,23 +110,22 @@ def test_points_and_their_bootstrap_agree(sample_runs: Build, ishigami: Any) -> 
     np.testing.assert_allclose(ours["second_order"], upper, atol=1e-12)
 
 
-def test_the_dummy_of_khorashadi_zadeh(sample_runs: Build, ishigami: Any) -> None:
-    """By a model that is handed a fourth column and leaves it alone, whose B is swapped in."""
-    unit = _sample(4, 512)
-    outputs = ishigami.of_unit(unit[:, :3])
-    names = ["x0", "x1", "x2", "unseen"]
-    found = sensitivity.analysis(sample_runs(names, 512, peak_force=outputs)).isel(response=0)
-    assert found["first_order"][3] == 0.0  # what Saltelli's estimators make of it
-    assert found["total_order"][3] == 0.0
-    table = (outputs - outputs.mean()).reshape(512, 10)
-    a, swapped, b = table[:, 0], table[:, 8], table[:, 9]
-    both, centre = np.concatenate([a, b]), np.concatenate([a, b]).mean()
-    first = (np.mean(a * swapped) - centre**2) / both.var()
-    total = 1 - (np.mean(b * swapped) - centre**2) / both.var()
-    np.testing.assert_allclose(found["dummy_first_order"], first, atol=1e-10)
-    np.testing.assert_allclose(found["dummy_total_order"], total, atol=1e-10)
-    for name in ("dummy_first_order", "dummy_total_order"):
-        assert 0 < abs(found[name]) < 2 * found[f"{name}_interval"] < 0.3
+def test_a_small_share_is_real_and_an_unseen_parameter_is_not(sample_runs: Build) -> None:
+    """A share of 0.024 is far below the index that mean products give a dummy, yet well known."""
+    unit = _sample(4, 1024, second_order=False)
+    outputs = unit[:, :3] @ np.sqrt([0.85, 0.126, 0.024])
+    outputs *= 1 + 1e-13 * np.sin(1e6 * unit[:, 3])  # the last changes the last digits alone
+    names = ["velocity", "beam_width", "beam_depth", "unseen"]
+    runs = sample_runs(names, 1024, second_order=False, peak_force=outputs)
+    found = sensitivity.analysis(runs)
+    total = measures.index(found, "total_order", "peak_force")
+    assert total.values[2] == pytest.approx(0.024, abs=0.003)
+    assert 0.001 < total.margins[2] < 0.003
+    assert 0 < total.values[3] < 1e-20
+    assert total.significant.tolist() == [True, True, True, False]
+    found["total_order_numerical"] = 0 * found["total_order"] + 0.03  # larger than the share
+    total = measures.index(found, "total_order", "peak_force")
+    assert total.numerically_lost.tolist() == [False, False, True, False]
 
 
 def test_by_samples_are_the_indices_of_smaller_studies(sample_runs: Build, ishigami: Any) -> None:

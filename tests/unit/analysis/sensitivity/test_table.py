@@ -33,8 +33,8 @@ def test_every_index_has_a_row(found: xr.Dataset, tmp_path: Path) -> None:
     write_csv(found, tmp_path / "new" / "indices.csv")
     with (tmp_path / "new" / "indices.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    # of two responses: 3 + 3 indices, 3 pairs, 2 dummies, 4 sizes of 3 + 3
-    assert len(rows) == 2 * (6 + 3 + 2 + 24)
+    # of two responses: 3 + 3 indices, 3 pairs, 4 sizes of 3 + 3
+    assert len(rows) == 2 * (6 + 3 + 24)
     (row,) = [
         row
         for row in rows
