@@ -213,11 +213,11 @@ def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str, total: Index) -> I
     lost = _strongest(analysis, index, index.numerically_lost)[:_NAMED]
     if found:
         (first, at), *rest = found
-        head = f"{_the(first)} alone explains {_share(index, at)} of the variance of the {response}"
-        others = [f"{_the(key)} {_share(index, at)}" for key, at in rest]
+        head = f"{_the(first)} alone explains {share(index, at)} of the variance of the {response}"
+        others = [f"{_the(key)} {share(index, at)}" for key, at in rest]
         yield f"Over these ranges, {labels.listing([head, *others])}."
     if lost:
-        listed = "; ".join(f"{key}, {_share(index, at)}" for key, at in lost)
+        listed = "; ".join(f"{key}, {share(index, at)}" for key, at in lost)
         yield (
             f"The numerical error leaves open which share of the variance of the {response} these "
             f"parameters explain alone: {listed}."
@@ -230,7 +230,7 @@ def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str, total: Index) -> I
     if beyond.any():
         at = int(np.argmax(np.where(beyond, surplus, -np.inf)))
         parameter = labels.parameter(measures.parameters(analysis)[at])
-        yield f"With all its interactions, {_the(parameter)} contributes to {_share(total, at)}."
+        yield f"With all its interactions, {_the(parameter)} contributes to {share(total, at)}."
 
 
 def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str, index: Index) -> Iterator[str]:
@@ -311,7 +311,7 @@ def _strongest(
     return [(keys[at], at) for at in order if where[at]]
 
 
-def _share(index: Index, at: int) -> str:
+def share(index: Index, at: int) -> str:
     """Return a share with the half-width of its interval and the numerical error, if known."""
     value, margin, error = (
         float(each[at]) for each in (index.values, index.margins, index.numerical)

@@ -1,0 +1,57 @@
+"""The answer that opens a report."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import samples
+import xarray as xr
+
+from impactlab.analysis.convergence import points
+from impactlab.analysis.convergence.axes import NODES
+from impactlab.report.answer import LINES, answers
+
+
+def test_of_a_sample_names_what_matters_with_share_interval_and_verdict() -> None:
+    runs = samples.sample(64, 4)[["peak_force", "remote_plastic_strain", "status"]]
+    analysis = samples.indices(runs)
+    analysis["total_order_numerical"][:] = 0.0
+    analysis["total_order"].loc["peak_force"] = [0.71, 0.12, 0.001, 0.0]
+    analysis["total_order_interval"].loc["peak_force"] = [0.03, 0.02, 0.0001, 0.01]
+    first, second = answers(runs, analysis)
+    assert first.startswith(
+        "Peak force (usable): impact velocity 71 % (± 3) of the variance, yield"
+    )
+    assert "yield stress of the beam 12 % (± 2)" in first
+    assert first.count("%") == 2, "what holds less than 1 % of the largest is not named"
+    assert second.startswith("Remote plastic strain (mostly constant): ")
+
+
+def test_of_a_grid_gives_ranges_by_what_drives_them(velocity_study: Any) -> None:
+    lines = answers(*velocity_study)
+    assert 1 <= len(lines) <= LINES
+    assert lines[0].startswith("Impact velocity (95 to 100 % of the variation)")
+    assert "): peak force 2 to 193 kN, contact duration 0.212 to 0.528 ms" in lines[0]
+
+
+def test_of_a_convergence_study_gives_the_least_grid_however_bad_others_are() -> None:
+    nodes, counts = np.array([51, 101, 201, 401, 801]), np.array([2, 5, 9])
+    smooth = 1.0 + 50.0 / (nodes - 1.0) ** 2
+    wild = 1.0 + 0.1 * (-1.0) ** np.arange(5)
+    force = np.array([wild, smooth + 0.001, smooth])
+    strain = np.array([wild, wild, wild])
+    runs = xr.Dataset(
+        {
+            "peak_force": (("points", "nodes"), 1e4 * force, {"units": "N"}),
+            "remote_plastic_strain": (("points", "nodes"), strain, {"units": "1"}),
+            "status": (("points", "nodes"), np.zeros((3, 5), np.int32)),
+        },
+        {"points": counts, "nodes": nodes},
+        {"varied": ["points", "nodes"], "responses": ["peak_force", "remote_plastic_strain"]},
+    )
+    analysis = NODES.analysis(runs).assign(points.analysis(runs))
+    first, second = answers(runs, analysis)
+    assert first.startswith("Within 1 % from 101 nodes and 5 points: peak force (± 0.")
+    assert first.endswith("observed order 2 in the nodes).")
+    assert second == "On no grid of this study: remote plastic strain (divergent)."
