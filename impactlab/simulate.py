@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ from impactlab.model.checks import column, integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
+from impactlab.model.plausibility import ImplausibleWarning, implausibilities, numbers
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
@@ -64,12 +66,13 @@ def simulate(
     response of impactlab.variables.RESPONSES as a scalar, `status` and `remarks`; a response that
     the run could not give is NaN, and `status` says why. `remarks` says what to know of the others.
 
-    Raises ValueError when duration or samples is not valid.
+    Raises ValueError when duration or samples is not valid; warns of implausible values.
     """
     import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
 
     grid = discretisation or Discretisation()
     samples = integer("simulate", "samples", samples, 2)
+    _warn(numbers(impact, grid))
     cases = case_table(impact, grid, duration=duration)
     answers = solve(cases, samples=samples, profiles=True)
     dataset = xr.Dataset(
@@ -95,12 +98,16 @@ def simulate_many(
     varied parameters as coordinates.
 
     Raises ValueError for an unknown parameter, one that is no list, unequal lengths, or a value
-    that the model refuses, naming the run.
+    that the model refuses, naming the run. Warns of implausible values.
     """
     import xarray as xr
 
     grid = discretisation or Discretisation()
     cases = case_table(impact, grid, duration=duration, varied=varied)
+    _warn(
+        numbers(impact, grid)
+        | {name: (min(values), max(values)) for name, values in varied.items() if len(values)}
+    )
     labels = {name: ("run", np.asarray(values)) for name, values in varied.items()}
     dataset = xr.Dataset(
         answer_variables(solve(cases).columns(), tuple(RESPONSES), ("run",)),
@@ -108,6 +115,12 @@ def simulate_many(
         attrs=provenance(),
     )
     return described(dataset)
+
+
+def _warn(ends: dict[str, Any]) -> None:
+    """Warn of values that are implausible, as studies and commands do."""
+    for each in implausibilities(ends):
+        warnings.warn(f"{each.name}: {each.reason}", ImplausibleWarning, stacklevel=3)
 
 
 def case_table(

@@ -46,11 +46,11 @@ def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
 
 
 def given(option: str, text: str, units: str) -> float:
-    """Return an option's quantity in SI. Raises ValueError naming the option."""
-    from impactlab.study.quantities import si
+    """Return an option's quantity in SI; "s" is a duration. Raises ValueError naming the option."""
+    from impactlab.study.quantities import duration, si
 
     try:
-        return si(text, units)
+        return duration(text) if units == "s" else si(text, units)
     except ValueError as error:
         raise ValueError(f"{option} = {text!r}: {error}") from None
 

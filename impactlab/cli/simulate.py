@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import logging
+import warnings
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from impactlab.cli.options import given
+
+if TYPE_CHECKING:
+    from impactlab.model.discretisation import Discretisation
+    from impactlab.model.impact import Impact
+    from impactlab.model.parameters import Value
 
 
 def simulate(
@@ -24,30 +31,71 @@ def simulate(
     scheme: Annotated[
         str, typer.Option(help="leapfrog or semi_implicit, which pays from about 601 nodes on.")
     ] = "leapfrog",
-    duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "1 ms",
+    duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "3 ms",
     output: Annotated[
         Path | None, typer.Option(help="Keep histories and fields as netCDF.")
     ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw force, motion and strain: a PNG, SVG or PDF file.")
+    ] = None,
 ) -> None:
     """Solve one impact on the paper's beam and print its responses."""
-    from dataclasses import replace
-
-    from impactlab.model.discretisation import Discretisation
-    from impactlab.model.impact import paper_impact
     from impactlab.report.console import print_responses
 
-    impact = paper_impact(given("--velocity", velocity, "m s-1"), contact)
-    impact = replace(impact, beam_model=beam_model)
-    grid = Discretisation(nodes=nodes, points=points, rule=rule, scheme=scheme)
+    values: dict[str, Value] = {
+        "velocity": given("--velocity", velocity, "m s-1"),
+        "contact": contact,
+        "beam_model": beam_model,
+        "nodes": nodes,
+        "points": points,
+        "rule": rule,
+        "scheme": scheme,
+    }
     seconds = given("--duration", duration, "s")
-    if output is None:
+    if plot and plot.suffix not in (".png", ".svg", ".pdf"):
+        raise ValueError(f"--plot = {str(plot)!r}: its name must end in .png, .svg or .pdf")
+    impact, grid = _checked(values)
+    if output is None and plot is None:
         from impactlab.simulate import case_table, solve
 
         print_responses(solve(case_table(impact, grid, duration=seconds)).responses[0])
-    else:
-        from impactlab.simulate import simulate as solve_one
+        return
+    from impactlab.simulate import simulate as solve_one
+
+    with warnings.catch_warnings():  # _checked has said them
+        warnings.simplefilter("ignore")
+        dataset = solve_one(impact, grid, duration=seconds)
+    print_responses(dataset)
+    if output:
         from impactlab.study.netcdf import write_netcdf
 
-        dataset = solve_one(impact, grid, duration=seconds)
-        print_responses(dataset)
         write_netcdf(dataset, output)
+        print(f"Histories and fields: {output}")
+    if plot:
+        from impactlab.figures.one_run import save
+
+        save(dataset, plot)
+        print(f"Picture: {plot}")
+
+
+def _checked(values: dict[str, Value]) -> tuple[Impact, Discretisation]:
+    """Return the paper's impact with these values, and log warnings of implausible ones.
+
+    Raises ValueError naming the option that the model refuses, or whose value is impossible.
+    """
+    from impactlab.model.discretisation import Discretisation
+    from impactlab.model.impact import paper_impact
+    from impactlab.model.parameters import with_values
+    from impactlab.model.plausibility import implausibilities, numbers
+    from impactlab.study.validity import refusal
+
+    base = paper_impact(), Discretisation()
+    if found := refusal(base, values):
+        option = f"--{found.name.replace('_', '-')} = {values[found.name]!r}"
+        raise ValueError(f"{option}: {found.reason}")
+    case = with_values(*base, values)
+    for each in implausibilities(numbers(*case)):
+        if each.impossible:
+            raise ValueError(f"--{each.name}: {each.reason}")
+        logging.getLogger("impactlab").warning("--%s: %s", each.name, each.reason)
+    return case

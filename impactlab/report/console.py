@@ -12,8 +12,8 @@ from rich.filesize import decimal
 from rich.markup import escape
 from rich.table import Column, Table
 
-from impactlab.study.quantities import time
-from impactlab.variables import RESPONSES, marks, reasons, warnings_in
+from impactlab.study.quantities import engineering, time
+from impactlab.variables import FAILURES, RESPONSES, marks, warnings_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,19 +31,27 @@ def print_responses(run: Any) -> None:
 
     run: a dataset of simulate, or one record of solver.outputs.RESPONSE.
     """
-    rows = []
-    for name, entry in RESPONSES.items():
-        value = run[name].item()
-        text = "missing" if math.isnan(value) else f"{value:.6g}"
-        rows.append((name, text, entry.units, entry.long_name))
-    _print_table(("response", "value", "unit", "meaning"), rows)
-    console = Console()
-    for reason in reasons(run["status"].item()):
-        console.print(
-            f"A response is missing because {reason}; a longer duration may help.", markup=False
-        )
-    for note in (*marks(run["status"].item()), *warnings_in(run["remarks"].item())):
+    rows = [
+        (name, _amount(name, run[name].item()), RESPONSES[name].long_name) for name in RESPONSES
+    ]
+    _print_table(("response", Column("value", justify="right"), "meaning"), rows)
+    console, status = Console(), run["status"].item()
+    for flag, (bit, words) in FAILURES.items():
+        if status & bit:
+            without = [name for name, entry in RESPONSES.items() if entry.missing == flag]
+            missing = f"Missing because {words}; a longer duration may help: {', '.join(without)}."
+            console.print(missing if without else f"Missing: {words}.", markup=False)
+    for note in (*marks(status), *warnings_in(run["remarks"].item())):
         console.print(f"note: {note}", markup=False)
+
+
+def _amount(name: str, value: float) -> str:
+    """Return a response's value with its unit, a plastic strain in %."""
+    if math.isnan(value):
+        return "missing"
+    if "plastic_strain" in name:
+        return f"{100 * value:.4g} %"
+    return engineering(value, RESPONSES[name].units)
 
 
 def print_predictions(predicted: Any) -> None:
@@ -54,11 +62,12 @@ def print_predictions(predicted: Any) -> None:
     rows = []
     for name, found in predicted.data_vars.items():
         value, attrs = found.item(), found.attrs
-        numbers = ("none", attrs["units"], "–", "–")
+        numbers = ("none", "–", "–")
         if not math.isnan(value):
-            numbers = (f"{value:.6g}", attrs["units"], f"{attrs['rmse']:.2g}", f"{attrs['q2']:.4f}")
+            error = engineering(attrs["rmse"], attrs["units"], digits=2)
+            numbers = (engineering(value, attrs["units"]), error, f"{attrs['q2']:.4f}")
         rows.append((str(name), *numbers, attrs["verdict"].replace("_", " ")))
-    _print_table(("response", "prediction", "unit", "rms error", "Q2", "verdict"), rows)
+    _print_table(("response", "prediction", "rms error", "Q2", "verdict"), rows)
 
 
 def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:

@@ -17,6 +17,7 @@ from impactlab.model.cost import A_SECOND, memory, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
+from impactlab.model.plausibility import implausibilities
 from impactlab.simulate import case_table
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.netcdf import Array
@@ -25,8 +26,7 @@ from impactlab.study.runs import disk_size
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.checks import has_solid_runs
-from impactlab.study.schema.plausibility import extremes, implausibilities, key_of
+from impactlab.study.schema.checks import extremes, has_solid_runs, key_of
 from impactlab.study.schema.study import FunctionStudy, Study
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 

@@ -29,6 +29,8 @@ _TIMES = r"(?:\s*[*·]\s*(?!\*)|\s+)"
 _PRODUCT = rf"{_FACTOR}(?:{_TIMES}{_FACTOR})*"
 _QUANTITY = re.compile(rf"({_NUMBER})\s*(%|{_PRODUCT}(?:\s*/\s*{_FACTOR})*)?")
 _LONGEST = 80
+_LONG = 0.1
+"""A duration in s that nobody means who gives no unit."""
 _SUPERSCRIPTS = str.maketrans("⁻¹²³", "-123")
 
 
@@ -54,6 +56,20 @@ def si(value: object, units: str) -> float:
     if not math.isfinite(result):
         raise ValueError(f"must be finite; {expected(units)}")
     return result
+
+
+def duration(value: object) -> float:
+    """Return a simulated time in s; a bare number too long for an impact has to state its unit.
+
+    Raises ValueError as `si`.
+    """
+    seconds = si(value, "s")
+    if seconds >= _LONG and str(value).strip()[-1].isdigit():
+        raise ValueError(
+            f"is in seconds without a unit, and impacts last milliseconds: write '{seconds:g} ms', "
+            f"or '{seconds:g} s' if it is meant so"
+        )
+    return seconds
 
 
 def whole(value: object) -> int:
@@ -180,6 +196,22 @@ def time(seconds: float) -> str:
         if seconds >= size:
             return f"{_two_digits(seconds / size)} {unit}"
     return f"{_two_digits(1e3 * seconds)} ms"
+
+
+def engineering(value: float, units: str, digits: int = 4) -> str:
+    """Return a quantity with an SI prefix: "97.52 µs"; a pure number as it is.
+
+    units: SI, in UDUNITS spelling.
+    """
+    rounded, power = float(f"{value:.{digits}g}"), 0
+    if rounded and units in _PREFIXED:
+        power = min(max(math.floor(math.log10(abs(rounded)) / 3), -3), 3)
+    symbol = re.sub(r" (\w+)-(\d)", r"/\1\2", units).removesuffix("1").replace("2", "²")
+    return f"{rounded / 1000.0**power:.{digits}g} {'nµm kMG'[power + 3].strip()}{symbol}".rstrip()
+
+
+_PREFIXED = ("J", "N", "N s", "Pa", "m", "s")
+"""Units that a prefix fits."""
 
 
 def amount(size: float) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import traceback
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from impactlab.model.plausibility import ImplausibleWarning
 from impactlab.types import Floats
 
 log = logging.getLogger(__name__)
@@ -188,7 +190,9 @@ class Check:
         """Run the check. An exception becomes the reason of the outcome."""
         start, finding, reason = perf_counter(), Finding(()), ""
         try:
-            finding = self.check()
+            with warnings.catch_warnings():  # limits of theories are implausible by design
+                warnings.simplefilter("ignore", ImplausibleWarning)
+                finding = self.check()
         except Exception as error:
             place = traceback.extract_tb(error.__traceback__)[-1]
             file = Path(place.filename).name

@@ -41,6 +41,7 @@ def test_marked_exactly_where_the_indentation_is_beyond_the_limit(velocity):
     assert all(np.isfinite(run[name].item()) for name in RESPONSES)
 
 
+@pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_ends_somewhere(law):
     """A velocity at which even Hertz's law would have its sphere wholly in the beam."""

@@ -17,6 +17,7 @@ from impactlab.verification.modal_series import (
 from impactlab.verification.solutions.modal import solve, solve_timoshenko
 
 
+@pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
 @pytest.mark.parametrize("name", CATALOGUE)
 def test_check(name):
     finding = CATALOGUE[name].check()

@@ -29,9 +29,10 @@ from impactlab.variables import FLAGS, HISTORIES, STATUS_FLAGS
 
 from .. import plain_beam
 
-pytestmark = pytest.mark.skipif(
-    bool(numba.config.DISABLE_JIT), reason="takes hours as plain Python"
-)
+pytestmark = [
+    pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes hours as plain Python"),
+    pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning"),
+]
 
 TOLERANCE = 1e-9
 SHAKE, MOST_GROWTH = 1e-12, 50.0

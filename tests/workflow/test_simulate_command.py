@@ -1,8 +1,12 @@
 """One run on the command line, and what a command loads."""
 
+import pytest
 import xarray as xr
+from command_line import called, succeeded
 from command_line import done as impactlab
-from command_line import succeeded
+
+import impactlab as il
+from impactlab.model.plausibility import ImplausibleWarning
 
 
 def test_simulate_prints_and_keeps(tmp_path):
@@ -10,7 +14,7 @@ def test_simulate_prints_and_keeps(tmp_path):
         "simulate", "--nodes", 101, "--duration", "0.5 ms", "--output", "one.nc", cwd=tmp_path
     )
     assert "peak_force" in done.stdout
-    assert "11748" in done.stdout
+    assert "11.75 kN" in done.stdout
     one = xr.load_dataset(tmp_path / "one.nc")
     assert one["peak_force"].attrs["units"] == "N"
 
@@ -21,8 +25,8 @@ def test_simulate_takes_a_scheme(tmp_path):
         for scheme in ("leapfrog", "semi_implicit")
     )
     assert leapfrog != semi_implicit
-    assert "11748" in leapfrog
-    assert "11748" in semi_implicit
+    assert "11.75 kN" in leapfrog
+    assert "11.75 kN" in semi_implicit
 
 
 def loaded(*args, cwd):
@@ -57,5 +61,29 @@ def test_only_what_solves_loads_the_compiler(folder):
 
 def test_simulate_prints_the_same_with_and_without_a_file(tmp_path):
     alone = impactlab(*ONE, cwd=tmp_path).stdout
-    assert alone == impactlab(*ONE, "--output", "one.nc", cwd=tmp_path).stdout
+    kept = impactlab(*ONE, "--output", "one.nc", cwd=tmp_path).stdout
+    assert kept == f"{alone}Histories and fields: one.nc\n"
     assert "peak_force" in alone
+
+
+@pytest.mark.parametrize("beam_model", ["euler_bernoulli", "rigid"])
+def test_simulate_draws_a_picture(tmp_path, beam_model):
+    drawn = (*ONE, "--beam-model", beam_model, "--plot", "one.svg")
+    assert impactlab(*drawn, cwd=tmp_path).stdout.endswith("Picture: one.svg\n")
+    assert "<svg" in (tmp_path / "one.svg").read_text()
+
+
+def test_an_implausible_velocity_is_flagged_everywhere(tmp_path):
+    words = "3000 m/s: density velocity²/yield stress"
+    told = called("simulate", "--nodes", 11, "--velocity", 3000, cwd=tmp_path)
+    assert words in told.stderr
+    impact, grid = il.paper_impact(velocity=3000), il.Discretisation(nodes=11)
+    with pytest.warns(ImplausibleWarning, match=words):
+        il.simulate(impact, grid, duration=1e-4)
+    with pytest.warns(ImplausibleWarning, match=words):
+        il.simulate_many(il.paper_impact(), grid, duration=1e-4, varied={"velocity": [1.0, 3e3]})
+
+
+def test_what_is_missing_is_named_with_its_reason(tmp_path):
+    told = impactlab(*ONE, "--duration", "50 us", cwd=tmp_path).stdout
+    assert "longer duration may help: contact_duration." in " ".join(told.split())

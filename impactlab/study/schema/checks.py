@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
 
 from impactlab.model.impact import SOLID
-from impactlab.model.parameters import ELEMENTS, Value
+from impactlab.model.parameters import ELEMENTS, PARAMETERS, Value
+from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.solver import BEAM_MODELS
 from impactlab.study.errors import Problem, unknown
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
-from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.plausibility import extremes, implausibilities, key_of
+from impactlab.study.sampling.sections import Sample, Sampling
+from impactlab.study.schema.parameters import Distribution
 from impactlab.study.schema.study import Study, StudyFile
-from impactlab.study.validity import refused_corner
+from impactlab.study.validity import Base, refused_corner
 from impactlab.variables import ANALYSES
 
 Reasons = Iterator[tuple[str, str]]
@@ -25,6 +29,7 @@ _FIBRES = ("euler_bernoulli", "elastic")
 """Beam models that have both time schemes."""
 _NOT_SOLID = "contact_dissipation"
 """The one response that the 3-D model cannot give by itself."""
+_TAILS = np.array([1e-3, 1 - 1e-3])
 
 
 def problems(file: StudyFile, path: str, sound: set[str]) -> list[Problem]:
@@ -50,6 +55,28 @@ def _values(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, ...
     if isinstance(sampling, Grid):
         return sampling.parameters.get(name, (base,))
     return (sampling.fixed.get(name, base),)
+
+
+def extremes(base: Base, sampling: Sampling) -> Extremes:
+    """Return the least and greatest values of a study, of base and varied parameters.
+
+    A tail ends at its last thousandth; one that reaches below zero is left to the check of draws.
+    """
+    found: dict[str, Any] = numbers(*base)
+    for name, values in sampling.bounds().items():
+        if not isinstance(values[0], str):
+            found[name] = min(values), max(values)
+    for name, given in sampling.varied.items():
+        if isinstance(given, Distribution) and not given.bounds():
+            low, high = given.quantile(_TAILS).tolist()
+            found[name] = (low, high) if low > 0 else found.get(name, (high, high))
+    return found
+
+
+def key_of(name: str, sampling: Sampling) -> str:
+    """Return the key of a parameter in the study, whether it is given or not."""
+    varied = name in sampling.parameters
+    return f"sampling.parameters.{name}" if varied else ".".join(PARAMETERS[name].path)
 
 
 def _mass_and_density(file: StudyFile) -> Reasons:

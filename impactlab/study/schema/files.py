@@ -114,7 +114,7 @@ def _wrong_kind(source: Source, reason: str, command: str) -> StudyError:
 _STAND_INS: dict[str, Any] = {
     "title": "-",
     "impact": {"base": "paper"},
-    "duration": 1.0,
+    "duration": 1e-3,
     "sampling": {"method": "grid", "parameters": {"velocity": [1.0]}},
 }
 """Values of required sections that are wrong, so that the other sections can be checked."""

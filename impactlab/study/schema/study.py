@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import (
+    BeforeValidator,
     Field,
     PlainValidator,
     StrictBool,
@@ -21,6 +22,7 @@ from pydantic import (
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, Parameter, with_values
+from impactlab.study.quantities import duration
 from impactlab.study.sampling import sampling_reader
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
@@ -36,7 +38,6 @@ from impactlab.study.schema.section import (
     between,
     names,
     one_of,
-    quantity,
 )
 from impactlab.study.validity import Base, refusal
 from impactlab.variables import ANALYSES, RESPONSES
@@ -171,7 +172,7 @@ class StudyFile(Heading):
     discretisation: Annotated[DiscretisationSection, PlainValidator(read_discretisation)] = (
         DiscretisationSection(Discretisation())
     )
-    duration: Annotated[quantity("s"), ABOVE_ZERO]  # type: ignore[valid-type]
+    duration: Annotated[float, BeforeValidator(duration), ABOVE_ZERO]
     sampling: Annotated[Grid | Sample, PlainValidator(sampling_reader(FACTORS))]
     responses: Annotated[tuple[str, ...], names("response", RESPONSES)] = tuple(RESPONSES)
     analyses: Annotated[tuple[str, ...], names("analysis", ANALYSES)] = tuple(ANALYSES)

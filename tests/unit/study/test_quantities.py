@@ -12,7 +12,7 @@ import pytest
 
 from impactlab.model.parameters import PARAMETERS
 from impactlab.study import quantities
-from impactlab.study.quantities import KINDS, UNITS, amount, si, time, whole
+from impactlab.study.quantities import KINDS, UNITS, amount, duration, engineering, si, time, whole
 from impactlab.variables import VARIABLES
 
 
@@ -167,3 +167,29 @@ def test_times(seconds, words):
 )
 def test_amounts(size, words):
     assert amount(size) == words
+
+
+@pytest.mark.parametrize(
+    ("value", "units", "words"),
+    [
+        (9.7518e-5, "s", "97.52 µs"),
+        (61311.0, "N", "61.31 kN"),
+        (999999.0, "N", "1 MN"),
+        (-8.0254, "N s", "-8.025 N s"),
+        (0.72266, "m s-1", "0.7227 m/s"),
+        (9.81, "m s-2", "9.81 m/s²"),
+        (0.0, "m", "0 m"),
+        (3e-13, "J", "0.0003 nJ"),
+        (0.1445, "1", "0.1445"),
+    ],
+)
+def test_quantities_in_engineering_notation(value, units, words):
+    assert engineering(value, units) == words
+
+
+@pytest.mark.parametrize("value", [1, 0.1, "1", "1e3"])
+def test_a_long_duration_states_its_unit(value):
+    with pytest.raises(ValueError, match="without a unit, and impacts last milliseconds"):
+        duration(value)
+    assert duration(0.05) == 0.05
+    assert duration("1 s") == 1.0

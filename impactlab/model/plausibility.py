@@ -1,8 +1,8 @@
-"""Physical limits of beams and spheres, which a study is checked against before it is solved.
+"""Physical limits of beams and spheres, which an impact is checked against before it is solved.
 
 The model's classes refuse values that have no meaning in an equation (a mass of zero, a depth
 above the span). The limits here come from physics, each with its reason: impossible values are
-refused, and implausible ones give a warning.
+refused in studies and commands, and implausible ones give a warning.
 """
 
 from __future__ import annotations
@@ -10,14 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf, sqrt
-from typing import Any
 
-import numpy as np
-
-from impactlab.model.parameters import PARAMETERS, flatten
-from impactlab.study.sampling.sections import Sampling
-from impactlab.study.schema.parameters import Distribution
-from impactlab.study.validity import Base
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.model.parameters import flatten
 
 LIGHT = 299_792_458.0
 """Speed of light, m/s."""
@@ -26,7 +22,10 @@ _PIERCES = 0.1
 of Materials, 1972): a dent is then no longer small beside the sphere."""
 _STOCKY = 0.2
 """Depth over span from which on shear is no small part of a beam's deflection."""
-_TAILS = np.array([1e-3, 1 - 1e-3])
+
+
+class ImplausibleWarning(UserWarning):
+    """A value that is implausible, or even impossible."""
 
 
 @dataclass(frozen=True)
@@ -75,31 +74,13 @@ LIMITS: dict[str, _Limits] = {
 """By parameter."""
 
 Extremes = Mapping[str, tuple[float, float]]
-"""The least and the greatest value of every number of a study's impacts, in SI units."""
+"""The least and the greatest value of every number of some impacts, in SI units."""
 
 
-def extremes(base: Base, sampling: Sampling) -> Extremes:
-    """Return the least and greatest values of a study, of base and varied parameters.
-
-    A tail ends at its last thousandth; one that reaches below zero is left to the check of draws.
-    """
-    found: dict[str, Any] = {
-        name: (value, value) for name, value in flatten(*base).items() if not isinstance(value, str)
-    }
-    for name, values in sampling.bounds().items():
-        if not isinstance(values[0], str):
-            found[name] = min(values), max(values)
-    for name, given in sampling.varied.items():
-        if isinstance(given, Distribution) and not given.bounds():
-            low, high = given.quantile(_TAILS).tolist()
-            found[name] = (low, high) if low > 0 else found.get(name, (high, high))
-    return found
-
-
-def key_of(name: str, sampling: Sampling) -> str:
-    """Return the key of a parameter in the study, whether it is given or not."""
-    varied = name in sampling.parameters
-    return f"sampling.parameters.{name}" if varied else ".".join(PARAMETERS[name].path)
+def numbers(impact: Impact, discretisation: Discretisation) -> dict[str, tuple[float, float]]:
+    """Return the extremes of one impact: each number twice."""
+    values = flatten(impact, discretisation).items()
+    return {name: (value, value) for name, value in values if not isinstance(value, str)}
 
 
 def implausibilities(ends: Extremes) -> list[Implausibility]:
