@@ -108,5 +108,5 @@ $(MADE):
 
 $(MADE)-%: $(MADE) pyproject.toml constraints.txt
 	@echo 'Installing into $(VENV) (a few minutes the first time) ...'
-	$(PIP) install --quiet --editable '.[$*]' --constraint constraints.txt
+	$(PIP) install --quiet --no-compile --editable '.[$*]' --constraint constraints.txt
 	@touch $@
