@@ -37,11 +37,11 @@ STOPPED := echo; echo 'Not finished, or a check failed: see the messages above a
   exit 1
 
 study: $(MADE)-workflow
-	@$(SNAKEMAKE) --quiet host reason rules $(if $(STUDIES),--config studies='$(STUDIES)') || { $(STOPPED); }
+	@$(SNAKEMAKE) --quiet all $(if $(STUDIES),--config studies='$(STUDIES)') || { $(STOPPED); }
 	@echo; echo 'Done. Open results/index.html'
 
 paper: $(MADE)-workflow
-	@$(SNAKEMAKE) --quiet host reason rules -- paper || { $(STOPPED); }
+	@$(SNAKEMAKE) --quiet all -- paper || { $(STOPPED); }
 	@echo; echo 'Done. Open results/paper/claims.html'
 
 test: lint pytest

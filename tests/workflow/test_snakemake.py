@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -57,6 +58,21 @@ def test_every_product_is_there(folder):
         assert (results / "checks" / name).stat().st_size > 0
     assert (results / "checks" / "passed").exists()
     assert not (results / "smoke" / "passed").exists()
+
+
+def test_a_line_per_step_names_its_study_and_the_time_left(folder):
+    done = snakemake(folder, "--quiet", "all", "--forcerun", "figures")
+    assert done.returncode == 0, done.stderr
+    lines = done.stderr.splitlines()
+    assert {"smoke: figures", "again: figures"} <= {line.split("; ")[-1] for line in lines}
+    index = r"\d of \d+ done, about \d\.\d min left; all studies: index"
+    assert any(re.fullmatch(index, line) for line in lines)
+
+
+def test_a_study_that_does_not_exist_is_named(folder):
+    done = snakemake(folder, "--quiet", "all", studies="smoke,nowhere")
+    assert done.returncode == 1
+    assert "studies=nowhere: there is no such study; the folder studies/ has again," in done.stderr
 
 
 ALONE = """

@@ -1,8 +1,38 @@
 # What the rules share: what the program says of the studies, and the sources of each step.
 import json
+import logging
 import os
 import subprocess
+import sys
+import time
 from pathlib import Path
+
+from snakemake.exceptions import WorkflowError
+from snakemake_interface_logger_plugins.common import LogEvent
+
+
+class StepLines(logging.Handler):
+    """Prints a line as each step begins: its study, and how long the rest takes at this pace."""
+
+    def __init__(self):
+        super().__init__()
+        self.begun, self.left = time.monotonic(), ""
+
+    def emit(self, record):
+        event = getattr(record, "event", None)
+        if event == LogEvent.PROGRESS:
+            minutes = (time.monotonic() - self.begun) / 60 * (record.total / record.done - 1)
+            self.left = f"{record.done} of {record.total} done, about {minutes:.1f} min left; "
+        elif event == LogEvent.JOB_INFO and record.rule_name != "all" and not workflow.dryrun:
+            study = record.wildcards.get("study", "all studies")
+            print(f"{self.left}{study}: {record.rule_name}", file=sys.stderr, flush=True)
+        elif record.levelno >= logging.ERROR:
+            where = ", see " + ", ".join(record.log) if getattr(record, "log", None) else ""
+            print(f"{record.getMessage()}{where}", file=sys.stderr, flush=True)
+
+
+if workflow.is_main_process:
+    logging.getLogger("snakemake.logging").addHandler(StepLines())
 
 
 def read_studies():
@@ -22,7 +52,13 @@ def asked_studies(asked):
     """Return the names of `--config studies=...`; without it every study but smoke, a test."""
     if not asked:
         return [name for name in DESCRIBED if name != "smoke"]
-    return str(asked).replace(",", " ").split() if not isinstance(asked, list) else asked
+    names = asked if isinstance(asked, list) else str(asked).replace(",", " ").split()
+    if unknown := [name for name in names if name not in DESCRIBED]:
+        raise WorkflowError(
+            f"studies={','.join(unknown)}: there is no such study; the folder studies/ has "
+            f"{', '.join(sorted(DESCRIBED))}"
+        )
+    return names
 
 
 def has(study, trait):
