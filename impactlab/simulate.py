@@ -12,7 +12,7 @@ import numpy as np
 from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import SOLID, Impact
+from impactlab.model.impact import SOLID, Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
 from impactlab.model.plausibility import ImplausibleWarning, implausibilities, numbers
 from impactlab.solver import BEAM_MODELS, SCHEMES
@@ -193,6 +193,15 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
         if profiles
         else {},
     )
+
+
+def compile_all() -> str | None:
+    """Compile the kernels of every beam model and scheme; return their folder, None without one."""
+    for scheme in SCHEMES:
+        grid = Discretisation(nodes=21, scheme=scheme)
+        models = BEAM_MODELS if scheme == "leapfrog" else BEAM_MODELS[:2]
+        solve(case_table(paper_impact(), grid, duration=1e-6, varied={"beam_model": models}))
+    return getattr(getattr(run_all, "_cache", None), "cache_path", None)
 
 
 def answer_variables(

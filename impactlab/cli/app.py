@@ -16,6 +16,7 @@ from impactlab.cli.interrupt import stop_quietly
 
 _COMMANDS = {
     "simulate": "impactlab.cli.simulate:simulate",
+    "go": "impactlab.cli.go:go",
     "studies": "impactlab.cli.studies:studies",
     "recommend": "impactlab.cli.solve:recommend",
     "design": "impactlab.cli.solve:design",
@@ -29,8 +30,12 @@ _COMMANDS = {
     "report": "impactlab.cli.results:report",
     "index": "impactlab.cli.results:index",
     "clean": "impactlab.cli.studies:clean",
+    "compile": "impactlab.cli.simulate:compile_kernels",
 } | wings.COMMANDS
 """Module and function by name, in the order of the help."""
+
+
+_HELP = {"help_option_names": ["-h", "--help"]}
 
 
 class _Commands(TyperGroup):
@@ -45,7 +50,7 @@ class _Commands(TyperGroup):
         if cmd_name not in _COMMANDS:
             return None
         alone = typer.Typer(rich_markup_mode=None, add_completion=False)
-        alone.command(cmd_name)(wings.load(_COMMANDS[cmd_name]))
+        alone.command(cmd_name, context_settings=_HELP)(wings.load(_COMMANDS[cmd_name]))
         return typer.main.get_command(alone)
 
 
@@ -54,6 +59,7 @@ app = typer.Typer(
     cls=_Commands,
     help="A sphere strikes an elastic-plastic beam: from a study file to a report.",
     no_args_is_help=True,
+    context_settings=_HELP,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # plain help: boxes and colours take twice as long
     add_completion=False,
@@ -74,8 +80,19 @@ def main() -> None:
         sys.exit(1)
 
 
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        print(f"impactlab {version('impactlab')}")
+        raise typer.Exit
+
+
 @app.callback()
 def configure(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
     log: Annotated[Path | None, typer.Option(help="Write messages to this file as well.")] = None,
     debug: Annotated[
         bool, typer.Option(help="Log details, the place of an error included.")

@@ -33,9 +33,11 @@ def analyse(
     Of a sample also, beside the output: every index with its interval (indices.csv, indices.nc),
     and surrogate.nc for `impactlab predict`.
     """
+    from impactlab.report.answer import answers
     from impactlab.study.steps import analyse_runs
 
-    analyse_runs(runs, output or runs.with_name("analysis.nc"), resolution, refinement)
+    path = output or runs.with_name("analysis.nc")
+    print(f"{path}: {answers(*analyse_runs(runs, path, resolution, refinement))[0]}")
 
 
 def predict(
@@ -68,10 +70,14 @@ def figures(
     ] = None,
 ) -> None:
     """Draw every figure that a study's answers, or findings, allow."""
+    from impactlab.report.answer import answers
     from impactlab.report.results import read_stored
 
     kind, datasets = read_stored(stored)
-    kind.draw(*datasets, output or stored[0].with_name("figures"))
+    folder = output or stored[0].with_name("figures")
+    drawn = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder))
+    figures = "1 figure" if drawn == 1 else f"{drawn} figures"
+    print(f"{folder}: {figures}. {answers(*datasets)[0]}")
 
 
 def report(
@@ -84,14 +90,13 @@ def report(
     ] = None,
 ) -> None:
     """Write a study's report."""
+    from impactlab.report.answer import answers
     from impactlab.report.results import read_stored
 
     kind, datasets = read_stored(stored)
-    kind.write(
-        *datasets,
-        figures or stored[0].with_name("figures"),
-        output or stored[0].with_name("report.html"),
-    )
+    path = output or stored[0].with_name("report.html")
+    kind.write(*datasets, figures or stored[0].with_name("figures"), path)
+    print(f"{path}: {answers(*datasets)[0]}")
 
 
 def index(
@@ -101,4 +106,6 @@ def index(
     """Write the index over all reports."""
     from impactlab.report.results import write_index
 
-    write_index(results, output or results / "index.html")
+    path = output or results / "index.html"
+    write_index(results, path)
+    print(f"{path}: the list of all reports")

@@ -99,3 +99,15 @@ def _checked(values: dict[str, Value]) -> tuple[Impact, Discretisation]:
             raise ValueError(f"--{each.name}: {each.reason}")
         logging.getLogger("impactlab").warning("--%s: %s", each.name, each.reason)
     return case
+
+
+def compile_kernels() -> None:
+    """Compile the kernels of the beam models into their cache.
+
+    For images of containers, and for clusters before their jobs begin: without it, the first
+    impact compiles. NUMBA_CACHE_DIR names another folder.
+    """
+    from impactlab.simulate import compile_all
+
+    folder = compile_all()
+    print(f"Compiled kernels: {folder}" if folder else "Compiled kernels cannot be kept.")

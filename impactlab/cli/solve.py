@@ -110,7 +110,7 @@ def run(
     Finished batches are kept in results/NAME/shards: an interrupted study resumes there.
     """
     stop_at_once()
-    from impactlab.report.console import print_estimate, print_recommendation
+    from impactlab.report.console import print_estimate, print_recommendation, print_solved
     from impactlab.study import steps
     from impactlab.study.engine import Engine, read_profile
     from impactlab.study.errors import StudyError
@@ -138,6 +138,7 @@ def run(
     else:
         study = steps.resolved(study, path.parent, engine, print_recommendation)
         steps.solve(design(study), path, engine, file=design_file)
+    print_solved(path)
 
 
 def refine(

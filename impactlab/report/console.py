@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Column, Table
 
 from impactlab.study.quantities import engineering, time
-from impactlab.variables import FAILURES, RESPONSES, marks, warnings_in
+from impactlab.variables import FAILED, FAILURES, FLAGS, RESPONSES, marks, warnings_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,6 +73,22 @@ def print_predictions(predicted: Any) -> None:
 def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
     """Print one line per study: name, number of runs or checks, title."""
     _print_table(("study", "size", "title"), [map(escape, row) for row in rows])
+
+
+def print_solved(path: Path) -> None:
+    """Print one line about solved runs: their file and number, and the range of a response."""
+    from impactlab.study.netcdf import opened  # late: it loads xarray
+
+    with opened(path) as runs:
+        failed = int(((runs["status"] & FAILED) != 0).sum()) if "status" in runs else 0
+        name = next(name for name in runs.data_vars if name not in FLAGS)
+        low, high = (float(getattr(runs[name], end)()) for end in ("min", "max"))
+        size = int(runs[name].size)
+        units = str(runs[name].attrs["units"])
+    words = f"{path}: {size:,} run{'s' * (size != 1)}, {failed:,} without an answer"
+    if not math.isnan(low):
+        words += f"; {name} from {engineering(low, units)} to {engineering(high, units)}"
+    print(words)
 
 
 def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable[Problem]) -> None:

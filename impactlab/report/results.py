@@ -31,7 +31,7 @@ class Kind:
     """
 
     files: tuple[str, ...]
-    draw: Callable[..., object]
+    draw: Callable[..., list[Path]]
     write: Callable[..., object]
     counts: Callable[[xr.Dataset], tuple[str, str]]
 

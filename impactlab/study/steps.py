@@ -204,8 +204,8 @@ def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = No
 
 def analyse_runs(
     runs: Path, path: Path, resolution: Path | None = None, refinement: Path | None = None
-) -> None:
-    """Analyse solved runs and write the analysis to `path` (analysis.nc).
+) -> tuple[xr.Dataset, xr.Dataset]:
+    """Analyse solved runs, write the analysis to `path` (analysis.nc), and return both.
 
     Beside it, for a sample: indices.csv, indices.nc and surrogate.nc. resolution, refinement:
     evidence on the numerical uncertainty, see analysis.analyse.
@@ -226,6 +226,7 @@ def analyse_runs(
         write_netcdf(indices, path.with_name("indices.nc"))
     if surrogates := packed(solved, found):
         write_netcdf(surrogates, path.with_name("surrogate.nc"))
+    return solved, found
 
 
 def check(verification: Verification) -> xr.Dataset:

@@ -1,6 +1,7 @@
 """A person's mistake ends in one message."""
 
 import re
+from importlib.metadata import version
 
 import pytest
 from command_line import CHECKS, SMALL, here
@@ -9,6 +10,13 @@ from command_line import done as impactlab
 
 def test_help_is_not_cut_short(tmp_path):
     assert not re.search(r"\w\.\.\.", impactlab("--help", cwd=tmp_path).stdout)
+
+
+def test_help_and_version_by_their_usual_names(tmp_path):
+    for command in ((), ("simulate",), ("go",)):
+        told = impactlab(*command, "-h", cwd=tmp_path).stdout
+        assert told == impactlab(*command, "--help", cwd=tmp_path).stdout
+    assert impactlab("--version", cwd=tmp_path).stdout == f"impactlab {version('impactlab')}\n"
 
 
 @pytest.mark.parametrize(

@@ -2,12 +2,15 @@
 
 import os
 import re
+from pathlib import Path
 
 import pytest
 import xarray as xr
-from command_line import SMALL, here
+from command_line import SMALL, called, here
 from command_line import done as impactlab
 
+from impactlab.report.answer import answers
+from impactlab.study import steps
 from impactlab.study.adaptive import extending, recommendation
 from impactlab.study.engine import Engine
 from impactlab.study.quantities import si
@@ -31,7 +34,10 @@ responses: [peak_force]
 
 
 def test_every_step_without_snakemake(folder):
-    impactlab("run", "studies/small.yaml", cwd=folder)
+    told = impactlab("run", "studies/small.yaml", cwd=folder).stdout
+    assert told == (
+        "results/small/runs.nc: 9 runs, 0 without an answer; peak_force from 5.501 kN to 24.42 kN\n"
+    )
     results = folder / "results" / "small"
     impactlab("analyse", results / "runs.nc", cwd=folder)
     impactlab("figures", results / "runs.nc", results / "analysis.nc", cwd=folder)
@@ -39,6 +45,42 @@ def test_every_step_without_snakemake(folder):
     impactlab("index", cwd=folder)
     assert "small/report.html" in (folder / "results" / "index.html").read_text()
     assert xr.load_dataset(results / "runs.nc")["peak_force"].sel(velocity=2, nodes=41) > 1e4
+
+
+def test_one_command_goes_from_a_study_to_its_report(folder):
+    """Each step ends with a line: what it made, where, and what it found."""
+    told = impactlab("go", "studies/small.yaml", cwd=folder).stdout.splitlines()
+    files = ("runs.nc", "analysis.nc", "figures", "report.html")
+    results = folder / "results" / "small"
+    datasets = [xr.load_dataset(results / name) for name in files[:2]]
+    finding = answers(*datasets)[0]
+    assert len(told) == len(files)
+    for line, name in zip(told, files, strict=True):
+        assert line.startswith(f"results/small/{name}: ")
+        assert name == "runs.nc" or line.endswith(finding)
+    assert (results / "report.html").exists()
+
+
+def test_one_command_takes_the_evidence_that_the_workflow_takes(folder):
+    (folder / "studies" / "sample.yaml").write_text(
+        SAMPLE.replace("{nodes: 21, points: 3}", "auto")
+    )
+    impactlab("go", "studies/sample.yaml", cwd=folder)
+    analysis = xr.load_dataset(folder / "results" / "sample" / "analysis.nc")
+    assert {"first_order_numerical", "numerical_uncertainty"} <= set(analysis)
+
+
+def test_one_command_reports_a_verification_before_it_fails(folder, monkeypatch):
+    monkeypatch.setattr(steps, "failure", lambda outcomes: "half_space: broken")
+    told = called("go", "studies/checks.yaml", cwd=folder)
+    assert told.returncode == 1
+    assert "half_space: broken" in told.stderr
+    assert (folder / "results" / "checks" / "report.html").exists()
+
+
+def test_kernels_are_compiled_on_demand(tmp_path):
+    folder = impactlab("compile", cwd=tmp_path).stdout.removeprefix("Compiled kernels: ").strip()
+    assert list(Path(folder).glob("*.kernel"))
 
 
 def test_a_sample_grows_and_solves_nothing_twice(folder):
