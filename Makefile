@@ -1,5 +1,6 @@
-# make study   from the study files to results/index.html
-# make paper   the figures and statements of the paper, in results/paper
+# make study   the main studies, from their files to results/index.html (5 minutes on two cores)
+# make paper   the figures and statements of the paper, in results/paper (about 40 minutes)
+# make all     every study, the large ones too, and the paper (one to two hours)
 # make test    the checks, and the tests of up to a minute
 # make long    the tests that take longer: the 3-D model and its decks on finer meshes
 # make chaos   what crashes, full disks, lost workers and hostile files must not do (20 minutes)
@@ -13,7 +14,7 @@
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
 PYTHON ?= python3
 CORES ?= all
-STUDIES ?=
+STUDIES ?= velocity discretisation material ishigami sobol_slow sobol sobol_fast verification
 PYTEST_ARGS ?=
 SCALING_ARGS ?=
 UV ?= uv
@@ -29,7 +30,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete \
   --max-jobs-per-timespan 100/5s
 
-.PHONY: study paper test lint pytest long chaos kratos bench scaling mutants coverage constraints unlock clean
+.PHONY: study paper all test lint pytest long chaos kratos bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -37,12 +38,16 @@ STOPPED := echo; echo 'Not finished, or a check failed: see the messages above a
   exit 1
 
 study: $(MADE)-workflow
-	@$(SNAKEMAKE) --quiet all $(if $(STUDIES),--config studies='$(STUDIES)') || { $(STOPPED); }
+	@$(SNAKEMAKE) --quiet all --config studies='$(STUDIES)' || { $(STOPPED); }
 	@echo; echo 'Done. Open results/index.html'
 
 paper: $(MADE)-workflow
 	@$(SNAKEMAKE) --quiet all -- paper || { $(STOPPED); }
 	@echo; echo 'Done. Open results/paper/claims.html'
+
+all: $(MADE)-workflow
+	@$(SNAKEMAKE) --quiet all -- all paper || { $(STOPPED); }
+	@echo; echo 'Done. Open results/index.html and results/paper/claims.html'
 
 test: lint pytest
 
