@@ -23,7 +23,7 @@ _FORMS: dict[str, Callable[..., Any]] = {
     "log_uniform": lambda low, high: scipy.stats.loguniform(low, high),
     "normal": lambda mean, standard_deviation: scipy.stats.norm(mean, standard_deviation),
     # mean and deviation are those before the cut; scipy counts the cuts in deviations
-    "truncated_normal": lambda mean, standard_deviation, low, high: scipy.stats.truncnorm(
+    "truncated_normal": lambda low, high, mean, standard_deviation: scipy.stats.truncnorm(
         (low - mean) / standard_deviation,
         (high - mean) / standard_deviation,
         mean,
@@ -33,11 +33,13 @@ _FORMS: dict[str, Callable[..., Any]] = {
         np.log(geometric_standard_deviation), scale=median
     ),
     # scipy counts the mode in parts of the base
-    "triangular": lambda low, mode, high: scipy.stats.triang(
+    "triangular": lambda low, high, mode: scipy.stats.triang(
         (mode - low) / (high - low), low, high - low
     ),
 }
 """By their name in study files: scipy's distribution, of the arguments that a study gives."""
+ARGUMENTS = {name: tuple(signature(form).parameters) for name, form in _FORMS.items()}
+"""Names of the arguments of each distribution."""
 
 
 def is_distributed(attributes: Arguments) -> bool:
@@ -53,7 +55,7 @@ def arguments(attributes: Arguments) -> dict[str, Any]:
     name = attributes.get("distribution")
     if name not in _FORMS:
         raise ValueError(f"unknown distribution {name!r}: choose from {', '.join(_FORMS)}")
-    keys = signature(_FORMS[name]).parameters
+    keys = ARGUMENTS[name]
     if absent := [key for key in keys if key not in attributes]:
         raise ValueError(f"a distribution {name!r} needs {', '.join(absent)}")
     return {"distribution": name} | {key: float(attributes[key]) for key in keys}

@@ -34,44 +34,31 @@ class Implausibility:
 
     name: str
     reason: str
-    impossible: bool = False
-
-
-@dataclass(frozen=True)
-class _Limits:
-    """Limits outside which values are impossible (least, most) or implausible (low, high)."""
-
-    least: float
-    low: float
-    high: float
-    most: float
-    units: str
-    words: str
+    impossible: bool
 
 
 HEAVIEST = 23e3
 """Density of osmium in kg/m3; a denser body stands for one that does not move: no waves in it."""
-_DENSITY = _Limits(0.1, 10.0, HEAVIEST, inf, "kg/m3", "solids have 10 (foam) to 22,600 (osmium)")
-_STIFFNESS = _Limits(
-    1e3, 1e6, 1.3e12, 1e15, "Pa", "solids have 1 MPa (rubber) to 1.2 TPa (diamond)"
-)
-_STRENGTH = _Limits(1e3, 1e5, 1e11, 1e15, "Pa", "solids yield from 0.1 MPa on; mPa is not MPa")
-LIMITS: dict[str, _Limits] = {
+_DENSITY = (0.1, 10.0, HEAVIEST, inf, "kg/m3", "solids have 10 (foam) to 22,600 (osmium)")
+_STIFFNESS = (1e3, 1e6, 1.3e12, 1e15, "Pa", "solids have 1 MPa (rubber) to 1.2 TPa (diamond)")
+_STRENGTH = (1e3, 1e5, 1e11, 1e15, "Pa", "solids yield from 0.1 MPa on; mPa is not MPa")
+_LIMITS = {
     "sphere_density": _DENSITY,
     "beam_density": _DENSITY,
     "sphere_youngs_modulus": _STIFFNESS,
     "beam_youngs_modulus": _STIFFNESS,
     "sphere_yield_stress": _STRENGTH,
     "beam_yield_stress": _STRENGTH,
-    "gravity": _Limits(0.0, 0.0, 300.0, inf, "m/s2", "274 is that of the sun"),
-    "velocity": _Limits(1e-9, 1e-6, inf, inf, "m/s", "atoms are 1e-10 m wide"),
-    "sphere_mass": _Limits(1e-18, 1e-12, 1e6, inf, "kg", "a speck of dust has 1e-12 kg"),
-    "beam_span": _Limits(1e-9, 1e-6, 1e3, inf, "m", "atoms are 1e-10 m wide"),
-    "sphere_radius": _Limits(1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
-    "beam_depth": _Limits(1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
-    "beam_width": _Limits(1e-9, 1e-6, 100.0, inf, "m", "atoms are 1e-10 m wide"),
+    "gravity": (0.0, 0.0, 300.0, inf, "m/s2", "274 is that of the sun"),
+    "velocity": (1e-9, 1e-6, inf, inf, "m/s", "atoms are 1e-10 m wide"),
+    "sphere_mass": (1e-18, 1e-12, 1e6, inf, "kg", "a speck of dust has 1e-12 kg"),
+    "beam_span": (1e-9, 1e-6, 1e3, inf, "m", "atoms are 1e-10 m wide"),
+    "sphere_radius": (1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
+    "beam_depth": (1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
+    "beam_width": (1e-9, 1e-6, 100.0, inf, "m", "atoms are 1e-10 m wide"),
 }
-"""By parameter."""
+"""By parameter: the least possible value, the ends of what is plausible, the largest possible
+value; units and reason."""
 
 Extremes = Mapping[str, tuple[float, float]]
 """The least and the greatest value of every number of some impacts, in SI units."""
@@ -85,25 +72,22 @@ def numbers(impact: Impact, discretisation: Discretisation) -> dict[str, tuple[f
 
 def implausibilities(ends: Extremes) -> list[Implausibility]:
     """Return the impossible and implausible values, one per parameter."""
-    found = sorted((*_alone(ends), *_together(ends)), key=lambda each: each.impossible)
-    return list({each.name: each for each in found}.values())
-
-
-def _alone(ends: Extremes) -> Iterator[Implausibility]:
-    for name, limits in LIMITS.items():
-        least, most = ends.get(name, (limits.low, limits.high))
-        for value, none, few in (
-            (least, least < limits.least, least < limits.low),
-            (most, most > limits.most, most > limits.high),
+    found: list[tuple[str, str, bool]] = []
+    for name, (least, low, high, most, units, words) in _LIMITS.items():
+        first, last = ends.get(name, (low, high))
+        for value, impossible, doubted in (
+            (first, first < least, first < low),
+            (last, last > most, last > high),
         ):
-            if none or few:
-                what = "is impossible" if none else "is implausible"
-                reason = f"{value:g} {limits.units} {what}: {limits.words}"
-                yield Implausibility(name, reason, impossible=none)
+            if impossible or doubted:
+                what = "is impossible" if impossible else "is implausible"
+                found.append((name, f"{value:g} {units} {what}: {words}", impossible))
+    found = sorted([*found, *_together(ends)], key=lambda each: each[2])
+    return list({each[0]: Implausibility(*each) for each in found}.values())
 
 
-def _together(ends: Extremes) -> Iterator[Implausibility]:
-    """Yield values that are implausible beside others, at the worst ends of all."""
+def _together(ends: Extremes) -> Iterator[tuple[str, str, bool]]:
+    """Yield parameters, reasons and whether impossible: values beside others, at the worst ends."""
     velocity = ends["velocity"][1]
     for body in ("beam", "sphere"):
         lightest, heaviest = ends[f"{body}_density"]
@@ -114,30 +98,30 @@ def _together(ends: Extremes) -> Iterator[Implausibility]:
                 f"a bar wave in the {body} would run at {fastest:.3g} m/s, faster than light: "
                 "check the units of density and Young's modulus"
             )
-            yield Implausibility(f"{body}_density", reason, impossible=True)
+            yield f"{body}_density", reason, True
         if velocity >= (wave := sqrt(soft / min(heaviest, HEAVIEST))):
             reason = (
                 f"{velocity:g} m/s is above the speed of a bar wave in the {body} ({wave:.4g} m/s)"
                 ": quasi-static contact laws and beam theory do not apply: reduce it"
             )
-            yield Implausibility("velocity", reason, impossible=True)
+            yield "velocity", reason, True
         number = min(lightest, HEAVIEST) * velocity**2 / weak
         if number > _PIERCES:
             reason = (
                 f"{velocity:g} m/s: density velocity²/yield stress of the {body} is {number:.2g}; "
                 f"above {_PIERCES} metals flow, and the dent is no longer small"
             )
-            yield Implausibility("velocity", reason)
+            yield "velocity", reason, False
         if strong > 0.1 * soft:
             reason = (
                 f"{strong:g} Pa is above a tenth of Young's modulus, the strength of a perfect "
                 "crystal: are both in Pa?"
             )
-            yield Implausibility(f"{body}_yield_stress", reason)
+            yield f"{body}_yield_stress", reason, False
     depth, span, radius = ends["beam_depth"][1], ends["beam_span"][0], ends["sphere_radius"][1]
     if depth > _STOCKY * span:
         reason = f"{depth:g} m is above a fifth of the span: shear matters (beam_model: timoshenko)"
-        yield Implausibility("beam_depth", reason)
+        yield "beam_depth", reason, False
     if radius > 0.5 * span:
         reason = f"{radius:g} m makes the sphere wider than the span"
-        yield Implausibility("sphere_radius", reason)
+        yield "sphere_radius", reason, False

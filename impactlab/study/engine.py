@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import dask
 from distributed import Client, LocalCluster, Security
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 from tornado.ioloop import PeriodicCallback
 from tornado.util import TimeoutError as TornadoTimeoutError
 
-from impactlab.study.errors import StudyError
-from impactlab.study.schema.section import validation_problems
+from impactlab.study.schema.section import Section, validated
 from impactlab.study.schema.yaml_file import read_mapping, read_text
 
 if TYPE_CHECKING:
@@ -128,10 +127,8 @@ def _here(workers: int, *, processes: bool) -> Iterator[Client]:
         yield client
 
 
-class Profile(BaseModel):
+class Profile(Section):
     """A Slurm job: keys of dask_jobqueue.SLURMCluster, and the number of jobs."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     jobs: Annotated[int, Field(ge=1)]
     """Jobs to submit; those that have started solve the study."""
@@ -144,8 +141,8 @@ class Profile(BaseModel):
     walltime: str
     queue: str | None = None
     account: str | None = None
-    job_extra_directives: list[str] = []
-    job_script_prologue: list[str] = []
+    job_extra_directives: tuple[str, ...] = ()
+    job_script_prologue: tuple[str, ...] = ()
     log_directory: str | None = None
     python: str | None = None
     """Interpreter on the nodes; by default that of this process."""
@@ -153,12 +150,7 @@ class Profile(BaseModel):
 
 def read_profile(path: Path) -> Profile:
     """Return the profile in a YAML file. Raises StudyError naming file and key."""
-    data = read_mapping(read_text(path), str(path))
-    try:
-        return Profile.model_validate(data)
-    except ValidationError as error:
-        keys = {id(data): list(Profile.model_fields)}
-        raise StudyError(*validation_problems(error, data, str(path), keys)) from None
+    return validated(Profile, read_mapping(read_text(path), str(path)), str(path))
 
 
 def slurm_cluster(profile: Profile) -> SLURMCluster:

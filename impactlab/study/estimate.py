@@ -22,7 +22,7 @@ from impactlab.simulate import case_table
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.netcdf import Array
 from impactlab.study.quantities import amount, time
-from impactlab.study.runs import disk_size
+from impactlab.study.runs import file_stats
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
@@ -84,25 +84,28 @@ def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
     a sampled run is impossible.
     """
     until = study.sampling.until if isinstance(study.sampling, Sobol) else None
-    runs = max(study.runs, until.runs if until else 0)
+    runs = max(study.sampling.runs, until.runs if until else 0)
     parameters = len(study.sampling.varied)
     if isinstance(study, FunctionStudy):
         sampled, largest, largest_run = np.full(1, _FUNCTION), _FUNCTION, {}
         kept, held, working = parameters + 2, parameters + 2, 0.0
         slow = large = "sampling"
     else:
-        model, sample = _model(study), _cost_sample(study)
-        cases = _cases(study, sample)
+        model: Any = SimpleNamespace(table=case_table, work=work, memory=memory)
+        if has_solid_runs(study):
+            model = wings.load(wings.SOLID["cases"])
+        sample = _cost_sample(study)
+        cases = _cases(study, model, sample)
         costs = model.work(cases)
-        largest_run = _largest_run(study, sample, costs)
-        end = _cases(study, {name: [value] for name, value in largest_run.items()})[:1]
+        largest_run = _largest_run(study, model, sample, costs)
+        end = _cases(study, model, {name: [value] for name, value in largest_run.items()})[:1]
         sampled, largest = costs / A_SECOND, float(model.work(end)[0]) / A_SECOND
         history = study.store.samples * study.store.histories
         profile = int(end["nodes"][0] * end["points"][0]) * study.store.profiles
         kept = parameters + len(RESPONSES) + 2 + len(HISTORIES) * history + len(PROFILES) * profile
         held = kept if until else max(1, history, profile)
         working = workers * float(model.memory(np.append(cases, end)).max())
-        slow, large = _drivers(study, end, runs)
+        slow, large = _drivers(study, model, end, runs)
     return Estimate(
         file=str(study.path),
         runs=runs,
@@ -120,16 +123,9 @@ def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
     )
 
 
-def _model(study: Study) -> Any:
-    """Return what has the functions table, work and memory (see model.cost) for a study's runs."""
-    if has_solid_runs(study):
-        return wings.load(wings.SOLID["cases"])
-    return SimpleNamespace(table=case_table, work=work, memory=memory)
-
-
-def _drivers(study: Study, case: Array, runs: int) -> list[str]:
+def _drivers(study: Study, model: Any, case: Array, runs: int) -> list[str]:
     """Return the keys that drive time and space: the usual values of which would save most."""
-    model, impact = _model(study), paper_impact()
+    impact = paper_impact()
     if has_solid_runs(study) and model.is_solid(case).all():
         impact = replace(impact, beam_model=SOLID)
     grid = Discretisation(element_size=_USUAL_SIZE)
@@ -152,30 +148,35 @@ def _cost_sample(study: Study) -> dict[str, Array]:
     """Return varied parameters of some runs: all of a small grid, else _MOST, without a sampler."""
     sampling, random = study.sampling, np.random.default_rng(0)
     if isinstance(sampling, Sample):
-        number = min(study.runs, _MOST)
+        number = min(study.sampling.runs, _MOST)
         return {
             name: given.quantile(random.uniform(_TAIL, 1 - _TAIL, number))
             for name, given in sampling.varied.items()
         }
     values = {name: np.array(listed) for name, listed in sampling.parameters.items()}
-    if study.runs <= _MOST:
+    if study.sampling.runs <= _MOST:
         grids = np.meshgrid(*values.values(), indexing="ij")
         return {name: grid.ravel() for name, grid in zip(values, grids, strict=True)}
     return {name: random.choice(listed, _MOST) for name, listed in values.items()}
 
 
-def _cases(study: Study, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
-    """Return the table of cases of these runs. Raises StudyError where one is impossible."""
+def _cases(study: Study, model: Any, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
+    """Return the table of cases of these runs. Raises StudyError where one is impossible.
+
+    model: has the functions table, work and memory (see model.cost) for the study's runs.
+    """
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
     try:
-        cases: Array = _model(study).table(*base, duration=study.duration, varied=columns)
+        cases: Array = model.table(*base, duration=study.duration, varied=columns)
     except ValueError as error:
         reason = f"gives runs that are impossible ({error}): take bounded distributions"
         raise StudyError(Problem(str(study.path), "sampling.parameters", reason)) from None
     return cases
 
 
-def _largest_run(study: Study, sample: Mapping[str, Array], cost: Array) -> dict[str, Value]:
+def _largest_run(
+    study: Study, model: Any, sample: Mapping[str, Array], cost: Array
+) -> dict[str, Value]:
     """Return the largest run: that of the sample, each parameter taken to its costliest end."""
     sampling = study.sampling
     found = {name: column[int(np.argmax(cost))].item() for name, column in sample.items()}
@@ -186,7 +187,7 @@ def _largest_run(study: Study, sample: Mapping[str, Array], cost: Array) -> dict
         else:
             ends = sampling.varied[name].quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
         columns = {key: [value] * len(ends) for key, value in found.items()} | {name: ends}
-        found[name] = ends[int(np.argmax(_model(study).work(_cases(study, columns))))]
+        found[name] = ends[int(np.argmax(model.work(_cases(study, model, columns))))]
     return found
 
 
@@ -223,4 +224,5 @@ def exceeded_limits(cost: Estimate, folder: Path) -> list[Problem]:
 def free_disk(folder: Path) -> float:
     """Return the bytes that a study may take: those free on its disk, and its own there."""
     there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
-    return float(disk_usage(there).free + disk_size(folder.rglob("*")))
+    own = sum(each.st_size for each in file_stats(folder.rglob("*")))
+    return float(disk_usage(there).free + own)

@@ -20,15 +20,15 @@ from distributed.comm.core import CommClosedError
 from impactlab.study.engine import Engine
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.progress import items_done
-from impactlab.study.runs import Answers, Work
-from impactlab.study.solvers import solver_named
-from impactlab.study.store import OutputSpec, RunIndex, joined, locked
+from impactlab.study.runs import Work, open_answers
+from impactlab.study.solvers import solver_named, solver_of
+from impactlab.study.store import OutputSpec, RunIndex, Shards, joined, locked
 
 log = logging.getLogger(__name__)
 
 
 @contextmanager
-def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterator[xr.Dataset]:
+def open_runs(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterator[xr.Dataset]:
     """Solve the runs of a design that are not solved yet, and give all of them as a context.
 
     design: see impactlab.study.sampling.design. Every finished batch is in `shards_folder` before
@@ -42,8 +42,8 @@ def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterato
     """
     with locked(shards_folder):
         work = Work.of(design)
-        solver, index = solver_named(work.solver), RunIndex(work.keys)
-        shards = work.shards(shards_folder)
+        solver, index = work.solver, RunIndex(work.keys)
+        shards = Shards(shards_folder, work.output, solver.version)
         for keys in shards.recover():
             index.mark(index.find(keys)[1])
         missing, repeats = index.missing(), index.size - index.distinct
@@ -58,14 +58,15 @@ def executed(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterato
                     index.mark(runs)
                     advance(runs.size, int(np.count_nonzero(columns["status"] & bits)))
         shards.merge()
+        answers = open_answers(shards, index, solver.columns(design))
         # HDF5 is not for two threads
-        with Answers(shards, index) as answers, dask.config.set(scheduler="synchronous"):
-            yield solver.labelled(design, answers.columns(solver.columns(design)))
+        with answers as found, dask.config.set(scheduler="synchronous"):
+            yield solver.labelled(design, found)
 
 
 def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Dataset:
-    """Return all runs of a design in memory; see `executed`."""
-    with executed(design, shards_folder, engine) as runs:
+    """Return all runs of a design in memory; see `open_runs`."""
+    with open_runs(design, shards_folder, engine) as runs:
         return runs.load()
 
 
@@ -101,8 +102,8 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
 
     Raises OSError when no scheduler answers, or when its workers fail.
     """
-    solver = solver_named(work.solver)
-    first = work.cases(missing[:1])
+    solver = work.solver
+    first = solver.cases(work.design, missing[:1])
     solver.solve(first[:0], OutputSpec(work.output.samples, profiles=False))  # compile only once
     values = solver.values(first, work.output)
     batches = Batches(missing, work.cost, values, engine.batch_seconds)
@@ -118,7 +119,7 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
                 pause = min(1.1 * pause, longest)  # about a tenth of the time waited so far
             ready = []
             while queue.has_ready():
-                ready.append(pool.take(*_next(queue)))
+                ready.append(pool.take(queue))
             yield joined(ready)
             queue.update(pool.submit())
 
@@ -129,59 +130,56 @@ class WorkerPool:
     def __init__(self, client: Client, work: Work, batches: Batches) -> None:
         """Count the workers with the first submission."""
         self._client, self._work, self._batches = client, work, batches
-        self._version = solver_named(work.solver).version
+        self._solver = solver_of(work.design)
         self._under_way: dict[Any, Array] = {}
         self._threads, self._counted = 1, 0.0
 
     def submit(self) -> list[Task]:
-        """Submit and return new tasks, as many as keep the workers busy."""
-        self._count_threads()
+        """Submit and return new tasks, as many as keep the workers busy.
+
+        Their threads are counted now and then: on a cluster they come and go.
+        """
+        if time.monotonic() - self._counted >= _LOOK_AGAIN:
+            try:
+                before, self._threads = self._threads, sum(self._client.nthreads().values())
+            except OSError as error:
+                raise ConnectionError(_GONE) from error
+            self._counted = time.monotonic()
+            if before and not self._threads:
+                log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
         workers, work, futures = max(1, self._threads), self._work, []
         while len(self._under_way) < _AHEAD * workers:
             runs = self._batches.take(workers)
             if not runs.size:
                 break
+            cases, version = work.solver.cases(work.design, runs), work.solver.version
             future = self._client.submit(
-                solve_batch, work.solver, work.cases(runs), work.output, self._version, pure=False
+                solve_batch, self._solver, cases, work.output, version, pure=False
             )
             self._under_way[future.key] = runs
             futures.append(future)
         return futures
 
-    def _count_threads(self) -> None:
-        """Count the threads of all workers now and then: on a cluster they come and go."""
-        if time.monotonic() - self._counted < _LOOK_AGAIN:
-            return
-        try:
-            before, self._threads = self._threads, sum(self._client.nthreads().values())
-        except OSError as error:
-            raise ConnectionError(_GONE) from error
-        self._counted = time.monotonic()
-        if before and not self._threads:
-            log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
+    def take(self, queue: as_completed) -> tuple[Array, Columns]:
+        """Return numbers and answers of a finished batch.
 
-    def take(self, future: Task, result: Result) -> tuple[Array, Columns]:
-        """Return numbers and answers of a finished batch."""
+        Raises OSError where its workers, or the scheduler, failed.
+        """
+        try:
+            future, result = next(queue)
+        except KilledWorker as error:
+            message = "a batch of runs ended every dask worker that took it (too little memory?)"
+            raise OSError(f"{message}: {error} {_KEPT}") from error
+        except (CancelledError, CommClosedError) as error:
+            raise ConnectionError(_GONE) from error
+        except (ImportError, RuntimeError) as error:
+            raise OSError(f"a dask worker failed: {error}. {_KEPT}") from error
+        if isinstance(result, CancelledError | asyncio.CancelledError):  # returned, not raised
+            raise ConnectionError(_GONE) from result
         runs, (columns, seconds) = self._under_way.pop(future.key), result
         future.release()
         self._batches.learn(float(self._work.cost[runs].sum()), seconds)
         return runs, columns
-
-
-def _next(queue: as_completed) -> tuple[Task, Result]:
-    """Return a finished task. Raises OSError where its workers, or the scheduler, failed."""
-    try:
-        future, result = next(queue)
-    except KilledWorker as error:
-        message = "a batch of runs ended every dask worker that took it (too little memory?)"
-        raise OSError(f"{message}: {error} {_KEPT}") from error
-    except (CancelledError, CommClosedError) as error:
-        raise ConnectionError(_GONE) from error
-    except (ImportError, RuntimeError) as error:
-        raise OSError(f"a dask worker failed: {error}. {_KEPT}") from error
-    if isinstance(result, CancelledError | asyncio.CancelledError):  # returned, not raised
-        raise ConnectionError(_GONE) from result
-    return future, result
 
 
 _FIRST_SECONDS = 0.1

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from stat import S_ISREG
 from typing import Any
@@ -17,7 +19,7 @@ import xarray as xr
 from dask.delayed import delayed
 
 from impactlab.study.netcdf import DAMAGE, KEYS, Array, Shard
-from impactlab.study.solvers import SOLVERS, run_count, solver_named, solver_of
+from impactlab.study.solvers import SOLVERS, Solver, run_shape, solver_named, solver_of
 from impactlab.study.store import DAMAGED, OutputSpec, RunIndex, Shards, holder, run_keys
 
 _CHUNK = 10_000
@@ -32,7 +34,7 @@ class Work:
     """
 
     design: xr.Dataset
-    solver: str
+    solver: Solver
     output: OutputSpec
     keys: Array
     cost: Array
@@ -40,23 +42,13 @@ class Work:
     @staticmethod
     def of(design: xr.Dataset) -> Work:
         """Check every run. Raises ValueError naming one that the model refuses."""
-        name, output = solver_of(design), OutputSpec.of(design)
-        solver = solver_named(name)
-        keys, cost = [], []
-        for start in range(0, run_count(design), _CHUNK):
-            stop = min(start + _CHUNK, run_count(design))
-            cases = solver.cases(design, np.arange(start, stop))
+        solver, output = solver_named(solver_of(design)), OutputSpec.of(design)
+        keys, cost, runs = [], [], np.arange(math.prod(run_shape(design)[1]))
+        for start in range(0, runs.size, _CHUNK):
+            cases = solver.cases(design, runs[start : start + _CHUNK])
             keys.append(run_keys(cases, output, solver.version))
             cost.append(solver.cost(cases))
-        return Work(design, name, output, np.concatenate(keys), np.concatenate(cost))
-
-    def cases(self, runs: Array) -> Array:
-        """Return the cases of these runs, by number."""
-        return solver_named(self.solver).cases(self.design, runs)
-
-    def shards(self, folder: Path) -> Shards:
-        """Return the shards in which answers of these runs may be."""
-        return Shards(folder, self.output, solver_named(self.solver).version)
+        return Work(design, solver, output, np.concatenate(keys), np.concatenate(cost))
 
 
 _OPEN = 100
@@ -64,65 +56,59 @@ _OPEN = 100
 _AGAIN = "run the same command again: what is lost is solved again"
 
 
-class Answers:
-    """All answers of a design, as a context; one column at a time is in memory."""
+@contextmanager
+def open_answers(
+    shards: Shards, index: RunIndex, names: Sequence[str]
+) -> Iterator[dict[str, da.Array]]:
+    """Give the answers of a design by name as a context, each of shape (runs, ...).
 
-    def __init__(self, shards: Shards, index: RunIndex) -> None:
-        """Find the answers of each run. Raises OSError where a run has none."""
-        self._index = index
-        self._open: dict[Path, Shard] = {}
-        self._parts: list[tuple[Path, Array, Array]] = []
-        self._closing = ExitStack()
-        found = np.zeros(index.size, dtype=bool)
+    Each is one block, read when it is computed. Raises OSError where a run has no answer, or a
+    shard is damaged.
+    """
+    parts: list[tuple[Path, Array, Array]] = []
+    found = np.zeros(index.size, dtype=bool)
+    kept: dict[Path, Shard] = {}
+    with ExitStack() as closing:
+        opened = partial(_open_shard, kept=kept, closing=closing)
         for path in shards.files():
-            requested, runs = index.find(self._read(path, KEYS))
+            with opened(path) as shard:
+                requested, runs = index.find(shard.read(KEYS))
             if runs.size:
-                self._parts.append((path, np.flatnonzero(requested), runs))
+                parts.append((path, np.flatnonzero(requested), runs))
                 found[runs] = True
         if not index.spread(found).all():
             raise OSError(f"{shards.folder}: shards disappeared while they were read: {_AGAIN}")
 
-    def __enter__(self) -> Answers:
-        return self
+        def read(name: str, shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
+            values = np.empty(shape, kind)
+            for path, rows, runs in parts:
+                with opened(path) as shard:
+                    values[runs] = shard.read(name)[rows]
+            return index.spread(values)
 
-    def __exit__(self, *_: object) -> None:
-        self._closing.close()
-
-    def columns(self, names: Sequence[str]) -> dict[str, da.Array]:
-        """Return answers by name, each of shape (runs, ...), in one block read when computed."""
-        with self._shard(self._parts[0][0]) as shard:
+        with opened(parts[0][0]) as shard:
             layouts = {name: shard.layout(name) for name in names}
         columns = {}
-        for name, (shape, kind) in layouts.items():
-            whole = (self._index.size, *shape)
-            values = delayed(self._values)(name, whole, kind)
-            columns[name] = da.from_delayed(values, whole, kind)  # type: ignore[no-untyped-call]
-        return columns
+        for name, (row, kind) in layouts.items():
+            shape = (index.size, *row)
+            block = delayed(read)(name, shape, kind)
+            columns[name] = da.from_delayed(block, shape, kind)  # type: ignore[no-untyped-call]
+        yield columns
 
-    def _values(self, name: str, shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
-        values = np.empty(shape, kind)
-        for path, rows, runs in self._parts:
-            values[runs] = self._read(path, name)[rows]
-        return self._index.spread(values)
 
-    def _read(self, path: Path, name: str) -> Array:
-        with self._shard(path) as shard:
-            return shard.read(name)
-
-    @contextmanager
-    def _shard(self, path: Path) -> Iterator[Shard]:
-        """Open a shard, or take an open one. Raises OSError where it is damaged."""
-        try:
-            if path in self._open:
-                yield self._open[path]
-            elif len(self._open) < _OPEN:
-                self._open[path] = self._closing.enter_context(Shard(path))
-                yield self._open[path]
-            else:
-                with Shard(path) as shard:
-                    yield shard
-        except DAMAGE as error:
-            raise OSError(f"{path} was damaged after it was written ({error}): {_AGAIN}") from error
+@contextmanager
+def _open_shard(path: Path, kept: dict[Path, Shard], closing: ExitStack) -> Iterator[Shard]:
+    """Open a shard, or take one that is kept open. Raises OSError where it is damaged."""
+    try:
+        if path not in kept and len(kept) < _OPEN:
+            kept[path] = closing.enter_context(Shard(path))
+        if path in kept:
+            yield kept[path]
+        else:
+            with Shard(path) as shard:
+                yield shard
+    except DAMAGE as error:
+        raise OSError(f"{path} was damaged after it was written ({error}): {_AGAIN}") from error
 
 
 @dataclass(frozen=True)
@@ -144,33 +130,32 @@ class Status:
 def status(design: xr.Dataset, shards_folder: Path) -> Status:
     """Return the status of a design; shards are only read, also while another process writes."""
     work = Work.of(design)
-    shards, index = work.shards(shards_folder), RunIndex(work.keys)
+    shards = Shards(shards_folder, work.output, work.solver.version)
+    index = RunIndex(work.keys)
     bits = np.zeros(index.size, dtype=np.int32)
     for keys, columns in shards.read("status"):
         requested, runs = index.find(keys)
         index.mark(runs)
         bits[runs] = columns["status"][requested]
-    failures = solver_named(work.solver).failures(design)
-    times = [each.st_mtime for each in _seen(shards.files())]
+    failures = work.solver.failures(design)
+    times = [each.st_mtime for each in file_stats(shards.files())]
     return Status(
         runs=index.size,
         done=index.size - index.left(),
         failed=int(np.count_nonzero(index.spread(bits) & failures)),
         age=time.time() - max(times) if times else None,
-        size=disk_size(shards_folder.rglob("*")),
+        size=sum(each.st_size for each in file_stats(shards_folder.rglob("*"))),
         holder=holder(shards_folder),
     )
 
 
-def disk_size(paths: Iterable[Path]) -> int:
-    """Return the bytes of these files; one that disappeared counts nothing."""
-    return sum(each.st_size for each in _seen(paths) if S_ISREG(each.st_mode))
-
-
-def _seen(paths: Iterable[Path]) -> Iterator[os.stat_result]:
+def file_stats(paths: Iterable[Path]) -> Iterator[os.stat_result]:
+    """Yield what the system says of the files among these paths; not of one that disappeared."""
     for path in paths:
         with suppress(FileNotFoundError):
-            yield path.stat()
+            found = path.stat()
+            if S_ISREG(found.st_mode):
+                yield found
 
 
 _STUDY = "study"
@@ -192,7 +177,7 @@ def noted_study(shards_folder: Path) -> Path | None:
     return None
 
 
-def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, str]:
+def removable_files(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, str]:
     """Return the files of a study's folder of shards that may be removed, and the reasons.
 
     designs: all that the study may need; none where it does not exist any more. A shard stays as
@@ -201,13 +186,14 @@ def stale(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, st
     wanted: dict[Path, list[Array]] = {}
     for design in designs:
         work = Work.of(design)
-        wanted.setdefault(work.shards(shards_folder).folder, []).append(work.keys)
+        shards = Shards(shards_folder, work.output, work.solver.version)
+        wanted.setdefault(shards.folder, []).append(work.keys)
     found = _removable(shards_folder, wanted)
     return found if designs else dict.fromkeys(found, "its study does not exist")
 
 
 def outdated(folder: Path) -> dict[Path, str]:
-    """Return removable files and reasons as `stale` does, of pilot runs and refinements.
+    """Return removable files and reasons as `removable_files` does, of pilot runs and refinements.
 
     All are kept but those of another solver: only a search tells which would be needed again.
     """

@@ -100,10 +100,10 @@ def _kept(study: Study, file: Path) -> xr.Dataset | None:
     """Return what was found before for this very study, if anything."""
     if not file.exists():
         return None
-    from impactlab.study.adaptive.recommendation import fits
+    from impactlab.study.adaptive.recommendation import matches_study
 
     found = read_netcdf(file)
-    return found if fits(found, study) else None
+    return found if matches_study(found, study) else None
 
 
 def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = None) -> None:
@@ -112,9 +112,9 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
     Finished batches are kept in shards/ beside it. A sample that grows is solved until its
     intervals are narrow enough. file: the study file, noted beside the shards.
 
-    Raises ValueError, OSError and BlockingIOError as execute.executed does.
+    Raises ValueError, OSError and BlockingIOError as execute.open_runs does.
     """
-    from impactlab.study.execute import execute, executed
+    from impactlab.study.execute import execute, open_runs
     from impactlab.study.runs import note_study
     from impactlab.study.store import locked
 
@@ -123,13 +123,13 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
         note_study(shards, file)
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse
-        from impactlab.study.adaptive.extending import extended
+        from impactlab.study.adaptive.extending import extend_sample
 
         stage = partial(execute, shards_folder=shards, engine=engine)
         with locked(shards):  # over all its stages
-            write_netcdf(extended(samples, stage, analyse), path)
+            write_netcdf(extend_sample(samples, stage, analyse), path)
     else:
-        with executed(samples, shards, engine) as runs:
+        with open_runs(samples, shards, engine) as runs:
             write_netcdf(runs, path)
 
 
@@ -180,26 +180,26 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
 
 def _stale(file: Path, shards: Path) -> dict[Path, str]:
     """Return the files to remove of one study; file: the study, perhaps gone from there."""
-    from impactlab.study.runs import noted_study, outdated, stale
+    from impactlab.study.runs import noted_study, outdated, removable_files
     from impactlab.study.sampling.design import design, stages
     from impactlab.study.schema.files import read_study
 
     there = file if file.exists() else noted_study(shards.with_name(SHARDS))
     if there is None:
-        return stale(shards, ())
+        return removable_files(shards, ())
     if shards.name != SHARDS:
         return outdated(shards)
     declared = resolved_before(read_study(there), shards.parent)
-    return {} if declared is None else stale(shards, list(stages(design(declared))))
+    return {} if declared is None else removable_files(shards, list(stages(design(declared))))
 
 
 def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = None) -> None:
     """Solve the first runs of a Sobol sample on finer grids and write them to `path`."""
-    from impactlab.study.adaptive.refining import refined
+    from impactlab.study.adaptive.refining import refine_cases
     from impactlab.study.execute import execute
 
     part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
-    write_netcdf(refined(read_netcdf(runs), part, base_samples), path)
+    write_netcdf(refine_cases(read_netcdf(runs), part, base_samples), path)
 
 
 def analyse_runs(

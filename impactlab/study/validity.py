@@ -10,7 +10,7 @@ from typing import Any
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.model.parameters import PARAMETERS, Value, with_values
+from impactlab.model.parameters import PARAMETERS, Parameter, Value, with_values
 
 Base = tuple[Impact, Discretisation]
 
@@ -78,9 +78,12 @@ def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal |
     return next((each for each in found if each), None)
 
 
-def refused_alone(name: str, value: Value) -> str:
-    """Return the model's reason why no impact can have this value; "" where one can."""
-    found = refusal(_ROOMY, {name: value})
+def refused_alone(parameter: Parameter, value: Value) -> str:
+    """Return the model's reason why no impact can have this value; "" where one can.
+
+    A parameter of a test function, which is no part of the model, can have any value.
+    """
+    found = refusal(_ROOMY, {parameter.name: value}) if parameter.path else None
     return found.reason if found else ""
 
 

@@ -31,7 +31,7 @@ from rich.table import Table
 import impactlab as il
 from impactlab.model.parameters import flatten
 from impactlab.study.engine import Engine
-from impactlab.study.execute import executed
+from impactlab.study.execute import open_runs
 from impactlab.study.netcdf import Columns, write_netcdf
 from impactlab.study.solvers import impact
 from impactlab.study.store import OutputSpec
@@ -81,10 +81,12 @@ def measured(what: str, runs: int, threads: int) -> dict[str, object]:
     """One line of the table, in this process."""
     asked = design(runs, *KINDS[what])
     line = {"what": what, "runs": runs, "threads": threads}
-    impact.solve(impact.cases(asked, np.arange(1)), OutputSpec.of(asked))  # compiled, or loaded
+    impact.SOLVER.solve(
+        impact.cases(asked, np.arange(1)), OutputSpec.of(asked)
+    )  # compiled, or loaded
     with tempfile.TemporaryDirectory() as folder, kernels() as spent:
         wall, processor = time.perf_counter(), time.process_time()
-        with executed(asked, Path(folder), Engine(workers=threads)) as solved:
+        with open_runs(asked, Path(folder), Engine(workers=threads)) as solved:
             write_netcdf(solved, Path(folder) / "runs.nc")
             line["runs_MB"] = solved.nbytes / 1e6
         line["wall_s"] = time.perf_counter() - wall

@@ -64,7 +64,7 @@ def outcome(path):
                 cost = estimate(study, workers=2)
                 assert cost.seconds >= 0 < cost.memory < float("inf")
                 if isinstance(study, FunctionStudy) or (study.auto is None):
-                    _ = design(study) if study.runs <= _DRAWN else None
+                    _ = design(study) if study.sampling.runs <= _DRAWN else None
         except StudyError as error:
             for problem in error.args:
                 _check(problem, path)

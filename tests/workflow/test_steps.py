@@ -120,7 +120,7 @@ def test_nobody_gets_between_two_steps_of_a_growing_sample(folder, monkeypatch):
         seen.append(holder(folder / "results" / "growing" / "shards"))
         raise OSError("seen enough")
 
-    monkeypatch.setattr(extending, "extended", looking)
+    monkeypatch.setattr(extending, "extend_sample", looking)
     assert here("run", "studies/growing.yaml") == 1
     assert seen[0].startswith(f"process {os.getpid()} on ")
 

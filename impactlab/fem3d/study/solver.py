@@ -244,4 +244,6 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     return described(impact.labelled(design, answers).assign(own))
 
 
-SOLVER = Solver(VERSION, columns, impact.failures, cases, work, impact.values, solve, labelled)
+SOLVER = Solver(
+    VERSION, columns, impact.SOLVER.failures, cases, work, impact.values, solve, labelled
+)

@@ -18,7 +18,7 @@ log = logging.getLogger(__name__)
 Step = Callable[[xr.Dataset], xr.Dataset]
 
 
-def extended(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
+def extend_sample(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
     """Return the runs of the smallest sample whose intervals are as narrow as requested.
 
     design: of a Sobol study with `until`. solve: returns the runs of a design; analyse: returns

@@ -218,7 +218,7 @@ def _cost(study: Study, nodes: float, points: float, courant: float) -> float:
     return steps * (1.0 + _POINT_COST * points)
 
 
-def fits(found: xr.Dataset, study: Study) -> bool:
+def matches_study(found: xr.Dataset, study: Study) -> bool:
     """Return True if a recommendation was made for this very study, by these kernels."""
     same = found.attrs.get("study_sha256") == study.sha256
     return same and found.attrs.get("kernels_sha256") == SOURCES_HASH

@@ -17,7 +17,7 @@ COARSEST = 25
 Solve = Callable[[xr.Dataset], xr.Dataset]
 
 
-def refined(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr.Dataset:
+def refine_cases(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr.Dataset:
     """Return the first base samples on the grid of the runs and on others, all else unchanged.
 
     runs: a Sobol sample of impacts, as in runs.nc. solve: returns the runs of a design, which

@@ -6,12 +6,14 @@ The indices of a method are in the file of its name in analysis.sensitivity.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationInfo
 
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Fast, Latin, Morris, Sobol
 from impactlab.study.sampling.sections import Sampling
-from impactlab.study.schema.parameters import Factor
-from impactlab.study.schema.section import Reader, section_by
+from impactlab.study.schema.section import name_at
 
 METHODS: Mapping[str, type[Sampling]] = {
     "grid": Grid,
@@ -25,6 +27,6 @@ METHODS: Mapping[str, type[Sampling]] = {
 """Sections by their method's name in study files: a new one is a class and a line."""
 
 
-def sampling_reader(factors: Mapping[str, Factor]) -> Reader:
-    """Return the reader of the section `sampling` of studies that can vary these factors."""
-    return section_by("method", {name: kind.of(factors) for name, kind in METHODS.items()})
+def read_sampling(data: Any, info: ValidationInfo) -> Sampling:
+    """Read the section `sampling` of a study. Raises ValueError naming the key at fault."""
+    return METHODS[name_at("method", METHODS, data)].model_validate(data, context=info.context)

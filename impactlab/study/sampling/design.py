@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import prod
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from impactlab.model.parameters import flatten, with_values
+from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
@@ -18,7 +19,7 @@ from impactlab.study.sampling.sections import Grouped
 from impactlab.study.schema.checks import has_solid_runs
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.schema.study import FunctionStudy, Study, StudyBase
-from impactlab.study.solvers import run_count, varied_names
+from impactlab.study.solvers import run_shape, varied_names
 from impactlab.study.validity import Refusal, refused_alone, refused_run
 from impactlab.types import Floats
 from impactlab.variables import described
@@ -76,7 +77,7 @@ def _check_draws(study: Study, drawn: dict[str, Floats]) -> None:
     found = None
     for name, values in drawn.items():
         for extreme in (float(values.min()), float(values.max())):
-            if found is None and (reason := refused_alone(name, extreme)):
+            if found is None and (reason := refused_alone(PARAMETERS[name], extreme)):
                 found = Refusal(name, reason, {name: extreme})
     if found is None:
         base = with_values(study.impact, study.discretisation, study.sampling.fixed)
@@ -144,7 +145,7 @@ def stages(design: xr.Dataset) -> Iterator[xr.Dataset]:
     """Yield the design, then each design of twice as many runs that its `until` allows."""
     yield design
     most = int(design.attrs.get("until_runs", 0))
-    while 2 * run_count(design) <= most:
+    while 2 * prod(run_shape(design)[1]) <= most:
         design = doubled(design)
         yield design
 

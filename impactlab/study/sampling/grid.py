@@ -10,10 +10,11 @@ from typing import Annotated, Any, Generic, Literal, Self, TypeVar
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationInfo, model_validator
 
-from impactlab.model.parameters import Value
+from impactlab.model.parameters import Parameter, Value
 from impactlab.study.sampling.sections import Sampling
-from impactlab.study.schema.parameters import Factor
-from impactlab.study.schema.section import Reader, Section, Whole, at_key, between, one_of
+from impactlab.study.schema.parameters import value_type
+from impactlab.study.schema.section import Section, Whole, at_key, one_of
+from impactlab.study.validity import refused_alone
 
 Q = TypeVar("Q", bound=float)
 MOST_VALUES = 10_000
@@ -28,7 +29,7 @@ class Range(Section, Generic[Q]):
     spacing: Annotated[str, one_of("spacing", ("linear", "log"))] = "linear"
     start: Q
     stop: Q
-    number: Annotated[Whole, between(2, MOST_VALUES)]
+    number: Annotated[Whole, Field(ge=2, le=MOST_VALUES)]
 
     @model_validator(mode="after")
     def _check_ends(self) -> Self:
@@ -38,18 +39,18 @@ class Range(Section, Generic[Q]):
             raise at_key("stop", f"must be above start ({self.start!r})")
         return self
 
-    def values(self, factor: Factor) -> list[Value]:
+    def values(self, parameter: Parameter) -> list[Value]:
         """Return the values to 12 significant digits, so that 0.3 is selected as 0.3.
 
-        Raises ValueError where the factor takes whole numbers, and one of them is not.
+        Raises ValueError where the parameter takes whole numbers, and one of them is not.
         """
         space = np.geomspace if self.spacing == "log" else np.linspace
         spaced = space(self.start, self.stop, self.number)
         values: list[Value] = [float(f"{value:.12g}") for value in spaced]
-        if not factor.parameter.whole:
+        if not parameter.whole:
             return values
         for value in values:
-            if reason := factor.refused(value):
+            if reason := refused_alone(parameter, value):
                 raise ValueError(f"the range gives {value:g}: {reason}; list the values")
         return [int(value) for value in values]
 
@@ -65,28 +66,22 @@ class Grid(Sampling):
     parameters: Mapping[str, tuple[Value, ...]]
 
     @staticmethod
-    def entry(factor: Factor) -> Reader:
-        """Return the reader of a parameter's distinct values: a list, or a range of numbers."""
-        value_type: Any = factor.type
-        listed: TypeAdapter[list[Value]] = TypeAdapter(
-            Annotated[list[value_type], Field(min_length=1, max_length=MOST_VALUES)]
-        )
-        ranged = None if factor.parameter.choices else Range[value_type]
-
-        def read(data: Any, info: ValidationInfo) -> tuple[Value, ...]:
-            if isinstance(data, list):
-                values = listed.validate_python(data)
-            elif ranged is None or not isinstance(data, dict):
-                or_range = " or a range such as {start: 1, stop: 3, number: 5}" if ranged else ""
-                raise ValueError(f"expected a list such as [1, 2, 3]{or_range}")
-            else:
-                values = ranged.model_validate(data, context=info.context).values(factor)
-            if twice := [value for value, count in Counter(values).items() if count > 1]:
-                once = "more than once: list each value once"
-                raise ValueError(f"holds {twice[0]!r} (in SI units) {once}")
-            return tuple(values)
-
-        return read
+    def read_entry(parameter: Parameter, data: Any, info: ValidationInfo) -> tuple[Value, ...]:
+        """Read a parameter's distinct values: a list, or a range of numbers."""
+        kind: Any = value_type(parameter)
+        if isinstance(data, list):
+            listed = Annotated[list[kind], Field(min_length=1, max_length=MOST_VALUES)]
+            values: list[Value] = TypeAdapter(listed).validate_python(data)
+        elif isinstance(data, dict) and not parameter.choices:
+            values = Range[kind].model_validate(data, context=info.context).values(parameter)
+        else:
+            ranged = " or a range such as {start: 1, stop: 3, number: 5}"
+            or_range = "" if parameter.choices else ranged
+            raise ValueError(f"expected a list such as [1, 2, 3]{or_range}")
+        if twice := [value for value, count in Counter(values).items() if count > 1]:
+            once = "more than once: list each value once"
+            raise ValueError(f"holds {twice[0]!r} (in SI units) {once}")
+        return tuple(values)
 
     @property
     def runs(self) -> int:

@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, StrictBool, ValidationInfo, model_validator
+from pydantic import AfterValidator, Field, StrictBool, model_validator
 
 from impactlab.study.sampling.sections import MOST_RUNS, Grouped, Sample
-from impactlab.study.schema.parameters import Distribution, Factor
-from impactlab.study.schema.section import (
-    Names,
-    Number,
-    Reader,
-    Section,
-    Whole,
-    at_key,
-    between,
-    requires,
-)
+from impactlab.study.schema.section import Names, Number, Section, Whole, at_key, requires
 from impactlab.types import Floats
 
 _FEWEST_TO_GROW = 64
@@ -33,8 +23,8 @@ class Until(Section):
     number of runs. responses: those whose indices count; None: all.
     """
 
-    interval: Annotated[Number, between(0.001, 0.5)]
-    runs: Annotated[Whole, between(1, MOST_RUNS)]
+    interval: Annotated[Number, Field(ge=0.001, le=0.5)]
+    runs: Annotated[Whole, Field(ge=1, le=MOST_RUNS)]
     responses: Names | None = None
 
 
@@ -57,7 +47,7 @@ class Sobol(Grouped):
     """
 
     method: Literal["sobol"]
-    base_samples: Annotated[Whole, between(2, MOST_RUNS), AfterValidator(_power_of_two)]
+    base_samples: Annotated[Whole, Field(ge=2, le=MOST_RUNS), AfterValidator(_power_of_two)]
     second_order: StrictBool = True
     until: Until | None = None
 
@@ -100,33 +90,16 @@ class Morris(Grouped):
     """
 
     method: Literal["morris"]
-    trajectories: Annotated[Whole, between(2, 1_000_000)]
+    trajectories: Annotated[Whole, Field(ge=2, le=1_000_000)]
     levels: Annotated[
         Whole,
-        between(2, 100),
+        Field(ge=2, le=100),
         requires(
             lambda levels: levels % 2 == 0,
             "must be even: the steps would favour some levels otherwise",
         ),
     ] = 4
-    optimal_trajectories: Annotated[Whole, between(0, 1000)] = 0
-
-    @staticmethod
-    def entry(factor: Factor) -> Reader:
-        """Return the reader of a distribution with two ends, or of a fixed value."""
-        read_any = Sample.entry(factor)
-
-        def read(data: Any, info: ValidationInfo) -> Any:
-            entry = read_any(data, info)
-            if isinstance(entry, Distribution) and not entry.bounds():
-                reason = (
-                    "has no ends, where method morris has its outer levels: "
-                    "use truncated_normal, or another with low and high"
-                )
-                raise at_key("distribution", reason)
-            return entry
-
-        return read
+    optimal_trajectories: Annotated[Whole, Field(ge=0, le=1000)] = 0
 
     @property
     def runs(self) -> int:
@@ -135,7 +108,13 @@ class Morris(Grouped):
 
     @model_validator(mode="after")
     def _check_choice(self) -> Self:
-        """Refuse a choice that SALib cannot make, or that takes it too long."""
+        """Refuse draws without ends, and a choice that SALib cannot make, or not in time."""
+        if endless := [name for name, given in self.varied.items() if not given.bounds()]:
+            reason = (
+                "has no ends, where method morris has its outer levels: "
+                "use truncated_normal, or another with low and high"
+            )
+            raise at_key(f"parameters.{endless[0]}.distribution", reason)
         most, chosen = self.trajectories - 1, self.optimal_trajectories
         if chosen and not 2 <= chosen <= most:
             reason = f"must lie from 2 to {most} (below trajectories), or be 0"
@@ -168,8 +147,8 @@ class Fast(Sample):
     """
 
     method: Literal["fast"]
-    samples: Annotated[Whole, between(5, MOST_RUNS)]
-    harmonics: Annotated[Whole, between(1, 100)] = 4
+    samples: Annotated[Whole, Field(ge=5, le=MOST_RUNS)]
+    harmonics: Annotated[Whole, Field(ge=1, le=100)] = 4
 
     @property
     def runs(self) -> int:
@@ -195,7 +174,7 @@ class Latin(Sample):
     """Latin hypercube: the one sample of delta, PAWN and regression. samples: number of runs."""
 
     method: Literal["delta", "pawn", "regression"]
-    samples: Annotated[Whole, between(64, MOST_RUNS)]
+    samples: Annotated[Whole, Field(ge=64, le=MOST_RUNS)]
 
     @property
     def runs(self) -> int:

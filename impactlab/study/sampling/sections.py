@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from abc import abstractmethod
 from collections.abc import Mapping
+from functools import partial
 from importlib import import_module
 from typing import Annotated, Any, ClassVar, Self
 
@@ -15,13 +16,15 @@ from pydantic import (
     PlainValidator,
     ValidationInfo,
     create_model,
+    field_validator,
     model_validator,
 )
 
-from impactlab.model.parameters import Value
+from impactlab.model.distributions import ARGUMENTS
+from impactlab.model.parameters import Parameter, Value
 from impactlab.study.errors import unknown
-from impactlab.study.schema.parameters import Distribution, Factor, Fixed, distribution_reader
-from impactlab.study.schema.section import Names, Reader, Section, Whole, at_key, between
+from impactlab.study.schema.parameters import Distribution, Fixed, distribution_section
+from impactlab.study.schema.section import Names, Section, Whole, at_key, name_at
 from impactlab.types import Floats
 
 MOST_RUNS = 10_000_000
@@ -31,7 +34,7 @@ infinite."""
 
 
 class Sampling(Section):
-    """The section `sampling`: the varied parameters, in the order of the file."""
+    """The section `sampling`: the parameters, in the order of the file."""
 
     fewest: ClassVar[int] = 1
 
@@ -40,8 +43,8 @@ class Sampling(Section):
 
     @staticmethod
     @abstractmethod
-    def entry(factor: Factor) -> Reader:
-        """Return the reader of one parameter's entry."""
+    def read_entry(parameter: Parameter, data: Any, info: ValidationInfo) -> Any:
+        """Read one parameter's entry. Raises ValueError for a wrong one."""
 
     @property
     @abstractmethod
@@ -62,21 +65,16 @@ class Sampling(Section):
     def bounds(self) -> dict[str, tuple[Value, ...]]:
         """Return the least and greatest value of each bounded parameter, or its words."""
 
+    @field_validator("parameters", mode="plain")
     @classmethod
-    def of(cls, factors: Mapping[str, Factor]) -> type[Self]:
-        """Return this section for studies that can vary these factors."""
+    def _read_parameters(cls, data: Any, info: ValidationInfo) -> dict[str, Any]:
         entries: Any = {
-            name: (Annotated[Any, PlainValidator(cls.entry(factor))], None)
-            for name, factor in factors.items()
+            name: (Annotated[Any, PlainValidator(partial(cls.read_entry, parameter))], None)
+            for name, parameter in info.context["parameters"].items()  # type: ignore[index]
         }
         section = create_model("Parameters", __base__=Section, **entries)
-
-        def read(data: Any, info: ValidationInfo) -> dict[str, Any]:
-            parameters = section.model_validate(data, context=info.context)
-            return {name: getattr(parameters, name) for name in data}  # in the file's order
-
-        fields: Any = {"parameters": (Annotated[Mapping[str, Any], PlainValidator(read)], ...)}
-        return create_model(cls.__name__, __base__=cls, **fields)
+        found = section.model_validate(data, context=info.context)
+        return {name: getattr(found, name) for name in data}  # in the file's order
 
     @model_validator(mode="after")
     def _check_counts(self) -> Self:
@@ -97,13 +95,21 @@ class Sample(Sampling):
 
     fewest: ClassVar[int] = 2
 
-    seed: Annotated[Whole, between(0, 2**32 - 1)] = 1
-    parameters: Mapping[str, Distribution | Fixed[Any]]
+    seed: Annotated[Whole, Field(ge=0, le=2**32 - 1)] = 1
+    parameters: Mapping[str, Distribution | Fixed]
 
     @staticmethod
-    def entry(factor: Factor) -> Reader:
-        """Return the reader of a distribution, or of a fixed value."""
-        return distribution_reader(factor)
+    def read_entry(parameter: Parameter, data: Any, info: ValidationInfo) -> Distribution | Fixed:
+        """Read a distribution within the model's limits, or a fixed value, as words always are."""
+        fixed = isinstance(data, dict) and data.get("distribution") == "fixed"
+        if not fixed and (parameter.choices or parameter.whole):
+            what = "a choice of words" if parameter.choices else "a whole number"
+            raise ValueError(
+                f"is {what} and cannot be sampled: vary it in a study with method: grid, "
+                "or write {distribution: fixed, value: ...}"
+            )
+        name = name_at("distribution", (*ARGUMENTS, "fixed"), data)
+        return distribution_section(name, parameter).model_validate(data, context=info.context)
 
     @property
     def varied(self) -> dict[str, Distribution]:

@@ -11,7 +11,7 @@ from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.solver import BEAM_MODELS
-from impactlab.study.errors import Problem, unknown
+from impactlab.study.errors import unknown
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample, Sampling
@@ -30,19 +30,6 @@ _FIBRES = ("euler_bernoulli", "elastic")
 _NOT_SOLID = "contact_dissipation"
 """The one response that the 3-D model cannot give by itself."""
 _TAILS = np.array([1e-3, 1 - 1e-3])
-
-
-def problems(file: StudyFile, path: str, sound: set[str]) -> list[Problem]:
-    """Return the contradictions between sections.
-
-    sound: the sections without errors of their own; a check that reads any other is left out.
-    """
-    return [
-        Problem(path, key, reason)
-        for check, sections in _CHECKS
-        if sections <= sound
-        for key, reason in check(file)
-    ]
 
 
 def has_solid_runs(study: Study | StudyFile) -> bool:
@@ -105,14 +92,10 @@ def _one_mesh_for_profiles(file: StudyFile) -> Reasons:
             yield f"sampling.parameters.{name}", reason
 
 
-def _analysis_of_a_sample(file: StudyFile) -> Reasons:
-    """Check that the section `analysis` belongs to a sample."""
-    if file.analysis is not None and not isinstance(file.sampling, Sample):
-        yield "analysis", "has no effect with method: grid: take it out"
-
-
 def _runs_for_the_analyses(file: StudyFile) -> Reasons:
-    """Each analysis that is listed by name has the runs that it needs."""
+    """Each analysis that is listed by name has the runs that it needs, settings have a sample."""
+    if file.analysis is not None and isinstance(file.sampling, Grid):
+        yield "analysis", "has no effect with method: grid: take it out"
     grid = file.sampling.parameters if isinstance(file.sampling, Grid) else {}
     counts = {name: len(values) for name, values in grid.items()}
     possible = {
@@ -130,7 +113,7 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
 
 def _automatic_discretisation(file: StudyFile) -> Reasons:
     """Check that an automatic discretisation is not varied, and its responses are the study's."""
-    auto = file.discretisation.auto
+    _, auto = file.discretisation
     for name in ("nodes", "points", "courant") if auto else ():
         if name in file.sampling.parameters:
             reason = "cannot be varied beside discretisation: auto, which finds it"
@@ -155,7 +138,7 @@ def _indices_to_grow_by(file: StudyFile) -> Reasons:
 
 def _impacts(file: StudyFile) -> Reasons:
     """Check that no corner of varied values is refused or impossible, and that schemes fit."""
-    grid, sampling = file.discretisation.discretisation, file.sampling
+    grid, sampling = file.discretisation[0], file.sampling
     varied = sampling.bounds()
     if refused := refused_corner((file.impact, grid), varied):
         name = refused.name if refused.name in varied else next(iter(refused.values))
@@ -176,7 +159,7 @@ def _impacts(file: StudyFile) -> Reasons:
 
 def _solid(file: StudyFile) -> Reasons:
     """Check that runs of the 3-D model have one element size and its options, and others none."""
-    own = file.discretisation.discretisation
+    own, auto = file.discretisation
     sizes = [
         key_of(name, file.sampling)
         for name in ELEMENTS
@@ -197,7 +180,7 @@ def _solid(file: StudyFile) -> Reasons:
     if not isinstance(file.sampling, Grid):
         reason = f"beam_model: {SOLID} needs method: grid, because a run takes minutes"
         yield "sampling.method", reason
-    if file.discretisation.auto is not None:
+    if auto is not None:
         reason = f"is not possible with beam_model: {SOLID}: state the discretisation"
         yield "discretisation.auto", reason
     if file.store.profiles:
@@ -210,14 +193,13 @@ def _solid(file: StudyFile) -> Reasons:
         yield "responses", reason
 
 
-_CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
+CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (_mass_and_density, {"impact", "sampling"}),
     (_one_mesh_for_profiles, {"store", "sampling"}),
-    (_analysis_of_a_sample, {"analysis", "sampling"}),
-    (_runs_for_the_analyses, {"analyses", "sampling"}),
+    (_runs_for_the_analyses, {"analyses", "analysis", "sampling"}),
     (_automatic_discretisation, {"discretisation", "responses", "sampling"}),
     (_indices_to_grow_by, {"analyses", "responses", "sampling"}),
     (_impacts, {"impact", "discretisation", "sampling"}),
     (_solid, {"impact", "discretisation", "sampling", "responses", "store"}),
 )
-"""The checks, and the sections that each reads."""
+"""The checks, and the sections that each reads: without errors of their own, or it is left out."""

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from difflib import get_close_matches
-from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, PlainValidator, ValidationError, create_model
+from pydantic import Field, PlainValidator, create_model
 
 from impactlab.model.parameters import Parameter
 from impactlab.study.errors import Problem, StudyError, unknown
-from impactlab.study.sampling import sampling_reader
+from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema import checks
-from impactlab.study.schema.parameters import Factor
-from impactlab.study.schema.section import Heading, names, validation_problems
+from impactlab.study.schema.checks import CHECKS, has_solid_runs
+from impactlab.study.schema.section import Heading, names, validated
 from impactlab.study.schema.study import Analysis, FunctionStudy, Study, StudyFile, Verification
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
 from impactlab.verification.functions import FUNCTIONS
@@ -31,15 +30,17 @@ def read_any(path: str | Path) -> Study | FunctionStudy | Verification:
     is not YAML, or holds no mapping.
     """
     source = read_source(path)
-    return _verification(source) if _has(source, "checks") else _runs(source)
+    study: Study | FunctionStudy | Verification = _READERS[_kind(source)](source)
+    return study
 
 
 def read_study(path: str | Path) -> Study | FunctionStudy:
     """Read a study of runs. Raises StudyError as `read_any`, and for a file of checks."""
     source = read_source(path)
-    if _has(source, "checks"):
+    if _kind(source) == "checks":
         raise _wrong_kind(source, "lists checks and has no runs", "verify")
-    return _runs(source)
+    study: Study | FunctionStudy = _READERS[_kind(source)](source)
+    return study
 
 
 def read_impacts(path: str | Path) -> Study:
@@ -57,13 +58,15 @@ def study_of_text(name: str, text: str) -> Study | FunctionStudy:
     Raises StudyError as `read_any`.
     """
     path = Path(f"{name}.yaml")
-    return _runs(Source(name, path, text, read_mapping(text, str(path))))
+    source = Source(name, path, text, read_mapping(text, str(path)))
+    study: Study | FunctionStudy = _READERS[_kind(source)](source)
+    return study
 
 
 def read_verification(path: str | Path) -> Verification:
     """Read a file of checks. Raises StudyError as `read_any`, and for a study of runs."""
     source = read_source(path)
-    if not _has(source, "checks"):
+    if _kind(source) != "checks":
         raise _wrong_kind(source, "has no key checks, so it is a study of runs", "run")
     return _verification(source)
 
@@ -87,7 +90,7 @@ def describe(path: Path) -> dict[str, Any]:
         "auto": isinstance(study, Study) and study.auto is not None,
         "sample": impacts and isinstance(sampling, Sample),
         "sobol": impacts and isinstance(sampling, Sobol),
-        "fem3d": isinstance(study, Study) and checks.has_solid_runs(study),
+        "fem3d": isinstance(study, Study) and has_solid_runs(study),
     }
     return {
         "name": study.name,
@@ -97,13 +100,11 @@ def describe(path: Path) -> dict[str, Any]:
     }
 
 
-def _runs(source: Source) -> Study | FunctionStudy:
-    return _function_study(source) if _has(source, "function") else _study(source)
-
-
-def _has(source: Source, key: str) -> bool:
-    """Return True if the file has the key, or a misspelling of it."""
-    return bool(get_close_matches(key, map(str, source.data), n=1, cutoff=0.75))
+def _kind(source: Source) -> str:
+    """Return the key that the file has, perhaps misspelt, and that tells its kind; else ""."""
+    given = [str(key) for key in source.data]
+    kinds = ("checks", "function")
+    return next((key for key in kinds if get_close_matches(key, given, n=1, cutoff=0.75)), "")
 
 
 def _wrong_kind(source: Source, reason: str, command: str) -> StudyError:
@@ -123,24 +124,22 @@ _STAND_INS: dict[str, Any] = {
 def _study(source: Source) -> Study:
     """Return a study of impacts. Raises StudyError with every problem of the file."""
     data, path = source.data, str(source.path)
-    keys: dict[int, tuple[str, ...]] = {}
     problems: list[Problem] = []
     try:
-        file = StudyFile.model_validate(data, context=keys)
-    except ValidationError as error:
-        wrong = {line["loc"][0] for line in error.errors(include_url=False)}
+        file = validated(StudyFile, data, path)
+    except StudyError as error:
+        problems = list(error.args)
+    wrong = {problem.key.split(".")[0] for problem in problems}
+    if problems:
         valid = {key: data[key] for key in StudyFile.model_fields if key in data.keys() - wrong}
-        file = StudyFile.model_validate(_STAND_INS | valid)
-        problems = validation_problems(error, data, path, keys)
-    sound = set(StudyFile.model_fields) - {problem.key.split(".")[0] for problem in problems}
-    problems += checks.problems(file, path, sound)
+        file = validated(StudyFile, _STAND_INS | valid, path)
+    for check, sections in CHECKS:
+        if not sections & wrong:
+            problems += [Problem(path, key, reason) for key, reason in check(file)]
     if problems:
         raise StudyError(*problems)
-    own: dict[str, Any] = {
-        "discretisation": file.discretisation.discretisation,
-        "auto": file.discretisation.auto,
-        "analysis": file.analysis or Analysis(),
-    }
+    grid, auto = file.discretisation
+    own = {"discretisation": grid, "auto": auto, "analysis": file.analysis or Analysis()}
     return Study(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 
 
@@ -149,26 +148,21 @@ def _function_study(source: Source) -> FunctionStudy:
     name, path = source.data.get("function"), str(source.path)
     if not isinstance(name, str) or name not in FUNCTIONS:
         raise StudyError(Problem(path, "function", unknown("function", name, FUNCTIONS), name))
-    file = _valid(_function_file(name), source)
+    title = FUNCTIONS[name].title
+    parameters = {
+        key: Parameter(key, "1", f"{key} of the {title}", ()) for key in FUNCTIONS[name].ranges
+    }
+    file = validated(_FunctionFile, source.data, path, parameters)
     own: dict[str, Any] = {"responses": ("value",), "analyses": ("sensitivity", "surrogate")}
     return FunctionStudy(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 
 
-@cache
-def _function_file(name: str) -> type[Heading]:
-    """Return the keys of a study of this test function."""
-    title = FUNCTIONS[name].title
-    factors = {
-        key: Factor(Parameter(key, "1", f"{key} of the {title}", ()), lambda value: "")
-        for key in FUNCTIONS[name].ranges
-    }
-    sampling = Annotated[Grid | Sample, PlainValidator(sampling_reader(factors))]
-    fields: Any = {
-        "function": (str, ...),
-        "sampling": (sampling, ...),
-        "analysis": (Analysis, Field(default_factory=Analysis)),
-    }
-    return create_model("FunctionFile", __base__=Heading, **fields)
+class _FunctionFile(Heading):
+    """The keys of a study of a test function."""
+
+    function: str
+    sampling: Annotated[Grid | Sample, PlainValidator(read_sampling)]
+    analysis: Analysis = Field(default_factory=Analysis)
 
 
 def _verification(source: Source) -> Verification:
@@ -177,14 +171,13 @@ def _verification(source: Source) -> Verification:
 
     listed = Annotated[tuple[str, ...], names("check", CATALOGUE)]
     kind = create_model("VerificationFile", __base__=Heading, checks=(listed, ...))
-    values = _valid(kind, source).model_dump()
+    values = validated(kind, source.data, str(source.path)).model_dump()
     return Verification(name=source.name, path=source.path, text=source.text, **values)
 
 
-def _valid(kind: type[Heading], source: Source) -> Any:
-    """Validate a whole file. Raises StudyError with every problem."""
-    keys: dict[int, tuple[str, ...]] = {}
-    try:
-        return kind.model_validate(source.data, context=keys)
-    except ValidationError as error:
-        raise StudyError(*validation_problems(error, source.data, str(source.path), keys)) from None
+_READERS: dict[str, Callable[[Source], Any]] = {
+    "checks": _verification,
+    "function": _function_study,
+    "": _study,
+}
+"""Readers of files, by the key that tells their kind."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -22,18 +22,17 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from impactlab.study.errors import Problem, dotted, unknown
+from impactlab.model.parameters import PARAMETERS, Parameter
+from impactlab.study.errors import Problem, StudyError, dotted, unknown
 from impactlab.study.quantities import si, whole
-
-Reader = Callable[[Any, ValidationInfo], Any]
-"""Turns data of the file into values of the study; raises ValueError."""
 
 
 class Section(BaseModel):
     """A mapping with fixed keys; any other key is refused.
 
-    The allowed keys are noted in the context of the validation, by the id of the mapping, so that
-    a message about an unknown key can list them.
+    The context of the validation takes the allowed keys under "keys", by the id of the mapping, so
+    that a message about an unknown key can list them; it holds the parameters that the study can
+    vary under "parameters".
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -41,8 +40,8 @@ class Section(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _note_keys(cls, data: Any, info: ValidationInfo) -> Any:
-        if info.context is not None:
-            info.context[id(data)] = tuple(cls.model_fields)
+        if info.context:
+            info.context["keys"][id(data)] = tuple(cls.model_fields)
         return data
 
 
@@ -86,20 +85,16 @@ def names(kind: str, choices: Collection[str]) -> PlainValidator:
     return PlainValidator(read)
 
 
-def section_by(key: str, sections: Mapping[str, type[Section]]) -> Reader:
-    """Return the reader of a mapping whose entry at `key` names its section."""
-
-    def read(data: Any, info: ValidationInfo) -> Section:
-        if not isinstance(data, dict):
-            raise ValueError(f"expected a mapping with the key {key} ({', '.join(sections)})")
-        name = data.get(key)
-        if key not in data:
-            raise at_key(key, f"is required: choose from {', '.join(sections)}")
-        if not isinstance(name, str) or name not in sections:
-            raise at_key(key, unknown(key, name, sections))
-        return sections[name].model_validate(data, context=info.context)
-
-    return read
+def name_at(key: str, choices: Collection[str], data: Any) -> str:
+    """Return the entry at `key` of a mapping. Raises ValueError unless it is among the choices."""
+    if not isinstance(data, dict):
+        raise ValueError(f"expected a mapping with the key {key} ({', '.join(choices)})")
+    if key not in data:
+        raise at_key(key, f"is required: choose from {', '.join(choices)}")
+    name = data[key]
+    if not isinstance(name, str) or name not in choices:
+        raise at_key(key, unknown(key, name, choices))
+    return name
 
 
 def requires(test: Callable[[Any], bool], words: str) -> AfterValidator:
@@ -113,12 +108,6 @@ def requires(test: Callable[[Any], bool], words: str) -> AfterValidator:
     return AfterValidator(check)
 
 
-def between(least: float, most: float) -> AfterValidator:
-    """Return a check that a number lies from `least` to `most`."""
-    return requires(lambda value: least <= value <= most, f"must lie from {least:,} to {most:,}")
-
-
-ABOVE_ZERO = requires(lambda value: value > 0, "must be above zero")
 Names = Annotated[tuple[StrictStr, ...], requires(bool, "is empty: list at least one name")]
 """A list of words, at least one."""
 Number = Annotated[float, BeforeValidator(partial(si, units="1"))]
@@ -151,6 +140,9 @@ class Heading(Section):
 
 _WORDS = {
     "missing": "is required",
+    "greater_than": "must be above {gt:,}",
+    "greater_than_equal": "must be at least {ge:,}",
+    "less_than_equal": "must be at most {le:,}",
     "string_type": "expected text: put it in quotes",
     "bool_type": "expected true or false",
     "invalid_key": "a key must be a word",
@@ -158,7 +150,7 @@ _WORDS = {
     "too_short": "is empty: list at least one value",
     "tuple_type": "expected a list of names",
 }
-"""Messages for pydantic's types of error; any other keeps its own message."""
+"""Messages for pydantic's types of error, with its numbers; any other keeps its own message."""
 _NOT_HERE = {
     r".*(correlat|covarian|copula).*": (
         "correlated parameters are not possible, because the indices divide the variance among "
@@ -171,14 +163,22 @@ _NOT_HERE = {
 """Keys that people look for, as patterns, and messages for where there is no such key."""
 
 
-def validation_problems(
-    error: ValidationError, data: Any, file: str, keys: Mapping[int, Sequence[str]]
-) -> list[Problem]:
-    """Return the problems of a study file.
+S = TypeVar("S", bound=Section)
 
-    data: the validated data. keys: the allowed keys of each mapping in it, by the mapping's id.
+
+def validated(
+    kind: type[S], data: Any, file: str, parameters: Mapping[str, Parameter] = PARAMETERS
+) -> S:
+    """Return the content of a file as a section of this kind.
+
+    parameters: those that a study can vary. Raises StudyError with every problem of the file.
     """
-    return [_problem(line, data, file, keys) for line in error.errors(include_url=False)]
+    keys: dict[int, tuple[str, ...]] = {}
+    try:
+        return kind.model_validate(data, context={"keys": keys, "parameters": parameters})
+    except ValidationError as error:
+        lines = error.errors(include_url=False)
+    raise StudyError(*(_problem(line, data, file, keys) for line in lines))
 
 
 def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]]) -> Problem:
@@ -191,7 +191,7 @@ def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]])
     elif kind == "value_error":
         reason = str(context["error"])
     else:
-        reason = _WORDS.get(kind, line["msg"])
+        reason = _WORDS[kind].format(**context) if kind in _WORDS else line["msg"]
     shown = {"value": value} if present and not isinstance(value, dict) else {}
     return Problem(file, dotted(path), reason, **shown)
 

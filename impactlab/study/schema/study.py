@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass
 from functools import reduce
 from pathlib import Path
 from typing import Annotated, Any
@@ -21,21 +21,19 @@ from pydantic import (
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.model.parameters import PARAMETERS, Parameter, with_values
+from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.study.quantities import duration
-from impactlab.study.sampling import sampling_reader
+from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.parameters import FACTORS, VALUES
+from impactlab.study.schema.parameters import value_type
 from impactlab.study.schema.section import (
-    ABOVE_ZERO,
     Heading,
     Number,
     Section,
     Whole,
     at_key,
-    between,
     names,
     one_of,
 )
@@ -52,15 +50,16 @@ class Auto(Section):
     tolerance: relative numerical uncertainty; responses: those that it limits; None: all.
     """
 
-    tolerance: Annotated[Number, between(1e-4, 0.5)] = 0.01
+    tolerance: Annotated[Number, Field(ge=1e-4, le=0.5)] = 0.01
     responses: Annotated[tuple[str, ...], names("response", RESPONSES)] | None = None
 
 
-def _default(parameter: Parameter) -> Any:
-    """Return the default that the model's class gives a field, or MISSING."""
-    roots: dict[str, Any] = {"impact": paper_impact(), "discretisation": Discretisation()}
-    owner: Any = reduce(getattr, parameter.path[1:-1], roots[parameter.path[0]])
-    return next(field.default for field in fields(owner) if field.name == parameter.path[-1])
+_BASE: dict[str, Any] = {"impact": paper_impact(), "discretisation": Discretisation()}
+_DEFAULTS = {
+    name: getattr(type(reduce(getattr, path[1:-1], _BASE[path[0]])), path[-1], MISSING)
+    for name, path in ((name, entry.path) for name, entry in PARAMETERS.items())
+}
+"""Defaults that the model's classes give the fields, or MISSING."""
 
 
 def _section(*path: str, **others: Any) -> type[Section]:
@@ -71,15 +70,12 @@ def _section(*path: str, **others: Any) -> type[Section]:
     for name, entry in PARAMETERS.items():
         if entry.path[: len(path)] == path:
             key, *deeper = entry.path[len(path) :]
-            optional = not deeper and _default(entry) is None
-            kind = _section(*path, key) if deeper else VALUES[name]
+            optional = not deeper and _DEFAULTS[name] is None
+            kind = _section(*path, key) if deeper else value_type(entry)
             keys[key] = (Annotated[kind, nothing] if optional else kind, None)
     return create_model("_".join(path), __base__=Section, **(others | keys))
 
 
-_DEFAULTS = {
-    name: _default(entry) for name, entry in PARAMETERS.items() if entry.path[0] == "impact"
-}
 _IMPACT = _section("impact", base=(Annotated[str, one_of("base", BASES)], None))
 _DISCRETISATION = _section("discretisation", auto=(Auto | None, None))
 
@@ -89,23 +85,18 @@ def read_impact(data: Any, info: ValidationInfo) -> Impact:
     section: Any = _IMPACT.model_validate(data, context=info.context)
     given = _given_values(section, "impact")
     if section.base is None:
-        required = [name for name, value in _DEFAULTS.items() if value is MISSING]
-        if missing := [_key(name) for name in required if name not in given]:
+        own = (name for name, entry in PARAMETERS.items() if entry.path[0] == "impact")
+        given = {name: _DEFAULTS[name] for name in own} | given
+        if missing := [_key(name) for name, value in given.items() if value is MISSING]:
             raise ValueError(f"without `base: paper` these are required too: {', '.join(missing)}")
-        given = _DEFAULTS | given
     return _changed((BASES[section.base or "paper"](), Discretisation()), given)[0]
 
 
-@dataclass(frozen=True)
-class DiscretisationSection:
-    """The section `discretisation`: its values, and how to find the others, if at all."""
+def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation, Auto | None]:
+    """Read a discretisation, defaults included, and how to find it, if at all.
 
-    discretisation: Discretisation
-    auto: Auto | None = None
-
-
-def read_discretisation(data: Any, info: ValidationInfo) -> DiscretisationSection:
-    """Read a discretisation, defaults included. Raises ValueError naming the keys at fault."""
+    Raises ValueError naming the keys at fault.
+    """
     section: Any = _DISCRETISATION.model_validate(
         {"auto": {}} if data == "auto" else data, context=info.context
     )
@@ -113,7 +104,7 @@ def read_discretisation(data: Any, info: ValidationInfo) -> DiscretisationSectio
     for name in given.keys() & {"nodes", "points", "courant"} if section.auto else ():
         raise at_key(name, "cannot be given beside auto, which finds it: take out one of the two")
     _, discretisation = _changed((paper_impact(), Discretisation()), given)
-    return DiscretisationSection(discretisation, section.auto)
+    return discretisation, section.auto
 
 
 def _given_values(section: Section, root: str) -> dict[str, Any]:
@@ -149,7 +140,7 @@ class Store(Section):
 
     histories: StrictBool = False
     profiles: StrictBool = False
-    samples: Annotated[Whole, between(2, 100_000)] = 1000
+    samples: Annotated[Whole, Field(ge=2, le=100_000)] = 1000
 
 
 class Analysis(Section):
@@ -160,8 +151,8 @@ class Analysis(Section):
     fitted to the other runs supplies its values ("impute").
     """
 
-    confidence: Annotated[Number, between(0.5, 0.999)] = 0.95
-    resamples: Annotated[Whole, between(10, 100_000)] = 200
+    confidence: Annotated[Number, Field(ge=0.5, le=0.999)] = 0.95
+    resamples: Annotated[Whole, Field(ge=10, le=100_000)] = 200
     failed_runs: Annotated[str, one_of("policy", ("fail", "impute"))] = "fail"
 
 
@@ -169,11 +160,11 @@ class StudyFile(Heading):
     """The keys of a study of impacts; units, choices and defaults come from PARAMETERS."""
 
     impact: Annotated[Impact, PlainValidator(read_impact)]
-    discretisation: Annotated[DiscretisationSection, PlainValidator(read_discretisation)] = (
-        DiscretisationSection(Discretisation())
-    )
-    duration: Annotated[float, BeforeValidator(duration), ABOVE_ZERO]
-    sampling: Annotated[Grid | Sample, PlainValidator(sampling_reader(FACTORS))]
+    discretisation: Annotated[
+        tuple[Discretisation, Auto | None], PlainValidator(read_discretisation)
+    ] = Discretisation(), None
+    duration: Annotated[float, BeforeValidator(duration), Field(gt=0)]
+    sampling: Annotated[Grid | Sample, PlainValidator(read_sampling)]
     responses: Annotated[tuple[str, ...], names("response", RESPONSES)] = tuple(RESPONSES)
     analyses: Annotated[tuple[str, ...], names("analysis", ANALYSES)] = tuple(ANALYSES)
     store: Store = Field(default_factory=Store)
@@ -216,12 +207,7 @@ class StudyBase(Declared):
     def size(self) -> str:
         """Describe the amount of work."""
         until = self.sampling.until if isinstance(self.sampling, Sobol) else None
-        return f"{self.runs:,} runs" + (f", at most {until.runs:,}" if until else "")
-
-    @property
-    def runs(self) -> int:
-        """Number of runs of the study."""
-        return self.sampling.runs
+        return f"{self.sampling.runs:,} runs" + (f", at most {until.runs:,}" if until else "")
 
 
 @dataclass(frozen=True)

@@ -85,7 +85,7 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
         yaml.Composer, yaml.Constructor = BoundedComposer, Constructor
         data, root = None, yaml.compose(text)
         if root is not None:
-            _Counter().measured(root, ())  # before anything is built
+            _measure(root, (), {})  # before anything is built
             data = yaml.constructor.construct_document(root)
     except RefusedError as error:
         raise StudyError(Problem(file, error.key, str(error))) from None
@@ -151,54 +151,43 @@ class Constructor(SafeConstructor):
             raise ConstructorError(None, None, reason, node.start_mark) from None
 
 
-class _Counter:
-    """Sizes and heights of expanded nodes; each node is visited, and its kind checked, once."""
+def _measure(node: Node, path: Key, known: dict[int, tuple[int, int]]) -> tuple[int, int]:
+    """Return (nodes, levels) of an expanded node; each is visited, and its kind checked, once.
 
-    def __init__(self) -> None:
-        self._known: dict[int, tuple[int, int]] = {}
-
-    def measured(self, node: Node, path: Key) -> tuple[int, int]:
-        """Return (nodes, levels) of an expanded node. Raises RefusedError for too many of them."""
-        if id(node) not in self._known:
-            if len(path) > _DEEPEST:  # ends at a node that holds itself, too
-                raise RefusedError(path, "nests too deeply")
-            _check_kind(node, path)
-            below = [self.measured(child, (*path, step)) for step, child in _children(node)]
-            size = 1 + sum(each for each, _ in below)
-            height = 1 + max((each for _, each in below), default=0)
-            self._known[id(node)] = size, height
-        size, height = self._known[id(node)]
-        if size > MOST:
-            raise RefusedError(path, "holds too much: its aliases count as often as they are used")
-        if len(path) + height > _DEEPEST + 1:
+    known: those of the nodes visited before, by their id. Raises RefusedError for too many.
+    """
+    if id(node) not in known:
+        if len(path) > _DEEPEST:  # ends at a node that holds itself, too
             raise RefusedError(path, "nests too deeply")
-        return size, height
+        below = [_measure(child, (*path, step), known) for step, child in _children(node, path)]
+        size = 1 + sum(each for each, _ in below)
+        height = 1 + max((each for _, each in below), default=0)
+        known[id(node)] = size, height
+    size, height = known[id(node)]
+    if size > MOST:
+        raise RefusedError(path, "holds too much: its aliases count as often as they are used")
+    if len(path) + height > _DEEPEST + 1:
+        raise RefusedError(path, "nests too deeply")
+    return size, height
 
 
-def _children(node: Node) -> Iterator[tuple[str, Node]]:
-    if isinstance(node, SequenceNode):
-        yield from ((str(at), child) for at, child in enumerate(node.value))
-    elif isinstance(node, MappingNode):
-        for key, child in node.value:
-            step = str(key.value) if isinstance(key, ScalarNode) else "?"
-            yield step, key
-            yield step, child
-
-
-def _check_kind(node: Node, path: Key) -> None:
-    """Raise RefusedError for anything but plain keys, lists and values."""
+def _children(node: Node, path: Key) -> Iterator[tuple[str, Node]]:
+    """Yield what a node holds. Raises RefusedError unless keys, lists and values are plain."""
     tag = str(node.tag)
     kind = tag.removeprefix(_CORE)
     if kind not in _TAGS:
         raise RefusedError(path, f"has the tag {dotted([tag.replace(_CORE, '!!')])}: take it out")
-    if isinstance(node, ScalarNode):
-        if any("\ud800" <= letter <= "\udfff" for letter in node.value):  # as escapes allow
-            reason = "holds half of a character (\\ud800 to \\udfff): write the whole character"
-            raise RefusedError(path, reason)
-        if kind in ("int", "float") and len(node.value) > _DIGITS:
-            reason = f"is a number of {len(node.value):,} characters: write at most {_DIGITS:,}"
-            raise RefusedError(path, reason)
-    if isinstance(node, MappingNode):
-        for key, _ in node.value:
-            if not isinstance(key, ScalarNode):
-                raise RefusedError(path, "a key must be a word, not a list or a mapping")
+    if isinstance(node, SequenceNode):
+        yield from ((str(at), child) for at, child in enumerate(node.value))
+    elif isinstance(node, MappingNode):
+        if not all(isinstance(key, ScalarNode) for key, _ in node.value):
+            raise RefusedError(path, "a key must be a word, not a list or a mapping")
+        for key, child in node.value:
+            yield str(key.value), key
+            yield str(key.value), child
+    elif any("\ud800" <= letter <= "\udfff" for letter in node.value):  # as escapes allow
+        reason = "holds half of a character (\\ud800 to \\udfff): write the whole character"
+        raise RefusedError(path, reason)
+    elif kind in ("int", "float") and len(node.value) > _DIGITS:
+        reason = f"is a number of {len(node.value):,} characters: write at most {_DIGITS:,}"
+        raise RefusedError(path, reason)

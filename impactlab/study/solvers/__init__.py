@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -28,11 +27,6 @@ def run_shape(design: xr.Dataset) -> tuple[tuple[str, ...], tuple[int, ...]]:
     dims = (str(dim) for name in varied_names(design) for dim in design[name].dims)
     once = tuple(dict.fromkeys(dims))
     return once, tuple(design.sizes[dim] for dim in once)
-
-
-def run_count(design: xr.Dataset) -> int:
-    """Return the number of runs."""
-    return math.prod(run_shape(design)[1])
 
 
 def flattened(design: xr.Dataset, name: str, runs: Array) -> Array:

@@ -17,10 +17,10 @@ from impactlab.simulate import (
     case_table,
     profile_coordinates,
     sample_coordinates,
+    solve,
 )
-from impactlab.simulate import solve as solve_cases
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.netcdf import Array, Columns
+from impactlab.study.netcdf import Array
 from impactlab.study.solvers import Solver, flattened, run_shape, varied_names
 from impactlab.study.store import OutputSpec
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
@@ -37,11 +37,6 @@ def columns(design: xr.Dataset) -> tuple[str, ...]:
     return (*_responses(design), "status", "remarks", *histories, *profiles)
 
 
-def failures(design: xr.Dataset) -> int:
-    """Return the bits that take a requested response away."""
-    return status_bits(_responses(design))
-
-
 def cases(design: xr.Dataset, runs: Array) -> Array:
     """Return the kernels' case table of these runs.
 
@@ -52,21 +47,10 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
     return case_table(*base(design), duration=duration, varied=varied, first_run=int(runs[0]))
 
 
-def cost(cases: Array) -> Array:
-    """Return the cost in node-steps of the paper's beam, with a constant part per run."""
-    found: Array = work(cases) + _OF_ANY_RUN
-    return found
-
-
 def values(cases: Array, output: OutputSpec) -> int:
     """Count the responses, histories and profiles of a run; all have the first one's mesh."""
     profile = int(cases[0].nodes) * int(cases[0].points) if output.profiles else 0
     return len(RESPONSES) + len(HISTORIES) * output.samples + len(PROFILES) * profile
-
-
-def solve(cases: Array, output: OutputSpec) -> Columns:
-    """Return the kernels' answers."""
-    return solve_cases(cases, samples=output.samples, profiles=output.profiles).columns()
 
 
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
@@ -99,4 +83,15 @@ def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
     return with_values(paper_impact(), Discretisation(), fixed)
 
 
-SOLVER = Solver(SOURCES_HASH, columns, failures, cases, cost, values, solve, labelled)
+SOLVER = Solver(
+    version=SOURCES_HASH,
+    columns=columns,
+    failures=lambda design: status_bits(_responses(design)),
+    cases=cases,
+    cost=lambda cases: work(cases) + _OF_ANY_RUN,  # in node-steps of the paper's beam
+    values=values,
+    solve=lambda cases, output: solve(
+        cases, samples=output.samples, profiles=output.profiles
+    ).columns(),
+    labelled=labelled,
+)

@@ -64,5 +64,5 @@ def test_arguments_leave_other_attributes_out() -> None:
 def test_what_is_no_distribution_is_named() -> None:
     with pytest.raises(ValueError, match="unknown distribution 'cauchy': choose from uniform"):
         quantile({"distribution": "cauchy"}, 0.5)
-    with pytest.raises(ValueError, match="'triangular' needs mode, high"):
+    with pytest.raises(ValueError, match="'triangular' needs high, mode"):
         cumulative({"distribution": "triangular", "low": 0.0}, 0.5)

@@ -6,11 +6,11 @@ import pytest
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.runs import (
-    Answers,
     Work,
-    disk_size,
+    file_stats,
+    open_answers,
     outdated,
-    stale,
+    removable_files,
     status,
 )
 from impactlab.study.store import OutputSpec, RunIndex, Shards, locked
@@ -31,8 +31,7 @@ def shards(tmp_path):
 def test_columns_are_in_the_order_of_the_runs(shards, monkeypatch, opened):
     """opened: shards that may stay so, of two."""
     monkeypatch.setattr("impactlab.study.runs._OPEN", opened)
-    with Answers(shards, RunIndex(KEYS)) as answers:
-        columns = answers.columns(["status", "force"])
+    with open_answers(shards, RunIndex(KEYS), ["status", "force"]) as columns:
         assert [*columns] == ["status", "force"]
         assert columns["force"].compute().tolist() == [1.0, 2.0, 3.0, 2.0]
         assert columns["status"].compute().tolist() == [0, 0, 1, 0]
@@ -40,14 +39,17 @@ def test_columns_are_in_the_order_of_the_runs(shards, monkeypatch, opened):
 
 
 def test_a_run_without_answers_is_an_error(shards):
-    with pytest.raises(OSError, match="run the same command again"):
-        Answers(shards, RunIndex(np.append(KEYS, [b"d" * 16])))
+    index = RunIndex(np.append(KEYS, [b"d" * 16]))
+    with (
+        pytest.raises(OSError, match="run the same command again"),
+        open_answers(shards, index, ["force"]),
+    ):
+        pass
 
 
 def test_a_shard_that_is_damaged_meanwhile_is_an_error(shards):
     first, second = shards.files()
-    with Answers(shards, RunIndex(KEYS)) as answers:
-        columns = answers.columns(["force"])
+    with open_answers(shards, RunIndex(KEYS), ["force"]) as columns:
         first.write_bytes(second.read_bytes())
         with pytest.raises(OSError, match=f"{first.name} was damaged"):
             columns["force"].compute(scheduler="synchronous")
@@ -88,7 +90,7 @@ def test_work_is_the_same_in_chunks(small_design, monkeypatch, chunk):
     parts = Work.of(small_design(1.0, 2.0, 3.0))
     assert parts.keys.tobytes() == whole.keys.tobytes()
     assert parts.cost.tobytes() == whole.cost.tobytes()
-    picked = whole.cases(np.array([4, 1]))
+    picked = whole.solver.cases(whole.design, np.array([4, 1]))
     assert picked["velocity"].tolist() == [3.0, 1.0]
     assert picked["nodes"].tolist() == [11, 21]
 
@@ -101,21 +103,22 @@ def test_a_refused_run_is_named_by_its_number(small_design, monkeypatch):
 
 def test_a_file_that_has_gone_has_no_size(tmp_path):
     (tmp_path / "here").write_bytes(b"123")
-    assert disk_size([tmp_path / "here", tmp_path / "gone", tmp_path]) == 3
+    found = list(file_stats([tmp_path / "here", tmp_path / "gone", tmp_path]))
+    assert [each.st_size for each in found] == [3]
 
 
 def test_what_is_asked_for_stays(small_design, tmp_path):
     execute(small_design(1.0, 2.0), tmp_path, Engine())
-    assert stale(tmp_path, [small_design(1.0, 2.0)]) == {}
-    assert stale(tmp_path, [small_design(7.0), small_design(2.0)]) == {}
+    assert removable_files(tmp_path, [small_design(1.0, 2.0)]) == {}
+    assert removable_files(tmp_path, [small_design(7.0), small_design(2.0)]) == {}
 
 
 def test_what_is_not_is_named_with_the_reason(small_design, tmp_path):
     execute(small_design(1.0, 2.0), tmp_path, Engine())
     (shard,) = tmp_path.glob("*/*.nc")
-    assert stale(tmp_path, [small_design(3.0)]) == {shard: "holds no run of the study"}
-    assert stale(tmp_path, [small_design(1.0, profiles=1)]) == {shard: OTHER_SOLVER}
-    assert stale(tmp_path, []) == {shard: "its study does not exist"}
+    assert removable_files(tmp_path, [small_design(3.0)]) == {shard: "holds no run of the study"}
+    assert removable_files(tmp_path, [small_design(1.0, profiles=1)]) == {shard: OTHER_SOLVER}
+    assert removable_files(tmp_path, []) == {shard: "its study does not exist"}
 
 
 def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path, caplog):
@@ -126,7 +129,7 @@ def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path,
     damaged.touch()
     shard.write_bytes(shard.read_bytes()[:-10])
     expected = {unfinished: "is unfinished", damaged: "was damaged and set aside"}
-    assert stale(tmp_path, [small_design(3.0)]) == expected
+    assert removable_files(tmp_path, [small_design(3.0)]) == expected
     assert str(shard) in caplog.text
 
 

@@ -31,7 +31,7 @@ def shards(tmp_path):
 
 
 def written(shards, table):
-    columns = impact.solve(table, OUTPUT)
+    columns = impact.SOLVER.solve(table, OUTPUT)
     keys = run_keys(table, OUTPUT, VERSION)
     return keys, columns, shards.write(keys, columns)
 

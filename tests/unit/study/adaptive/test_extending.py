@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.analyse import analyse
-from impactlab.study.adaptive.extending import extended, largest_interval
+from impactlab.study.adaptive.extending import extend_sample, largest_interval
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 
@@ -82,7 +82,7 @@ def shrinking():
 
 
 def test_the_sample_grows_until_the_widest_interval_is_narrow_enough(sample, solve, shrinking):
-    runs = extended(sample(interval=0.1), solve, shrinking)
+    runs = extend_sample(sample(interval=0.1), solve, shrinking)
     assert solve.runs == [256, 512, 1024]  # N (D + 2)
     assert runs.attrs["base_samples"] == 256
     assert runs.attrs["until_reached"] == 1
@@ -95,7 +95,7 @@ def test_the_sample_grows_until_the_widest_interval_is_narrow_enough(sample, sol
 
 
 def test_it_stops_before_there_are_more_runs_than_allowed(sample, solve, shrinking):
-    runs = extended(sample(interval=0.01, runs=2047), solve, shrinking)
+    runs = extend_sample(sample(interval=0.01, runs=2047), solve, shrinking)
     assert solve.runs == [256, 512, 1024]
     assert runs.attrs["until_reached"] == 0
     assert runs.attrs["until_widest"] == pytest.approx(0.1)
@@ -103,19 +103,19 @@ def test_it_stops_before_there_are_more_runs_than_allowed(sample, solve, shrinki
 
 
 def test_as_many_runs_as_allowed_are_made(sample, solve, shrinking):
-    extended(sample(interval=0.01, runs=2048), solve, shrinking)
+    extend_sample(sample(interval=0.01, runs=2048), solve, shrinking)
     assert solve.runs == [256, 512, 1024, 2048]
 
 
 def test_only_the_responses_it_is_asked_of_count(sample, solve, shrinking):
-    runs = extended(sample(interval=0.1, responses=["peak_force"]), solve, shrinking)
+    runs = extend_sample(sample(interval=0.1, responses=["peak_force"]), solve, shrinking)
     assert solve.runs == [256]
     assert runs.attrs["until_widest_response"] == "peak_force"
     assert runs.attrs["until_left_out"] == ""
 
 
 def test_responses_without_indices_alone_ask_for_no_runs(sample, solve, shrinking):
-    runs = extended(sample(responses=["number_of_contacts"]), solve, shrinking)
+    runs = extend_sample(sample(responses=["number_of_contacts"]), solve, shrinking)
     assert solve.runs == [256]
     assert runs.attrs["until_reached"] == 0
     assert np.isnan(runs.attrs["until_widest"])
@@ -125,7 +125,7 @@ def test_responses_without_indices_alone_ask_for_no_runs(sample, solve, shrinkin
 def test_the_analysis_of_the_package_decides(sample, solve, tmp_path):
     """The same holds if the design and the runs have been in files."""
     sample(interval=0.08).to_netcdf(tmp_path / "design.nc")
-    runs = extended(xr.load_dataset(tmp_path / "design.nc"), solve, analyse)
+    runs = extend_sample(xr.load_dataset(tmp_path / "design.nc"), solve, analyse)
     runs.to_netcdf(tmp_path / "runs.nc")
     analysis = analyse(xr.load_dataset(tmp_path / "runs.nc"))
     assert len(solve.runs) > 1

@@ -9,7 +9,7 @@ import pytest
 from impactlab.study.adaptive import recommendation
 from impactlab.study.adaptive.recommendation import (
     apply_recommendation,
-    fits,
+    matches_study,
     recommend,
     recommended_grid,
 )
@@ -104,8 +104,8 @@ def test_auto_becomes_what_was_recommended(study, tmp_path):
         design(declared)
     trials = recommend(declared, tmp_path / "trials", Engine(workers=2))
     resolved = apply_recommendation(declared, trials)
-    assert fits(trials, declared)
-    assert not fits(trials, replace(declared, text="another"))
+    assert matches_study(trials, declared)
+    assert not matches_study(trials, replace(declared, text="another"))
     assert resolved.discretisation == recommended_grid(trials, declared.discretisation)
     assert resolved.discretisation.rule == "legendre"
     runs = design(resolved)
@@ -128,7 +128,7 @@ def test_what_cannot_be_reached_is_named(study, tmp_path):
     ("given", "key", "reason"),
     [
         ("{auto: {tolerance: 1 %}, nodes: 101}", "discretisation.nodes", "beside auto"),
-        ("{auto: {tolerance: 0}}", "discretisation.auto.tolerance", "must lie from"),
+        ("{auto: {tolerance: 0}}", "discretisation.auto.tolerance", "must be at least"),
         ("{auto: {responses: [impulse]}}", "discretisation.auto.responses", "impulse"),
         ("auto2", "discretisation", "expected"),
     ],

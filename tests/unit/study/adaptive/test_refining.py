@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.analysis.analyse import analyse
-from impactlab.study.adaptive.refining import base_samples, refined
+from impactlab.study.adaptive.refining import base_samples, refine_cases
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.sampling.design import design
@@ -60,7 +60,7 @@ def study(solve):
 @pytest.mark.parametrize(("nodes", "finest"), [(21, 81), (41, 161)])
 def test_a_full_study_on_finer_grids_is_within_the_uncertainty(study, solve, nodes, finest):
     runs, analysis = study(nodes)
-    found = analyse(runs.assign_attrs(analyses="sensitivity"), None, refined(runs, solve))
+    found = analyse(runs.assign_attrs(analyses="sensitivity"), None, refine_cases(runs, solve))
     for order in ORDERS:
         away = abs(study(finest)[1][order] - analysis[order])
         bound = found[f"{order}_numerical"]
@@ -75,7 +75,7 @@ def test_a_full_study_on_finer_grids_is_within_the_uncertainty(study, solve, nod
 def test_a_response_that_a_refinement_cannot_tell_of_is_said_to_be_open(study, solve):
     """The contact duration jumps, in few runs; the deflection still grows when the runs end."""
     runs, _ = study(41)
-    found = analyse(runs.assign_attrs(analyses="sensitivity"), None, refined(runs, solve))
+    found = analyse(runs.assign_attrs(analyses="sensitivity"), None, refine_cases(runs, solve))
     names = ["measured", "bound", "nothing"]
     assert found["numerical_from"].attrs["flag_meanings"].split() == names
     told = {str(entry["response"].values): names[int(entry)] for entry in found["numerical_from"]}
@@ -92,7 +92,7 @@ def test_a_response_that_a_refinement_cannot_tell_of_is_said_to_be_open(study, s
 
 def test_the_grids_and_that_the_first_runs_are_the_same(study, solve):
     runs, _ = study(41)
-    found = refined(runs, solve)
+    found = refine_cases(runs, solve)
     pairs = zip(found["nodes"].values, found["points"].values, strict=True)
     grids = dict(zip(found["grid"].values, pairs, strict=True))
     assert grids == {"used": (41, 5), "finer": (81, 5), "more_points": (41, 9)}
@@ -115,7 +115,7 @@ def test_a_coarser_grid_has_a_middle_and_nodes_enough(nodes, coarser):
         return asked
 
     grids = {}
-    refined(design(study_of_text("some", text(nodes))), nothing)
+    refine_cases(design(study_of_text("some", text(nodes))), nothing)
     assert grids.get("coarser") == coarser
     assert grids["finer"] - 1 == 2 * (nodes - 1)
 
@@ -123,7 +123,7 @@ def test_a_coarser_grid_has_a_middle_and_nodes_enough(nodes, coarser):
 def test_of_the_second_order_only_what_the_first_and_total_need():
     asked = text(21).replace("second_order: false", "second_order: true")
     whole = design(study_of_text("some", asked.replace("256", "16")))
-    first = refined(whole, lambda asked: asked)
+    first = refine_cases(whole, lambda asked: asked)
     plain = design(study_of_text("some", text(21).replace("256", "16")))
     assert first.attrs["second_order"] == 0
     for name in ("velocity", "beam_depth", "sphere_radius"):
@@ -144,4 +144,4 @@ def test_how_many_are_solved_again(whole, count):
 def test_what_cannot_be_refined_is_refused(attrs, reason):
     runs = design(study_of_text("some", text(21))).assign_attrs(attrs)
     with pytest.raises(ValueError, match=f"study 'some': .*{reason}"):
-        refined(runs, None)
+        refine_cases(runs, None)

@@ -119,7 +119,7 @@ def test_a_grid_keeps_its_parameters_and_values_in_the_order_of_the_file(read, g
         ("nodes", (21, 11)),
         ("gravity", (0.0, 9.81)),
     ]
-    assert study.runs == 8
+    assert study.sampling.runs == 8
 
 
 def test_a_sample_keeps_its_parameters_in_the_order_of_the_file(read, sample):
@@ -128,7 +128,7 @@ def test_a_sample_keeps_its_parameters_in_the_order_of_the_file(read, sample):
     study = read(sample({"sampling.parameters": wanted}))
     assert isinstance(study.sampling, Sobol)
     assert list(study.sampling.parameters) == list(wanted)
-    assert study.runs == 8 * (2 * 3 + 2)
+    assert study.sampling.runs == 8 * (2 * 3 + 2)
     assert study.sampling.seed == 1
 
 
