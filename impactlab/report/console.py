@@ -62,11 +62,13 @@ def print_predictions(predicted: Any) -> None:
     rows = []
     for name, found in predicted.data_vars.items():
         value, attrs = found.item(), found.attrs
-        numbers = ("none", "–", "–")
+        numbers, verdict = ("none", "–", "–"), attrs["verdict"].replace("_", " ")
         if not math.isnan(value):
             error = engineering(attrs["rmse"], attrs["units"], digits=2)
             numbers = (engineering(value, attrs["units"]), error, f"{attrs['q2']:.4f}")
-        rows.append((str(name), *numbers, attrs["verdict"].replace("_", " ")))
+        if verdict == "imprecise":
+            verdict += f": the error is {100 * attrs['rmse'] / abs(value):.0f} % of the prediction"
+        rows.append((str(name), *numbers, verdict))
     _print_table(("response", "prediction", "rms error", "Q2", "verdict"), rows)
 
 

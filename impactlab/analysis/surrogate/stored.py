@@ -14,6 +14,8 @@ from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
 from impactlab.analysis.verdicts import names
 from impactlab.model.distributions import arguments, cumulative
 
+IMPRECISE = 0.1
+"""Root mean squared error, relative to a prediction, from which on that prediction is imprecise."""
 _AT_ONCE = 4096
 """Number of points whose terms about fit in the processor's cache."""
 
@@ -41,7 +43,8 @@ class Surrogate:
         values: by name, numbers, arrays of one dimension (`point`) or DataArrays, which are
         broadcast against each other. Returns the responses on the common dimensions, NaN where
         there is no surrogate, each with units, long_name, rmse and q2 (of runs held out) and
-        verdict; the values are its coordinates. Raises ValueError, naming parameter, value and
+        verdict: that of the surrogate, or, where this is "usable" but a prediction is smaller than
+        ten times the rmse, "imprecise". The values are its coordinates. Raises ValueError, naming parameter, value and
         range, where one is missing, was not varied, or lies outside what the surrogate knows.
         """
         for name in values:
@@ -62,12 +65,14 @@ class Surrogate:
         variables = {}
         for name, row in zip(self.responses, found, strict=True):
             entry = self.dataset.sel(response=name)
+            verdict, rmse = SurrogateVerdict(int(entry["verdict"])), float(entry["rmse"])
+            weak = verdict is SurrogateVerdict.USABLE and (rmse > IMPRECISE * np.abs(row)).any()
             attrs = {
                 "long_name": str(entry["response_long_name"].item()),
                 "units": str(entry["response_units"].item()),
-                "rmse": float(entry["rmse"]),
+                "rmse": rmse,
                 "q2": float(entry["q2"]),
-                "verdict": names(SurrogateVerdict)[int(entry["verdict"])],
+                "verdict": "imprecise" if weak else names(SurrogateVerdict)[verdict],
             }
             variables[name] = (columns[0].dims, row.reshape(columns[0].shape), attrs)
         return xr.Dataset(variables, dict(zip(self.parameters, columns, strict=True)))

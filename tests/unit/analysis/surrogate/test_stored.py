@@ -13,6 +13,7 @@ import xarray as xr
 
 from impactlab.analysis.surrogate import analysis, load_surrogate, packed
 from impactlab.analysis.surrogate.stored import Surrogate
+from impactlab.report.console import print_predictions
 
 from .conftest import ishigami
 
@@ -68,6 +69,22 @@ def test_a_prediction_carries_unit_and_error(loaded: Surrogate) -> None:
     assert attrs["verdict"] == "usable"
     assert 0.999 < attrs["q2"] <= 1
     assert found["velocity"].item() == 9.0
+
+
+def test_a_prediction_smaller_than_its_error_is_not_usable(
+    loaded: Surrogate, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Though the surrogate itself, over its whole range, is."""
+    monkeypatch.setenv("COLUMNS", "140")
+    at = int(np.flatnonzero(loaded.dataset["response"] == "peak_force")[0])
+    whole = loaded.predict(**POINT)["peak_force"].item()
+    loaded.dataset["rmse"][at] = 1.4 * whole
+    found = loaded.predict(**POINT)
+    assert found["peak_force"].attrs["verdict"] == "imprecise"
+    print_predictions(found)
+    assert "imprecise: the error is 140 % of the prediction" in capsys.readouterr().out
+    loaded.dataset["rmse"][at] = 0.09 * whole
+    assert loaded.predict(**POINT)["peak_force"].attrs["verdict"] == "usable"
 
 
 def test_no_surrogate_no_number(loaded: Surrogate) -> None:
