@@ -44,8 +44,9 @@ class Surrogate:
         broadcast against each other. Returns the responses on the common dimensions, NaN where
         there is no surrogate, each with units, long_name, rmse and q2 (of runs held out) and
         verdict: that of the surrogate, or, where this is "usable" but a prediction is smaller than
-        ten times the rmse, "imprecise". The values are its coordinates. Raises ValueError, naming parameter, value and
-        range, where one is missing, was not varied, or lies outside what the surrogate knows.
+        ten times the rmse, "imprecise". The values are its coordinates. Raises ValueError, naming
+        parameter, value and range, where one is missing, was not varied, or lies outside what the
+        surrogate knows.
         """
         for name in values:
             self._check_known(name)

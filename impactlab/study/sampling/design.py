@@ -69,7 +69,12 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
             varied[name] = "run", values, sampling.varied[name].arguments()
     scalars = {name: ((), value) for name, value in fixed.items()}
     found = xr.Dataset(coords=scalars | varied, attrs=_common_attributes(study) | own)
-    return found if isinstance(study, FunctionStudy) else described(found)
+    if isinstance(study, Study):
+        return described(found)
+    for name in fixed:
+        words = f"{name} of the {FUNCTIONS[study.function].title}"
+        found[name].attrs = {"long_name": words, "units": "1"} | found[name].attrs
+    return found
 
 
 def _check_draws(study: Study, drawn: dict[str, Floats]) -> None:

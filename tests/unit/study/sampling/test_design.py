@@ -260,3 +260,21 @@ def test_a_design_drawn_in_another_way_is_refused(sampled):
 def test_only_sobols_sample_can_be_doubled(sampled):
     with pytest.raises(ValueError, match="only a sample with method: sobol can be extended"):
         doubled(sampled("delta", samples=64))
+
+
+def test_parameters_of_a_test_function_carry_their_meaning(designed):
+    """The drawn ones and the one that keeps the middle of its range."""
+    found = designed("""
+title: A function
+function: ishigami
+sampling:
+  method: pawn
+  samples: 16
+  parameters:
+    x1: {distribution: uniform, low: -1, high: 1}
+    x3: {distribution: uniform, low: -1, high: 1}
+""")
+    for name in ("x1", "x2", "x3"):
+        assert found[name].attrs["long_name"] == f"{name} of the Ishigami function"
+        assert found[name].attrs["units"] == "1"
+    assert found["x3"].attrs["distribution"] == "uniform"
