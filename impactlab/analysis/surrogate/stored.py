@@ -66,14 +66,15 @@ class Surrogate:
         variables = {}
         for name, row in zip(self.responses, found, strict=True):
             entry = self.dataset.sel(response=name)
-            verdict, rmse = SurrogateVerdict(int(entry["verdict"])), float(entry["rmse"])
-            weak = verdict is SurrogateVerdict.USABLE and (rmse > IMPRECISE * np.abs(row)).any()
+            verdict, rmse = names(SurrogateVerdict)[int(entry["verdict"])], float(entry["rmse"])
+            if verdict == "usable" and (rmse > IMPRECISE * np.abs(row)).any():
+                verdict = "imprecise"
             attrs = {
                 "long_name": str(entry["response_long_name"].item()),
                 "units": str(entry["response_units"].item()),
                 "rmse": rmse,
                 "q2": float(entry["q2"]),
-                "verdict": "imprecise" if weak else names(SurrogateVerdict)[verdict],
+                "verdict": verdict,
             }
             variables[name] = (columns[0].dims, row.reshape(columns[0].shape), attrs)
         return xr.Dataset(variables, dict(zip(self.parameters, columns, strict=True)))
