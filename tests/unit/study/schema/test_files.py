@@ -63,10 +63,20 @@ def test_committed_studies_are_those_asked_for():
         "smoke",
         "verification",
     } <= by_name.keys()
-    sobol = read_study(by_name["sobol"]).sampling
-    assert isinstance(sobol, Sobol)
-    assert sobol.base_samples >= 1024
-    assert sobol.second_order
+    large = read_study(by_name["sobol_large"]).sampling
+    assert isinstance(large, Sobol)
+    assert (large.base_samples, large.second_order) == (4096, True)
+
+
+def test_tolerances_are_compared_at_fixed_velocities():
+    """The same draws at each; the velocity, which would take most of the variance, stands apart."""
+    names = ("sobol_slow", "sobol", "sobol_fast", "sobol_large")
+    *three, large = (read_study(STUDIES[0].with_name(f"{name}.yaml")) for name in names)
+    assert [study.impact.velocity for study in three] == [1.0, 5.0, 15.0]
+    assert three[0].sampling == three[1].sampling == three[2].sampling
+    assert set(large.sampling.varied) - set(three[0].sampling.varied) == {"velocity"}
+    # about 50 processor-seconds with pilot runs and refinement
+    assert sum(study.sampling.runs * study.duration for study in three) < 100
 
 
 def test_a_short_file_takes_the_rest_from_base_and_defaults(read, grid):
