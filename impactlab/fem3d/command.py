@@ -18,7 +18,7 @@ from impactlab.cli.options import WITNESS, given, results_file
 if TYPE_CHECKING:
     import xarray as xr
 
-    from impactlab.fem3d.comparison.plan import Case, Plan
+    from impactlab.fem3d.comparison.plan import Plan
     from impactlab.fem3d.solver.march import Progress
 
 
@@ -79,37 +79,48 @@ def witness(
     A table compares their answers; fields, histories and figures are kept. Ctrl-C keeps what was
     computed until then.
     """
-    from impactlab.fem3d.comparison.plan import planned
+    from impactlab.fem3d.comparison.plan import case_of, paper_case, planned
     from impactlab.fem3d.comparison.terminal import print_comparison, print_plan, print_yielding
     from impactlab.fem3d.deck import FLAVOURS
+    from impactlab.study.schema.files import read_impacts
 
     if deck and deck not in FLAVOURS:
         raise ValueError(f"--deck {deck}: must be one of {', '.join(FLAVOURS)}")
     if elastic and not deck:
         raise ValueError("--elastic: applies to a deck only; select one with --deck")
-    case = _case(study, velocity, contact)
+    options = {
+        "velocity": (velocity, "m s-1"),
+        "contact": (contact, ""),
+        "element-size": (element_size, "m"),
+        "patch": (patch, "m"),
+        "duration": (duration, "s"),
+    }
+    asked = {name: text for name, (text, _) in options.items() if text}
+    numbers = {
+        name: given(f"--{name}", text, units)
+        for name, (text, units) in options.items()
+        if text and units
+    }
+    case = case_of(read_impacts(study)) if study else paper_case()
+    case = case.with_impact(numbers.get("velocity"), contact or None)
+    if case.held:
+        values = ", ".join(f"{name} = {value}" for name, value in case.held.items())
+        logging.getLogger("impactlab").info(
+            "%s varies parameters of which this command takes one value: %s", case.file, values
+        )
     plan = planned(
         case,
-        element_size=given("--element-size", element_size, "m") if element_size else None,
-        patch=given("--patch", patch, "m") if patch else None,
-        duration=given("--duration", duration, "s") if duration else None,
+        element_size=numbers.get("element-size"),
+        patch=numbers.get("patch"),
+        duration=numbers.get("duration"),
     )
-    options = {
-        "velocity": velocity,
-        "contact": contact,
-        "element-size": element_size,
-        "patch": patch,
-        "duration": duration,
-    }
-    given_here = [f"{name}-{text}" for name, text in options.items() if text]
     # So that no answers to other options are overwritten.
-    name = "_".join([WITNESS, *(re.sub(r"[^\w.]+", "-", each) for each in given_here)])
-    folder = output or results_file(case.name, name)
+    parts = [re.sub(r"[^\w.]+", "-", f"{name}-{text}") for name, text in asked.items()]
+    folder = output or results_file(case.name, "_".join([WITNESS, *parts]))
     problem = "" if deck and plan.mesh else plan.problem(workers)
-    if dry_run or force or not problem:
-        print_plan(plan, None if deck else workers, problem)
-    else:
+    if problem and not (dry_run or force):
         raise ValueError(problem)
+    print_plan(plan, None if deck else workers, problem)
     if dry_run:
         return
     if deck:
@@ -123,36 +134,14 @@ def witness(
     _end(solid, folder)
 
 
-def _case(study: Path | None, velocity: str, contact: str) -> Case:
-    """Return the case to solve, and log which parameters that the study varies are held."""
-    from impactlab.fem3d.comparison.plan import case_of, paper_case
-    from impactlab.study.schema.files import read_impacts
-
-    case = case_of(read_impacts(study)) if study else paper_case()
-    speed = given("--velocity", velocity, "m s-1") if velocity else None
-    case = case.with_impact(speed, contact or None)
-    if case.held:
-        values = ", ".join(f"{name} = {value}" for name, value in case.held.items())
-        logging.getLogger("impactlab").info(
-            "%s varies parameters of which this command takes one value: %s", case.file, values
-        )
-    return case
-
-
 def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
     from impactlab.fem3d.comparison.run import check_writable
     from impactlab.fem3d.deck import FLAVOURS, write_deck
 
     check_writable(folder)
     path = folder / f"{flavour}{'' if plastic else '_elastic'}.inp"
-    write_deck(
-        path,
-        plan.case.impact,
-        plan.solved_mesh(),
-        flavour=flavour,
-        duration=plan.duration,
-        plastic=plastic,
-    )
+    impact, mesh = plan.case.impact, plan.solved_mesh()
+    write_deck(path, impact, mesh, flavour=flavour, duration=plan.duration, plastic=plastic)
     for limit in FLAVOURS[flavour].limits:
         logging.getLogger("impactlab").warning("%s: %s", path, limit)
     print(path)

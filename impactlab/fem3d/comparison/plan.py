@@ -107,18 +107,19 @@ class Plan:
         """Return the reason not to start, naming the option that drives it, or ""."""
         option = f"--element-size {1e3 * self.element_size:g} mm"
         elements = f"{self.cost.elements:,} elements"
+        long = self.seconds(workers)
         if self.cost.memory_bytes > MEMORY_LIMIT:
             needed = f"{amount(self.cost.memory_bytes)} of memory, of {amount(MEMORY_LIMIT)}"
-            reason = f"about {needed}, for {elements}"
-        elif self.seconds(workers) > MOST_TIME:
+            reason = f"{needed}, for {elements}"
+        elif long > MOST_TIME:
             if self.duration > _LONG * self.usual_duration:
                 option = f"--duration {1e3 * self.duration:g} ms"
-            long, work = time(self.seconds(workers)), f"{self.cost.steps:,} steps of {elements}"
-            reason = f"about {long}, which exceeds the limit of one hour per run, for {work}"
+            limit = "which exceeds the limit of one hour per run"
+            reason = f"{time(long)}, {limit}, for {self.cost.steps:,} steps of {elements}"
         else:
             return ""
         hint = "see --dry-run, and --force runs it all the same"
-        return f"{self.case.file}: {option}: {reason}; {hint}"
+        return f"{self.case.file}: {option}: about {reason}; {hint}"
 
     def solved_mesh(self) -> Mesh:
         """Return the mesh, even if it may not fit memory."""
@@ -142,8 +143,12 @@ def planned(
     for name, value in (("element_size", element_size), ("patch", patch), ("duration", duration)):
         if value is not None:
             positive("witness", name, value)
-    first = _first_contact(case)
-    usual = case.longest
+    # Roughly: on a coarse grid, which is quick for any duration.
+    nodes = min(case.discretisation.nodes, _COARSE)
+    coarse = replace(case.discretisation, nodes=nodes, scheme="leapfrog")
+    plain = replace(case.impact, beam_model=MODELS[0])
+    answers = solve(case_table(plain, coarse, duration=case.longest))
+    first, usual = float(answers.responses[0]["contact_duration"]), case.longest
     if not math.isnan(first):
         usual = min(float(f"{_CONTACTS * first:.2g}"), usual)
     simulated = usual if duration is None else duration
@@ -155,18 +160,6 @@ def planned(
     beams = case_table(case.impact, grid, duration=simulated, varied={"beam_model": MODELS})
     beside = float(cost.work(beams).sum() / cost.A_SECOND)
     return Plan(case, size, half, simulated, first, usual, radius, beside, solid, mesh)
-
-
-def _first_contact(case: Case) -> float:
-    """Return the duration of the Euler-Bernoulli beam's first contact in s; NaN beyond the study.
-
-    Roughly: on a coarse grid, which is quick for any duration.
-    """
-    nodes = min(case.discretisation.nodes, _COARSE)
-    grid = replace(case.discretisation, nodes=nodes, scheme="leapfrog")
-    plain = replace(case.impact, beam_model=MODELS[0])
-    answers = solve(case_table(plain, grid, duration=case.longest))
-    return float(answers.responses[0]["contact_duration"])
 
 
 def _cost(

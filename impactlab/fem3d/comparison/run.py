@@ -24,8 +24,6 @@ from impactlab.simulate import simulate
 from impactlab.study.netcdf import read_netcdf, write_netcdf
 from impactlab.variables import RESPONSES, UNLIKE, attributes, reasons, status_bits
 
-_NUMBER = 8
-"""Bytes of a number."""
 _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")
 COUNTS = ("number_of_contacts",)
 """Responses of which a relative difference tells nothing."""
@@ -56,18 +54,13 @@ def compare(
     except OSError:
         complete = False
     with watched or nullcontext() as progress:
-        solid = solve_on(
-            plan.solved_mesh(),
-            plan.case.impact,
-            duration=plan.duration,
-            threads=workers,
-            progress=progress,
-        )
+        mesh, impact = plan.solved_mesh(), plan.case.impact
+        solid = solve_on(mesh, impact, duration=plan.duration, threads=workers, progress=progress)
     if "stopped" in solid.attrs and complete:
         folder = folder.parent / f"{folder.resolve().name}_stopped"
     write_netcdf(solid, folder / "witness.nc")
     write_vtu(solid, folder / "witness.vtu")
-    beams = simulate_beams(plan.case.impact, plan.case.discretisation, float(solid["duration"]))
+    beams = simulate_beams(impact, plan.case.discretisation, float(solid["duration"]))
     write_netcdf(beams, folder / "beams.nc")
     responses = compared(solid, beams)
     write_csv(responses, folder / "comparison.csv")
@@ -106,39 +99,33 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
     COUNTS.
     """
     names = [name for name in RESPONSES if name in solid]
-    models = [SOLID, *beams["beam_model"].values.tolist()]
-    value = np.array([[*_valid(solid, name), *_valid(beams, name)] for name in names])
+    both = [runs[[*names, "status"]] for runs in (solid.expand_dims(beam_model=[SOLID]), beams)]
+    runs = xr.concat(both, "beam_model", coords="minimal", compat="override", combine_attrs="drop")
+    sound = [runs[name].where((runs["status"] & status_bits([name])) == 0) for name in names]
+    value = np.array(sound, dtype=float)
     with np.errstate(divide="ignore", invalid="ignore"):
         difference = value / value[:, :1] - 1.0
     difference[~np.isfinite(difference)] = np.nan
     difference[:, 0] = np.nan
     difference[[name in UNLIKE or name in COUNTS for name in names]] = np.nan
-    status = [*np.atleast_1d(solid["status"]), *beams["status"].values]
     return xr.Dataset(
         {
             "value": (("response", "model"), value),
             "difference": (("response", "model"), difference),
-            "status": ("model", np.array(status, dtype=np.int32)),
+            "status": ("model", runs["status"].values.astype(np.int32)),
         },
         coords={
             "response": names,
-            "model": models,
+            "model": runs["beam_model"].values.tolist(),
             "units": ("response", [attributes(name)["units"] for name in names]),
         },
     )
 
 
-def _valid(runs: xr.Dataset, name: str) -> list[float]:
-    """Return a response of each run, NaN where the status says that it does not hold."""
-    sound = (runs["status"] & status_bits([name])) == 0
-    values: list[float] = np.atleast_1d(runs[name].where(sound).values).astype(float).tolist()
-    return values
-
-
 def write_csv(found: xr.Dataset, path: Path) -> None:
     """Write one row per response and model, in SI units; whole or not at all (see whole)."""
     with (
-        replaced(path, found["value"].size * len(_HEAD) * _NUMBER) as unfinished,
+        replaced(path, found["value"].size * len(_HEAD) * 8) as unfinished,
         unfinished.open("w", encoding="utf-8", newline="") as file,
     ):
         writer = csv.writer(file, lineterminator="\n")

@@ -57,7 +57,8 @@ def print_comparison(found: xr.Dataset) -> None:
 
     found: see compared. Below the table, the missing responses and the reasons, by model.
     """
-    models = [_named(model) for model in found["model"].values.tolist()]
+    names = found["model"].values.tolist()
+    models = ["3-D" if name == SOLID else name.replace("_", "-").title() for name in names]
     right = [Column(name, justify="right") for name in models]
     table = Table(  # narrow enough for 80 columns
         Column("response", no_wrap=True), *right, box=box.SIMPLE, show_edge=False, padding=0
@@ -90,15 +91,16 @@ def print_yielding(solid: xr.Dataset) -> None:
     in bending.
     """
     console = Console()
+    lines = []
     if (sphere := float(solid["sphere_plastic_strain"])) > 0.0:
-        text = f"the sphere yields, too: PEEQ up to {sphere:.2%}, in plastic_dissipation alone"
-        console.print(text, markup=False, highlight=False)
+        lines = [f"the sphere yields, too: PEEQ up to {sphere:.2%}, in plastic_dissipation alone"]
     if (coarse := float(solid["one_point_plastic_strain"])) > _FAR:
-        text = (
+        lines.append(
             f"elements with one integration point yield: PEEQ up to {coarse:.2%} away from contact "
             "and middle, where they are too stiff in bending"
         )
-        console.print(text, markup=False, highlight=False)
+    for line in lines:
+        console.print(line, markup=False, highlight=False)
 
 
 def _cell(value: float, share: float) -> str:
@@ -107,7 +109,3 @@ def _cell(value: float, share: float) -> str:
     text = f"{value:.4g}"
     digits = 1 if abs(share) < _WHOLE else 0
     return text if np.isnan(share) else f"{text} {share:+.{digits}f}%"
-
-
-def _named(model: str) -> str:
-    return "3-D" if model == SOLID else "-".join(map(str.capitalize, model.split("_")))

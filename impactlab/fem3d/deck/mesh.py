@@ -7,17 +7,12 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.fem3d.deck.case import LENGTH, Case
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
 from impactlab.fem3d.solver.mesh.mesh import Integers, Truths
 
-SPHERE_NODES = "SPHERE_NODES"
-SYMMETRY_X, SYMMETRY_Y, SUPPORT = "SYMMETRY_X", "SYMMETRY_Y", "SUPPORT"
-MIDSPAN, CENTRE, POLE, TOP = "MIDSPAN", "SPHERE_CENTRE", "SPHERE_POLE", "BEAM_TOP"
-TRACKED = "TRACKED"
-"""Name of the set of these four nodes together."""
-BODIES = {"BEAM": BEAM, "SPHERE": SPHERE}
-SPHERE_SURFACE, BEAM_SURFACE = "SPHERE_SURFACE", "BEAM_SURFACE"
+LENGTH = 1e3
+"""mm per m."""
+_BODIES = {"BEAM": BEAM, "SPHERE": SPHERE}
 
 
 def element_groups(mesh: Mesh) -> dict[str, tuple[bool, Truths]]:
@@ -27,7 +22,7 @@ def element_groups(mesh: Mesh) -> dict[str, tuple[bool, Truths]]:
     """
     groups = {
         f"{name}_{'FINE' if full else 'COARSE'}": (full, (mesh.body == body) & (mesh.full == full))
-        for name, body in BODIES.items()
+        for name, body in _BODIES.items()
         for full in (True, False)
     }
     return {name: (full, which) for name, (full, which) in groups.items() if which.any()}
@@ -54,8 +49,8 @@ def _surfaces(mesh: Mesh) -> dict[str, Faces]:
     cut = _on(mesh, nodes, 0) | _on(mesh, nodes, 1)
     beam, corners = _outer(mesh, BEAM)
     return {
-        SPHERE_SURFACE: ball[~cut & (middle < height)],
-        BEAM_SURFACE: beam[_on(mesh, corners, 2)],
+        "SPHERE_SURFACE": ball[~cut & (middle < height)],
+        "BEAM_SURFACE": beam[_on(mesh, corners, 2)],
     }
 
 
@@ -76,9 +71,8 @@ def _outer(mesh: Mesh, body: int) -> tuple[Faces, Integers]:
     return faces, nodes[outer]
 
 
-def geometry(case: Case, kinds: Mapping[bool, str]) -> Iterator[str]:
-    """Yield the mesh. kinds: element types, fully integrated (True) and not."""
-    mesh, radius = case.mesh, case.impact.sphere.radius
+def geometry(mesh: Mesh, radius: float, kinds: Mapping[bool, str]) -> Iterator[str]:
+    """Yield the mesh. radius: of the sphere in m. kinds: of elements, full integration or not."""
     yield "*NODE, NSET=ALL_NODES"
     for place, (x, y, z) in enumerate((LENGTH * mesh.nodes).tolist(), start=1):
         # 19 characters at most, of the 20 that CalculiX reads, with 13 digits.
@@ -89,18 +83,23 @@ def geometry(case: Case, kinds: Mapping[bool, str]) -> Iterator[str]:
         numbers = np.flatnonzero(chosen)
         rows = np.column_stack([numbers, mesh.elements[numbers]]) + 1
         yield from (", ".join(map(str, row)) for row in rows.tolist())
-    for body in BODIES:
+    for body in _BODIES:
         yield f"*ELSET, ELSET={body}"
         yield from (name for name in groups if name.startswith(f"{body}_"))
     centre = np.linalg.norm(mesh.nodes - np.array([0.0, 0.0, radius]), axis=1).argmin()
-    tracked = {MIDSPAN: mesh.axis_node, CENTRE: int(centre), POLE: mesh.pole, TOP: mesh.top_node}
+    tracked = {
+        "MIDSPAN": mesh.axis_node,
+        "SPHERE_CENTRE": int(centre),
+        "SPHERE_POLE": mesh.pole,
+        "BEAM_TOP": mesh.top_node,
+    }
     sets: dict[str, list[int]] = {
-        SPHERE_NODES: np.unique(mesh.elements[mesh.body == SPHERE]).tolist(),
-        SYMMETRY_X: mesh.symmetry_x.tolist(),
-        SYMMETRY_Y: mesh.symmetry_y.tolist(),
-        SUPPORT: mesh.support.tolist(),
+        "SPHERE_NODES": np.unique(mesh.elements[mesh.body == SPHERE]).tolist(),
+        "SYMMETRY_X": mesh.symmetry_x.tolist(),
+        "SYMMETRY_Y": mesh.symmetry_y.tolist(),
+        "SUPPORT": mesh.support.tolist(),
         **{name: [node] for name, node in tracked.items()},
-        TRACKED: list(tracked.values()),
+        "TRACKED": list(tracked.values()),
     }
     for name, members in sets.items():
         yield f"*NSET, NSET={name}"

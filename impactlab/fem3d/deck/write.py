@@ -1,26 +1,79 @@
-"""The public function: an impact and its mesh become an input deck."""
+"""The public function: an impact and its mesh become an input deck, in N, mm, t and s."""
 
 from __future__ import annotations
 
+import math
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Mapping
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-from impactlab.fem3d.deck.abaqus import ABAQUS
-from impactlab.fem3d.deck.calculix import CALCULIX
-from impactlab.fem3d.deck.case import DENSITY, NAMES, STRESS, VELOCITY, Case, Flavour, values
-from impactlab.fem3d.deck.mesh import SPHERE_NODES, SUPPORT, SYMMETRY_X, SYMMETRY_Y, geometry
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from impactlab.fem3d.deck.mesh import LENGTH, element_groups, geometry
 from impactlab.fem3d.solver.mesh import Mesh
+from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.fem3d.solver.mesh.mesh import sphere_density
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
-from impactlab.model.checks import one_of
+from impactlab.model.checks import instance, one_of, positive
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
+from impactlab.model.impact import Impact, Material
 from impactlab.model.parameters import PARAMETERS, flatten
+from impactlab.verification.solutions import hertz
 
-FLAVOURS = {"abaqus": ABAQUS, "calculix": CALCULIX}
-"""Programs that a deck can be written for."""
+_STRESS = 1e-6
+"""MPa per Pa."""
+_OVERCLOSURE = 0.002
+"""Overclosure at the contact's centre over the indentation, in Hertz's contact, in CalculiX."""
+_LONGEST = 10.0
+"""Plastic strain at which the tables end; both programs keep the stress from there on."""
+_SAMPLES = 60
+"""Intervals in the contact duration of an elastic half-space."""
+_SAME = 1e-9
+"""Relative difference of lengths that are the same."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Flavour:
+    """One program. elements: its types, fully integrated (True) and not.
+
+    kinematic: whether its kinematic hardening is right. limits: what a user has to know, a sentence
+    each.
+    """
+
+    program: str
+    elements: Mapping[bool, str]
+    kinematic: bool
+    limits: tuple[str, ...]
+
+
+FLAVOURS = {
+    "abaqus": Flavour(
+        program="Abaqus/Explicit",
+        elements={True: "C3D8", False: "C3D8R"},
+        kinematic=True,
+        limits=(
+            "Never run: no Abaqus was at hand. Keywords are checked against its documented syntax "
+            "as far as that could be read (docs/decks.md).",
+            "Run it in double precision: contact begins at a gap of zero.",
+        ),
+    ),
+    "calculix": Flavour(
+        program="CalculiX 2.20",
+        elements={True: "C3D8I", False: "C3D8I"},
+        kinematic=False,
+        limits=(
+            "Small displacements, implicit dynamics with equal steps, contact by a linear penalty: "
+            f"the overclosure at its centre is about {100.0 * _OVERCLOSURE:.9g} % of the "
+            "indentation.",
+            "CalculiX 2.20 crashes (segmentation fault in the first iteration) when *PLASTIC meets "
+            "surface-to-surface contact in *DYNAMIC: for a run that finishes, take elastic "
+            "materials (--elastic; write_deck with plastic=False).",
+        ),
+    ),
+}
+"""Programs that a deck can be written for; templates/NAME.inp.j2 is the text of each."""
 
 
 def write_deck(
@@ -44,8 +97,45 @@ def write_deck(
     what the program cannot do right: kinematic hardening in CalculiX.
     """
     chosen = FLAVOURS[one_of("deck", "flavour", flavour, tuple(FLAVOURS))]
-    case = Case(impact=impact, mesh=mesh, duration=duration, interval=interval, plastic=plastic)
-    text = "".join(f"{line}\n" for line in _lines(case, chosen))
+    instance("deck", "impact", impact, Impact)
+    instance("deck", "mesh", mesh, Mesh)
+    positive("deck", "duration", duration)
+    if interval is None:
+        contact = hertz.contact_duration(*hertz.arguments(impact))
+        interval = min(contact / _SAMPLES, duration)
+    elif positive("deck", "interval", interval) > duration:
+        raise ValueError(
+            f"deck.interval = {interval!r} s: must not be above the duration ({duration!r} s)"
+        )
+    _check_mesh(mesh, impact)
+    beam, ball = impact.beam.material, impact.sphere.material
+    for material in (beam, ball):
+        if plastic and material.kinematic_hardening_modulus > 0.0 and not chosen.kinematic:
+            raise ValueError(
+                f"deck: kinematic_hardening_modulus = {material.kinematic_hardening_modulus!r} Pa, "
+                f"but {chosen.program} softens such a material where it should harden: write the "
+                "deck for Abaqus, or with elastic materials"
+            )
+    # Hertz's largest pressure is 2 E* a/(pi R), his indentation a^2/R.
+    modulus, radius = hertz.effective_modulus(impact), contact_radius(impact)
+    given = flatten(impact, Discretisation())
+    text = _TEMPLATES.get_template(f"{flavour}.inp.j2").render(
+        flavour=chosen,
+        version=version("impactlab"),
+        impact=impact,
+        mesh=mesh,
+        duration=duration,
+        interval=interval,
+        plastic=plastic,
+        given=[(PARAMETERS[name], given[name]) for name in IMPACT_PARAMETERS if name in given],
+        geometry="\n".join(geometry(mesh, impact.sphere.radius, chosen.elements)),
+        groups=element_groups(mesh),
+        materials={
+            "BEAM": (beam, beam.density),
+            "SPHERE": (ball, sphere_density(mesh, impact)),
+        },
+        stiffness=2.0 * modulus / (math.pi * radius * _OVERCLOSURE),  # in Pa/m
+    )
     path = Path(path)
     try:
         path.write_text(text, encoding="ascii", newline="\n")
@@ -54,63 +144,57 @@ def write_deck(
     return path
 
 
-def _lines(case: Case, flavour: Flavour) -> Iterator[str]:
-    yield "*HEADING"
-    yield f"impactlab: a sphere strikes a beam ({flavour.program})"
-    for words in _comment(case, flavour):
-        yield from textwrap.wrap(
-            words, _WIDTH, initial_indent="** ", subsequent_indent="**   ", drop_whitespace=True
-        )
-    yield from geometry(case, flavour.elements)
-    beam, ball = case.impact.beam.material, case.impact.sphere.material
-    for name, material, density in (
-        ("BEAM", beam, beam.density),
-        ("SPHERE", ball, sphere_density(case.mesh, case.impact)),
+def _check_mesh(mesh: Mesh, impact: Impact) -> None:
+    """Raise ValueError where the mesh is that of other bodies."""
+    beam, nodes = impact.beam, mesh.nodes
+    for name, meshed, wanted in (
+        ("beam's span", 2.0 * nodes[mesh.support, 0].max(), beam.span),
+        ("beam's width", 2.0 * nodes[mesh.support, 1].max(), beam.width),
+        ("beam's depth", -nodes[:, 2].min(), beam.depth),
+        ("sphere's radius", 0.5 * nodes[:, 2].max(), impact.sphere.radius),
     ):
-        yield f"*MATERIAL, NAME={name}_STEEL"
-        yield "*DENSITY"
-        yield values(density * DENSITY)
-        yield "*ELASTIC"
-        yield values(material.youngs_modulus * STRESS, material.poissons_ratio)
-        if case.plastic:
-            yield from flavour.hardening(material)
-    yield from flavour.sections(case)
-    yield "*BOUNDARY"
-    yield f"{SYMMETRY_X}, 1, 1"
-    yield f"{SYMMETRY_Y}, 2, 2"
-    yield f"{SUPPORT}, 3, 3"
-    yield "*INITIAL CONDITIONS, TYPE=VELOCITY"
-    yield f"{SPHERE_NODES}, 3, {values(-case.impact.velocity * VELOCITY)}"
-    yield from flavour.contact(case)
-    yield from flavour.step(case)
+        if not math.isclose(meshed, wanted, rel_tol=_SAME):
+            raise ValueError(
+                f"deck.mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in the "
+                "impact: make the mesh from this impact (quarter_mesh)"
+            )
 
 
-_WIDTH = 96
+def _values(*entries: float) -> str:
+    """Return one data line."""
+    return ", ".join(f"{entry:.9g}" for entry in entries)
 
-_LIMITS = (
-    "A quarter: x = 0 and y = 0 are planes of symmetry, z points upwards; contact forces are a "
-    "quarter of the whole.",
-    "Frictionless; the sphere touches the beam's top at the origin when time begins; gravity acts "
-    "on the sphere alone; the beam's ends are held at mid-depth.",
+
+def _curve(material: Material, modulus: float) -> str:
+    """Return yield stress against equivalent plastic strain, rising by `modulus` (Pa)."""
+    lines = [_values(material.yield_stress * _STRESS, 0.0)]
+    if modulus > 0.0:
+        top = (material.yield_stress + modulus * _LONGEST) * _STRESS
+        lines.append(_values(top, _LONGEST))
+    return "\n".join(lines)
+
+
+def _comment(text: str) -> str:
+    """Return each line as a comment of lines that are not too long."""
+    indents = {"initial_indent": "** ", "subsequent_indent": "**   "}
+    wrapped = (textwrap.wrap(line, 96, **indents) for line in text.splitlines())
+    return "".join(f"{line}\n" for lines in wrapped for line in lines)
+
+
+_TEMPLATES = Environment(
+    loader=PackageLoader("impactlab.fem3d.deck"),
+    trim_blocks=True,
+    lstrip_blocks=True,
+    keep_trailing_newline=True,
+    undefined=StrictUndefined,
 )
-
-
-def _comment(case: Case, flavour: Flavour) -> Iterator[str]:
-    """Yield the paragraphs of the comment at the top."""
-    mesh = case.mesh
-    yield f"impactlab {version('impactlab')}: a sphere strikes a beam, for {flavour.program}"
-    yield f"Units: {NAMES}"
-    yield (
-        f"Mesh: {len(mesh.nodes)} nodes, {len(mesh.elements)} elements, "
-        f"{mesh.element_size * 1e3:.9g} mm in the contact"
-    )
-    yield f"Materials: {'elastic-plastic' if case.plastic else 'elastic'}"
-    yield "Case, in SI units:"
-    given = flatten(case.impact, Discretisation())
-    for name in IMPACT_PARAMETERS:
-        if name in given:
-            entry = PARAMETERS[name]
-            units = "" if entry.units == "1" else f" {entry.units}"
-            yield f"  {entry.long_name}: {given[name]!r}{units}"
-    yield "Limits:"
-    yield from (f"- {limit}" for limit in (*_LIMITS, *flavour.limits))
+_TEMPLATES.filters["comment"] = _comment
+_TEMPLATES.globals |= {
+    "values": _values,
+    "curve": _curve,
+    "STRESS": _STRESS,
+    "LENGTH": LENGTH,
+    "VELOCITY": 1e3,  # mm/s per m/s
+    "ACCELERATION": 1e3,  # mm/s2 per m/s2
+    "DENSITY": 1e-12,  # t/mm3 per kg/m3
+}

@@ -63,8 +63,7 @@ def _cell(
     text = labels.number(float(unit(value)))
     width = float(side.uncertainty[at])
     if value and not width <= _NOTHING * abs(value):
-        bound = f"{labels.number(100.0 * width / abs(value), 2)} %" if np.isfinite(width) else "?"
-        text = f"{text} ± {bound}"
+        text = f"{text} ± {_bound(100.0 * width / abs(value))}"
     gap = float(differences.difference([side], [against]).value[at])
     shown = alike and side is not against and np.isfinite(gap)
     detail = f"{_signed(gap)} against the 3-D FE model" if shown else ""
@@ -74,20 +73,20 @@ def _cell(
 def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """Return one row per effect and one column per response."""
     found = {name: differences.effects(runs, analysis, name) for name in differences.NAMES}
-    rows = [
-        [Cell(labels.sentence(text)), *(_share(found[name][key]) for name in differences.NAMES)]
-        for key, text in differences.EFFECTS.items()
-    ]
+    rows = []
+    for key, text in differences.EFFECTS.items():
+        cells = [Cell(labels.sentence(text))]
+        for side in (found[name][key] for name in differences.NAMES):
+            value, width = float(side.value), float(side.uncertainty)
+            known = Cell(f"{_signed(value)} ± {_bound(100.0 * width)}", "number")
+            cells.append(known if np.isfinite(value) else Cell("missing", "warning"))
+        rows.append(cells)
     head = ["Effect", *(labels.sentence(labels.response(name)) for name in differences.NAMES)]
     return Table("Change of the answer of the paper's beam by each effect", head, rows)
 
 
-def _share(side: differences.Side) -> Cell:
-    value, width = float(side.value), float(side.uncertainty)
-    if not np.isfinite(value):
-        return Cell("missing", "warning")
-    bound = f"{labels.number(100.0 * width, 2)} %" if np.isfinite(width) else "?"
-    return Cell(f"{_signed(value)} ± {bound}", "number")
+def _bound(percent: float) -> str:
+    return f"{labels.number(percent, 2)} %" if np.isfinite(percent) else "?"
 
 
 def _signed(share: float) -> str:
