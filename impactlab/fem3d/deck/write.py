@@ -176,9 +176,9 @@ def _curve(material: Material, modulus: float) -> str:
 
 def _comment(text: str) -> str:
     """Return each line as a comment of lines that are not too long."""
-    indents = {"initial_indent": "** ", "subsequent_indent": "**   "}
-    wrapped = (textwrap.wrap(line, 96, **indents) for line in text.splitlines())
-    return "".join(f"{line}\n" for lines in wrapped for line in lines)
+    wrapper = textwrap.TextWrapper(96, initial_indent="** ", subsequent_indent="**   ")
+    lines = (line for words in text.splitlines() for line in wrapper.wrap(words))
+    return "".join(f"{line}\n" for line in lines)
 
 
 _TEMPLATES = Environment(
