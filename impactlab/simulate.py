@@ -159,8 +159,9 @@ def case_table(
     if wrong.size:
         case = cases[wrong[0]]
         raise ValueError(
-            f"run {first_run + wrong[0]}: Discretisation.scheme = {SCHEMES[case.scheme]!r}: "
-            f"Impact.beam_model = {BEAM_MODELS[case.beam_model]!r} has 'leapfrog' alone"
+            f"{f'run {first_run + wrong[0]}: ' if varied else ''}scheme = "
+            f"{SCHEMES[case.scheme]!r}: beam_model = {BEAM_MODELS[case.beam_model]!r} has "
+            "'leapfrog' alone"
         )
     return cases
 
@@ -263,7 +264,7 @@ def _table(
     """Return the records of as many runs as the impact's columns are long, or one for all."""
     if np.any(np.equal(impact.beam_model, SOLID)):
         raise ValueError(
-            f"Impact.beam_model = {SOLID!r}: is no model of the kernels: use `impactlab witness`, "
+            f"beam_model = {SOLID!r}: is no model of the kernels: use `impactlab witness`, "
             "impactlab.fem3d.solver.solve, or a study of the method grid"
         )
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}

@@ -17,6 +17,7 @@ from impactlab.cli.interrupt import stop_quietly
 _COMMANDS = {
     "simulate": "impactlab.cli.simulate:simulate",
     "go": "impactlab.cli.go:go",
+    "new": "impactlab.cli.new:new",
     "studies": "impactlab.cli.studies:studies",
     "recommend": "impactlab.cli.solve:recommend",
     "design": "impactlab.cli.solve:design",

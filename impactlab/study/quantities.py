@@ -88,7 +88,7 @@ def expected(units: str) -> str:
     kind, example = KINDS.get(units, (f"a quantity in {units}", f"1 {units}"))
     if units == "1":
         return f"expected {kind} such as {example}"
-    return f"expected {kind} such as {example!r}, or a number in {units}"
+    return f"expected {kind} such as {example!r}, or a number in {_symbol(units)}"
 
 
 def _parsed(text: str, units: str) -> float:
@@ -206,8 +206,13 @@ def engineering(value: float, units: str, digits: int = 4) -> str:
     rounded, power = float(f"{value:.{digits}g}"), 0
     if rounded and units in _PREFIXED:
         power = min(max(math.floor(math.log10(abs(rounded)) / 3), -3), 3)
-    symbol = re.sub(r" (\w+)-(\d)", r"/\1\2", units).removesuffix("1").replace("2", "²")
-    return f"{rounded / 1000.0**power:.{digits}g} {'nµm kMG'[power + 3].strip()}{symbol}".rstrip()
+    prefix = "nµm kMG"[power + 3].strip()
+    return f"{rounded / 1000.0**power:.{digits}g} {prefix}{_symbol(units)}".rstrip()
+
+
+def _symbol(units: str) -> str:
+    """Return SI units as people write them: "m/s²" for "m s-2"."""
+    return re.sub(r" (\w+)-(\d)", r"/\1\2", units).translate(str.maketrans("23", "²³", "1"))
 
 
 _PREFIXED = ("J", "N", "N s", "Pa", "m", "s")

@@ -31,6 +31,13 @@ def test_help_and_version_by_their_usual_names(tmp_path):
         (["simulate", "--duration", "1"], ["--duration", "seconds without a unit", "'1 ms'"]),
         (["simulate", "--velocity", "-3"], ["--velocity = -3.0: must be above zero"]),
         (["simulate", "--velocity", "6 km/s"], ["--velocity", "above the speed of a bar wave"]),
+        (["simulate", "--velocity", "fast"], ["a velocity such as '0.99 m/s', or a number in m/s"]),
+        (
+            ["simulate", "--beam-model", "rigid", "--scheme", "semi_implicit"],
+            ["ERROR: scheme = 'semi_implicit': beam_model = 'rigid' has 'leapfrog' alone"],
+        ),
+        (["run", "studies/tabs.yaml"], ["line 8, column 1", "put spaces in the place of tabs"]),
+        (["run", "studies/long.yaml"], ["long.yaml: duration = 1: ", "write '1 ms', or '1 s'"]),
         (["simulate", "--plot", "one.doc"], ["--plot", "one.doc", ".svg"]),
         (["run", "studies/none.yaml"], ["studies/none.yaml"]),
         (["run", "studies/checks.yaml"], ["checks.yaml", "impactlab verify"]),
@@ -49,6 +56,8 @@ def test_help_and_version_by_their_usual_names(tmp_path):
 def test_mistakes_end_in_one_message(folder, args, words, monkeypatch, capsys):
     (folder / "studies" / "broken.yaml").write_text(SMALL.replace("velocity", "velocty"))
     (folder / "studies" / "misspelt.yaml").write_text(CHECKS.replace("space", "spce"))
+    (folder / "studies" / "tabs.yaml").write_text(SMALL.replace("  method", "\tmethod"))
+    (folder / "studies" / "long.yaml").write_text(SMALL.replace("1 ms", "1"))
     monkeypatch.chdir(folder)
     assert here(*args) == 1
     said = capsys.readouterr().err

@@ -1,4 +1,5 @@
 # What the rules share: what the program says of the studies, and the sources of each step.
+import importlib.util
 import json
 import logging
 import os
@@ -68,7 +69,7 @@ def has(study, trait):
 
 def code(*patterns):
     """Return the sources that a step depends on: when they change, the step is done again."""
-    return sorted(str(path) for pattern in patterns for path in Path("impactlab").glob(pattern))
+    return sorted(str(path) for pattern in patterns for path in PACKAGE.glob(pattern))
 
 
 def where(trait, name):
@@ -95,6 +96,9 @@ def evidence(wildcards, input):
     return " ".join(f"--{name} {file}" for name, file in known.items() if file)
 
 
+PACKAGE = Path("impactlab")  # of the checkout; elsewhere that which is installed
+if not PACKAGE.is_dir() and (spec := importlib.util.find_spec("impactlab")):
+    PACKAGE = Path(spec.origin).parent
 MODEL = ("variables.py", "model/*.py")
 SOLVER = (*MODEL, "simulate.py", "solver/**/*.py", "jit.py")
 FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "stored"))

@@ -92,7 +92,8 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
     except MarkedYAMLError as error:
         mark = error.problem_mark
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        words = f"{where}{error.problem}"
+        tab = "; put spaces in the place of tabs" if "'\\t'" in str(error.problem) else ""
+        words = f"{where}{error.problem}{tab}"
     except RecursionError:
         words = "nests too deeply"
     except Exception as error:  # a hostile text can make the parser fail in any way

@@ -1,0 +1,50 @@
+"""A project made by someone who has the wheel alone."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from command_line import called
+from command_line import done as impactlab
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_a_project_brings_workflow_and_studies(tmp_path):
+    told = impactlab("new", "mine", cwd=tmp_path).stdout
+    assert told.endswith("cd mine && snakemake --cores all\n")
+    for name in ("Snakefile", "workflow/rules/common.smk", "studies/velocity.yaml"):
+        assert (tmp_path / "mine" / name).read_bytes() == (ROOT / name).read_bytes()
+    assert "snakemake --cores all" in (tmp_path / "mine" / "README.md").read_text()
+    again = called("new", "mine", cwd=tmp_path)
+    assert again.returncode == 1
+    assert "mine: is there already" in again.stderr
+
+
+def run(*command, cwd):
+    """Run a command without anything of this environment; it must succeed."""
+    kept = {name: os.environ[name] for name in ("HOME", "LANG") if name in os.environ}
+    env = kept | {"PATH": f"{cwd / 'env' / 'bin'}:/usr/bin:/bin"}
+    env |= {name: value for name, value in os.environ.items() if name.startswith(("PIP_", "SSL_"))}
+    folder = cwd / "mine" if command[0] == "snakemake" else cwd
+    done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+@pytest.mark.long
+def test_a_project_of_a_wheel_runs_in_an_empty_environment(tmp_path):
+    wheel = (sys.executable, "-m", "pip", "wheel", "--no-deps", "--wheel-dir", ".", ROOT)
+    run(*map(str, wheel), cwd=tmp_path)
+    (built,) = tmp_path.glob("impactlab-*.whl")
+    run(sys.executable, "-m", "venv", "env", cwd=tmp_path)
+    pins = ("--constraint", str(ROOT / "constraints.txt"), "--no-compile")
+    run("env/bin/pip", "install", *pins, f"{built}[workflow]", cwd=tmp_path)
+    run("env/bin/impactlab", "new", "mine", cwd=tmp_path)
+    run("snakemake", "--cores", "all", cwd=tmp_path)
+    assert (tmp_path / "mine" / "results" / "velocity" / "report.html").exists()
+    assert (tmp_path / "mine" / "results" / "index.html").exists()
+    again = run("snakemake", "--cores", "all", "--dry-run", cwd=tmp_path)
+    assert "Nothing to be done" in again
