@@ -121,14 +121,14 @@ def run(
     stored = read_netcdf(design_file) if design_file.suffix == ".nc" else None
     study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
     path = output or results_file(study.name, "runs.nc")
-    price = steps.price(study, path.parent, workers)
-    for problem in price.implausible:
+    cost = steps.price(study, path.parent, workers)
+    for problem in cost.implausible:
         logging.getLogger("impactlab").warning("%s", problem)
     if dry_run:
-        print_estimate(price.cost, workers, price.free, price.exceeded)
+        print_estimate(cost, workers)
         return
-    if price.exceeded and not force:
-        raise StudyError(*price.exceeded)
+    if (exceeded := cost.exceeded()) and not force:
+        raise StudyError(*exceeded)
     profile = read_profile(cluster) if cluster else None
     engine = Engine(
         "processes" if processes else "threads", workers, scheduler, profile, batch_seconds

@@ -64,13 +64,6 @@ def positive(owner: str, field: str, value: Any) -> float:
     return result
 
 
-def not_negative(owner: str, field: str, value: Any) -> float:
-    """Return `value` as a finite float of zero or more, or raise ValueError naming the field."""
-    result = number(owner, field, value)
-    require(result >= 0, owner, field, value, "must not be negative")
-    return result
-
-
 def integer(owner: str, field: str, value: Any, least: int) -> int:
     """Return `value` as an int of at least `least`, or raise ValueError naming the field."""
     if isinstance(value, Column):

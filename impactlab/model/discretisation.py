@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -46,8 +45,9 @@ class Discretisation:
         for field, least in (("nodes", 5), ("points", 2)):  # 21.0, as YAML may give it, is 21
             value = integer("Discretisation", field, getattr(self, field), least)
             object.__setattr__(self, field, value)
-        odd = np.equal(self.nodes % 2, 1)
-        self._require(odd, "nodes", "must be odd, so that mid-span is a node")
+        nodes = self.nodes
+        odd, words = np.equal(nodes % 2, 1), "must be odd, so that mid-span is a node"
+        require(odd, "Discretisation", "nodes", nodes, words)
         one_of("Discretisation", "rule", self.rule, RULES)
         one_of("Discretisation", "scheme", self.scheme, SCHEMES)
         for field in ("element_size", "elements_per_radius"):
@@ -55,13 +55,12 @@ class Discretisation:
                 positive("Discretisation", field, getattr(self, field))
         twice = self.element_size is not None and self.elements_per_radius is not None
         words = "element_size says it already: take one of them out"
-        self._require(not twice, "elements_per_radius", words)
-        enough = np.greater_equal(self.nodes, _LEAST_FILTERED)
+        size = self.elements_per_radius
+        require(not twice, "Discretisation", "elements_per_radius", size, words)
+        enough = np.greater_equal(nodes, _LEAST_FILTERED)
+        enough = enough | np.not_equal(self.scheme, "semi_implicit")
         words = f"must be at least {_LEAST_FILTERED} with the semi_implicit scheme"
-        self._require(enough | np.not_equal(self.scheme, "semi_implicit"), "nodes", words)
-        positive("Discretisation", "courant", self.courant)
+        require(enough, "Discretisation", "nodes", nodes, words)
+        courant = positive("Discretisation", "courant", self.courant)
         words = "must be in (0, 1]; above 1 the scheme is unstable or inaccurate"
-        self._require(np.less_equal(self.courant, 1), "courant", words)
-
-    def _require(self, holds: Any, field: str, words: str) -> None:
-        require(holds, "Discretisation", field, getattr(self, field), words)
+        require(courant <= 1, "Discretisation", "courant", self.courant, words)

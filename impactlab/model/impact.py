@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from impactlab.model.checks import instance, not_negative, number, one_of, positive, require
+from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.solver import BEAM_MODELS
 from impactlab.solver.contact import LAWS
 
@@ -38,7 +38,8 @@ class Material:
         for field in ("density", "youngs_modulus", "yield_stress"):
             positive("Material", field, getattr(self, field))
         for field in ("isotropic_hardening_modulus", "kinematic_hardening_modulus"):
-            not_negative("Material", field, getattr(self, field))
+            modulus = number("Material", field, getattr(self, field))
+            require(modulus >= 0, "Material", field, modulus, "must not be negative")
         ratio = number("Material", "poissons_ratio", self.poissons_ratio)
         sound = (ratio >= 0) & (ratio < 0.5)
         require(sound, "Material", "poissons_ratio", ratio, "must be from 0 to below 0.5")
@@ -142,7 +143,8 @@ class Impact:
         instance("Impact", "sphere", self.sphere, Sphere)
         instance("Impact", "beam", self.beam, Beam)
         positive("Impact", "velocity", self.velocity)
-        not_negative("Impact", "gravity", self.gravity)
+        gravity = number("Impact", "gravity", self.gravity)
+        require(gravity >= 0, "Impact", "gravity", gravity, "must not be negative")
         one_of("Impact", "contact", self.contact, LAWS)
         one_of("Impact", "beam_model", self.beam_model, MODELS)
 

@@ -18,7 +18,6 @@ from impactlab.variables import FAILED, FAILURES, FLAGS, RESPONSES, marks, warni
 if TYPE_CHECKING:
     import xarray as xr
 
-    from impactlab.study.errors import Problem
     from impactlab.study.estimate import Estimate
     from impactlab.study.runs import Status
     from impactlab.verification.finding import Outcome
@@ -93,11 +92,8 @@ def print_solved(path: Path) -> None:
     print(words)
 
 
-def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable[Problem]) -> None:
-    """Print what a study costs, and the limits that it exceeds.
-
-    room: bytes of disk that it may use.
-    """
+def print_estimate(cost: Estimate, workers: int) -> None:
+    """Print what a study costs, and the limits that it exceeds."""
     at = ", ".join(
         f"{name} = {value if isinstance(value, str) else f'{value:.4g}'}"
         for name, value in cost.largest_run.items()
@@ -107,7 +103,8 @@ def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable
         "cost": f"about {time(cost.seconds)} of one core, most of it by {cost.slow}",
         "wall": f"about {time(cost.wall(workers))} on {workers} workers",
         "memory": f"about {decimal(round(cost.memory))}",
-        "disk": f"about {decimal(round(cost.disk))} of the {decimal(round(room))} that it may use",
+        "disk": f"about {decimal(round(cost.disk))} of the "
+        f"{decimal(round(cost.free))} that it may use",
         "largest run": f"about {time(cost.largest)}" + f" ({at})" * bool(at),
     }
     if cost.auto:
@@ -117,7 +114,7 @@ def print_estimate(cost: Estimate, workers: int, room: float, problems: Iterable
     console = Console(soft_wrap=True)
     for name, words in lines.items():
         console.print(f"{name:15s}{words}", markup=False, highlight=False)
-    for problem in problems:
+    for problem in cost.exceeded():
         console.print(f"exceeds the limit: {problem}", markup=False, highlight=False)
 
 

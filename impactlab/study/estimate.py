@@ -55,9 +55,10 @@ _TAIL = 1e-3
 class Estimate:
     """The cost of a study: core-seconds, bytes of memory and of disk.
 
-    runs: all, or the most that a growing sample may reach. largest: seconds of the largest run;
-    largest_run: its varied parameters. slow and large: the keys that drive time and space. auto:
-    True while the discretisation is still to be found, and the default is used instead.
+    runs: all, or the most that a growing sample may reach. free: bytes of disk that it may take.
+    largest: seconds of the largest run; largest_run: its varied parameters. slow and large: the
+    keys that drive time and space. implausible: values that are possible but improbable. auto: True
+    while the discretisation is still to be found, and the default is used instead.
     """
 
     file: str
@@ -65,24 +66,49 @@ class Estimate:
     seconds: float
     memory: float
     disk: float
+    free: float
     largest: float
     largest_run: Mapping[str, Any]
     slow: str
     large: str
+    implausible: tuple[Problem, ...] = ()
     auto: bool = False
 
     def wall(self, workers: int) -> float:
         """Return the seconds on so many cores: at least those of the largest run."""
         return max(self.seconds / workers, self.largest)
 
+    def exceeded(self) -> list[Problem]:
+        """Return one problem per limit that the study exceeds, at the key that drives it.
 
-def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
+        The limits are a month of one core, this machine's memory, and the free disk.
+        """
+        exceeded = []
+        if self.seconds > MOST_TIME:
+            needed = f"needs about {time(self.seconds)} of one core for {self.runs:,} runs"
+            exceeded.append((self.slow, f"{needed}, which exceeds the limit of {time(MOST_TIME)}"))
+        if self.memory > MEMORY_LIMIT:
+            needed, there = f"needs about {amount(self.memory)} of memory", amount(MEMORY_LIMIT)
+            exceeded.append((self.large, f"{needed}, which exceeds the {there} of this machine"))
+        if self.disk > self.free:
+            needed, there = f"needs about {amount(self.disk)} of disk", amount(self.free)
+            exceeded.append((self.large, f"{needed}, which exceeds the {there} available"))
+        return [
+            Problem(self.file, key, f"{reason}; see --dry-run, or run it anyway with --force")
+            for key, reason in exceeded
+        ]
+
+
+def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estimate:
     """Return the cost of a study on so many workers of this machine, within a factor of about 3.
 
-    Of many runs a sample is taken, always the same one; the largest run is sought at the extremes
-    of parameters. Pilot runs of `auto` and the analysis are not included. Raises StudyError where
-    a sampled run is impossible.
+    folder: for its results; what they take already counts as free. Of many runs a sample is taken,
+    always the same one; the largest run is sought at the extremes of parameters. Pilot runs of
+    `auto` and the analysis are not included. Raises StudyError where a sampled run is impossible.
     """
+    there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
+    own = sum(each.st_size for each in file_stats(folder.rglob("*")))
+    file, doubted = str(study.path), []
     until = study.sampling.until if isinstance(study.sampling, Sobol) else None
     runs = max(study.sampling.runs, until.runs if until else 0)
     parameters = len(study.sampling.varied)
@@ -106,8 +132,13 @@ def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
         held = kept if until else max(1, history, profile)
         working = workers * float(model.memory(np.append(cases, end)).max())
         slow, large = _drivers(study, model, end, runs)
+        ends = extremes((study.impact, study.discretisation), study.sampling)
+        doubted = [
+            Problem(file, key_of(each.name, study.sampling), each.reason)
+            for each in implausibilities(ends)
+        ]
     return Estimate(
-        file=str(study.path),
+        file=file,
         runs=runs,
         seconds=max(float(sampled.mean()) * runs, largest),
         memory=_PROGRAM
@@ -115,10 +146,12 @@ def estimate(study: Study | FunctionStudy, workers: int) -> Estimate:
         + runs * _PER_RUN
         + working,
         disk=_ON_DISK * _NUMBER * runs * float(kept),
+        free=float(disk_usage(there).free + own),
         largest=largest,
         largest_run=largest_run,
         slow=slow,
         large=large,
+        implausible=tuple(doubted),
         auto=isinstance(study, Study) and study.auto is not None,
     )
 
@@ -189,40 +222,3 @@ def _largest_run(
         columns = {key: [value] * len(ends) for key, value in found.items()} | {name: ends}
         found[name] = ends[int(np.argmax(model.work(_cases(study, model, columns))))]
     return found
-
-
-def implausible(study: Study | FunctionStudy) -> list[Problem]:
-    """Return the parameters of a study's impacts whose values are possible but implausible."""
-    if isinstance(study, FunctionStudy):
-        return []
-    found = implausibilities(extremes((study.impact, study.discretisation), study.sampling))
-    file = str(study.path)
-    return [Problem(file, key_of(each.name, study.sampling), each.reason) for each in found]
-
-
-def exceeded_limits(cost: Estimate, folder: Path) -> list[Problem]:
-    """Return one problem per limit that a study exceeds, at the key that drives it.
-
-    The limits are a month of one core, this machine's memory, and the free disk at `folder`.
-    """
-    disk, exceeded = free_disk(folder), []
-    if cost.seconds > MOST_TIME:
-        needed = f"needs about {time(cost.seconds)} of one core for {cost.runs:,} runs"
-        exceeded.append((cost.slow, f"{needed}, which exceeds the limit of {time(MOST_TIME)}"))
-    if cost.memory > MEMORY_LIMIT:
-        needed, there = f"needs about {amount(cost.memory)} of memory", amount(MEMORY_LIMIT)
-        exceeded.append((cost.large, f"{needed}, which exceeds the {there} of this machine"))
-    if cost.disk > disk:
-        needed = f"needs about {amount(cost.disk)} of disk"
-        exceeded.append((cost.large, f"{needed}, which exceeds the {amount(disk)} available"))
-    return [
-        Problem(cost.file, key, f"{reason}; see --dry-run, or run it anyway with --force")
-        for key, reason in exceeded
-    ]
-
-
-def free_disk(folder: Path) -> float:
-    """Return the bytes that a study may take: those free on its disk, and its own there."""
-    there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
-    own = sum(each.st_size for each in file_stats(folder.rglob("*")))
-    return float(disk_usage(there).free + own)

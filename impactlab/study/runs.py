@@ -158,25 +158,6 @@ def file_stats(paths: Iterable[Path]) -> Iterator[os.stat_result]:
                 yield found
 
 
-_STUDY = "study"
-"""File beside the folders of shards that names the study file."""
-
-
-def note_study(shards_folder: Path, file: Path) -> None:
-    """Note beside the shards which study file they belong to."""
-    shards_folder.mkdir(parents=True, exist_ok=True)
-    with suppress(OSError):  # a full disk is reported where more of it is needed
-        (shards_folder / _STUDY).write_text(f"{file.resolve()}\n")
-
-
-def noted_study(shards_folder: Path) -> Path | None:
-    """Return the study file that note_study noted, if it still exists."""
-    with suppress(OSError, ValueError):
-        file = Path((shards_folder / _STUDY).read_text().strip())
-        return file if file.is_file() else None
-    return None
-
-
 def removable_files(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, str]:
     """Return the files of a study's folder of shards that may be removed, and the reasons.
 

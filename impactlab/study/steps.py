@@ -7,8 +7,7 @@ what it needs: compiler and analysis take seconds to load.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,39 +21,24 @@ from impactlab.study.schema.study import Auto, FunctionStudy, Study, Verificatio
 
 if TYPE_CHECKING:
     from impactlab.study.engine import Engine
-    from impactlab.study.errors import Problem
     from impactlab.study.estimate import Estimate
     from impactlab.study.runs import Status
     from impactlab.verification.finding import Outcome
 
+_STUDY = "study"
+"""File in a folder of shards that names the study file."""
 AnyStudy = Study | FunctionStudy
 Tell = Callable[[xr.Dataset], None]
 
 
-@dataclass(frozen=True)
-class Price:
-    """The price of a study, and whether it may run.
-
-    cost: time, memory and disk. free: bytes of disk that it may take. exceeded: the limits that it
-    exceeds. implausible: values that are possible but improbable.
-    """
-
-    cost: Estimate
-    free: float
-    exceeded: list[Problem]
-    implausible: list[Problem]
-
-
-def price(study: AnyStudy, folder: Path, workers: int) -> Price:
-    """Return the price of a study whose results go to `folder`, on so many workers.
+def price(study: AnyStudy, folder: Path, workers: int) -> Estimate:
+    """Return the cost of a study whose results go to `folder`, on so many workers.
 
     Raises StudyError where a run that the price rests on is impossible.
     """
-    from impactlab.study.estimate import estimate, exceeded_limits, free_disk, implausible
+    from impactlab.study.estimate import estimate
 
-    study = resolved_before(study, folder) or study
-    cost = estimate(study, workers)
-    return Price(cost, free_disk(folder), exceeded_limits(cost, folder), implausible(study))
+    return estimate(resolved_before(study, folder) or study, folder, workers)
 
 
 def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
@@ -115,12 +99,13 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
     Raises ValueError, OSError and BlockingIOError as execute.open_runs does.
     """
     from impactlab.study.execute import execute, open_runs
-    from impactlab.study.runs import note_study
     from impactlab.study.store import locked
 
     shards = path.with_name(SHARDS)
     if file is not None:
-        note_study(shards, file)
+        shards.mkdir(parents=True, exist_ok=True)
+        with suppress(OSError):  # a full disk is reported where more of it is needed
+            (shards / _STUDY).write_text(f"{file.resolve()}\n")
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse
         from impactlab.study.adaptive.extending import extend_sample
@@ -180,16 +165,18 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
 
 def _stale(file: Path, shards: Path) -> dict[Path, str]:
     """Return the files to remove of one study; file: the study, perhaps gone from there."""
-    from impactlab.study.runs import noted_study, outdated, removable_files
+    from impactlab.study.runs import outdated, removable_files
     from impactlab.study.sampling.design import design, stages
     from impactlab.study.schema.files import read_study
 
-    there = file if file.exists() else noted_study(shards.with_name(SHARDS))
-    if there is None:
+    with suppress(OSError, ValueError):
+        if not file.exists():
+            file = Path((shards.with_name(SHARDS) / _STUDY).read_text().strip())
+    if not file.is_file():
         return removable_files(shards, ())
     if shards.name != SHARDS:
         return outdated(shards)
-    declared = resolved_before(read_study(there), shards.parent)
+    declared = resolved_before(read_study(file), shards.parent)
     return {} if declared is None else removable_files(shards, list(stages(design(declared))))
 
 

@@ -53,13 +53,15 @@ class Sampling(Section):
 
     @property
     def varied(self) -> Mapping[str, Any]:
-        """Entries of the parameters that differ between runs."""
-        return self.parameters
+        """Entries of the parameters that differ between runs: no sampler sees the others."""
+        entries = self.parameters.items()
+        return {name: each for name, each in entries if not isinstance(each, Fixed)}
 
     @property
     def fixed(self) -> dict[str, Value]:
         """Values of the parameters that are listed with a single value."""
-        return {}
+        entries = self.parameters.items()
+        return {name: each.value for name, each in entries if isinstance(each, Fixed)}
 
     @abstractmethod
     def bounds(self) -> dict[str, tuple[Value, ...]]:
@@ -110,18 +112,6 @@ class Sample(Sampling):
             )
         name = name_at("distribution", (*ARGUMENTS, "fixed"), data)
         return distribution_section(name, parameter).model_validate(data, context=info.context)
-
-    @property
-    def varied(self) -> dict[str, Distribution]:
-        """Distributions by parameter, without the fixed ones, which no sampler sees."""
-        entries = self.parameters.items()
-        return {name: each for name, each in entries if isinstance(each, Distribution)}
-
-    @property
-    def fixed(self) -> dict[str, Value]:
-        """Values of the parameters that are listed with a single value."""
-        entries = self.parameters.items()
-        return {name: each.value for name, each in entries if isinstance(each, Fixed)}
 
     @property
     def settings(self) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import partial
+from functools import cache, partial
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
@@ -108,6 +108,7 @@ class Fixed(Section):
     value: Any
 
 
+@cache  # equal studies hold sections of one class
 def distribution_section(name: str, parameter: Parameter) -> type[Distribution | Fixed]:
     """Return the section of a distribution of this name (or "fixed") of a parameter."""
     value = value_type(parameter)

@@ -83,13 +83,12 @@ _DISCRETISATION = _section("discretisation", auto=(Auto | None, None))
 def read_impact(data: Any, info: ValidationInfo) -> Impact:
     """Read an impact: a base with changes, or every value. Raises ValueError naming the keys."""
     section: Any = _IMPACT.model_validate(data, context=info.context)
-    given = _given_values(section, "impact")
-    if section.base is None:
-        own = (name for name, entry in PARAMETERS.items() if entry.path[0] == "impact")
-        given = {name: _DEFAULTS[name] for name in own} | given
-        if missing := [_key(name) for name, value in given.items() if value is MISSING]:
-            raise ValueError(f"without `base: paper` these are required too: {', '.join(missing)}")
-    return _changed((BASES[section.base or "paper"](), Discretisation()), given)[0]
+    own = {} if section.base else _DEFAULTS
+    values = {name: own[name] for name in own if PARAMETERS[name].path[0] == "impact"}
+    values |= _given_values(section, "impact")
+    if missing := [_key(name) for name, value in values.items() if value is MISSING]:
+        raise ValueError(f"without `base: paper` these are required too: {', '.join(missing)}")
+    return _changed((BASES[section.base or "paper"](), Discretisation()), values)[0]
 
 
 def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation, Auto | None]:
@@ -103,8 +102,7 @@ def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation
     given = _given_values(section, "discretisation")
     for name in given.keys() & {"nodes", "points", "courant"} if section.auto else ():
         raise at_key(name, "cannot be given beside auto, which finds it: take out one of the two")
-    _, discretisation = _changed((paper_impact(), Discretisation()), given)
-    return discretisation, section.auto
+    return _changed((paper_impact(), Discretisation()), given)[1], section.auto
 
 
 def _given_values(section: Section, root: str) -> dict[str, Any]:

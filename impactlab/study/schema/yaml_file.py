@@ -9,13 +9,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from ruamel.yaml import YAML
-from ruamel.yaml.composer import Composer
 from ruamel.yaml.constructor import ConstructorError, SafeConstructor
 from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.events import NodeEvent
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from impactlab.study.errors import Problem, StudyError, dotted
@@ -82,7 +83,14 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
     """
     try:
         yaml = YAML(typ="safe", pure=True)
-        yaml.Composer, yaml.Constructor = BoundedComposer, Constructor
+        yaml.Constructor = Constructor
+        nodes = (
+            event
+            for event in YAML(typ="safe", pure=True).parse(text)
+            if isinstance(event, NodeEvent)
+        )
+        if next(islice(nodes, MOST, None), None):
+            raise RefusedError((), f"holds more than {MOST:,} keys and values: shorten it")
         data, root = None, yaml.compose(text)
         if root is not None:
             _measure(root, (), {})  # before anything is built
@@ -124,17 +132,6 @@ class RefusedError(ValueError):
         """Note the place (path) and the reason."""
         super().__init__(reason)
         self.key = dotted(path[:3])
-
-
-class BoundedComposer(Composer):
-    """A composer of the graph of a text that stops when there are too many nodes."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        """Return the next node. Raises RefusedError when there are too many."""
-        self.count = getattr(self, "count", 0) + 1
-        if self.count > MOST:
-            raise RefusedError((), f"holds more than {MOST:,} keys and values: shorten it")
-        return super().compose_node(parent, index)
 
 
 class Constructor(SafeConstructor):

@@ -16,13 +16,12 @@ from impactlab.study.estimate import (
     MOST_TIME,
     Estimate,
     estimate,
-    exceeded_limits,
-    free_disk,
 )
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.solvers import solver_named
 
+NOWHERE = Path("no") / "results"
 GRID = """
 title: A grid
 impact: {base: paper}
@@ -55,7 +54,7 @@ def grid(parameters, nodes=201, duration="1 ms", store=""):
 def test_a_small_grid_costs_the_sum_of_its_runs():
     study = grid(NODES)
     cases = solver_named("impact").cases(design(study), np.arange(6))
-    found = estimate(study, workers=2)
+    found = estimate(study, NOWHERE, 2)
     assert found.runs == 6
     assert found.seconds == pytest.approx(work(cases).sum() / A_SECOND, rel=0.2)
     assert found.largest == pytest.approx(work(cases).max() / A_SECOND)
@@ -66,21 +65,21 @@ def test_a_small_grid_costs_the_sum_of_its_runs():
 
 def test_a_cost_sample_represents_all_runs(monkeypatch):
     study = grid({"nodes": range(11, 211, 2), "beam_depth": np.linspace(0.02, 0.03, 50).tolist()})
-    sampled = estimate(study, 1)
+    sampled = estimate(study, NOWHERE, 1)
     monkeypatch.setattr("impactlab.study.estimate._MOST", 10_000)
-    whole = estimate(study, 1)
+    whole = estimate(study, NOWHERE, 1)
     assert sampled.runs == whole.runs == 5000
     assert sampled.seconds == pytest.approx(whole.seconds, rel=0.1)
     assert sampled.largest == whole.largest
-    assert estimate(study, 1) == whole
+    assert replace(estimate(study, NOWHERE, 1), free=whole.free) == whole
 
 
 def test_a_growing_sample_costs_its_largest_size():
     study = study_of_text("some", SAMPLE)
-    found = estimate(study, 1)
+    found = estimate(study, NOWHERE, 1)
     assert found.runs == 20_000
     fewer = replace(study, sampling=study.sampling.model_copy(update={"until": None}))
-    less = estimate(fewer, 1)
+    less = estimate(fewer, NOWHERE, 1)
     assert less.runs == 1024 * 6
     assert found.seconds == pytest.approx(less.seconds * 20_000 / 6144, rel=0.1)
 
@@ -88,7 +87,7 @@ def test_a_growing_sample_costs_its_largest_size():
 def test_memory_and_disk_are_those_of_the_answers():
     study = grid(NODES, store="store: {histories: true, samples: 50000}")
     cases = solver_named("impact").cases(design(study), np.arange(6))
-    found = estimate(study, workers=2)
+    found = estimate(study, NOWHERE, 2)
     answers = 8 * 6 * 50_000 * 5  # five histories, eight bytes per number
     assert found.disk / 2 == pytest.approx(answers, rel=0.01)
     of_the_kernels = 2 * memory(cases).max()
@@ -110,38 +109,37 @@ def test_memory_and_disk_are_those_of_the_answers():
         ),
     ],
 )
-def test_more_than_a_month_is_reported_at_the_key_that_drives_it(study, key, tmp_path):
-    found = estimate(study, 1)
+def test_more_than_a_month_is_reported_at_the_key_that_drives_it(study, key):
+    found = estimate(study, NOWHERE, 1)
     assert found.seconds > MOST_TIME
-    problem = exceeded_limits(found, tmp_path)[0]
+    problem = found.exceeded()[0]
     assert problem.key == key
     assert "exceeds the limit of 30 days" in str(problem)
 
 
-def test_more_memory_or_disk_than_available_is_reported(tmp_path):
-    frugal = Estimate("a.yaml", 1, 1.0, 1e6, 1e6, 1.0, {}, "nodes", "store.samples")
-    assert exceeded_limits(frugal, tmp_path / "not" / "made") == []
-    (greedy,) = exceeded_limits(replace(frugal, memory=1e18), tmp_path)
+def test_more_memory_or_disk_than_available_is_reported():
+    frugal = Estimate("a.yaml", 1, 1.0, 1e6, 1e6, 1e9, 1.0, {}, "nodes", "store.samples")
+    assert frugal.exceeded() == []
+    (greedy,) = replace(frugal, memory=1e18).exceeded()
     assert greedy.key == "store.samples"
     assert "of memory" in greedy.reason
-    (greedy,) = exceeded_limits(replace(frugal, disk=1e18), Path("relative/folder"))
-    assert "1,000 PB of disk" in greedy.reason
+    (greedy,) = replace(frugal, disk=1e18).exceeded()
+    assert "1,000 PB of disk, which exceeds the 1 GB available" in greedy.reason
 
 
 def test_shards_already_on_disk_count_as_available(tmp_path, monkeypatch):
     monkeypatch.setattr("impactlab.study.estimate.disk_usage", lambda path: Namespace(free=1000))
     (tmp_path / "shards").mkdir()
     (tmp_path / "shards" / "some.nc").write_bytes(bytes(500))
-    assert free_disk(tmp_path) == 1500
-    resumed = Estimate("a.yaml", 1, 1.0, 1e6, 1400, 1.0, {}, "nodes", "store.samples")
-    assert exceeded_limits(resumed, tmp_path) == []
-    assert exceeded_limits(resumed, tmp_path / "fresh")
+    study = grid(NODES)
+    assert estimate(study, tmp_path, 1).free == 1500
+    assert estimate(study, tmp_path / "fresh" / "folder", 1).free == 1000
 
 
 def test_a_function_costs_next_to_nothing():
     ranges = ", ".join(f"x{at}: {{distribution: uniform, low: 0, high: 1}}" for at in (1, 2, 3))
     sampling = f"{{method: delta, samples: 1000000, parameters: {{{ranges}}}}}"
     text = f"title: F\nfunction: ishigami\nsampling: {sampling}"
-    found = estimate(study_of_text("some", text), 2)
+    found = estimate(study_of_text("some", text), NOWHERE, 2)
     assert found.seconds < 10
     assert found.disk < 1e9

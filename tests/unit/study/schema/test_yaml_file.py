@@ -14,7 +14,7 @@ NO_STUDY = {
     "python object": ("a: !!python/object/apply:os.system [ls]\n", "has the tag !!python/object"),
     "two documents": ("a: 1\n---\nb: 2\n", "is not YAML"),
     "endless number": ("a: 1" + "0" * 5000, "a: is a number of 5,001 characters"),
-    "deep": ("[" * 500, "nests too deeply"),
+    "deep": ("a: " + "[" * 500 + "]" * 500, "nests too deeply"),
     "in itself": ("a: &a [*a]\n", "nests too deeply"),
     "binary": (b"\xff\xfe\x00", "not text in UTF-8"),
     "large": ("title: " + "x" * 300_000, "larger than 256 KiB"),
