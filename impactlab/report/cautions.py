@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
@@ -12,36 +11,15 @@ import xarray as xr
 
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
-from impactlab.report.indices import numerical_warnings
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
 from impactlab.variables import MARKS, WARNINGS
 
-_UNCONVERGED = "Somewhere in the grid, these responses have not converged in {}"
-_JUDGED = {
-    "nodes_summary": _UNCONVERGED.format("nodes"),
-    "time_step_summary": _UNCONVERGED.format("the time step"),
-    "element_size_summary": _UNCONVERGED.format("the element size"),
-    "points_summary": _UNCONVERGED.format("integration points"),
-    "sensitivity_verdict": (
-        "The sensitivity indices of these responses are not usable as they stand"
-    ),
-}
 _ENERGY_LIMIT = 1e-3
 """Largest energy imbalance, relative to the initial kinetic energy, of a run without suspicion."""
 
 
-def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    """Return sentences, the gravest first; none when there is nothing to warn of."""
-    return [
-        *_failures(runs, analysis),
-        *_verdicts(runs, analysis),
-        *_reliance(runs, analysis),
-        *_values(runs),
-    ]
-
-
-def _failures(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """Yield sentences on an analysis of other runs, failed runs, and laws beyond their range."""
+def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+    """Yield what holds for a study as a whole; what one response is about stands beside it."""
     solved = runs.attrs.get("created")
     if analysis.attrs.get("created", solved) != solved:
         yield (
@@ -49,75 +27,44 @@ def _failures(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
             "another time. The verdicts and indices below may be wrong; repeat the analysis "
             "(impactlab analyse)."
         )
-    if failed := int(access.failed(runs).sum()):
+    if ending := endings(runs):
         yield (
-            f"{failed} of {count(runs)} runs failed: each lacks at least one response and is left "
-            "out of the figures and tables of that response. The failed runs are listed below with "
-            "the reason."
+            f"Of {count(runs)} runs, {ending}. They are left out of the figures and tables of what "
+            "they lack; they are listed below with the reason."
         )
-    if "status" not in runs or "contact" not in runs.coords:
-        return
-    beyond = (runs["status"] & MARKS["outside_contact_law"][0]) != 0
-    for law in np.unique(runs["contact"].values).tolist():
-        if number := int((beyond & (runs["contact"] == law)).sum()):
-            yield (
-                f"{number} of {count(runs)} runs went beyond the range of the contact law "
-                f"“{law}”, which holds for {CONTACT_LAWS[law].holds}. Their responses are kept, "
-                "but they are extrapolated."
-            )
-
-
-def _verdicts(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """Yield one sentence per kind of verdict and flag, with the responses that it is about."""
-    for variable, text in _JUDGED.items():
-        flags: dict[str, list[str]] = defaultdict(list)
-        for name in responses(runs):
-            verdict = access.verdict(analysis, variable, name)
-            if verdict and not verdict.sound:
-                meaning = f": {verdict.meaning}" if verdict.meaning else ""
-                flags[f"{verdict.words}{meaning}"].append(labels.response(name))
-        for flag, names in flags.items():
-            yield f"{text}: {labels.listing(names)} ({flag})."
-
-
-def _reliance(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
-    """Yield sentences on numbers that rest on a surrogate or on the discretisation."""
-    if "imputed_share" in analysis and bool((analysis["imputed_share"] > 0).any()):
-        worst = labels.percent(float(analysis["imputed_share"].max()))
-        yield (
-            "A surrogate fitted to the successful runs supplied the values of failed runs, up to "
-            f"{worst} of the runs per response; the indices of these responses depend on it."
-        )
-    if number := len(numerical_warnings(runs, analysis)):
-        yield (
-            "Some indices are smaller than the change that the numerical error could cause; see "
-            f"“Numerical uncertainty” ({labels.counted(number, 'warning')})."
-        )
-    strain = "peak_plastic_strain"
-    if strain not in runs or access.verdict(analysis, "nodes_summary", strain):
-        return
-    if bool((usable(runs, strain) > 0).any()):  # hardening does not make it converge
-        yield (
-            "The peak plastic strain depends on the number of nodes, which this study does not "
-            "vary: compare it between runs, but do not treat it as a converged value."
-        )
-
-
-def _values(runs: xr.Dataset) -> Iterator[str]:
-    """Yield sentences on numbers that physics or numerics should not give, and on remarks."""
-    if "energy_error" in runs:
-        error = usable(runs, "energy_error")
-        if number := int((error > _ENERGY_LIMIT).sum()):
-            worst = labels.number(float(np.nanmax(error.values)), digits=2)
-            yield (
-                f"The energy balance is off by more than {labels.number(_ENERGY_LIMIT)} of the "
-                f"initial kinetic energy in {number} of {count(runs)} runs (largest: {worst})."
-            )
-    if "restitution" in runs and (number := int((usable(runs, "restitution") > 1).sum())):
-        yield f"The coefficient of restitution is above 1 in {number} of {count(runs)} runs."
+    if "status" in runs and "contact" in runs.coords:
+        beyond = (runs["status"] & MARKS["outside_contact_law"][0]) != 0
+        for law in np.unique(runs["contact"].values).tolist():
+            if number := int((beyond & (runs["contact"] == law)).sum()):
+                yield (
+                    f"{number} of {count(runs)} runs went beyond the range of the contact law "
+                    f"“{law}”, which holds for {CONTACT_LAWS[law].holds}. Their responses are "
+                    "kept, but they are extrapolated."
+                )
     for bit, text in WARNINGS.values() if "remarks" in runs else ():
         if number := int(((runs["remarks"] & bit) != 0).sum()):
             yield f"In {number} of {count(runs)} runs {text}."
+
+
+def endings(runs: xr.Dataset) -> str:
+    """Return how many runs failed, and how many merely lack a response; "" where none does."""
+    gaps = [access.absent(usable(runs, name)) for name in responses(runs)]
+    empty = xr.concat(gaps, "gap").all("gap") if gaps else access.failed(runs)
+    failed, lacking = int(empty.sum()), int((access.failed(runs) & ~empty).sum())
+    told = [f"{failed} failed"] * bool(failed) + [f"{lacking} without an answer"] * bool(lacking)
+    return ", ".join(told)
+
+
+def beside(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
+    """Return what makes the values of one response doubtful; "" where nothing does."""
+    values, verdict = usable(runs, name), access.verdict(analysis, "nodes_summary", name)
+    if name == "energy_error" and (number := int((values > _ENERGY_LIMIT).sum())):
+        return f"above {labels.number(_ENERGY_LIMIT)} in {labels.counted(number, 'run')}"
+    if name == "restitution" and (number := int((values > 1).sum())):
+        return f"above 1 in {labels.counted(number, 'run')}"
+    if name == "peak_plastic_strain" and not verdict and bool((values > 0).any()):
+        return "depends on the number of nodes, which this study does not vary"  # nor converges
+    return ""
 
 
 def notes(runs: xr.Dataset) -> list[str]:

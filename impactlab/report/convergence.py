@@ -1,16 +1,21 @@
-"""Tables of the convergence studies, with one row per response."""
+"""What a convergence study found: the grid each response needs, and tables per axis."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels
+from impactlab.figures.access import usable
 from impactlab.figures.measures import analysed
+from impactlab.model.parameters import ELEMENTS
 from impactlab.report.page import Cell, Row, Section, Table, largest
 
 _ORDERS = (
@@ -19,6 +24,11 @@ _ORDERS = (
     "credible order. The fit is that of Eça and Hoekstra over four grids or more. The numerical "
     "uncertainty of the finest value is based on both, and on the larger where there is an order; "
     "all are relative to that value. Ranges and largest values are taken over the rest of the grid."
+)
+_WITHIN = (
+    "The error is the difference to the finest grid plus the uncertainty of that grid, the largest "
+    "over the rest of the study; it stays within the tolerance on every finer grid as well. The "
+    "verdicts are those of the finest grid."
 )
 _RULES = (
     "Each rule is compared with its own largest number of points. The numerical uncertainty is "
@@ -34,9 +44,114 @@ _AXES = {
 """Caption and explanation of each axis, in the order space, time, depth."""
 
 
+ORDERED = {"nodes": "nodes", "courant": "time_step"} | dict.fromkeys(ELEMENTS, "element_size")
+"""Refined axes: the prefix of their variables in the analysis."""
+REFINED = ORDERED | {"points": "points"}
+_COSTS = {"nodes": 3, "points": 1, "courant": -1, ELEMENTS[0]: -4, ELEMENTS[1]: 4}
+"""Power of each refined axis in the cost of a run; below zero, less is finer."""
+_KINDS = ("rule", "scheme")
+"""Discretisations side by side: an answer names the one that needs least."""
+
+
+class Needs(NamedTuple):
+    """The coarsest grid that keeps each response within tolerance.
+
+    A value counts as within where its difference to the finest grid and the uncertainty of that
+    grid add up to no more, here and on all finer grids, at each point of the rest of the grid.
+    runs: finest first, of the rule and scheme that need least. axes: that were judged. grids: by
+    response that has one, its positions on the axes. errors: by response, on (*axes), relative.
+    """
+
+    runs: xr.Dataset
+    axes: list[str]
+    grids: dict[str, tuple[int, ...]]
+    errors: dict[str, xr.DataArray]
+
+    def words(self, need: tuple[int, ...]) -> str:
+        """Return a grid in words: "201 nodes and 7 points, Gauss-Lobatto"."""
+        coordinates = [self.runs[dim] for dim in self.axes]
+        text = labels.listing(list(map(_setting, coordinates, need)))
+        kinds = [self.runs[dim] for dim in _KINDS if dim in self.runs.dims]
+        return ", ".join([text, *(labels.values(kind, [0])[0] for kind in kinds)])
+
+    def doubts(self, analysis: xr.Dataset, name: str) -> list[str]:
+        """Return the verdicts on a response at the finest grid that are warnings."""
+        said: list[str] = []
+        for dim in self.axes:
+            verdict = at_finest(analysis.sel(response=name), self.runs, REFINED[dim])
+            if verdict and not verdict.sound and verdict.words not in said:
+                said.append(verdict.words)
+        return said
+
+
+def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
+    """Return the grids that a study needs, None where no axis was judged."""
+    axes = []
+    for dim, axis in REFINED.items():
+        if dim in runs.dims:
+            runs = runs.sortby(dim, ascending=_COSTS[dim] < 0)  # the finest first
+            if f"{axis}_uncertainty" in analysis:
+                axes.append(dim)
+            else:
+                runs = runs.isel({dim: 0})
+    kinds = [dim for dim in _KINDS if dim in runs.dims]
+    tried = []
+    for kind in product(*(runs[dim].values.tolist() for dim in kinds)) if axes else ():
+        here = runs.sel({dim: [value] for dim, value in zip(kinds, kind, strict=True)})
+        tried.append(_least(here, analysis, axes))
+    return max(tried, key=lambda one: len(one.grids), default=None)  # the first of equals
+
+
+def _least(runs: xr.Dataset, analysis: xr.Dataset, axes: list[str]) -> Needs:
+    cost = xr.ones_like(runs[axes[0]], float)
+    for dim in axes:
+        cost = cost * runs[dim].astype(float) ** _COSTS[dim]
+    grids, errors = {}, {}
+    for name in analysed(runs, analysis):
+        values = usable(runs, name)
+        limit = values.isel(dict.fromkeys(axes, 0))
+        error = abs(values - limit) / abs(limit)
+        for dim in axes:
+            bound = analysis[f"{REFINED[dim]}_uncertainty"].sel(response=name)
+            error = error + finest(bound, runs)
+        same = (values == limit).all(axes)  # as is a plastic strain that is zero everywhere
+        error = error.fillna(np.inf).where(~same, 0.0)
+        error = error.max([dim for dim in error.dims if dim not in axes])
+        within = (error <= TOLERANCE).astype(int)
+        for dim in axes:
+            within = within.cumprod(dim)
+        errors[name] = error.transpose(*axes)
+        if within.any():
+            best = cost.where(within == 1).transpose(*axes).argmin(...)
+            grids[name] = tuple(int(best[dim]) for dim in axes)
+    return Needs(runs, axes, grids, errors)
+
+
+def finest(array: xr.DataArray, runs: xr.Dataset) -> xr.DataArray:
+    """Return a variable of the analysis at the finest grid of the runs, and of their kind."""
+    at = [dim for dim in (*REFINED, *_KINDS) if dim in array.dims]
+    return array.sel({dim: runs[dim].values.flat[0] for dim in at}, drop=True)
+
+
+def at_finest(analysis: xr.Dataset, runs: xr.Dataset, axis: str) -> access.Verdict | None:
+    """Return the worst verdict on one response at the finest grid, and over the physics."""
+    key = f"{axis}_verdict" if f"{axis}_verdict" in analysis else f"{axis}_summary"
+    return access.occurring(finest(analysis[key], runs))[-1] if key in analysis else None
+
+
+def _setting(coordinate: xr.DataArray, at: int) -> str:
+    """Return one value of a refined axis: "201 nodes", "courant 0.2"."""
+    if coordinate.name in ("nodes", "points"):
+        return labels.value(coordinate, at)
+    name = str(coordinate.name).replace("_", " ")
+    return f"{name} {labels.values(coordinate, [at])[0]}{labels.unit(coordinate)}"
+
+
 def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the section on the axes that the analysis has, or none."""
-    tables = []
+    needs, tables = needed(runs, analysis), []
+    if needs:
+        tables.append(_needs(analysis, needs))
     for axis, (caption, explanation) in _AXES.items():
         if f"{axis}_summary" not in analysis:
             continue
@@ -44,7 +159,7 @@ def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         rows: list[Row] = []
         for name in analysed(runs, analysis):
             found = analysis.sel(response=name)
-            verdict = access.verdict(analysis, f"{axis}_summary", name)
+            verdict = at_finest(found, needs.runs if needs else runs, axis)
             kind = "" if verdict and verdict.sound else "warning"
             rows.append(
                 [
@@ -54,7 +169,7 @@ def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
                     *(cell(found) for cell in columns.values()),
                 ]
             )
-        head = ["Response", "Worst verdict", "Verdicts over the grid", *columns]
+        head = ["Response", "Verdict on the finest grid", "Verdicts over the grid", *columns]
         remarks = [explanation, *_remarks(analysis, axis)]
         meanings: dict[str, str] = {}
         for kind in ("behaviour", "summary", "verdict"):
@@ -63,6 +178,22 @@ def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
                 meanings |= {flag.words: flag.meaning for flag in flags if flag.meaning}
         tables.append(Table(caption, head, rows, remarks, sorted(meanings.items())))
     return [Section("convergence", "Convergence", tables=tables)] if tables else []
+
+
+def _needs(analysis: xr.Dataset, needs: Needs) -> Table:
+    """Return one row per response: the grid from which it is within tolerance."""
+    rows: list[Row] = []
+    for name, errors in needs.errors.items():
+        need, best = needs.grids.get(name), float(errors.min())
+        grid: list[Cell | str] = [Cell("none of this study", "warning"), "–"]
+        if need:
+            grid = [needs.words(need), Cell(labels.percent(float(errors[need])), "number")]
+        least = Cell(labels.percent(best) if best < 1 else "no bound", "number")
+        doubts = ", ".join(needs.doubts(analysis, name)) or "–"
+        rows.append([labels.sentence(labels.response(name)), *grid, least, doubts])
+    share = labels.percent(TOLERANCE)
+    head = ["Response", f"Within {share} from", "Error there", "Least error", "Doubts"]
+    return Table(f"Grid that keeps each response within {share}", head, rows, [_WITHIN])
 
 
 def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:

@@ -7,7 +7,7 @@ import csv
 import json
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -39,6 +39,19 @@ _PROVENANCE = {
     "resamples": "Bootstrap resamples",
     "failed_runs": "Policy for failed runs",
 }
+_LEADING = (
+    "sobol_indices",
+    "morris_plane",
+    "delta_indices",
+    "pawn_indices",
+    "regression_indices",
+    "nodes_convergence",
+    "time_step_convergence",
+    "element_size_convergence",
+    "points_convergence",
+    "parameter_effects",
+)
+"""Figures that answer a question, the first of a study before its others."""
 _SCREEN = 1.3
 """Figures are 8 pt at the width of a paper; on a screen that is small."""
 _MOST = 80
@@ -85,7 +98,8 @@ class Section:
 
     name: the anchor. lead: a paragraph. sentences: a list. tables: shown in full. files: names of
     files beside the page. figures: names of figures (those that were not drawn are left out).
-    folded: tables that the reader opens. grave: it stands out as a warning.
+    folded: tables that the reader opens. grave: it stands out as a warning. closed: the reader
+    opens the whole of it.
     """
 
     name: str
@@ -97,6 +111,7 @@ class Section:
     folded: list[Table] = field(default_factory=list)
     files: list[str] = field(default_factory=list)
     grave: bool = False
+    closed: bool = False
 
 
 @dataclass(frozen=True)
@@ -167,13 +182,13 @@ def largest(found: xr.Dataset, variable: str, text: Any = labels.percent) -> Cel
 
 
 def pictures(folder: Path, placed: Sequence[str] = ()) -> dict[str, Picture]:
-    """Return the figures that captions.json lists by name, numbered in its order.
+    """Return the figures that captions.json lists by name, numbered in the order of the page.
 
-    placed: names in the order of the page; these come first. Raises FileNotFoundError, saying what
-    to do, when captions.json or a figure is not in the folder.
+    The first belongs to the answer (`leading`); placed: names that come next, in order. Raises
+    FileNotFoundError, saying what to do, when captions.json or a figure is not in the folder.
     """
     entries = json.loads(_read(folder / CAPTIONS))
-    order = {name: at for at, name in enumerate(placed)}
+    order = {name: at for at, name in enumerate(placed)} | {leading(entries): -1}
     names = sorted(entries, key=lambda name: order.get(name, len(order)))
     found = {}
     for number, name in enumerate(names, 1):
@@ -191,6 +206,12 @@ def pictures(folder: Path, placed: Sequence[str] = ()) -> dict[str, Picture]:
             drawn_data(numbers) if numbers.exists() else None,
         )
     return found
+
+
+def leading(names: Iterable[str]) -> str:
+    """Return the name of the figure that answers a study's question; "" without any."""
+    listed = list(names)
+    return next((name for name in _LEADING if name in listed), listed[0] if listed else "")
 
 
 def _read(path: Path) -> bytes:

@@ -11,10 +11,11 @@ from urllib.parse import quote
 
 import xarray as xr
 
-from impactlab.figures import access, labels
+from impactlab.figures import labels
 from impactlab.figures.access import count
 from impactlab.figures.draw import CAPTIONS, draw_all, draw_findings
-from impactlab.report.page import described, write_page
+from impactlab.report.cautions import endings
+from impactlab.report.page import described, leading, write_page
 from impactlab.report.study import write_report
 from impactlab.report.verification import tally, write_verification
 from impactlab.study.netcdf import read_netcdf
@@ -38,8 +39,7 @@ class Kind:
 
 def _runs(runs: xr.Dataset) -> tuple[str, str]:
     method = labels.method(str(runs.attrs.get("method", "grid")))
-    failed = int(access.failed(runs).sum())
-    return f"{count(runs)} runs ({method})", f"{failed} failed" if failed else ""
+    return f"{labels.counted(count(runs), 'run')} ({method})", endings(runs)
 
 
 def _findings(findings: xr.Dataset) -> tuple[str, str]:
@@ -97,9 +97,10 @@ def write_index(results: Path, path: Path) -> None:
 
 
 def _thumbnail(figures: Path) -> tuple[Path | None, str]:
-    """Return the study's first figure, and its title."""
+    """Return the figure that answers the study's question, and its title."""
     if (figures / CAPTIONS).exists():
-        for name, entry in json.loads((figures / CAPTIONS).read_bytes()).items():
-            if (figures / f"{name}.svg").exists():
-                return figures / f"{name}.svg", str(entry["title"])
+        entries = json.loads((figures / CAPTIONS).read_bytes())
+        name = leading(entries)
+        if (figures / f"{name}.svg").exists():
+            return figures / f"{name}.svg", str(entries[name]["title"])
     return None, ""

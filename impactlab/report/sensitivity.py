@@ -1,19 +1,13 @@
 """Sections on sensitivity, in the order of sensobol (Puy et al. 2022, J. Stat. Softw. 102).
 
-The sentences claim no more than is known. A sentence names a parameter where its whole interval
-lies above zero (and above the dummy's, where the method has one) and its index exceeds the
-numerical error; it says where only the latter fails. One parameter ranks before another only where
-their intervals, with the numerical error, do not overlap.
+One parameter ranks before another only where their intervals, with the numerical error, do not
+overlap.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
-
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from impactlab.figures import access, labels, measures
 from impactlab.figures.measures import (
@@ -29,19 +23,13 @@ from impactlab.figures.measures import (
     analysed,
 )
 from impactlab.report import indices
-from impactlab.report.indices import in_units, named, with_margin
+from impactlab.report.indices import in_units, named
 from impactlab.report.page import Cell, Row, Section, Table
 
 _COARSE = 0.02
 """Smallest half-width of shares given in whole per cent."""
 _SMALL = 0.1
 """Smallest share given in whole per cent."""
-_WORTH = 0.02
-"""Smallest share of the variance of interactions that are worth a sentence."""
-_NAMED = 3
-"""Largest number of parameters in a sentence."""
-_POOR_FIT = 0.7
-"""Share of the variance below which a linear fit says little (Saltelli et al. 2008, chapter 1)."""
 _GOOD = 0.9
 """Smallest predictivity of a surrogate that may replace the runs."""
 _FIGURES = {
@@ -56,29 +44,27 @@ _FIGURES = {
 def sections(runs: xr.Dataset, analysis: xr.Dataset, file: str = "") -> list[Section]:
     """Return the sections that the analysis has data for.
 
-    They are: indices, second order, convergence, ranking, other methods, surrogate. file: name of
+    They are: ranking, indices, second order, convergence, other methods, surrogate. file: name of
     the file of all indices beside the page, "" for none.
     """
     if not analysed(runs, analysis):
         return []
     families = [family for family in RANKED if family.given(analysis)]
-    found = _of_sobol(runs, analysis)
+    found = []
     for family in families[:1]:
         lead = (
-            "The sentences name significant parameters only, with the half-width of the "
-            f"{access.confidence(analysis)} interval. A rank is a range where intervals overlap; "
-            "they are widened by the numerical error where it is known."
+            "A rank is a range where intervals overlap; they are widened by the numerical error "
+            "where it is known."
         )
-        said, ranked = sentences(runs, analysis, family), [_ranks(runs, analysis, family)]
-        files = [file] if file else []
-        found.append(Section("ranking", "Ranking", lead, said, ranked, files=files))
+        ranked = [_ranks(runs, analysis, family)]
+        found.append(Section("ranking", "Ranking", lead, tables=ranked, files=[file] * bool(file)))
+    found += _of_sobol(runs, analysis)
     for family in families:
         if family is not SOBOL:
             name, figure = _FIGURES[family.title]
-            said = [] if family is families[0] else sentences(runs, analysis, family)
             folded = indices.tables(runs, analysis, family)
             found.append(
-                Section(name, family.title, family.meaning, said, figures=[figure], folded=folded)
+                Section(name, family.title, family.meaning, figures=[figure], folded=folded)
             )
     return found + ([surrogate(runs, analysis)] if "surrogate_q2" in analysis else [])
 
@@ -187,128 +173,11 @@ def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
         explained += "; numerical: not distinguishable from its numerical error"
     caption = f"Ranks of the parameters by {family.title}, {measure.words} ({explained})"
     names = [labels.sentence(labels.parameter(name)) for name in measures.parameters(analysis)]
-    return Table(caption, ["Response", *names], rows)
-
-
-def sentences(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[str]:
-    """Return one or two sentences per response, on significant indices alone."""
-    said = []
-    for name in analysed(runs, analysis):
-        verdict = access.verdict(analysis, "sensitivity_verdict", name)
-        why = f": {verdict.meaning or verdict.words}" if verdict else ""
-        index = measures.index(analysis, measures.ranking(family).name, name)
-        text = f"The indices of the {labels.response(name)} are undefined{why}."
-        if np.isfinite(index.values).any():
-            text = " ".join(_WRITERS[family.title](runs, analysis, name, index))
-            if verdict and not verdict.sound:
-                text += f" Use these indices with caution{why}."
-        said.append(text)
-    return said
-
-
-def _sobol(runs: xr.Dataset, analysis: xr.Dataset, name: str, total: Index) -> Iterator[str]:
-    """Yield the shares of single parameters, then interactions beyond all errors."""
-    response, index = labels.response(name), measures.index(analysis, "first_order", name)
-    found = _strongest(analysis, index, index.significant)[:_NAMED]
-    lost = _strongest(analysis, index, index.numerically_lost)[:_NAMED]
-    if found:
-        (first, at), *rest = found
-        head = f"{_the(first)} alone explains {share(index, at)} of the variance of the {response}"
-        others = [f"{_the(key)} {share(index, at)}" for key, at in rest]
-        yield f"Over these ranges, {labels.listing([head, *others])}."
-    if lost:
-        listed = "; ".join(f"{key}, {share(index, at)}" for key, at in lost)
-        yield (
-            f"The numerical error leaves open which share of the variance of the {response} these "
-            f"parameters explain alone: {listed}."
-        )
-    if not found and not lost:
-        yield f"No parameter alone explains a significant share of the variance of the {response}."
-    surplus = total.values - index.values
-    reach = index.margins + total.margins + index.numerical + total.numerical
-    beyond = total.significant & (surplus > np.maximum(reach, _WORTH))
-    if beyond.any():
-        at = int(np.argmax(np.where(beyond, surplus, -np.inf)))
-        parameter = labels.parameter(measures.parameters(analysis)[at])
-        yield f"With all its interactions, {_the(parameter)} contributes to {share(total, at)}."
-
-
-def _morris(runs: xr.Dataset, analysis: xr.Dataset, name: str, index: Index) -> Iterator[str]:
-    """Yield how far the response moves, and whose effects are uneven."""
-    found = _strongest(analysis, index, index.significant)
-    if not found:
-        yield f"No parameter changes the {labels.response(name)} significantly."
-        return
-    moved: list[str] = []
-    for key, at in found[:_NAMED]:
-        verb = "" if moved else f" changes the {labels.response(name)}"
-        effect = in_units(runs[name], index.values[at], index.margins[at])
-        moved.append(f"{_the(key)}{verb} by {effect}")
-    yield f"Over its whole range, {labels.listing(moved)} on average."
-    spread = analysis["morris_sigma"].sel(response=name).values
-    if uneven := [_the(key) for key, at in found if spread[at] > index.values[at]]:
-        yield (
-            f"The effect of {labels.listing(uneven)} varies with the others or along its range "
-            "by more than its mean (σ above µ*)."
-        )
-
-
-def _dependence(
-    runs: xr.Dataset, analysis: xr.Dataset, name: str, index: Index, *, label: str
-) -> Iterator[str]:
-    """Yield the parameters with the largest indices that only measure dependence."""
-    listed = [
-        f"{_the(key)} ({label} {with_margin(index.values[at], index.margins[at])})"
-        for key, at in _strongest(analysis, index, index.significant)[:_NAMED]
-    ]
-    if not listed:
-        yield f"No dependence of the {labels.response(name)} exceeds the noise."
-    elif (1, 1) in index.ranks:
-        then = f", then on {labels.listing(listed[1:])}" * (len(listed) > 1)
-        yield f"The {labels.response(name)} depends most on {listed[0]}{then}."
-    else:
-        yield f"The {labels.response(name)} depends on {labels.listing(listed)}."
-
-
-def _regression(runs: xr.Dataset, analysis: xr.Dataset, name: str, index: Index) -> Iterator[str]:
-    """Yield the parameters that the response rises or falls with, and how well a line fits."""
-    response = labels.response(name)
-    listed = []
-    for key, at in _strongest(analysis, index, index.significant)[:_NAMED]:
-        value, margin = index.values[at], index.margins[at]
-        moves = "rises" if value > 0 else "falls"
-        listed.append(f"{moves} with {_the(key)} ({with_margin(value, margin)})")
-    if listed:
-        yield f"The {response} {labels.listing(listed)}."
-    else:
-        yield f"The {response} neither rises nor falls significantly with any parameter."
-    if "regression_r_squared" in analysis:
-        share = float(analysis["regression_r_squared"].sel(response=name))
-        little = ", so the coefficients do not show what it depends on" * (share < _POOR_FIT)
-        yield f"The linear fit explains {100 * share:.0f} % of its variance{little}."
-
-
-_WRITERS: dict[str, Callable[[xr.Dataset, xr.Dataset, str, Index], Iterator[str]]] = {
-    SOBOL.title: _sobol,
-    MORRIS.title: _morris,
-    DELTA.title: partial(_dependence, label="delta"),
-    PAWN.title: partial(_dependence, label="median distance"),
-    REGRESSION.title: _regression,
-}
-
-
-def _the(parameter: str) -> str:
-    """Return a parameter with its article; a symbol such as x1 has none."""
-    return parameter if parameter[-1].isdigit() else f"the {parameter}"
-
-
-def _strongest(
-    analysis: xr.Dataset, index: Index, where: NDArray[np.bool_]
-) -> list[tuple[str, int]]:
-    """Return parameters in words and their places where a mask holds, by falling magnitude."""
-    keys = [labels.parameter(key) for key in measures.parameters(analysis)]
-    order = np.argsort(-np.abs(index.values), kind="stable").tolist()
-    return [(keys[at], at) for at in order if where[at]]
+    flags: list[access.Verdict] = []
+    if "sensitivity_verdict" in analysis:
+        flags = access.occurring(analysis["sensitivity_verdict"])
+    meanings = [(flag.words, flag.meaning) for flag in flags if flag.meaning]
+    return Table(caption, ["Response", *names], rows, meanings=meanings)
 
 
 def share(index: Index, at: int) -> str:

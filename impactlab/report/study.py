@@ -26,10 +26,19 @@ from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatters
 from impactlab.model.parameters import PARAMETERS
 from impactlab.report import sensitivity
-from impactlab.report.cautions import cautions, notes
+from impactlab.report.answer import entries
+from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
 from impactlab.report.indices import numerical_sections
-from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
+from impactlab.report.page import (
+    Cell,
+    Row,
+    Section,
+    Table,
+    described,
+    pictures,
+    write_page,
+)
 from impactlab.variables import attributes
 
 _GRID_VALUES = 12
@@ -55,25 +64,33 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     figure is missing, OSError when `path` cannot be written.
     """
     sections = _sections(runs, analysis)
+    answer, note = entries(runs, analysis)
     placed = [name for section in sections for name in section.figures]
     drawn = pictures(figures_folder, placed)
-    rest = [name for name in drawn if name not in placed]
+    total, first = len(drawn), next(iter(drawn), "")
+    rest = [name for name in drawn if name not in (*placed, first)]
     if rest or not drawn:
         lead = "" if rest else "This study stores no data that a figure could show."
         sections.append(Section("figures", "Figures", lead, figures=rest))
-    if warnings := cautions(runs, analysis):
+    if warnings := list(cautions(runs, analysis)):
         title = "Before using these numbers"
         sections.insert(0, Section("cautions", title, sentences=warnings, grave=True))
     if remarks := notes(runs):
-        sections.append(Section("notes", "Notes on the model", sentences=remarks))
+        title = "Notes on the model"
+        sections.append(Section("notes", title, sentences=remarks, closed=True))
+    ending, method = endings(runs), labels.method(str(runs.attrs.get("method", "grid")))
     write_page(
         "report.html.j2",
         path,
         **described(runs),
-        method=labels.method(str(runs.attrs.get("method", "grid"))),
-        runs=count(runs),
-        varied=len(varied(runs)),
-        failed=int(access.failed(runs).sum()),
+        answers=answer,
+        note=note,
+        leading=drawn.pop(first, None),
+        facts=[
+            f"{labels.counted(count(runs), 'run')} ({method}), {ending or 'none failed'}",
+            labels.counted(len(varied(runs)), "varied parameter"),
+            labels.counted(total, "figure"),
+        ],
         pictures=drawn,
         files=os.path.relpath(figures_folder, path.parent),
         sections=sections,
@@ -81,32 +98,35 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
 
 
 def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
-    """Return the sections on inputs, runs and results, in the order of the page.
+    """Return the sections on results, inputs and runs, in the order of the page.
 
-    A grid: inputs, how the runs ended, what a wing adds, convergence, results. A sample: inputs,
-    distributions, scatters, indices, ranking; failures, numerical uncertainty.
+    A grid: convergence, results, what a wing adds, how the runs ended, inputs. A sample: ranking,
+    indices, numerical uncertainty, distributions; how the runs ended, inputs, scatters.
     """
-    inputs = [table for table in (_varied_parameters(runs), _fixed_parameters(runs)) if table.rows]
+    fixed = [table for table in [_fixed_parameters(runs)] if table.rows]
+    tables = [table for table in [_varied_parameters(runs)] if table.rows]
+    inputs = Section("runs", "What was varied", tables=tables, folded=fixed)
+    ranges = _ranges(runs, analysis)
     if not is_sample(runs):
         added = wings.added("sections", runs)
         return [
-            Section("runs", "What was run", tables=inputs),
-            _outcome(runs, analysis),
-            *(added(runs, analysis) if added else []),
             *convergence(runs, analysis),
-            Section("results", "Results", tables=[_ranges(runs), *_all_values(runs)]),
+            *(added(runs, analysis) if added else []),
+            Section("results", "Results", tables=[ranges], folded=_all_values(runs)),
+            _outcome(runs, analysis),
+            inputs,
         ]
     title = "Distribution of each response"
-    distributions = ["response_distributions"]
     scattered = [figure.name for figure in scatters(runs)]
     file = "indices.csv" if sensitivity_variables(analysis) else ""
+    scatter = "Each response against each parameter"
     return [
-        Section("runs", "What was varied, and how", tables=inputs),
-        Section("results", title, tables=[_ranges(runs)], figures=distributions),
-        Section("scatter", "Each response against each parameter", _SCATTER, figures=scattered),
         *sensitivity.sections(runs, analysis, file),
-        _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         *numerical_sections(runs, analysis),
+        Section("results", title, tables=[ranges], figures=["response_distributions"]),
+        _outcome(runs, analysis, ["failure_shares", "failure_map"]),
+        inputs,
+        Section("scatter", scatter, _SCATTER, figures=scattered, closed=True),
     ]
 
 
@@ -177,10 +197,10 @@ def _outcome(runs: xr.Dataset, analysis: xr.Dataset, figures: list[str] | None =
     title = "How the runs ended"
     if not failed.any():
         return Section("outcome", title, f"All {total} runs gave every response.", imputed)
-    lead = f"{int(failed.sum())} of {total} runs failed: each lacks at least one response."
+    lead = f"Of {total} runs, {endings(runs)}."
     causes = access.causes(runs, failed)
     rows: list[Row] = [[labels.sentence(why), Cell(str(n), "number")] for why, n in causes.items()]
-    reasons = Table("Reasons for the failures", ["Reason", "Runs"], rows)
+    reasons = Table("Reasons for what is missing", ["Reason", "Runs"], rows)
     tables = [reasons, _failed_runs(runs, failed)]
     return Section("outcome", title, lead, imputed, tables, figures or [])
 
@@ -201,7 +221,7 @@ def _failed_runs(runs: xr.Dataset, failed: xr.DataArray) -> Table:
         rows.append([_place(runs, where), Cell("; ".join(why), "warning"), listed])
     number = len(positions)
     more = f" (the first {_FAILED_RUNS} of {number})" if number > _FAILED_RUNS else ""
-    return Table(f"Failed runs{more}", ["Run", "Reason", "Missing responses"], rows)
+    return Table(f"Runs without an answer{more}", ["Run", "Reason", "Missing responses"], rows)
 
 
 def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
@@ -212,7 +232,7 @@ def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
     return ", ".join(named) or "the only run"
 
 
-def _ranges(runs: xr.Dataset) -> Table:
+def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """Return one row per response; a grid names runs, a sample has percentiles."""
     quantiles = _QUANTILES if is_sample(runs) else {}
     rows: list[Row] = []
@@ -230,8 +250,10 @@ def _ranges(runs: xr.Dataset) -> Table:
                 Cell(labels.number(float(number)), "number", detail)
                 for number, detail in zip(numbers, details, strict=True)
             ]
-        long_name = runs[name].attrs.get("long_name", "")
-        response = Cell(labels.sentence(labels.response(name)), detail=long_name)
+        told = [runs[name].attrs.get("long_name", ""), beside(runs, analysis, name)]
+        detail = "; ".join(filter(None, told))
+        kind = "warning" if told[1] else ""
+        response = Cell(labels.sentence(labels.response(name)), kind, detail)
         missing = Cell(str(gaps), "warning" if gaps else "number")
         rows.append([response, unit.symbol or "–", *cells, missing])
     head = ["Response", "Unit", "Smallest", *quantiles, "Largest", "Runs missing"]

@@ -11,6 +11,7 @@ import xarray as xr
 from impactlab.figures import labels
 from impactlab.figures.draw import OVERVIEW
 from impactlab.figures.labels import Display, display
+from impactlab.report.answer import entries
 from impactlab.report.page import Cell, Row, Table, described, pictures, write_page
 from impactlab.verification.finding import Comparison, Outcome, gravest_first
 from impactlab.verification.stored import unpacked
@@ -41,7 +42,8 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
     Raises FileNotFoundError when a figure is missing, OSError when `path` cannot be written.
     """
     outcomes = gravest_first(unpacked(findings))
-    drawn = pictures(figures_folder)
+    answer, note = entries(findings)
+    drawn, found = pictures(figures_folder), tally(outcomes)
     checks = []
     for outcome in outcomes:
         passed = [_row(entry) for entry in outcome.finding.comparisons if entry.passed]
@@ -58,10 +60,12 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
         "verification.html.j2",
         path,
         **described(findings, "findings"),
-        tally=tally(outcomes),
-        bad=[outcome for outcome in outcomes if outcome.verdict != "passed"],
+        answers=answer,
+        note=note,
+        leading=drawn.get(OVERVIEW),
+        facts=[labels.counted(found[f"{what}s"], what) for what in ("check", "comparison")],
+        bad=bool(found["bad_checks"]) or not outcomes,
         summary=_summary(outcomes),
-        overview=drawn.get(OVERVIEW),
         checks=checks,
     )
 

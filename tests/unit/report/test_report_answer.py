@@ -31,8 +31,8 @@ def test_of_a_sample_names_what_matters_with_share_interval_and_verdict() -> Non
 def test_of_a_grid_gives_ranges_by_what_drives_them(velocity_study: Any) -> None:
     lines = answers(*velocity_study)
     assert 1 <= len(lines) <= LINES
-    assert lines[0].startswith("Impact velocity (95 to 100 % of the variation)")
-    assert "): peak force 2 to 193 kN, contact duration 0.212 to 0.528 ms" in lines[0]
+    assert lines[0].startswith("Impact velocity explains 95 to 100 % of the variation")
+    assert ": peak force 2 to 193 kN, contact duration 0.212 to 0.528 ms" in lines[0]
 
 
 def test_of_a_convergence_study_gives_the_least_grid_however_bad_others_are() -> None:

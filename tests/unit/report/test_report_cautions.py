@@ -2,42 +2,66 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
-from impactlab.report.cautions import cautions, notes
+from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
 
 Study = Any
 
 
-def _said(texts: list[str], words: str) -> bool:
+def _said(texts: Iterable[str], words: str) -> bool:
     return any(words in text for text in texts)
 
 
 def test_plastic_strain_without_a_convergence_study(material_study: Study) -> None:
     runs, analysis = material_study
-    words = "depends on the number of nodes"
-    assert _said(cautions(runs, analysis), words)
+    words = "depends on the number of nodes, which this study does not vary"
+    assert beside(runs, analysis, "peak_plastic_strain") == words
+    assert beside(runs, analysis, "peak_force") == ""
     hardening = runs.isel(beam_isotropic_hardening_modulus=slice(1, None))
-    assert _said(cautions(hardening, analysis), words)
+    assert beside(hardening, analysis, "peak_plastic_strain") == words
     elastic = runs.assign(peak_plastic_strain=0.0 * runs["peak_plastic_strain"])
-    assert not _said(cautions(elastic, analysis), words)
+    assert beside(elastic, analysis, "peak_plastic_strain") == ""
 
 
 def test_a_verdict_of_its_own_takes_the_place(discretisation_study: Study) -> None:
-    assert not _said(cautions(*discretisation_study), "which this study does not vary")
+    assert beside(*discretisation_study, "peak_plastic_strain") == ""
 
 
 def test_energy_imbalance_and_restitution_above_one(material_study: Study) -> None:
     runs, analysis = material_study
-    assert not _said(cautions(runs, analysis), "energy balance")
+    assert beside(runs, analysis, "energy_error") == beside(runs, analysis, "restitution") == ""
     runs["energy_error"][0, 0, :] = 0.02
     runs["restitution"][1, 0, 0] = 1.05
-    found = cautions(runs, analysis)
-    assert _said(found, "kinetic energy in 2 of 24 runs (largest: 0.02)")
-    assert _said(found, "restitution is above 1 in 1 of 24 runs")
+    assert beside(runs, analysis, "energy_error") == "above 0.001 in 2 runs"
+    assert beside(runs, analysis, "restitution") == "above 1 in 1 run"
+
+
+def test_a_doubt_stands_beside_its_number_in_the_answer_and_in_the_table(
+    report: Any, material_study: Study
+) -> None:
+    runs, analysis = material_study
+    runs["restitution"][1, 0, 0] = 1.05
+    page = report(runs, analysis)
+    assert "to 1.05 (above 1 in 1 run)" in page.text
+    rows = page.tables["Range of each response"]
+    assert next(row for row in rows if row[0].startswith("Restitution"))[0].endswith(
+        "; above 1 in 1 run"
+    )
+    assert page.text.count("above 1 in 1 run") == 2
+
+
+def test_a_run_that_lacks_a_response_has_not_failed(velocity_study: Study, failing: Any) -> None:
+    runs, _ = velocity_study
+    assert endings(runs) == ""
+    runs["restitution"][0, 0] = np.nan
+    assert endings(runs) == "1 without an answer"
+    assert endings(failing(runs, {"velocity": 5})) == "2 failed, 1 without an answer"
 
 
 def test_runs_whose_contact_law_created_energy_are_counted(material_study: Study) -> None:
@@ -61,7 +85,7 @@ def test_an_analysis_of_other_runs_is_told(material_study: Study) -> None:
 
 def test_a_study_without_trouble_has_no_caution(material_study: Study) -> None:
     runs, analysis = material_study
-    assert cautions(runs.drop_vars("peak_plastic_strain"), analysis) == []
+    assert list(cautions(runs, analysis)) == []
 
 
 def test_notes_on_the_contact_law(velocity_study: Study) -> None:

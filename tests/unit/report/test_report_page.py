@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -50,12 +51,12 @@ def test_figures_are_inside_numbered_and_described(results: Path, page: Any) -> 
     found = page((results / "velocity" / "report.html").read_text("utf-8"))
     images = found.named("img")
     assert len(images) == 4
-    assert images[0]["alt"].startswith("Contact force during the first contact. Hertz: 0.25 m/s")
+    assert images[0]["alt"].startswith("Effect of the varied parameters. Contact duration")
     svg = base64.b64decode(images[0]["src"].removeprefix("data:image/svg+xml;base64,"))
-    assert svg == (results / "velocity" / "figures" / "first_contact.svg").read_bytes()
-    assert int(images[0]["width"]) == pytest.approx(1.3 * 183 / 25.4 * 96, abs=1)
-    assert "Figure 2. Contact force against time." in found.text
-    assert "Figure 4. Effect of the varied parameters." in found.text
+    assert svg == (results / "velocity" / "figures" / "parameter_effects.svg").read_bytes()
+    assert int(images[0]["width"]) == pytest.approx(1.3 * 89 / 25.4 * 96, abs=1)
+    assert "Figure 2. Contact force during the first contact." in found.text
+    assert "Figure 1. Effect of the varied parameters" in found.text
     assert "Duration of the first contact (a later sub-impact does not count)" in found.text
 
 
@@ -132,15 +133,17 @@ def test_addresses_are_relative_and_exist(results: Path, page: Any) -> None:
     addresses += [a["href"] for a in found.named("a") if not a["href"].startswith("#")]
     assert len(addresses) == 2
     assert all((home.parent / unquote(address)).is_file() for address in addresses)
-    assert found.named("img")[0]["alt"] == "Contact force during the first contact"
+    assert found.named("img")[0]["alt"] == "Effect of the varied parameters"
 
 
 def test_failures_are_told(results: Path, page: Any, failing: Any) -> None:
     path = results / "velocity" / "runs.nc"
-    runs = failing(xr.load_dataset(path), {"velocity": 0, "contact": 0})
+    runs = xr.load_dataset(path)
+    runs = failing(runs.assign(impulse=runs["contact_duration"]), {"velocity": 0, "contact": 0})
+    runs["contact_duration"][1, 0] = np.nan
     path.unlink()
     runs.to_netcdf(path)
-    assert "6 runs (grid), 1 failed" in _index(results, page).text
+    assert "6 runs (grid), 1 failed, 1 without an answer" in _index(results, page).text
 
 
 def test_markup_and_odd_names_do_no_harm(results: Path, page: Any) -> None:

@@ -61,12 +61,12 @@ def test_failed_runs_are_counted_named_and_explained(
     broken["status"][0, 0] = bit
     broken["restitution"][0, 0] = np.nan
     page = report(broken, analysis)
-    assert "2 of 16 runs failed" in page.text
-    assert page.tables["Reasons for the failures"][1:] == [
+    assert "Of 16 runs, 1 failed, 1 without an answer." in page.text
+    assert page.tables["Reasons for what is missing"][1:] == [
         ["The run diverged; every response is missing", "1"],
         [words[0].upper() + words[1:], "1"],
     ]
-    first, second = page.tables["Failed runs"][1:]
+    first, second = page.tables["Runs without an answer"][1:]
     assert first[0] == "impact velocity = 0.25 m/s, contact law = Hertz"
     assert first[1] == words
     assert "restitution" in first[2]
@@ -78,7 +78,7 @@ def test_failed_runs_are_counted_named_and_explained(
 def test_no_failure_is_said_plainly(report: Any, velocity_study: Study) -> None:
     page = report(*velocity_study)
     assert "All 16 runs gave every response." in page.text
-    assert "Reasons for the failures" not in page.tables
+    assert "Reasons for what is missing" not in page.tables
 
 
 def test_failed_runs_of_a_sample_are_named_by_number(
@@ -86,7 +86,7 @@ def test_failed_runs_of_a_sample_are_named_by_number(
 ) -> None:
     runs, analysis = sobol_study
     page = report(failing(runs, {"run": slice(10, 40)}), analysis)
-    table = page.tables["Failed runs (the first 20 of 30)"]
+    table = page.tables["Runs without an answer (the first 20 of 30)"]
     assert len(table) == 21
     assert table[1][0].startswith("run 10, impact velocity = ")
 
