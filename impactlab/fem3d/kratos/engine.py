@@ -8,10 +8,6 @@ from importlib import import_module
 from importlib.metadata import version
 from typing import Any
 
-APPLICATIONS = ("StructuralMechanics", "ConstitutiveLaws", "ContactStructuralMechanics")
-"""Parts of Kratos that register elements, laws and conditions when they are imported."""
-_ANALYSIS = "KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis"
-
 
 class KratosMissingError(ImportError):
     """Kratos Multiphysics, or a part of it, is not installed."""
@@ -38,9 +34,11 @@ def engine(threads: int) -> Engine:
     try:
         core = import_module("KratosMultiphysics")
         core.Logger.GetDefaultOutput().SetSeverity(core.Logger.Severity.WARNING)
-        for name in APPLICATIONS:
+        # These register elements, laws and conditions.
+        for name in ("StructuralMechanics", "ConstitutiveLaws", "ContactStructuralMechanics"):
             import_module(f"KratosMultiphysics.{name}Application")
-        analysis = import_module(_ANALYSIS).StructuralMechanicsAnalysis
+        module = "StructuralMechanicsApplication.structural_mechanics_analysis"
+        analysis = import_module(f"KratosMultiphysics.{module}").StructuralMechanicsAnalysis
     except ImportError as error:
         raise KratosMissingError(
             f"Kratos Multiphysics is not complete here ({error}): pip install 'impactlab[kratos]'"
@@ -49,24 +47,12 @@ def engine(threads: int) -> Engine:
     return Engine(core, analysis, version("KratosMultiphysics"))
 
 
-MM = 1e3
-"""mm per m, mm/s per m/s."""
-MPA = 1e-6
-"""MPa per Pa."""
-TONNES_PER_MM3 = 1e-12
-"""t/mm3 per kg/m3."""
-N_PER_MM3 = 1e-9
-"""N/mm3 per N/m3."""
-
-
+MM, MPA, TONNES_PER_MM3, N_PER_MM3 = 1e3, 1e-6, 1e-12, 1e-9
+"""Kratos' units over SI: of lengths and velocities, stresses, densities, and penalties."""
 PART, BEAM_TOP, SPHERE_BOTTOM = "Structure", "BeamTop", "SphereBottom"
 """Names of the whole model and of the two surfaces that may touch."""
-BOSSAK = -0.3
-"""Bossak's parameter: Kratos' own choice; it damps what a step cannot resolve."""
 RESIDUAL_RATIO = 1e-5
 """Residual over that at a step's beginning, at which the step has converged."""
-_CONTACT = "PenaltyContactFrictionless"
-_MODULE = "KratosMultiphysics.ContactStructuralMechanicsApplication"
 
 
 def settings(duration: float, time_step: float, penalty: float) -> str:
@@ -78,7 +64,7 @@ def settings(duration: float, time_step: float, penalty: float) -> str:
         "echo_level": 0,
         "time_integration_method": "implicit",
         "scheme_type": "bossak",
-        "damp_factor_m": BOSSAK,
+        "damp_factor_m": -0.3,  # Kratos' own choice; it damps what a step cannot resolve
         "analysis_type": "non_linear",
         "model_import_settings": {"input_type": "use_input_model_part"},
         "time_stepping": {"time_step": time_step},
@@ -88,7 +74,10 @@ def settings(duration: float, time_step: float, penalty: float) -> str:
         "residual_relative_tolerance": RESIDUAL_RATIO,
         "residual_absolute_tolerance": 1e-3,
         "max_iteration": 10,
-        "contact_settings": {"mortar_type": _CONTACT, "fancy_convergence_criterion": False},
+        "contact_settings": {
+            "mortar_type": "PenaltyContactFrictionless",
+            "fancy_convergence_criterion": False,
+        },
         "linear_solver_settings": {
             "solver_type": "amgcl",
             "smoother_type": "ilu0",
@@ -100,7 +89,7 @@ def settings(duration: float, time_step: float, penalty: float) -> str:
     }
     contact = {
         "python_module": "penalty_contact_process",
-        "kratos_module": _MODULE,
+        "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication",
         "process_name": "PenaltyContactProcess",
         "Parameters": {
             "model_part_name": PART,

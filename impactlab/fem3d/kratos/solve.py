@@ -8,25 +8,29 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.kratos.engine import PART, RESIDUAL_RATIO, Engine, engine, settings
-from impactlab.fem3d.kratos.model_part import (
-    contact_force,
-    fill,
-    hold,
-    launch,
-    plastic_strains,
-    vectors,
+from impactlab.fem3d.kratos.engine import (
+    BEAM_TOP,
+    MM,
+    MPA,
+    PART,
+    RESIDUAL_RATIO,
+    SPHERE_BOTTOM,
+    TONNES_PER_MM3,
+    Engine,
+    engine,
+    settings,
 )
 from impactlab.fem3d.solver import Mesh, PatchTooSmallError, quarter_mesh
 from impactlab.fem3d.solver.march import History, Moment, Progress
-from impactlab.fem3d.solver.mesh import SPHERE
-from impactlab.fem3d.solver.mesh.mesh import nodal_masses
+from impactlab.fem3d.solver.mesh import BEAM, SPHERE
+from impactlab.fem3d.solver.mesh.mesh import Floats, Integers, nodal_masses, sphere_density
 from impactlab.fem3d.solver.responses import history_responses, plastic_responses
-from impactlab.fem3d.solver.solve import histories, named
+from impactlab.fem3d.solver.solve import OWN, histories, named
 from impactlab.model.checks import integer, positive
-from impactlab.model.impact import Impact
+from impactlab.model.impact import Impact, Material
 from impactlab.variables import provenance
 
+ELEMENT, LAW, FACE = "SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw", 4
 TIME_STEP, PENALTY = 8e-6, 1e15
 """s, and N/m3 (1e6 N/mm3)."""
 
@@ -75,14 +79,11 @@ def solve_on(
     return to_dataset(run, impact, time_step, penalty)
 
 
-_OWN = {
+_OWN = OWN | {
     "iterations": ("1", "Newton's iterations in a step"),
     "equivalent_plastic_strain": ("1", "equivalent plastic strain (PEEQ), mean of the element"),
-    "largest_equivalent_plastic_strain": ("1", "largest PEEQ of an element's integration points"),
-    "body": ("1", "0: of the beam, 1: of the sphere"),
     "time_step": ("s", "time step"),
     "penalty": ("N m-3", "pressure over penetration in the contact"),
-    "element_size": ("m", "size of the elements about the contact"),
     "cpu_seconds": ("s", "processor time"),
 }
 """Units and long_name of variables that impactlab.variables does not have."""
@@ -95,7 +96,9 @@ _RESPONSES = (
 
 def to_dataset(run: Run, impact: Impact, time_step: float, penalty: float) -> xr.Dataset:
     """Return all answers of a run, as described in solve_on."""
-    strain = plastic_strains(run.engine, run.part)
+    peeq, info = run.engine.variable("ACCUMULATED_PLASTIC_STRAIN"), run.part.ProcessInfo
+    points = [each.CalculateOnIntegrationPoints(peeq, info) for each in run.part.Elements]
+    strain = np.array(points)  # (e, 8)
     largest = strain.max(axis=1)
     # A contact that pauses for less than two steps is one.
     answers, _ = history_responses(run.history, 2.0 * time_step)
@@ -157,8 +160,7 @@ class Run:
         self._analysis = engine.analysis(model, parameters)
         fill(engine, self.part, mesh, impact)
         self._analysis.Initialize()
-        hold(engine, self.part, mesh)
-        launch(engine, self.part, mesh, impact)
+        constrain(engine, self.part, mesh, impact)
         mass = nodal_masses(mesh, impact)
         mass[np.setdiff1d(np.arange(mass.size), mesh.elements[mesh.body == SPHERE])] = 0.0
         self._sphere = mass / mass.sum()  # each node's share
@@ -228,3 +230,103 @@ class Run:
         self.history.moments.append(moment)
         iterations = self.engine.variable("NL_ITERATION_NUMBER")
         self.iterations.append(float(self.part.ProcessInfo[iterations]))
+
+
+def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
+    """Put the mesh into the empty model part `part`, which must know its variables.
+
+    Kratos counts from 1: its node i + 1 is the mesh's node i.
+
+    Raises ValueError for a material with kinematic hardening, which Kratos' law does not have.
+    """
+    for number, place in enumerate((mesh.nodes * MM).tolist(), 1):
+        part.CreateNewNode(number, *place)
+    steels = {
+        BEAM: _steel(engine, part, 1, impact.beam.material, impact.beam.material.density),
+        SPHERE: _steel(engine, part, 2, impact.sphere.material, sphere_density(mesh, impact)),
+    }
+    of_element = zip((mesh.elements + 1).tolist(), mesh.body.tolist(), strict=True)
+    for number, (nodes, body) in enumerate(of_element, 1):
+        part.CreateNewElement(ELEMENT, number, nodes, steels[body])
+    first = 1
+    for name, quads, body in (
+        (SPHERE_BOTTOM, _quads(mesh.pairs[:, 0])[:, ::-1], SPHERE),
+        (BEAM_TOP, _quads(mesh.pairs[:, 1]), BEAM),
+    ):
+        surface = part.CreateSubModelPart(name)
+        surface.AddNodes(np.unique(quads + 1).tolist())
+        for number, nodes in enumerate((quads + 1).tolist(), first):
+            surface.CreateNewCondition(f"SurfaceCondition3D{FACE}N", number, nodes, steels[body])
+        first += len(quads)
+
+
+def constrain(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
+    """Fix nodes on planes of symmetry and supports; launch the sphere and let it fall.
+
+    The sphere alone has gravity, and its velocity now and in the step before.
+    """
+    held = {"X": mesh.symmetry_x, "Y": mesh.symmetry_y, "Z": mesh.support}
+    for axis, nodes in held.items():
+        variable = engine.variable(f"DISPLACEMENT_{axis}")
+        for node in (nodes + 1).tolist():
+            part.GetNode(node).Fix(variable)
+    given = {"VELOCITY_Z": impact.velocity, "VOLUME_ACCELERATION_Z": impact.gravity}
+    for node in (np.unique(mesh.elements[mesh.body == SPHERE]) + 1).tolist():
+        for name, value in given.items():
+            for step in (0, 1):
+                part.GetNode(node).SetSolutionStepValue(engine.variable(name), step, -value * MM)
+
+
+def _steel(engine: Engine, part: Any, number: int, material: Material, density: float) -> Any:
+    """Return Kratos' properties of a material; density in kg/m3."""
+    if material.kinematic_hardening_modulus > 0.0:
+        raise ValueError(
+            f"kinematic_hardening_modulus = {material.kinematic_hardening_modulus!r}: {LAW} of "
+            "Kratos has isotropic hardening only; set it to 0"
+        )
+    yield_stress = material.yield_stress * MPA
+    given = {
+        "DENSITY": density * TONNES_PER_MM3,
+        "YOUNG_MODULUS": material.youngs_modulus * MPA,
+        "POISSON_RATIO": material.poissons_ratio,
+        "YIELD_STRESS": yield_stress,
+        "ISOTROPIC_HARDENING_MODULUS": material.isotropic_hardening_modulus * MPA,
+        "EXPONENTIAL_SATURATION_YIELD_STRESS": yield_stress,  # no exponential hardening
+        "HARDENING_EXPONENT": 0.0,
+    }
+    result = part.CreateNewProperties(number)
+    for name, value in given.items():
+        result[engine.variable(name)] = value
+    law = engine.core.KratosGlobals.GetConstitutiveLaw(LAW)
+    result[engine.core.CONSTITUTIVE_LAW] = law.Clone()
+    return result
+
+
+def _quads(patch: Integers) -> Integers:
+    """Return the faces (f, 4) of a square patch of nodes, y fastest; normals point upwards."""
+    side = round(np.sqrt(patch.size))
+    place = patch.reshape(side, side)
+    corners = (place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:])
+    return np.stack(corners, axis=-1).reshape(-1, FACE)
+
+
+def vectors(engine: Engine, part: Any, name: str) -> Floats:
+    """Return a vector at every node, (n, 3), converted from mm to m."""
+    values = engine.core.VariableUtils().GetSolutionStepValuesVector(
+        part.Nodes, engine.variable(name), 0, 3
+    )
+    return np.array(values).reshape(-1, 3) / MM
+
+
+def contact_force(engine: Engine, part: Any) -> float:
+    """Return the force of the whole beam on the whole sphere in N, upwards: four quarters.
+
+    Of each pair of faces that Kratos found in contact, what its condition puts on the beam's four
+    nodes, which come first in it, the other way round.
+    """
+    core, total, residual = engine.core, 0.0, engine.core.Vector()
+    for pair in part.GetSubModelPart("ComputingContact").Conditions:
+        if pair.Is(core.ACTIVE):
+            pair.CalculateRightHandSide(residual, part.ProcessInfo)
+            total -= sum(list(residual)[2:12:3])
+    return 4.0 * total

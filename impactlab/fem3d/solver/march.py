@@ -33,24 +33,25 @@ class Moment(NamedTuple):
 
 
 class Energies(NamedTuple):
-    """At a checkpoint, of all four quarters, in J (time in s).
+    """At a checkpoint, of all four quarters, in J (time in s), by the names in datasets.
 
-    work: of the stresses in the elements, kept and dissipated. plastic: dissipated of it.
-    hourglass: work against hourglassing. contact: lost in closing gaps. gravity: work done by it.
+    strain_work: of the stresses in the elements, kept and dissipated. plastic_work: dissipated of
+    it. hourglass_work: against hourglassing. contact_loss: in closing gaps.
     """
 
     time: float
-    kinetic: float
-    work: float
-    plastic: float
-    hourglass: float
-    contact: float
-    gravity: float
+    kinetic_energy: float
+    strain_work: float
+    plastic_work: float
+    hourglass_work: float
+    contact_loss: float
+    gravity_work: float
 
     @property
     def balance(self) -> float:
         """Return the energy that stays constant."""
-        return self.kinetic + self.work + self.hourglass + self.contact - self.gravity
+        kept = self.kinetic_energy + self.strain_work + self.hourglass_work
+        return kept + self.contact_loss - self.gravity_work
 
 
 @dataclass

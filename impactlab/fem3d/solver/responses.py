@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.solver.assembly import Group
 from impactlab.fem3d.solver.march import History
 from impactlab.fem3d.solver.material import ALONG, PEEQ, STRESS
 from impactlab.fem3d.solver.mesh.mesh import BEAM, Floats, Mesh
+from impactlab.fem3d.solver.system import Group
 from impactlab.model.impact import Impact
 from impactlab.variables import STATUS_FLAGS
 

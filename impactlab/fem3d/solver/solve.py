@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.solver.march import History, March, Progress
+from impactlab.fem3d.solver.march import Energies, History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, quarter_mesh
 from impactlab.fem3d.solver.mesh.mesh import Floats
 from impactlab.fem3d.solver.responses import fields, plastic_responses, responses
@@ -63,7 +63,7 @@ def solve_on(
     return to_dataset(system, impact, history, samples)
 
 
-_OWN = {
+OWN = {
     "node_position": ("m", "position of the mesh's nodes at first touch (z upwards)"),
     "element_nodes": ("1", "numbers of a hexahedron's nodes, in VTK's order"),
     "body": ("1", "0: of the beam, 1: of the sphere"),
@@ -104,11 +104,6 @@ IMPACT_PARAMETERS = [
     if entry.path[0] == "impact" and name not in ("contact", "beam_model", "shear_coefficient")
 ]
 """Parameters of an impact, without those of the beam models alone."""
-_ENERGIES = (
-    *("kinetic_energy", "strain_work", "plastic_work"),
-    *("hourglass_work", "contact_loss", "gravity_work"),
-)
-"""In the order of march.Energies."""
 
 
 def to_dataset(system: System, impact: Impact, history: History, samples: int) -> xr.Dataset:
@@ -119,10 +114,14 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
     pause = 4.0 * mesh.patch / float(np.sqrt(steel.youngs_modulus / steel.density))
     answers, status = responses(history, impact, pause)
     answers |= plastic_responses(mesh, impact, own["largest_equivalent_plastic_strain"])
-    answers["plastic_dissipation"] = history.energies[-1].plastic if history.energies else np.nan
+    answers["plastic_dissipation"] = (
+        history.energies[-1].plastic_work if history.energies else np.nan
+    )
     last = history.moments[-1].time
     even = np.linspace(0.0, last, samples)
-    times, *energies = np.array(history.energies).reshape(-1, 7).T
+    energies = np.array(history.energies).reshape(-1, 7).T
+    checkpoints = dict(zip(Energies._fields, energies, strict=True))
+    times = checkpoints.pop("time")
     given = flatten(impact, Discretisation()) | {"sphere_mass": impact.sphere.total_mass}
     dataset = xr.Dataset(
         {
@@ -133,10 +132,7 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
                 name: ("time", np.interp(even, history.table()[0], values))
                 for name, values in histories(history).items()
             },
-            **{
-                name: ("checkpoint", values)
-                for name, values in zip(_ENERGIES, energies, strict=True)
-            },
+            **{name: ("checkpoint", values) for name, values in checkpoints.items()},
             **{name: ("element", values) for name, values in own.items()},
             "displacement": (("node", "axis"), system.x - mesh.nodes),
         },
@@ -164,7 +160,7 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
         dataset.attrs["patch_needed"] = history.patch_needed
     for name, comment in _COMMENTS.items():
         dataset[name].attrs["comment"] = comment
-    return named(dataset, _OWN)
+    return named(dataset, OWN)
 
 
 def histories(history: History) -> dict[str, Floats]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import logging
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -63,52 +62,41 @@ _LONG = 3600.0
 """Duration of a run in s beyond which no mesh is made to estimate it."""
 
 
-def table(
-    impact: Impact,
-    discretisation: Discretisation,
-    *,
-    duration: float,
-    varied: Mapping[str, Any],
-    first_run: int = 0,
-) -> Array:
-    """Return one record per run, each run checked; arguments as those of simulate.case_table.
+def cases(design: xr.Dataset, runs: Array) -> Array:
+    """Return one record per run, each run checked.
 
     Raises ValueError naming the run and its field when the model refuses a value, or a run of the
     3-D FE model has neither element_size nor elements_per_radius.
     """
-    models = np.asarray(varied.get("beam_model", [impact.beam_model]))
-    plain = dict(varied)
-    if "beam_model" in plain:
-        plain["beam_model"] = np.where(models == SOLID, BEAM_MODELS[0], models)
-    elif impact.beam_model == SOLID:
-        impact = replace(impact, beam_model=BEAM_MODELS[0])
-    known = case_table(impact, discretisation, duration=duration, varied=plain, first_run=first_run)
-    cases: Array = require_fields(known, SOLID_CASE)
-    solid = np.broadcast_to(models == SOLID, cases.shape)
+    base, grid = impact.base(design)
+    varied = {name: flattened(design, name, runs) for name in varied_names(design)}
+    models = varied.get("beam_model", np.full(runs.shape, base.beam_model))
+    solid = models == SOLID
+    plain = varied | {"beam_model": np.where(solid, BEAM_MODELS[0], models)}
+    known = case_table(
+        base, grid, duration=design["duration"].item(), varied=plain, first_run=int(runs[0])
+    )
+    found: Array = require_fields(known, SOLID_CASE)
     if solid.any():
-        cases["beam_model"][solid] = SOLID_MODEL
+        found["beam_model"][solid] = SOLID_MODEL
         for name in _BEAM_MODELS_ONLY:
-            cases[name][solid] = 0
-        cases["element_size"][solid] = _sizes(discretisation, varied, cases, solid)
-    return cases
+            found[name][solid] = 0
+        found["element_size"][solid] = _sizes(grid, varied, found[solid], solid)
+    return found
 
 
-def _sizes(
-    discretisation: Discretisation, varied: Mapping[str, Any], cases: Array, solid: Array
-) -> Array:
-    """Return the element size in m of each run of the 3-D FE model."""
-
-    def given(name: str) -> Array | None:
-        values = varied.get(name, [getattr(discretisation, name)])
+def _sizes(grid: Discretisation, varied: Mapping[str, Any], cases: Array, solid: Array) -> Array:
+    """Return the element size in m of each run of the 3-D FE model. solid: which runs are."""
+    for name in ("element_size", "elements_per_radius"):
+        values = varied.get(name, [getattr(grid, name)])
         if any(value is None for value in values):
-            return None
-        return np.broadcast_to(positive("Discretisation", name, column(values)), solid.shape)[solid]
-
-    if (sizes := given("element_size")) is not None:
-        return sizes
-    if (counts := given("elements_per_radius")) is None:
-        raise ValueError("Discretisation.element_size: is required for the solid model")
-    return np.array([contact_radius(_impact_of(case)) for case in cases[solid]]) / counts
+            continue
+        checked = positive("Discretisation", name, column(values))
+        given: Array = np.broadcast_to(checked, solid.shape)[solid]
+        if name == "element_size":
+            return given
+        return np.array([contact_radius(_impact_of(case)) for case in cases]) / given
+    raise ValueError("Discretisation.element_size: is required for the solid model")
 
 
 def is_solid(cases: Array) -> Array:
@@ -134,10 +122,9 @@ def work(cases: Array) -> Array:
     found[~solid] = cost.work(_kernel_cases(cases))
     found[solid] = [cost.A_SECOND * _cost(case.tobytes()).cpu_seconds for case in cases[solid]]
     _, first = np.unique(cases.view(f"V{cases.dtype.itemsize}"), return_index=True)
-    again = np.ones(cases.size, dtype=bool)
-    again[first] = False
-    found[again] = 0.0
-    return found
+    once = np.zeros(cases.size)
+    once[first] = found[first]
+    return once
 
 
 def memory(cases: Array) -> Array:
@@ -174,51 +161,36 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
     model does not know is NaN; so is all of a run that stopped before its time, and `status` says
     so. Raises KeyboardInterrupt where the run was interrupted: it is no answer.
     """
-    given = {"status": STOPPED, "remarks": 0}
-    duration = case["duration"].item()
+    answers: dict[str, Any] = {"status": STOPPED, "remarks": 0}
+    given, size, duration = _impact_of(case), case["element_size"].item(), case["duration"].item()
+    options: dict[str, Any] = {"element_size": size, "duration": duration, "samples": _STEPS}
     try:
-        run = _solved(_impact_of(case), case["element_size"].item(), duration)
+        patch = quarter_mesh(given, element_size=size).patch
+        while "patch_needed" in (run := solve_alone(given, patch=patch, **options)).attrs:
+            patch = _LARGER * patch
+            millimetres, reason = 1e3 * patch, run.attrs["stopped"]
+            log.info("a 3-D run begins again with a patch of %.3g mm: %s", millimetres, reason)
     except ValueError as error:  # no mesh of this size, or no larger patch
         log.warning("a 3-D run was not possible: %s", error)
-        return given
+        return answers
     stopped = str(run.attrs.get("stopped", ""))
     if stopped.startswith("interrupted"):
         raise KeyboardInterrupt
     if stopped:
         log.warning("a 3-D run stopped: %s", stopped)
-        return given | {"status": int(run["status"]) | STOPPED}
-    found = {name: float(run[name]) for name in RESPONSES if name in run}
+        return answers | {"status": int(run["status"]) | STOPPED}
+    answers |= {name: float(run[name]) for name in RESPONSES if name in run}
     if samples:  # the last time may lie within a step of the run's end
         times = np.linspace(0.0, duration, samples)
         for name in HISTORIES:
             if name in run:
-                found[name] = np.interp(times, run["time"].values, run[name].values)
-    own = {"plastic_zone_radius": surface_reach(run), "status": int(run["status"])}
-    return given | found | own
-
-
-def _solved(impact: Impact, size: float, duration: float) -> xr.Dataset:
-    patch = quarter_mesh(impact, element_size=size).patch
-    while True:
-        run = solve_alone(impact, element_size=size, duration=duration, patch=patch, samples=_STEPS)
-        if "patch_needed" not in run.attrs:
-            return run
-        patch = _LARGER * patch
-        log.info(
-            "a 3-D run begins again with a patch of %.3g mm: %s", 1e3 * patch, run.attrs["stopped"]
-        )
+                answers[name] = np.interp(times, run["time"].values, run[name].values)
+    return answers | {"plastic_zone_radius": surface_reach(run), "status": int(run["status"])}
 
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:
     """Return the columns of the beam models, and those of the 3-D FE model alone."""
     return (*impact.columns(design), *WITNESS)
-
-
-def cases(design: xr.Dataset, runs: Array) -> Array:
-    """Return the table of these runs. Raises ValueError naming a run that the model refuses."""
-    varied = {name: flattened(design, name, runs) for name in varied_names(design)}
-    duration = design["duration"].item()
-    return table(*impact.base(design), duration=duration, varied=varied, first_run=int(runs[0]))
 
 
 def solve(cases: Array, form: OutputSpec) -> Columns:

@@ -109,8 +109,20 @@ class Cost:
 
 
 def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
-    """Return the cost of `duration` (s) on `mesh`, from its smallest elements and measurements."""
-    steps = int(np.ceil(duration / time_step(mesh, impact)))
+    """Return the cost of `duration` (s) on `mesh`, from its smallest elements and measurements.
+
+    The largest stable step is about that of a pressure wave over the shortest edge.
+    """
+    points = mesh.nodes[mesh.elements]
+    ends = ((0, 1), (0, 3), (0, 4), (6, 2), (6, 5), (6, 7))
+    edges = [np.linalg.norm(points[:, one] - points[:, other], axis=1) for one, other in ends]
+    shortest = np.min(edges, axis=0)
+    stable = []
+    for body, steel, density in _metals(impact):
+        nu = steel.poissons_ratio
+        modulus = steel.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+        stable.append(float(shortest[mesh.body == body].min()) / np.sqrt(modulus / density))
+    steps = int(np.ceil(duration / float(0.9 * min(stable))))
     full = int(mesh.full.sum())
     one_point = len(mesh.elements) - full
     seconds = steps * (one_point * ONE_POINT_SECONDS + full * FULL_SECONDS)
@@ -137,21 +149,6 @@ def least_cost(
     steps = int(duration * fastest / size) + 1
     seconds = steps * (near * FULL_SECONDS + far * ONE_POINT_SECONDS)
     return Cost(int(near + far), steps, seconds, int(near + far) * _BYTES)
-
-
-def time_step(mesh: Mesh, impact: Impact) -> float:
-    """Return about the largest stable step in s: that of a pressure wave over the shortest edge."""
-    points = mesh.nodes[mesh.elements]
-    shortest = np.full(len(points), np.inf)
-    for one, other in ((0, 1), (0, 3), (0, 4), (6, 2), (6, 5), (6, 7)):
-        edge = np.linalg.norm(points[:, one] - points[:, other], axis=1)
-        shortest = np.minimum(shortest, edge)
-    steps = []
-    for body, steel, density in _metals(impact):
-        nu = steel.poissons_ratio
-        modulus = steel.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
-        steps.append(float(shortest[mesh.body == body].min()) / np.sqrt(modulus / density))
-    return float(0.9 * min(steps))
 
 
 def _metals(impact: Impact) -> tuple[tuple[int, Material, float], tuple[int, Material, float]]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.assembly import force_assembly, make_group, metal
 from impactlab.fem3d.solver.elements import MEAN
 from impactlab.fem3d.solver.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.material import STRESS
 from impactlab.fem3d.solver.mesh.mesh import brick
+from impactlab.fem3d.solver.system import force_assembly, make_group, metal
 from impactlab.model.impact import Material
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.assembly import metal
 from impactlab.fem3d.solver.material import mises, radial_return
+from impactlab.fem3d.solver.system import metal
 from impactlab.model.impact import Material
 from impactlab.verification.solutions.bending import path_stresses
 

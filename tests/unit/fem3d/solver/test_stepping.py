@@ -5,12 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.assembly import MOST_THREADS, blocks_of, force_assembly, make_group
 from impactlab.fem3d.solver.hexahedron import W
 from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
 from impactlab.fem3d.solver.mesh.mesh import brick
-from impactlab.fem3d.solver.system import System, ThreadPool
+from impactlab.fem3d.solver.system import (
+    MOST_THREADS,
+    System,
+    ThreadPool,
+    blocks_of,
+    force_assembly,
+    make_group,
+)
 from impactlab.model.impact import Beam, Impact, Material, Sphere
 
 METAL = (210e9, 0.3, 80e9, 175e9, 345e6, 0.0, 0.0)
