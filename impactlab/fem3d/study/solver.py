@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import logging
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -62,21 +63,28 @@ _LONG = 3600.0
 """Duration of a run in s beyond which no mesh is made to estimate it."""
 
 
-def cases(design: xr.Dataset, runs: Array) -> Array:
-    """Return one record per run, each run checked.
+def table(
+    impact: Impact,
+    grid: Discretisation,
+    *,
+    duration: float,
+    varied: Mapping[str, Any],
+    first_run: int = 0,
+) -> Array:
+    """Return one record per run, each run checked; arguments as those of simulate.case_table.
 
     Raises ValueError naming the run and its field when the model refuses a value, or a run of the
     3-D FE model has neither element_size nor elements_per_radius.
     """
-    base, grid = impact.base(design)
-    varied = {name: flattened(design, name, runs) for name in varied_names(design)}
-    models = varied.get("beam_model", np.full(runs.shape, base.beam_model))
-    solid = models == SOLID
-    plain = varied | {"beam_model": np.where(solid, BEAM_MODELS[0], models)}
-    known = case_table(
-        base, grid, duration=design["duration"].item(), varied=plain, first_run=int(runs[0])
-    )
+    models = np.asarray(varied.get("beam_model", [impact.beam_model]))
+    plain = dict(varied)
+    if "beam_model" in plain:
+        plain["beam_model"] = np.where(models == SOLID, BEAM_MODELS[0], models)
+    elif impact.beam_model == SOLID:
+        impact = replace(impact, beam_model=BEAM_MODELS[0])
+    known = case_table(impact, grid, duration=duration, varied=plain, first_run=first_run)
     found: Array = require_fields(known, SOLID_CASE)
+    solid = np.broadcast_to(models == SOLID, found.shape)
     if solid.any():
         found["beam_model"][solid] = SOLID_MODEL
         for name in _BEAM_MODELS_ONLY:
@@ -191,6 +199,13 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
 def columns(design: xr.Dataset) -> tuple[str, ...]:
     """Return the columns of the beam models, and those of the 3-D FE model alone."""
     return (*impact.columns(design), *WITNESS)
+
+
+def cases(design: xr.Dataset, runs: Array) -> Array:
+    """Return the table of these runs. Raises ValueError naming a run that the model refuses."""
+    varied = {name: flattened(design, name, runs) for name in varied_names(design)}
+    duration = design["duration"].item()
+    return table(*impact.base(design), duration=duration, varied=varied, first_run=int(runs[0]))
 
 
 def solve(cases: Array, form: OutputSpec) -> Columns:

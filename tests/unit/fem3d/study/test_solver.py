@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -97,7 +98,7 @@ def test_the_same_bits_in_any_batch(study):
 
 
 def test_the_cost_counts_what_is_solved_once(study):
-    found = estimate(study, workers=2)
+    found = estimate(study, Path("no"), workers=2)
     impact = il.paper_impact()
     seconds = [
         solid.estimate(solid.quarter_mesh(impact, element_size=h), impact, duration=2e-5)
@@ -168,6 +169,6 @@ def test_what_does_not_fit_memory_is_priced_without_a_mesh(monkeypatch):
 
     monkeypatch.setattr(witness, "quarter_mesh", watched)
     fine = TEXT.replace("[4 mm, 3 mm]", "[0.01 mm]")
-    found = estimate(study_of_text("fine", fine), workers=1)
+    found = estimate(study_of_text("fine", fine), Path("no"), workers=1)
     assert found.memory > 1e10
     assert found.seconds > 86400.0
