@@ -1,14 +1,25 @@
-"""Files that are written completely or not at all."""
+"""Files that are written completely or not at all, and datasets that tell what was done to them.
+
+A dataset's file carries a digest of each of its variables, made while they are written and compared
+when they are read into memory, and the digests of what it was made from.
+"""
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from datetime import UTC, datetime
+from hashlib import blake2b
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
 
+import numpy as np
+import xarray as xr
+from netCDF4 import Dataset, set_chunk_cache
 from rich.filesize import decimal
 
 
@@ -20,7 +31,7 @@ def replaced(path: Path, size: int = 0) -> Iterator[Path]:
     file and the space left, where it cannot be written; an older file then stays as it was.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{path.name}.{uuid4().hex}")
+    unfinished = path.with_name(f".{path.name}.{uuid4().hex}")  # see unfinished_files
     try:
         yield unfinished
         with unfinished.open("rb") as handle:
@@ -34,3 +45,173 @@ def replaced(path: Path, size: int = 0) -> Iterator[Path]:
         raise OSError(message) from error
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def unfinished_files(folder: Path) -> list[Path]:
+    """Return the temporary files that `replaced` left in a folder when its process was killed."""
+    found = folder.glob(".*." + "[0-9a-f]" * 32)
+    return [path for path in found if path.is_file()]
+
+
+CONTENTS = {
+    "design": "impactlab design",
+    "runs": "impactlab run",
+    "analysis": "impactlab analyse",
+    "indices": "impactlab analyse",
+    "surrogate": "impactlab analyse",
+    "resolution": "impactlab recommend",
+    "refinement": "impactlab refine",
+    "findings": "impactlab verify",
+    "impact": "impactlab simulate",
+    "witness": "impactlab witness",
+    "beams": "impactlab witness",
+}
+"""What a dataset's file may hold, and the command that makes it."""
+_CACHE = 1_000_000
+"""Bytes per variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
+_ATTRIBUTES = "attributes"
+"""The name of the digest of a dataset's own attributes."""
+_UNCHECKED = {"created", "versions", "source_revision", "processor", "history", "checksums"}
+"""Attributes that differ between equal datasets."""
+
+
+def write_netcdf(dataset: xr.Dataset, path: Path, content: str, *sources: xr.Dataset) -> None:
+    """Write a dataset, large variables compressed. Raises OSError as `replaced`.
+
+    content: one of CONTENTS. sources: datasets read from files that it was made from.
+    """
+    made = f"{datetime.now(UTC).isoformat(timespec='seconds')}: {CONTENTS[content]}"
+    history = "\n".join(filter(None, (dataset.attrs.get("history"), made)))
+    dataset = dataset.assign_attrs(
+        content=content,
+        made_from=" ".join(map(identity, sources)),
+        history=history,
+        checksums="",  # known in the end
+    )
+    digests = {_ATTRIBUTES: _digest(dataset.attrs)}
+    encoding: dict[str, dict[str, Any]] = {}
+    for name, variable in dataset.variables.items():
+        attrs = dict(variable.attrs)
+        if "Conventions" in attrs:  # from arithmetic with whole datasets
+            attrs = {key: value for key, value in attrs.items() if key not in dataset.attrs}
+        for flags in attrs.keys() & {"flag_values", "flag_masks"}:
+            attrs[flags] = np.asarray(attrs[flags], variable.dtype)
+        variable.attrs = attrs
+        if name in dataset.coords:
+            encoding[str(name)] = {"_FillValue": None}
+        elif variable.dtype.kind == "f" and variable.size > 10_000:
+            encoding[str(name)] = {"zlib": True, "complevel": 1}
+        if variable.chunks is None:
+            digests[str(name)] = _digest(*_parts(variable))
+        else:  # in the one pass in which the values are computed
+            variable.data = _noted(variable, str(name), digests)
+    set_chunk_cache(_CACHE)
+    with replaced(path, dataset.nbytes) as unfinished:
+        dataset.to_netcdf(unfinished, engine="netcdf4", encoding=encoding)
+        with Dataset(unfinished, "a") as file:
+            file.setncattr("checksums", json.dumps(digests, sort_keys=True))
+
+
+@contextmanager
+def opened(path: Path, *contents: str) -> Iterator[xr.Dataset]:
+    """Give a dataset whose file is open, its values neither read nor checked.
+
+    contents: of CONTENTS, what it may hold; none: anything. Raises OSError naming an unreadable
+    file, ValueError naming one that holds something else.
+    """
+    with _readable(path):
+        dataset = xr.open_dataset(path, engine="netcdf4")
+    with dataset:
+        _check_content(dataset, path, contents)
+        yield dataset
+
+
+def read_netcdf(path: Path, *contents: str) -> xr.Dataset:
+    """Return a dataset in memory, its file closed; raises as `opened` does.
+
+    Raises ValueError also where something was changed after the file was written.
+    """
+    with opened(path, *contents) as lazy, _readable(path):
+        dataset = lazy.load()
+    kept: dict[str, str] = json.loads(dataset.attrs["checksums"])
+    found = {str(name): _digest(*_parts(each)) for name, each in dataset.variables.items()}
+    found[_ATTRIBUTES] = _digest(dataset.attrs)
+    if changed := sorted(name for name in kept.keys() | found if kept.get(name) != found.get(name)):
+        command = CONTENTS[dataset.attrs["content"]]
+        raise ValueError(
+            f"{path}: was changed after it was written ({', '.join(changed)}): make it again with "
+            f"`{command}`"
+        )
+    return dataset
+
+
+def identity(dataset: xr.Dataset | None) -> str:
+    """Return what tells a dataset that was read from a file from any other; "" of none."""
+    checksums = "" if dataset is None else dataset.attrs.get("checksums", "")
+    return _digest({"all": checksums}) if checksums else ""
+
+
+def check_source(made: xr.Dataset, path: Path, source: xr.Dataset, source_path: Path) -> None:
+    """Raise ValueError where a dataset was not made from another; both were read from files."""
+    if identity(source) not in made.attrs["made_from"].split():
+        raise ValueError(
+            f"{path}: was not made from {source_path} as it is now: make it again with "
+            f"`{CONTENTS[made.attrs['content']]} {source_path}`"
+        )
+
+
+def _check_content(dataset: xr.Dataset, path: Path, contents: Sequence[str]) -> None:
+    if not contents:
+        return
+    command = " or ".join(f"`{CONTENTS[each]}`" for each in contents)
+    if not {"content", "checksums", "made_from"} <= dataset.attrs.keys():
+        raise ValueError(
+            f"{path}: has no checksums, so another program or an older impactlab wrote it: make "
+            f"one with {command}"
+        )
+    if dataset.attrs["content"] not in contents:
+        raise ValueError(
+            f"{path}: holds {dataset.attrs['content']}, not {' or '.join(contents)}: make "
+            f"file that {command} wrote"
+        )
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except (OSError, ValueError, RuntimeError, LookupError, TypeError, AttributeError) as error:
+        raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
+
+
+def _noted(variable: xr.Variable, name: str, digests: dict[str, str]) -> Any:
+    """Return a lazy variable's values; computing them puts their digest into `digests`."""
+    head, _ = _parts(variable)
+
+    def note(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+        digests[name] = _digest(head, values)
+        return values
+
+    whole = variable.data.rechunk(-1)
+    return whole.map_blocks(note, dtype=whole.dtype, meta=whole._meta)
+
+
+def _parts(variable: xr.Variable) -> tuple[dict[str, Any], Any]:
+    """Return what is known of a variable beside its values, and the values."""
+    text = variable.dtype.kind in "OUS"
+    kind = "text" if text else variable.dtype.name
+    head = variable.attrs | {" dims": variable.dims, " shape": variable.shape, " kind": kind}
+    return head, variable.data
+
+
+def _digest(attrs: Mapping[Any, Any], values: Any = None) -> str:
+    """Return a hash of attributes and values, the same before writing and after reading."""
+    plain = {key: np.ravel(each).tolist() for key, each in attrs.items() if key not in _UNCHECKED}
+    digest = blake2b(json.dumps(plain, sort_keys=True, default=str).encode(), digest_size=16)
+    if values is None:
+        pass
+    elif values.dtype.kind in "OUS":
+        digest.update(json.dumps(values.tolist(), default=str).encode())
+    else:
+        digest.update(np.ascontiguousarray(values).data)
+    return digest.hexdigest()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -14,6 +14,18 @@ StudyFile = Annotated[
 RunsFile = Annotated[
     Path, typer.Argument(metavar="RUNS", help="Solved runs, results/NAME/runs.nc.")
 ]
+
+
+def new_file(help: str) -> Any:
+    """Return an option for a file to write; a folder of this name is refused before any work."""
+    return typer.Option(dir_okay=False, help=help)
+
+
+def new_folder(help: str) -> Any:
+    """Return an option for a folder to write to; a file of this name is refused."""
+    return typer.Option(file_okay=False, help=help)
+
+
 RESULTS = Path("results")
 WITNESS = "witness"
 """Folder of the 3-D model beside a study's results."""

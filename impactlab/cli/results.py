@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.options import RESULTS, RunsFile, assigned, given
+from impactlab.cli.options import RESULTS, RunsFile, assigned, given, new_file, new_folder
 
 StoredFiles = Annotated[
     list[Path],
@@ -26,7 +26,7 @@ def analyse(
     refinement: Annotated[
         Path | None, typer.Option(help="What `refine` solved: the same of Sobol indices, measured.")
     ] = None,
-    output: Annotated[Path | None, typer.Option(help="Default: beside the runs.")] = None,
+    output: Annotated[Path | None, new_file("Default: beside the runs.")] = None,
 ) -> None:
     """Convergence and sensitivity from solved runs.
 
@@ -66,7 +66,8 @@ def predict(
 def figures(
     stored: StoredFiles,
     output: Annotated[
-        Path | None, typer.Option(help="Default: figures/ beside the first of them.")
+        Path | None,
+        new_folder("Default: figures/ beside the first of them."),
     ] = None,
 ) -> None:
     """Draw every figure that a study's answers, or findings, allow."""
@@ -83,10 +84,12 @@ def figures(
 def report(
     stored: StoredFiles,
     figures: Annotated[
-        Path | None, typer.Option(help="Default: figures/ beside the first of them.")
+        Path | None,
+        new_folder("Default: figures/ beside the first of them."),
     ] = None,
     output: Annotated[
-        Path | None, typer.Option(help="Default: report.html beside the first of them.")
+        Path | None,
+        new_file("Default: report.html beside the first of them."),
     ] = None,
 ) -> None:
     """Write a study's report."""
@@ -101,7 +104,7 @@ def report(
 
 def index(
     results: Annotated[Path, typer.Argument(help="Folder of results.")] = RESULTS,
-    output: Annotated[Path | None, typer.Option(help="Default: index.html in it.")] = None,
+    output: Annotated[Path | None, new_file("Default: index.html in it.")] = None,
 ) -> None:
     """Write the index over all reports."""
     from impactlab.report.results import write_index

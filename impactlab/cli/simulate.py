@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from impactlab.cli.options import given
+from impactlab.cli.options import given, new_file
 
 if TYPE_CHECKING:
     from impactlab.model.discretisation import Discretisation
@@ -32,11 +32,9 @@ def simulate(
         str, typer.Option(help="leapfrog or semi_implicit, which pays from about 601 nodes on.")
     ] = "leapfrog",
     duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "3 ms",
-    output: Annotated[
-        Path | None, typer.Option(help="Keep histories and fields as netCDF.")
-    ] = None,
+    output: Annotated[Path | None, new_file("Keep histories and fields as netCDF.")] = None,
     plot: Annotated[
-        Path | None, typer.Option(help="Draw force, motion and strain: a PNG, SVG or PDF file.")
+        Path | None, new_file("Draw force, motion and strain: a PNG, SVG or PDF file.")
     ] = None,
 ) -> None:
     """Solve one impact on the paper's beam and print its responses."""
@@ -67,9 +65,9 @@ def simulate(
         dataset = solve_one(impact, grid, duration=seconds)
     print_responses(dataset)
     if output:
-        from impactlab.study.netcdf import write_netcdf
+        from impactlab.files import write_netcdf
 
-        write_netcdf(dataset, output)
+        write_netcdf(dataset, output, "impact")
         print(f"Histories and fields: {output}")
     if plot:
         from impactlab.figures.one_run import save

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_at_once
-from impactlab.cli.options import RunsFile, StudyFile, chosen, given, results_file
+from impactlab.cli.options import RunsFile, StudyFile, chosen, given, new_file, results_file
 
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
 _ALL = os.cpu_count() or 1
@@ -31,9 +31,7 @@ def recommend(
             help="Which it is asked of, such as peak_force,impulse. Default: those of the study."
         ),
     ] = "",
-    output: Annotated[
-        Path | None, typer.Option(help="Default: results/NAME/resolution.nc.")
-    ] = None,
+    output: Annotated[Path | None, new_file("Default: results/NAME/resolution.nc.")] = None,
     workers: Threads = _ALL,
 ) -> None:
     """Find the cheapest discretisation that is fine enough.
@@ -63,16 +61,16 @@ def recommend(
 
 def design(
     study: StudyFile,
-    output: Annotated[Path | None, typer.Option(help="Default: results/NAME/design.nc.")] = None,
+    output: Annotated[Path | None, new_file("Default: results/NAME/design.nc.")] = None,
 ) -> None:
     """Sample a study into its runs.
 
     A discretisation that is `auto` is found first, as by `impactlab recommend`.
     """
+    from impactlab.files import write_netcdf
     from impactlab.report.console import print_recommendation
     from impactlab.study import steps
     from impactlab.study.engine import Engine
-    from impactlab.study.netcdf import write_netcdf
     from impactlab.study.sampling.design import design as design_of
     from impactlab.study.schema.files import read_study
 
@@ -81,14 +79,14 @@ def design(
     stop_at_once()
     engine = Engine(workers=_ALL)
     found = steps.resolved(declared, path.parent, engine, print_recommendation)
-    write_netcdf(design_of(found), path)
+    write_netcdf(design_of(found), path, "design")
 
 
 def run(
     design_file: Annotated[
         Path, typer.Argument(metavar="STUDY", help="A study file, or its design.nc.")
     ],
-    output: Annotated[Path | None, typer.Option(help="Default: results/NAME/runs.nc.")] = None,
+    output: Annotated[Path | None, new_file("Default: results/NAME/runs.nc.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Threads or processes.")] = _ALL,
     processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
     scheduler: Annotated[str, typer.Option(help="Address of a running dask scheduler.")] = "",
@@ -110,15 +108,15 @@ def run(
     Finished batches are kept in results/NAME/shards: an interrupted study resumes there.
     """
     stop_at_once()
+    from impactlab.files import read_netcdf
     from impactlab.report.console import print_estimate, print_recommendation, print_solved
     from impactlab.study import steps
     from impactlab.study.engine import Engine, read_profile
     from impactlab.study.errors import StudyError
-    from impactlab.study.netcdf import read_netcdf
     from impactlab.study.sampling.design import design, study_of_design
     from impactlab.study.schema.files import read_study
 
-    stored = read_netcdf(design_file) if design_file.suffix == ".nc" else None
+    stored = read_netcdf(design_file, "design") if design_file.suffix == ".nc" else None
     study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
     path = output or results_file(study.name, "runs.nc")
     cost = steps.price(study, path.parent, workers)
@@ -143,9 +141,7 @@ def run(
 
 def refine(
     runs: RunsFile,
-    output: Annotated[
-        Path | None, typer.Option(help="Default: refinement.nc, beside the runs.")
-    ] = None,
+    output: Annotated[Path | None, new_file("Default: refinement.nc, beside the runs.")] = None,
     base_samples: Annotated[
         int | None,
         typer.Option(min=16, help="How many are solved again. Default: N/8, from 16 to 64."),

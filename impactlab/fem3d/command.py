@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_kept
-from impactlab.cli.options import WITNESS, given, results_file
+from impactlab.cli.options import WITNESS, given, new_folder, results_file
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,9 +57,7 @@ def witness(
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
     output: Annotated[
         Path | None,
-        typer.Option(
-            help="A folder. Default: results/NAME/witness, with the options given in its name."
-        ),
+        new_folder("Default: results/NAME/witness, with the options given in its name."),
     ] = None,
     deck: Annotated[
         str, typer.Option(help="abaqus or calculix: write its input deck, and solve nothing.")

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -13,7 +15,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import data, findings, style
 from impactlab.figures.catalogue import applicable
-from impactlab.files import replaced
+from impactlab.files import identity, replaced
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 
@@ -39,7 +41,7 @@ def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]
         Drawing(name, figure.title, partial(figure.plot, *pair), partial(figure.caption, *pair))
         for name, figure in applicable(*pair).items()
     ]
-    return draw(drawings, folder, study=str(runs.attrs.get("study")))
+    return draw(drawings, folder, study=str(runs.attrs.get("study")), made_from=analysis)
 
 
 def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
@@ -63,19 +65,23 @@ def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
         for outcome in outcomes
         if findings.has_curves(outcome)
     ]
-    return draw(drawings, folder, study=str(stored.attrs.get("study")))
+    return draw(drawings, folder, study=str(stored.attrs.get("study")), made_from=stored)
 
 
-def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
+def draw(
+    drawings: Iterable[Drawing], folder: Path, study: str, made_from: xr.Dataset | None = None
+) -> list[Path]:
     """Write NAME.svg, NAME.png, the data behind it (see data.py), and captions.json.
 
-    captions.json: {NAME: {"title", "caption", "alt"}} in the order of the report. Files of figures
-    that it named before and that are no longer drawn are removed. The same datasets give the
-    same bytes. Returns the paths written. Raises what drawing raises, with the figure's name added.
+    captions.json: {NAME: {"title", "caption", "alt", "made_from"}} in the order of the report.
+    Files of figures that it named before and that are no longer drawn are removed. The same
+    datasets give the same bytes. Returns the paths written. Raises what drawing raises, with the
+    figure's name added.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    listed = folder / CAPTIONS
-    before = set(json.loads(listed.read_bytes())) if listed.exists() else set()
+    before: set[str] = set()
+    with suppress(OSError, ValueError):  # it is written anew
+        before.update(listed(folder))
     written: list[Path] = []
     captions: dict[str, dict[str, str]] = {}
     for drawing in drawings:
@@ -87,16 +93,28 @@ def draw(drawings: Iterable[Drawing], folder: Path, study: str) -> list[Path]:
                 "title": drawing.title,
                 "caption": drawing.caption(),
                 "alt": data.alt(figure),
+                "made_from": identity(made_from),
             }
         except Exception as error:
             error.add_note(f"while drawing the figure {drawing.name} of study {study}")
             raise
-    with replaced(listed) as path:
+    with replaced(folder / CAPTIONS) as path:
         path.write_text(json.dumps(captions, indent=2, ensure_ascii=False) + "\n", "utf-8")
     for name in before - captions.keys():
         for kind in (*FORMATS, *data.FORMATS):
             (folder / f"{name}.{kind}").unlink(missing_ok=True)
-    return [*written, listed]
+    return [*written, folder / CAPTIONS]
+
+
+def listed(folder: Path) -> dict[str, dict[str, str]]:
+    """Return what captions.json says of each figure. Raises ValueError where it was damaged."""
+    path = folder / CAPTIONS
+    with suppress(ValueError, TypeError, AttributeError):
+        entries: dict[str, dict[str, str]] = json.loads(path.read_bytes())
+        sound = {"title", "caption", "alt"}.issubset
+        if all(re.fullmatch(r"\w+", name) and sound(each) for name, each in entries.items()):
+            return entries
+    raise ValueError(f"{path}: is damaged: draw the figures again (impactlab figures)")
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.options import RESULTS
+from impactlab.cli.options import RESULTS, new_folder
 
 
 def paper(
@@ -15,7 +15,7 @@ def paper(
         list[Path],
         typer.Argument(metavar="RESULTS...", help="results/NAME of each study of the paper."),
     ],
-    output: Annotated[Path, typer.Option(help="The folder to write to.")] = RESULTS / "paper",
+    output: Annotated[Path, new_folder("The folder to write to.")] = RESULTS / "paper",
 ) -> None:
     """Draw the paper's figures and test its statements.
 

@@ -18,11 +18,10 @@ from impactlab.figures.catalogue import applicable
 from impactlab.figures.draw import Drawing, draw
 from impactlab.figures.labels import Display, display
 from impactlab.figures.record import Figure
-from impactlab.files import replaced
+from impactlab.files import check_source, read_netcdf, replaced
 from impactlab.paper.statements import judge_all
 from impactlab.paper.statements.statement import Judgement, Statement, Verdict
 from impactlab.report.page import Cell, Row, Table, pictures, provenance, write_page
-from impactlab.study.netcdf import read_netcdf
 from impactlab.variables import provenance as made_now
 
 log = logging.getLogger(__name__)
@@ -52,7 +51,9 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
     for folder in folders:
         paths = folder / "runs.nc", folder / "analysis.nc"
         if all(path.exists() for path in paths):
-            stored[folder.name] = (read_netcdf(paths[0]), read_netcdf(paths[1]))
+            solved, found = read_netcdf(paths[0], "runs"), read_netcdf(paths[1], "analysis")
+            check_source(found, paths[1], solved, paths[0])
+            stored[folder.name] = solved, found
         else:
             log.warning("%s holds no runs.nc with an analysis.nc: it is left out", folder)
     runs = {name: pair[0] for name, pair in stored.items()}

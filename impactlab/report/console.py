@@ -78,7 +78,7 @@ def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
 
 def print_solved(path: Path) -> None:
     """Print one line about solved runs: their file and number, and the range of a response."""
-    from impactlab.study.netcdf import opened  # late: it loads xarray
+    from impactlab.files import opened  # late: it loads xarray
 
     with opened(path) as runs:
         failed = int(((runs["status"] & FAILED) != 0).sum()) if "status" in runs else 0

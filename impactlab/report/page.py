@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import csv
-import json
 import math
 import re
 from collections.abc import Iterable, Sequence
@@ -21,8 +20,8 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from impactlab.figures import labels
-from impactlab.figures.draw import CAPTIONS
-from impactlab.files import replaced
+from impactlab.figures.draw import CAPTIONS, listed
+from impactlab.files import identity, replaced
 
 _PROVENANCE = {
     "created": "Solved",
@@ -181,13 +180,22 @@ def largest(found: xr.Dataset, variable: str, text: Any = labels.percent) -> Cel
     return Cell("–" if np.isnan(value) else text(value), "number")
 
 
-def pictures(folder: Path, placed: Sequence[str] = ()) -> dict[str, Picture]:
+def pictures(
+    folder: Path, placed: Sequence[str] = (), made_from: xr.Dataset | None = None
+) -> dict[str, Picture]:
     """Return the figures that captions.json lists by name, numbered in the order of the page.
 
     The first belongs to the answer (`leading`); placed: names that come next, in order. Raises
-    FileNotFoundError, saying what to do, when captions.json or a figure is not in the folder.
+    FileNotFoundError, saying what to do, when captions.json or a figure is not in the folder;
+    ValueError when the figures were not drawn from the dataset made_from.
     """
-    entries = json.loads(_read(folder / CAPTIONS))
+    _read(folder / CAPTIONS)
+    entries = listed(folder)
+    if any(entry.get("made_from") != identity(made_from) for entry in entries.values()):
+        raise ValueError(
+            f"{folder}: its figures were drawn from other results: draw them again with "
+            "`impactlab figures`"
+        )
     order = {name: at for at, name in enumerate(placed)} | {leading(entries): -1}
     names = sorted(entries, key=lambda name: order.get(name, len(order)))
     found = {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,12 +12,12 @@ import xarray as xr
 
 from impactlab.figures import labels
 from impactlab.figures.access import count
-from impactlab.figures.draw import CAPTIONS, draw_all, draw_findings
+from impactlab.figures.draw import CAPTIONS, draw_all, draw_findings, listed
+from impactlab.files import check_source, opened, read_netcdf
 from impactlab.report.cautions import endings
 from impactlab.report.page import described, leading, write_page
 from impactlab.report.study import write_report
 from impactlab.report.verification import tally, write_verification
-from impactlab.study.netcdf import read_netcdf
 from impactlab.verification.stored import unpacked
 
 
@@ -60,14 +59,18 @@ def read_stored(paths: Sequence[Path]) -> tuple[Kind, list[xr.Dataset]]:
     """Return the kind of a study's results, and their datasets.
 
     Raises OSError naming a file that cannot be read, ValueError where files are missing or too
-    many.
+    many, were changed, or do not belong together.
     """
-    datasets = [read_netcdf(path) for path in paths]
-    kind = FINDINGS if "tolerance" in datasets[0] else RUNS
+    first = read_netcdf(paths[0], "runs", "findings")
+    kind = FINDINGS if first.attrs["content"] == "findings" else RUNS
     if len(paths) != len(kind.files):
         expected = " and ".join(kind.files)
         raise ValueError(f"{paths[0]}: expected {expected}, but got {len(paths)} files")
-    return kind, datasets
+    if kind is FINDINGS:
+        return kind, [first]
+    analysis = read_netcdf(paths[1], "analysis")
+    check_source(analysis, paths[1], first, paths[0])
+    return kind, [first, analysis]
 
 
 def write_index(results: Path, path: Path) -> None:
@@ -84,7 +87,7 @@ def write_index(results: Path, path: Path) -> None:
     for report in sorted(results.glob("*/report.html")):
         for kind in (RUNS, FINDINGS):
             if report.with_name(kind.files[0]).exists():
-                with xr.open_dataset(report.with_name(kind.files[0])) as stored:
+                with opened(report.with_name(kind.files[0]), "runs", "findings") as stored:
                     size, failed = kind.counts(stored)
                     entry = described(stored) | {"size": size, "failed": failed}
                 picture, alt = _thumbnail(report.with_name("figures"))
@@ -99,7 +102,7 @@ def write_index(results: Path, path: Path) -> None:
 def _thumbnail(figures: Path) -> tuple[Path | None, str]:
     """Return the figure that answers the study's question, and its title."""
     if (figures / CAPTIONS).exists():
-        entries = json.loads((figures / CAPTIONS).read_bytes())
+        entries = listed(figures)
         name = leading(entries)
         if (figures / f"{name}.svg").exists():
             return figures / f"{name}.svg", str(entries[name]["title"])

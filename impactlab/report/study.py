@@ -66,7 +66,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     sections = _sections(runs, analysis)
     answer, note = entries(runs, analysis)
     placed = [name for section in sections for name in section.figures]
-    drawn = pictures(figures_folder, placed)
+    drawn = pictures(figures_folder, placed, analysis)
     total, first = len(drawn), next(iter(drawn), "")
     rest = [name for name in drawn if name not in (*placed, first)]
     if rest or not drawn:

@@ -43,7 +43,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
     """
     outcomes = gravest_first(unpacked(findings))
     answer, note = entries(findings)
-    drawn, found = pictures(figures_folder), tally(outcomes)
+    drawn, found = pictures(figures_folder, made_from=findings), tally(outcomes)
     checks = []
     for outcome in outcomes:
         passed = [_row(entry) for entry in outcome.finding.comparisons if entry.passed]

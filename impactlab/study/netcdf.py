@@ -1,4 +1,4 @@
-"""netCDF files: datasets and shards.
+"""Shards: netCDF files of some finished runs.
 
 A shard holds keys and answers of some runs, with checksums. Columns of one type and shape are rows
 of one variable; the attribute `places` names them.
@@ -8,49 +8,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
-from netCDF4 import Dataset, set_chunk_cache
+from netCDF4 import Dataset
 
 from impactlab.files import replaced
 from impactlab.variables import HISTORIES, PROFILES
-
-_CACHE = 1_000_000
-"""Bytes per variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
-
-
-def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset, large variables compressed. Raises OSError as `files.replaced`."""
-    large = {
-        str(name): {"zlib": True, "complevel": 1}
-        for name, values in dataset.data_vars.items()
-        if values.dtype.kind == "f" and values.size > 10_000
-    }
-    set_chunk_cache(_CACHE)
-    with replaced(path, dataset.nbytes) as unfinished:
-        dataset.to_netcdf(unfinished, engine="netcdf4", encoding=large)
-
-
-@contextmanager
-def opened(path: Path) -> Iterator[xr.Dataset]:
-    """Give a dataset whose file is open. Raises OSError naming an unreadable file."""
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            yield dataset
-    except (OSError, ValueError, RuntimeError) as error:
-        raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
-
-
-def read_netcdf(path: Path) -> xr.Dataset:
-    """Return a dataset in memory, its file closed. Raises OSError naming an unreadable file."""
-    with opened(path) as dataset:
-        return dataset.load()
-
 
 Array = np.ndarray[Any, Any]
 Columns = dict[str, Array]

@@ -18,9 +18,18 @@ import numpy as np
 import xarray as xr
 from dask.delayed import delayed
 
+from impactlab.files import unfinished_files
 from impactlab.study.netcdf import DAMAGE, KEYS, Array, Shard
 from impactlab.study.solvers import SOLVERS, Solver, run_shape, solver_named, solver_of
-from impactlab.study.store import DAMAGED, OutputSpec, RunIndex, Shards, holder, run_keys
+from impactlab.study.store import (
+    DAMAGED,
+    OutputSpec,
+    RunIndex,
+    Shards,
+    holder,
+    run_keys,
+    shard_files,
+)
 
 _CHUNK = 10_000
 """Runs whose cases are in memory together."""
@@ -187,16 +196,15 @@ def _removable(
     shards_folder: Path, wanted: Mapping[Path, Sequence[Array] | None]
 ) -> dict[Path, str]:
     """Return removable files and reasons; wanted: keys needed in each folder, None: all of them."""
-    found = {}
-    for path in sorted(path for path in shards_folder.glob("*/*") if path.is_file()):
-        if path.name.startswith("."):
-            found[path] = "is unfinished"
-        elif path.name.endswith(DAMAGED):
-            found[path] = "was damaged and set aside"
-        elif path.parent not in wanted:
-            found[path] = "belongs to another version of the solver, or another output"
-        elif (needed := wanted[path.parent]) is not None:
-            keys = Shards.keys(path)
-            if keys.size and not any(np.isin(keys, each).any() for each in needed):
-                found[path] = "holds no run of the study"
-    return found
+    found: dict[Path, str] = {}
+    for folder in shards_folder.glob("*/"):
+        found |= dict.fromkeys(unfinished_files(folder), "is unfinished")
+        found |= dict.fromkeys(folder.glob(f"*{DAMAGED}"), "was damaged and set aside")
+        for path in shard_files(folder):
+            if folder not in wanted:
+                found[path] = "belongs to another version of the solver, or another output"
+            elif (needed := wanted[folder]) is not None:
+                keys = Shards.keys(path)
+                if keys.size and not any(np.isin(keys, each).any() for each in needed):
+                    found[path] = "holds no run of the study"
+    return dict(sorted(found.items()))

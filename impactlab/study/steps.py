@@ -6,6 +6,7 @@ what it needs: compiler and analysis take seconds to load.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
@@ -14,9 +15,8 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from impactlab.files import replaced
+from impactlab.files import check_source, opened, read_netcdf, replaced, write_netcdf
 from impactlab.study import REFINEMENT, RESOLUTION, SHARDS, TRIALS
-from impactlab.study.netcdf import opened, read_netcdf, write_netcdf
 from impactlab.study.schema.study import Auto, FunctionStudy, Study, Verification
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from impactlab.study.estimate import Estimate
     from impactlab.study.runs import Status
     from impactlab.verification.finding import Outcome
+
+log = logging.getLogger(__name__)
 
 _STUDY = "study"
 """File in a folder of shards that names the study file."""
@@ -49,7 +51,7 @@ def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = No
     from impactlab.study.adaptive import recommendation
 
     found = recommendation.recommend(study, path.with_name(TRIALS), engine, wishes)
-    write_netcdf(found, path)
+    write_netcdf(found, path, "resolution")
     return found
 
 
@@ -86,7 +88,11 @@ def _kept(study: Study, file: Path) -> xr.Dataset | None:
         return None
     from impactlab.study.adaptive.recommendation import matches_study
 
-    found = read_netcdf(file)
+    try:
+        found = read_netcdf(file, "resolution")
+    except ValueError as error:
+        log.warning("%s; the pilot runs are solved again", error)
+        return None
     return found if matches_study(found, study) else None
 
 
@@ -112,10 +118,10 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
 
         stage = partial(execute, shards_folder=shards, engine=engine)
         with locked(shards):  # over all its stages
-            write_netcdf(extend_sample(samples, stage, analyse), path)
+            write_netcdf(extend_sample(samples, stage, analyse), path, "runs")
     else:
         with open_runs(samples, shards, engine) as runs:
-            write_netcdf(runs, path)
+            write_netcdf(runs, path, "runs")
 
 
 def status(study: AnyStudy, folder: Path) -> Status | None:
@@ -132,7 +138,7 @@ def status(study: AnyStudy, folder: Path) -> Status | None:
         return None
     last = None
     if runs.exists():
-        with opened(runs) as dataset:
+        with opened(runs, "runs") as dataset:
             attrs = dataset.attrs
         if attrs.get("study_sha256") == declared.sha256 and "until_reason" in attrs:
             last = attrs["base_samples"]  # at which it stopped growing
@@ -186,7 +192,8 @@ def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = No
     from impactlab.study.execute import execute
 
     part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
-    write_netcdf(refine_cases(read_netcdf(runs), part, base_samples), path)
+    solved = read_netcdf(runs, "runs")
+    write_netcdf(refine_cases(solved, part, base_samples), path, "refinement", solved)
 
 
 def analyse_runs(
@@ -201,18 +208,22 @@ def analyse_runs(
     from impactlab.analysis.sensitivity.indices import sensitivity_variables, write_csv
     from impactlab.analysis.surrogate import packed
 
-    solved = read_netcdf(runs)
-    evidence = [read_netcdf(each) if each else None for each in (resolution, refinement)]
-    found = analyse(solved, *evidence)
-    write_netcdf(found, path)
+    sources = [solved := read_netcdf(runs, "runs")]
+    given = {"resolution": resolution, "refinement": refinement}
+    evidence = {name: read_netcdf(file, name) for name, file in given.items() if file}
+    if refinement:
+        check_source(evidence["refinement"], refinement, solved, runs)
+    sources += evidence.values()
+    found = analyse(solved, **evidence)
+    write_netcdf(found, path, "analysis", *sources)
     for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps another study's
         path.with_name(name).unlink(missing_ok=True)
     if indices := sensitivity_variables(found):
         with replaced(path.with_name("indices.csv"), indices.nbytes) as unfinished:
             write_csv(found, unfinished)
-        write_netcdf(indices, path.with_name("indices.nc"))
+        write_netcdf(indices, path.with_name("indices.nc"), "indices", *sources)
     if surrogates := packed(solved, found):
-        write_netcdf(surrogates, path.with_name("surrogate.nc"))
+        write_netcdf(surrogates, path.with_name("surrogate.nc"), "surrogate", *sources)
     return solved, found
 
 

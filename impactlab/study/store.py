@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import logging
 import os
+import re
 import socket
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -23,6 +24,7 @@ import numpy as np
 import xarray as xr
 from filelock import FileLock, Timeout
 
+from impactlab.files import unfinished_files
 from impactlab.study.netcdf import DAMAGE, KEY, KEYS, LAYOUT, Array, Columns, Shard, write_shard
 
 log = logging.getLogger(__name__)
@@ -94,8 +96,8 @@ class Shards:
         return found[0] if found else np.zeros(0, dtype=KEY)
 
     def files(self) -> list[Path]:
-        """Return the paths of all shards, sound or not."""
-        return sorted(self.folder.glob("*.nc"))
+        """Return the paths of all shards, sound or not; of nothing else that lies there."""
+        return shard_files(self.folder)
 
     def recover(self) -> Iterator[Array]:
         """Yield the keys of every sound shard, and tidy up; only for the process that writes here.
@@ -103,7 +105,7 @@ class Shards:
         Every shard is checked whole. A damaged one is renamed, for a person to look at; unfinished
         files are removed.
         """
-        for unfinished in self.folder.glob(".*"):
+        for unfinished in unfinished_files(self.folder):
             unfinished.unlink()
         for path in self.files():
             if found := _sound(path):
@@ -138,6 +140,11 @@ class Shards:
     def _noted(self, path: Path, keys: Array, columns: Columns) -> None:
         if _size(keys, columns) < _SMALL:
             self._small[path] = keys, columns
+
+
+def shard_files(folder: Path) -> list[Path]:
+    """Return the files in a folder that have the name of a shard."""
+    return sorted(path for path in folder.glob("[0-9a-f]" * 32 + ".nc") if path.is_file())
 
 
 def _size(keys: Array, columns: Columns) -> int:
@@ -210,6 +217,10 @@ class RunIndex:
         return values
 
 
+_OWNER = re.compile(r"process \d{1,9} on [\w.-]{1,99}, since [\d:+ -]{19,40}")
+"""What `locked` writes beside its lock."""
+
+
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
     """Work in `folder` alone, in steps that may lock it again.
@@ -235,7 +246,8 @@ def locked(folder: Path) -> Iterator[None]:
                 owner.write_text(f"process {os.getpid()} on {socket.gethostname()}, since {now}")
         yield
         if lock.lock_counter == 1:
-            owner.unlink(missing_ok=True)
+            with suppress(OSError):  # a folder, say
+                owner.unlink()
     finally:
         lock.release()
 
@@ -251,6 +263,7 @@ def holder(folder: Path) -> str:
 
 
 def _read(owner: Path) -> str:
-    with suppress(OSError):
-        return owner.read_text().strip() or "another process"
+    with suppress(OSError, UnicodeDecodeError):
+        if _OWNER.fullmatch(text := owner.read_text() if owner.is_file() else ""):
+            return text
     return "another process"

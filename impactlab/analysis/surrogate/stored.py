@@ -12,6 +12,7 @@ import xarray as xr
 from impactlab.analysis.surrogate.chaos import basis
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
 from impactlab.analysis.verdicts import names
+from impactlab.files import read_netcdf
 from impactlab.model.distributions import arguments, cumulative
 
 IMPRECISE = 0.1
@@ -154,15 +155,7 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
 def load_surrogate(path: str | Path) -> Surrogate:
     """Load the surrogates of a study from its surrogate.nc.
 
-    Raises OSError, naming a file that cannot be read, and ValueError where it holds no surrogate.
+    Raises OSError, naming a file that cannot be read, and ValueError where it holds no
+    surrogate, or was changed.
     """
-    try:
-        dataset = xr.load_dataset(path, engine="netcdf4")
-    except (OSError, ValueError, RuntimeError) as error:
-        raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
-    if absent := {"coefficient", "degree", "distribution"} - set(dataset.data_vars):
-        raise ValueError(
-            f"{path}: is no surrogate, for it has no {', '.join(sorted(absent))}: "
-            "name the surrogate.nc that `impactlab analyse` wrote"
-        )
-    return Surrogate(dataset)
+    return Surrogate(read_netcdf(Path(path), "surrogate"))

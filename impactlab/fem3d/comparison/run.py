@@ -17,11 +17,10 @@ from impactlab.fem3d.comparison.plan import MODELS, Plan
 from impactlab.fem3d.figures.run import draw_witness
 from impactlab.fem3d.solver import solve_on
 from impactlab.fem3d.solver.march import Progress
-from impactlab.files import replaced
+from impactlab.files import opened, replaced, write_netcdf
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.simulate import simulate
-from impactlab.study.netcdf import read_netcdf, write_netcdf
 from impactlab.variables import RESPONSES, UNLIKE, attributes, reasons, status_bits
 
 _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")
@@ -50,7 +49,8 @@ def compare(
     """
     check_writable(folder)
     try:
-        complete = "stopped" not in read_netcdf(folder / "witness.nc").attrs
+        with opened(folder / "witness.nc") as before:
+            complete = "stopped" not in before.attrs
     except OSError:
         complete = False
     with watched or nullcontext() as progress:
@@ -58,10 +58,10 @@ def compare(
         solid = solve_on(mesh, impact, duration=plan.duration, threads=workers, progress=progress)
     if "stopped" in solid.attrs and complete:
         folder = folder.parent / f"{folder.resolve().name}_stopped"
-    write_netcdf(solid, folder / "witness.nc")
+    write_netcdf(solid, folder / "witness.nc", "witness")
     write_vtu(solid, folder / "witness.vtu")
     beams = simulate_beams(impact, plan.case.discretisation, float(solid["duration"]))
-    write_netcdf(beams, folder / "beams.nc")
+    write_netcdf(beams, folder / "beams.nc", "beams")
     responses = compared(solid, beams)
     write_csv(responses, folder / "comparison.csv")
     draw_witness(solid, beams, folder / "figures", plan.case.name)

@@ -9,14 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.constructor import ConstructorError, SafeConstructor
 from ruamel.yaml.error import MarkedYAMLError
-from ruamel.yaml.events import NodeEvent
+from ruamel.yaml.events import CollectionEndEvent, CollectionStartEvent, NodeEvent
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from impactlab.study.errors import Problem, StudyError, dotted
@@ -84,13 +83,16 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
     try:
         yaml = YAML(typ="safe", pure=True)
         yaml.Constructor = Constructor
-        nodes = (
-            event
-            for event in YAML(typ="safe", pure=True).parse(text)
-            if isinstance(event, NodeEvent)
-        )
-        if next(islice(nodes, MOST, None), None):
-            raise RefusedError((), f"holds more than {MOST:,} keys and values: shorten it")
+        nodes = level = 0
+        for event in YAML(typ="safe", pure=True).parse(text):
+            nodes += isinstance(event, NodeEvent)
+            level += isinstance(event, CollectionStartEvent)
+            level -= isinstance(event, CollectionEndEvent)
+            if nodes > MOST:
+                raise RefusedError((), f"holds more than {MOST:,} keys and values: shorten it")
+            if level > _DEEPEST + 1:  # at once: the parser takes the square of the levels
+                where = f"line {event.start_mark.line + 1}"
+                raise RefusedError((), f"{where}: nests too deeply (is a quotation mark missing?)")
         data, root = None, yaml.compose(text)
         if root is not None:
             _measure(root, (), {})  # before anything is built

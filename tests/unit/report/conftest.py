@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 from impactlab.figures.draw import draw_all
+from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.study import write_report
 
 VOID = {"meta", "img", "br", "link", "input", "hr"}
@@ -103,6 +104,8 @@ def results(velocity_study: Any, drawn: Path, tmp_path: Path) -> Path:
         runs = runs[kept].isel(velocity=[0, 3, 7], time=slice(None, None, 8))
         draw_all(runs, analysis, folder / "figures")
         write_report(runs, analysis, folder / "figures", folder / "report.html")
-        runs.to_netcdf(folder / "runs.nc")
+        write_netcdf(runs, folder / "runs.nc", "runs")
+        stored = read_netcdf(folder / "runs.nc", "runs")
+        write_netcdf(analysis, folder / "analysis.nc", "analysis", stored)
     shutil.copytree(drawn, tmp_path / "results")
     return tmp_path / "results"

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from impactlab.files import write_netcdf
 from impactlab.report.page import drawn_data
 from impactlab.report.results import write_index
 from impactlab.report.study import write_report
@@ -141,8 +142,7 @@ def test_failures_are_told(results: Path, page: Any, failing: Any) -> None:
     runs = xr.load_dataset(path)
     runs = failing(runs.assign(impulse=runs["contact_duration"]), {"velocity": 0, "contact": 0})
     runs["contact_duration"][1, 0] = np.nan
-    path.unlink()
-    runs.to_netcdf(path)
+    write_netcdf(runs, path, "runs")
     assert "6 runs (grid), 1 failed, 1 without an answer" in _index(results, page).text
 
 
@@ -150,8 +150,7 @@ def test_markup_and_odd_names_do_no_harm(results: Path, page: Any) -> None:
     odd = results / 'a "b" #1'
     (results / "velocity").rename(odd)
     runs = xr.load_dataset(odd / "runs.nc")
-    (odd / "runs.nc").unlink()
-    runs.assign_attrs(title="<i>T</i>").to_netcdf(odd / "runs.nc")
+    write_netcdf(runs.assign_attrs(title="<i>T</i>"), odd / "runs.nc", "runs")
     found = _index(results, page)
     assert found.named("i") == []
     assert "<i>T</i>" in found.text

@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 from impactlab.figures.draw import draw_findings
+from impactlab.files import write_netcdf
 from impactlab.report.results import FINDINGS, RUNS, read_stored, write_index
 from impactlab.report.verification import write_verification
 from impactlab.verification.stored import packed
@@ -115,7 +116,7 @@ def test_the_index_lists_it_with_its_counts(
     for name, dataset in {"checks": findings, "sound": packed(outcomes[:1])}.items():
         (results / name).mkdir()
         (results / name / "report.html").touch()
-        dataset.to_netcdf(results / name / "findings.nc")
+        write_netcdf(dataset, results / name / "findings.nc", "findings")
     write_index(results, results / "index.html")
     text = page((results / "index.html").read_text("utf-8")).text
     assert "checks: 4 checks, 21 comparisons, 3 checks and 3 comparisons failed" in text
@@ -125,9 +126,9 @@ def test_the_index_lists_it_with_its_counts(
 
 def test_stored_files_tell_their_kind(findings: xr.Dataset, results: Path) -> None:
     path, runs = results / "findings.nc", results / "velocity" / "runs.nc"
-    findings.to_netcdf(path)
+    write_netcdf(findings, path, "findings")
     assert read_stored([path])[0] is FINDINGS
-    assert read_stored([runs, runs])[0] is RUNS
+    assert read_stored([runs, runs.with_name("analysis.nc")])[0] is RUNS
     with pytest.raises(ValueError, match=r"runs\.nc: expected runs\.nc and analysis\.nc"):
         read_stored([runs])
     with pytest.raises(ValueError, match=r"findings\.nc: expected findings\.nc"):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.study.netcdf import read_netcdf, write_netcdf
+from impactlab.files import read_netcdf, write_netcdf
 from impactlab.study.store import OutputSpec, Shards
 
 
@@ -17,15 +17,15 @@ def noise(size):
 def test_unreadable_files_are_named(tmp_path):
     (tmp_path / "x.nc").write_text("no such thing")
     with pytest.raises(OSError, match=r"x\.nc: cannot be read as netCDF"):
-        read_netcdf(tmp_path / "x.nc")
+        read_netcdf(tmp_path / "x.nc", "runs")
 
 
 def test_failed_write_leaves_the_old_file_and_no_rubbish(tmp_path):
     path = tmp_path / "runs.nc"
-    write_netcdf(xr.Dataset({"a": 1.0}), path)
+    write_netcdf(xr.Dataset({"a": 1.0}), path, "runs")
     with pytest.raises((TypeError, ValueError)):
-        write_netcdf(xr.Dataset({"a": ((), object())}), path)
-    assert read_netcdf(path)["a"].item() == 1.0
+        write_netcdf(xr.Dataset({"a": ((), object())}), path, "runs")
+    assert read_netcdf(path, "runs")["a"].item() == 1.0
     assert [entry.name for entry in tmp_path.iterdir()] == ["runs.nc"]
 
 
@@ -42,10 +42,10 @@ def tiny_disk(tmp_path):
 
 
 def test_a_full_disk_is_told_and_the_older_file_stays(tiny_disk):
-    write_netcdf(noise(1000), tiny_disk / "x.nc")
+    write_netcdf(noise(1000), tiny_disk / "x.nc", "runs")
     with pytest.raises(OSError, match=r"x\.nc: could not be written .* are free .* needed"):
-        write_netcdf(noise(1_000_000), tiny_disk / "x.nc")
-    assert read_netcdf(tiny_disk / "x.nc").identical(noise(1000))
+        write_netcdf(noise(1_000_000), tiny_disk / "x.nc", "runs")
+    assert read_netcdf(tiny_disk / "x.nc", "runs").equals(noise(1000))
     assert [path.name for path in tiny_disk.iterdir()] == ["x.nc"]
 
 

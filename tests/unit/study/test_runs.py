@@ -124,7 +124,8 @@ def test_what_is_not_is_named_with_the_reason(small_design, tmp_path):
 def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path, caplog):
     execute(small_design(1.0), tmp_path, Engine())
     (shard,) = tmp_path.glob("*/*.nc")
-    unfinished, damaged = shard.with_name(".some.nc.12"), shard.with_name("some.nc.damaged")
+    unfinished = shard.with_name(f".some.nc.{32 * 'a'}")
+    damaged = shard.with_name("some.nc.damaged")
     unfinished.touch()
     damaged.touch()
     shard.write_bytes(shard.read_bytes()[:-10])

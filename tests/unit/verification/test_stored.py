@@ -4,14 +4,14 @@ from dataclasses import asdict
 
 import numpy as np
 
-from impactlab.study.netcdf import read_netcdf, write_netcdf
+from impactlab.files import read_netcdf, write_netcdf
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import packed, unpacked
 
 
 def kept(dataset, tmp_path):
-    write_netcdf(dataset, tmp_path / "findings.nc")
-    return read_netcdf(tmp_path / "findings.nc")
+    write_netcdf(dataset, tmp_path / "findings.nc", "findings")
+    return read_netcdf(tmp_path / "findings.nc", "findings")
 
 
 def same(first, second):

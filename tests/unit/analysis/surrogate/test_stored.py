@@ -13,6 +13,7 @@ import xarray as xr
 
 from impactlab.analysis.surrogate import analysis, load_surrogate, packed
 from impactlab.analysis.surrogate.stored import Surrogate
+from impactlab.files import write_netcdf
 from impactlab.report.console import print_predictions
 
 from .conftest import ishigami
@@ -41,7 +42,7 @@ def loaded(
     """Read where scikit-learn is not installed."""
     dataset = packed(runs, found)
     assert dataset is not None
-    dataset.to_netcdf(tmp_path / "surrogate.nc", engine="netcdf4")
+    write_netcdf(dataset, tmp_path / "surrogate.nc", "surrogate")
     monkeypatch.setitem(sys.modules, "sklearn", None)
     return load_surrogate(tmp_path / "surrogate.nc")
 
@@ -153,7 +154,7 @@ def test_units_of_parameters(loaded: Surrogate) -> None:
 
 def test_files_that_are_none(tmp_path: Path) -> None:
     xr.Dataset({"degree": 1.0}).to_netcdf(tmp_path / "other.nc")
-    with pytest.raises(ValueError, match=r"other.nc: is no surrogate, .* coefficient, distrib"):
+    with pytest.raises(ValueError, match=r"other.nc: has no checksums.*impactlab analyse"):
         load_surrogate(tmp_path / "other.nc")
     (tmp_path / "text.nc").write_text("no netCDF")
     with pytest.raises(OSError, match=r"text.nc: cannot be read as netCDF"):
