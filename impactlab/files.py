@@ -172,7 +172,7 @@ def _check_content(dataset: xr.Dataset, path: Path, contents: Sequence[str]) -> 
     if dataset.attrs["content"] not in contents:
         raise ValueError(
             f"{path}: holds {dataset.attrs['content']}, not {' or '.join(contents)}: make "
-            f"file that {command} wrote"
+            f"one with {command}"
         )
 
 

@@ -9,6 +9,8 @@ import pytest
 import xarray as xr
 from command_line import here as impactlab
 
+from impactlab.files import write_netcdf
+
 HOSTILE = (
     "=1+1 <script>alert(1)</script> <img src=x onerror=alert(1)> </title></pre> \"q' {{ 7*7 }} "
     "{% raw %} [red]b[/red] [link=http://e.vil]l[/link] $\\frac{$ \\LaTeX %s {0} &lt; @SUM ${x}"
@@ -174,7 +176,7 @@ def test_a_design_does_not_say_where_its_runs_go(folder, capsys, name):
     (folder / "studies" / "evil.yaml").write_text(text())
     assert impactlab("design", "studies/evil.yaml") == 0
     stored = xr.load_dataset(folder / "results" / "evil" / "design.nc").assign_attrs(study=name)
-    stored.to_netcdf(folder / "design.nc")
+    write_netcdf(stored, folder / "design.nc", "design")
     before = everything(folder.parent)
     assert impactlab("run", "design.nc") == 1
     assert "its name becomes the name of a folder" in capsys.readouterr().err

@@ -9,6 +9,7 @@ import xarray as xr
 from command_line import SMALL, called, here
 from command_line import done as impactlab
 
+from impactlab.files import write_netcdf
 from impactlab.report.answer import answers
 from impactlab.study import steps
 from impactlab.study.adaptive import extending, recommendation
@@ -153,7 +154,7 @@ def test_a_sample_predicts_what_was_not_solved(folder):
     assert value == pytest.approx(expected, abs=5 * error + 1)
     assert error < 0.01 * expected
     runs = file.with_name("runs.nc")
-    xr.load_dataset(runs).assign_attrs(analyses="sensitivity").to_netcdf(runs)
+    write_netcdf(xr.load_dataset(runs).assign_attrs(analyses="sensitivity"), runs, "runs")
     impactlab("analyse", runs, cwd=folder)
     assert not file.exists()  # it would be that of another analysis
 
