@@ -83,16 +83,7 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
     try:
         yaml = YAML(typ="safe", pure=True)
         yaml.Constructor = Constructor
-        nodes = level = 0
-        for event in YAML(typ="safe", pure=True).parse(text):
-            nodes += isinstance(event, NodeEvent)
-            level += isinstance(event, CollectionStartEvent)
-            level -= isinstance(event, CollectionEndEvent)
-            if nodes > MOST:
-                raise RefusedError((), f"holds more than {MOST:,} keys and values: shorten it")
-            if level > _DEEPEST + 1:  # at once: the parser takes the square of the levels
-                where = f"line {event.start_mark.line + 1}"
-                raise RefusedError((), f"{where}: nests too deeply (is a quotation mark missing?)")
+        _check_size(text)
         data, root = None, yaml.compose(text)
         if root is not None:
             _measure(root, (), {})  # before anything is built
@@ -134,6 +125,19 @@ class RefusedError(ValueError):
         """Note the place (path) and the reason."""
         super().__init__(reason)
         self.key = dotted(path[:3])
+
+
+def _check_size(text: str) -> None:
+    """Raise RefusedError for too many nodes, or levels, without building anything."""
+    nodes = level = 0
+    for event in YAML(typ="safe", pure=True).parse(text):
+        nodes += isinstance(event, NodeEvent)
+        level += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
+        if nodes > MOST:
+            raise RefusedError((), f"holds more than {MOST:,} keys and values: shorten it")
+        if level > _DEEPEST + 1:  # at once: a parser takes the square of the levels
+            where = f"line {event.start_mark.line + 1}"
+            raise RefusedError((), f"{where}: nests too deeply (is a quotation mark missing?)")
 
 
 class Constructor(SafeConstructor):
