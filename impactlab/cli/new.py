@@ -38,7 +38,7 @@ def new(
 ) -> None:
     """Make a project: workflow, profiles and two studies."""
     from importlib.metadata import version
-    from shutil import copy, copytree
+    from shutil import copy, copytree, which
 
     if folder.exists() and (folder.is_file() or any(folder.iterdir())):
         raise ValueError(f"{folder}: is there already: name a folder that is new, or empty")
@@ -49,4 +49,5 @@ def new(
         (copytree if (source / name).is_dir() else copy)(source / name, folder / place)
     (folder / "environment.yaml").write_text(_ENVIRONMENT.format(version=version("impactlab")))
     (folder / "README.md").write_text(_README)
-    print(f"{folder}: a workflow and two studies. Next: cd {folder} && snakemake --cores all")
+    install = "" if which("snakemake") else "pip install 'impactlab[workflow]' && "
+    print(f"{folder}: a workflow, two studies. Next: {install}cd {folder} && snakemake --cores all")

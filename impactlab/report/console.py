@@ -12,6 +12,7 @@ from rich.filesize import decimal
 from rich.markup import escape
 from rich.table import Column, Table
 
+from impactlab.model.parameters import PARAMETERS
 from impactlab.study.quantities import engineering, time
 from impactlab.variables import FAILED, FAILURES, FLAGS, RESPONSES, marks, warnings_in
 
@@ -94,8 +95,12 @@ def print_solved(path: Path) -> None:
 
 def print_estimate(cost: Estimate, workers: int) -> None:
     """Print what a study costs, and the limits that it exceeds."""
+
+    def units(name: str) -> str:
+        return PARAMETERS[name].units if name in PARAMETERS else "1"
+
     at = ", ".join(
-        f"{name} = {value if isinstance(value, str) else f'{value:.4g}'}"
+        f"{name} = {value if isinstance(value, str) else engineering(value, units(name))}"
         for name, value in cost.largest_run.items()
     )
     lines = {
