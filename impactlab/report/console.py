@@ -50,7 +50,7 @@ def _amount(name: str, value: float) -> str:
     if math.isnan(value):
         return "missing"
     if "plastic_strain" in name:
-        return f"{100 * value:.4g} %"
+        return f"{float(f'{100 * value:.4g}'):,g} %"
     return engineering(value, RESPONSES[name].units)
 
 
