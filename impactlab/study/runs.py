@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import time
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
@@ -167,44 +167,31 @@ def file_stats(paths: Iterable[Path]) -> Iterator[os.stat_result]:
                 yield found
 
 
-def removable_files(shards_folder: Path, designs: Collection[xr.Dataset]) -> dict[Path, str]:
+def removable_files(folder: Path, designs: Collection[xr.Dataset] | None) -> dict[Path, str]:
     """Return the files of a study's folder of shards that may be removed, and the reasons.
 
-    designs: all that the study may need; none where it does not exist any more. A shard stays as
-    long as one of its runs is needed, or it cannot be read.
+    designs: all that the study may need; none where it does not exist any more; None of pilot runs
+    and refinements, which are all kept but those of another solver: only a search tells which would
+    be needed again. A shard stays as long as one of its runs is needed, or it cannot be read.
     """
     wanted: dict[Path, list[Array]] = {}
-    for design in designs:
+    for name in SOLVERS if designs is None else ():
+        wanted[Shards(folder, OutputSpec(0, False), solver_named(name).version).folder] = []
+    for design in designs or ():
         work = Work.of(design)
-        shards = Shards(shards_folder, work.output, work.solver.version)
+        shards = Shards(folder, work.output, work.solver.version)
         wanted.setdefault(shards.folder, []).append(work.keys)
-    found = _removable(shards_folder, wanted)
-    return found if designs else dict.fromkeys(found, "its study does not exist")
-
-
-def outdated(folder: Path) -> dict[Path, str]:
-    """Return removable files and reasons as `removable_files` does, of pilot runs and refinements.
-
-    All are kept but those of another solver: only a search tells which would be needed again.
-    """
-    versions = [solver_named(name).version for name in SOLVERS]
-    current = [Shards(folder, OutputSpec(0, False), version).folder for version in versions]
-    return _removable(folder, dict.fromkeys(current))
-
-
-def _removable(
-    shards_folder: Path, wanted: Mapping[Path, Sequence[Array] | None]
-) -> dict[Path, str]:
-    """Return removable files and reasons; wanted: keys needed in each folder, None: all of them."""
     found: dict[Path, str] = {}
-    for folder in shards_folder.glob("*/"):
-        found |= dict.fromkeys(unfinished_files(folder), "is unfinished")
-        found |= dict.fromkeys(folder.glob(f"*{DAMAGED}"), "was damaged and set aside")
-        for path in shard_files(folder):
-            if folder not in wanted:
+    for place in folder.glob("*/"):
+        found |= dict.fromkeys(unfinished_files(place), "is unfinished")
+        found |= dict.fromkeys(place.glob(f"*{DAMAGED}"), "was damaged and set aside")
+        for path in shard_files(place):
+            if place not in wanted:
                 found[path] = "belongs to another version of the solver, or another output"
-            elif (needed := wanted[folder]) is not None:
+            elif designs:
                 keys = Shards.keys(path)
-                if keys.size and not any(np.isin(keys, each).any() for each in needed):
+                if keys.size and not any(np.isin(keys, each).any() for each in wanted[place]):
                     found[path] = "holds no run of the study"
+    if designs is not None and not designs:
+        found = dict.fromkeys(found, "its study does not exist")
     return dict(sorted(found.items()))

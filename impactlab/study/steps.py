@@ -171,7 +171,7 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
 
 def _stale(file: Path, shards: Path) -> dict[Path, str]:
     """Return the files to remove of one study; file: the study, perhaps gone from there."""
-    from impactlab.study.runs import outdated, removable_files
+    from impactlab.study.runs import removable_files
     from impactlab.study.sampling.design import design, stages
     from impactlab.study.schema.files import read_study
 
@@ -181,7 +181,7 @@ def _stale(file: Path, shards: Path) -> dict[Path, str]:
     if not file.is_file():
         return removable_files(shards, ())
     if shards.name != SHARDS:
-        return outdated(shards)
+        return removable_files(shards, None)
     declared = resolved_before(read_study(file), shards.parent)
     return {} if declared is None else removable_files(shards, list(stages(design(declared))))
 

@@ -9,7 +9,6 @@ from impactlab.study.runs import (
     Work,
     file_stats,
     open_answers,
-    outdated,
     removable_files,
     status,
 )
@@ -118,7 +117,7 @@ def test_what_is_not_is_named_with_the_reason(small_design, tmp_path):
     (shard,) = tmp_path.glob("*/*.nc")
     assert removable_files(tmp_path, [small_design(3.0)]) == {shard: "holds no run of the study"}
     assert removable_files(tmp_path, [small_design(1.0, profiles=1)]) == {shard: OTHER_SOLVER}
-    assert removable_files(tmp_path, []) == {shard: "its study does not exist"}
+    assert removable_files(tmp_path, ()) == {shard: "its study does not exist"}
 
 
 def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path, caplog):
@@ -136,8 +135,8 @@ def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path,
 
 def test_of_runs_beside_a_study_only_those_of_another_solver_can_go(small_design, tmp_path):
     execute(small_design(1.0), tmp_path, Engine())
-    assert outdated(tmp_path) == {}
+    assert removable_files(tmp_path, None) == {}
     (shard,) = tmp_path.glob("*/*.nc")
     other = shard.parent.with_name("0" * 16)
     shard.parent.rename(other)
-    assert outdated(tmp_path) == {other / shard.name: OTHER_SOLVER}
+    assert removable_files(tmp_path, None) == {other / shard.name: OTHER_SOLVER}

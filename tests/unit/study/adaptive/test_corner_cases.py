@@ -5,7 +5,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from impactlab.study.adaptive.pilot_runs import corner_cases, corners
+from impactlab.study.adaptive.recommendation import corner_cases, corners
 from impactlab.study.schema.files import read_study
 
 STUDY = """
