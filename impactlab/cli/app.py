@@ -16,8 +16,8 @@ from impactlab.cli.interrupt import stop_quietly
 
 _COMMANDS = {
     "simulate": "impactlab.cli.simulate:simulate",
-    "go": "impactlab.cli.go:go",
-    "new": "impactlab.cli.new:new",
+    "go": "impactlab.cli.solve:go",
+    "new": "impactlab.cli.studies:new",
     "studies": "impactlab.cli.studies:studies",
     "recommend": "impactlab.cli.solve:recommend",
     "design": "impactlab.cli.solve:design",

@@ -187,7 +187,6 @@ _PERIODS = (
     (60, "minutes"),
     (1, "s"),
 )
-_BYTES = ((1e15, "PB"), (1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB"))
 
 
 def time(seconds: float) -> str:
@@ -205,9 +204,9 @@ def engineering(value: float, units: str, digits: int = 4) -> str:
     """
     rounded, power = float(f"{value:.{digits}g}"), 0
     if rounded and units in _PREFIXED:
-        power = min(max(math.floor(math.log10(abs(rounded)) / 3), -3), 3)
-    prefix = "nµm kMG"[power + 3].strip()
-    return f"{rounded / 1000.0**power:.{digits}g} {prefix}{_symbol(units)}".rstrip()
+        power = min(max(math.floor(math.log10(abs(rounded)) / 3), -3), 5)
+    prefix = "nµm kMGTP"[power + 3].strip()
+    return f"{float(f'{rounded / 1000.0**power:.{digits}g}'):,g} {prefix}{_symbol(units)}".rstrip()
 
 
 def _symbol(units: str) -> str:
@@ -215,16 +214,13 @@ def _symbol(units: str) -> str:
     return re.sub(r" (\w+)-(\d)", r"/\1\2", units).translate(str.maketrans("23", "²³", "1"))
 
 
-_PREFIXED = ("J", "N", "N s", "Pa", "m", "s")
+_PREFIXED = ("B", "J", "N", "N s", "Pa", "m", "s")
 """Units that a prefix fits."""
 
 
 def amount(size: float) -> str:
     """Return an amount of bytes with two digits, in decimal units."""
-    for unit, name in _BYTES:
-        if size >= unit:
-            return f"{_two_digits(size / unit)} {name}"
-    return f"{size:.0f} bytes"
+    return engineering(size, "B", digits=2)
 
 
 def _two_digits(number: float) -> str:
