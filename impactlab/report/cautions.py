@@ -27,11 +27,6 @@ def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
             "another time. The verdicts and indices below may be wrong; repeat the analysis "
             "(impactlab analyse)."
         )
-    if ending := endings(runs):
-        yield (
-            f"Of {count(runs)} runs, {ending}. They are left out of the figures and tables of what "
-            "they lack; they are listed below with the reason."
-        )
     if "status" in runs and "contact" in runs.coords:
         beyond = (runs["status"] & MARKS["outside_contact_law"][0]) != 0
         for law in np.unique(runs["contact"].values).tolist():

@@ -87,10 +87,11 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         note=note,
         leading=drawn.pop(first, None),
         facts=[
-            f"{labels.counted(count(runs), 'run')} ({method}), {ending or 'none failed'}",
+            f"{labels.counted(count(runs), 'run')} ({method})" + ", none failed" * (not ending),
             labels.counted(len(varied(runs)), "varied parameter"),
             labels.counted(total, "figure"),
         ],
+        ending=ending,
         pictures=drawn,
         files=os.path.relpath(figures_folder, path.parent),
         sections=sections,

@@ -64,6 +64,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
         note=note,
         leading=drawn.get(OVERVIEW),
         facts=[labels.counted(found[f"{what}s"], what) for what in ("check", "comparison")],
+        ending="",
         bad=bool(found["bad_checks"]) or not outcomes,
         summary=_summary(outcomes),
         checks=checks,
