@@ -78,13 +78,14 @@ def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal |
     return next((each for each in found if each), None)
 
 
-def refused_alone(parameter: Parameter, value: Value) -> str:
-    """Return the model's reason why no impact can have this value; "" where one can.
+def check_alone(parameter: Parameter, value: Value) -> Value:
+    """Return the value. Raises ValueError with the model's reason where no impact can have it.
 
     A parameter of a test function, which is no part of the model, can have any value.
     """
-    found = refusal(_ROOMY, {parameter.name: value}) if parameter.path else None
-    return found.reason if found else ""
+    if parameter.path and (found := refusal(_ROOMY, {parameter.name: value})):
+        raise ValueError(found.reason)
+    return value
 
 
 _ROOMY: Base = with_values(

@@ -20,7 +20,7 @@ from impactlab.study.schema.checks import has_solid_runs
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.schema.study import FunctionStudy, Study, StudyBase
 from impactlab.study.solvers import run_shape, varied_names
-from impactlab.study.validity import Refusal, refused_alone, refused_run
+from impactlab.study.validity import Refusal, check_alone, refused_run
 from impactlab.types import Floats
 from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
@@ -82,8 +82,10 @@ def _check_draws(study: Study, drawn: dict[str, Floats]) -> None:
     found = None
     for name, values in drawn.items():
         for extreme in (float(values.min()), float(values.max())):
-            if found is None and (reason := refused_alone(PARAMETERS[name], extreme)):
-                found = Refusal(name, reason, {name: extreme})
+            try:
+                check_alone(PARAMETERS[name], extreme)
+            except ValueError as error:
+                found = found or Refusal(name, str(error), {name: extreme})
     if found is None:
         base = with_values(study.impact, study.discretisation, study.sampling.fixed)
         found = refused_run(base, {name: values.tolist() for name, values in drawn.items()})

@@ -14,7 +14,7 @@ from impactlab.model.parameters import Parameter, Value
 from impactlab.study.sampling.sections import Sampling
 from impactlab.study.schema.parameters import value_type
 from impactlab.study.schema.section import Section, Whole, at_key, one_of
-from impactlab.study.validity import refused_alone
+from impactlab.study.validity import check_alone
 
 Q = TypeVar("Q", bound=float)
 MOST_VALUES = 10_000
@@ -50,8 +50,10 @@ class Range(Section, Generic[Q]):
         if not parameter.whole:
             return values
         for value in values:
-            if reason := refused_alone(parameter, value):
-                raise ValueError(f"the range gives {value:g}: {reason}; list the values")
+            try:
+                check_alone(parameter, value)
+            except ValueError as error:
+                raise ValueError(f"the range gives {value:g}: {error}; list the values") from None
         return [int(value) for value in values]
 
 

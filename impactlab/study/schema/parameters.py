@@ -16,7 +16,7 @@ from pydantic import (
 )
 
 from impactlab.model.distributions import ARGUMENTS, quantile
-from impactlab.model.parameters import Parameter, Value
+from impactlab.model.parameters import Parameter
 from impactlab.study.schema.section import (
     Number,
     Section,
@@ -25,7 +25,7 @@ from impactlab.study.schema.section import (
     quantity,
     requires,
 )
-from impactlab.study.validity import refused_alone
+from impactlab.study.validity import check_alone
 from impactlab.types import Floats
 
 
@@ -34,13 +34,7 @@ def value_type(parameter: Parameter) -> Any:
     if parameter.choices:
         return Annotated[str, one_of(parameter.long_name, parameter.choices)]
     number = Whole if parameter.whole else quantity(parameter.units)
-    return Annotated[number, AfterValidator(partial(_possible, parameter))]
-
-
-def _possible(parameter: Parameter, value: Value) -> Value:
-    if reason := refused_alone(parameter, value):
-        raise ValueError(reason)
-    return value
+    return Annotated[number, AfterValidator(partial(check_alone, parameter))]
 
 
 class Distribution(Section):
@@ -114,21 +108,16 @@ def distribution_section(name: str, parameter: Parameter) -> type[Distribution |
     value = value_type(parameter)
     if name == "fixed":
         return create_model("Fixed", __base__=Fixed, value=(value, ...))
-    number = quantity(parameter.units)
-    positive, above_one = (
-        Annotated[number, Field(gt=0)],
-        requires(
-            lambda factor: factor > 1,
-            "must be above 1 (with 1.1 most draws lie within 10 % of the median)",
-        ),
-    )
+    number, above_zero = quantity(parameter.units), Field(gt=0)
+    words = "must be above 1 (with 1.1 most draws lie within 10 % of the median)"
+    above_one = requires(lambda factor: factor > 1, words)
     types: dict[str, Any] = {
-        "low": Annotated[value, Field(gt=0)] if name == "log_uniform" else value,
+        "low": Annotated[value, above_zero] if name == "log_uniform" else value,
         "high": value,
         "mean": number,
         "mode": number,
-        "median": positive,
-        "standard_deviation": positive,
+        "median": Annotated[number, above_zero],
+        "standard_deviation": Annotated[number, above_zero],
         "geometric_standard_deviation": Annotated[Number, above_one],
     }
     fields: Any = {key: (types[key], ...) for key in ARGUMENTS[name]}
