@@ -1,16 +1,21 @@
-"""Delta, the moment-independent measure, and the first order, both from given data, by SALib.
+"""Delta, the moment-independent measure, and the first order, both from given data.
 
-SALib's estimators with the bias reduction of Plischke et al. (2013), eq. 30, about the estimate on
-the data themselves. SALib 1.6 takes a resample for these, which brings back the bias that the
-reduction is to take away, and its "balanced" delta weighs the inputs anew, as if all of them were
-uniform. The resamples are by the same formulae in a form that is many times faster.
+SALib's estimators in a form that is many times faster, with the bias reduction of Plischke et al.
+(2013), eq. 30, about the estimate on the data themselves: SALib 1.6 takes a resample for these,
+which brings back the bias that the reduction is to take away.
+
+Densities smoothed by Silverman's width, in SALib's few classes of a parameter, lie too close to
+each other where a response has several modes: of 2000 runs of Ishigami's function they give 0.21,
+0.32 and 0.16 for 0.264, 0.425 and 0.209. Here the kernels have half of that width, and there
+are twice as many classes: less smoothing would raise the noise of indices near zero. What bias is
+left is of the size of the change from half the classes and twice the width; the interval includes
+it, times SAFETY.
 """
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from SALib.analyze.delta import calc_delta, sobol_first
 
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity.method import (
@@ -21,12 +26,24 @@ from impactlab.analysis.sensitivity.method import (
 )
 from impactlab.types import Floats
 
-GRID = 100
-"""Places at which densities are compared, as in SALib."""
+GRID = 200
+"""Places at which densities are compared."""
+WIDTH = 0.5
+"""Width of the kernels, relative to Silverman's."""
+SAFETY = 1.5
+"""Bias over change; one would do for an error that each halving of the width halves."""
+COARSE = 20
+"""Resamples for the bias of the estimate with half the classes and twice the width."""
+Starts = npt.NDArray[np.intp]
 _2013 = "Plischke et al. (2013), Eur. J. Oper. Res. 226, 536"
 _DUMMY = "of a random column that the model never saw"
 _INDICES = {
-    "delta": Index("delta, moment-independent importance", f"{_2013}, eqs. 26 and 30"),
+    "delta": Index(
+        "delta, moment-independent importance",
+        f"{_2013}, eqs. 26 and 30",
+        comment="the interval includes the bias of smoothing: 1.5 times the change of delta from "
+        "half the classes and twice the width of the kernels",
+    ),
     "delta_first_order": Index(
         "first-order Sobol index from given data",
         f"{_2013}, section 3",
@@ -47,53 +64,61 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
     inputs = np.column_stack([sample.inputs, dummy_column(sample)])
     exponent = 2.0 / (7.0 + np.tanh((1500.0 - runs) / 500.0))
     classes = round(min(int(np.ceil(runs**exponent)), 48))  # of a parameter's values, as in SALib
-    edges = np.linspace(0, runs, classes + 1)
+    coarse, fine = (np.linspace(0, runs, n + 1)[:-1].astype(int) for n in (classes, 2 * classes))
     places = np.linspace(outputs.min(), outputs.max(), GRID)
-    values = np.full((inputs.shape[1], 2), np.nan)
-    for at, column in enumerate(inputs.T):
-        ordered = outputs[np.argsort(column, kind="stable")]
-        # SALib takes a class with one value of the response alone for one without influence.
-        if min(np.ptp(part) for part in np.split(ordered, edges[1:-1].astype(int))) > 0:
-            values[at, 0] = calc_delta(outputs, places, column, edges)
-        values[at, 1] = sobol_first(outputs, column, edges)
+
+    def reduced(starts: Starts, width: float, rows: npt.NDArray[np.int64]) -> tuple[Floats, Floats]:
+        """Return delta without its bias (eq. 30), and the resamples of it."""
+        again = np.array([deltas(inputs[at], outputs[at], starts, places, width) for at in rows])
+        return 2 * deltas(inputs, outputs, starts, places, width) - again.mean(axis=0), again
+
     drawn = sample.rng(response).integers(runs, size=(sample.resamples, runs))
-    replicates = np.array([resampled(inputs[at], outputs[at], edges, places) for at in drawn])
-    values[:, 0] = 2 * values[:, 0] - replicates[..., 0].mean(axis=0)
-    spread = sample.half_width(replicates)
-    delta = apart_from_dummy("delta", values[:, 0], spread[:, 0])
-    return delta | apart_from_dummy("delta_first_order", values[:, 1], spread[:, 1])
+    values, replicates = reduced(fine, WIDTH, drawn)
+    change = np.abs(values - reduced(coarse, 2 * WIDTH, drawn[:COARSE])[0])
+    found = apart_from_dummy("delta", values, sample.half_width(replicates) + SAFETY * change)
+    spread = sample.half_width(
+        np.array([first_orders(inputs[at], outputs[at], coarse) for at in drawn])
+    )
+    first = first_orders(inputs, outputs, coarse)
+    return found | apart_from_dummy("delta_first_order", first, spread)
 
 
-def resampled(inputs: Floats, outputs: Floats, edges: Floats, places: Floats) -> Floats:
-    """Return both of all parameters, (parameter, 2); NaN where a resample does not vary.
+def deltas(inputs: Floats, outputs: Floats, starts: Starts, places: Floats, width: float) -> Floats:
+    """Return half the mean distance of the densities in classes of each parameter from that of all.
 
-    inputs: (runs, parameters). Sums over the classes are sums over stretches of sorted runs.
+    inputs: (runs, parameters); outputs: (runs,); starts: where the classes begin among the runs in
+    the order of a parameter; width: of the kernels, relative to Silverman's. NaN where a class does
+    not vary.
     """
-    starts = edges[:-1].astype(int)
-    whole = _density(outputs, np.zeros(1, int), places)
-    variance = outputs.var() or np.nan
+    whole = _density(outputs, np.zeros(1, int), places, width)
+    shares = np.diff(starts, append=len(outputs)) / len(outputs)
     found = []
     for column in inputs.T:
         ordered = outputs[np.argsort(column, kind="stable")]
-        sizes = np.diff(starts, append=len(ordered))
-        shares = sizes / len(ordered)
-        apart = np.trapezoid(np.abs(_density(ordered, starts, places) - whole), places, axis=0)
-        means = np.add.reduceat(ordered, starts) / sizes
-        first = (shares * (means - outputs.mean()) ** 2).sum() / variance
-        found.append([(shares * apart).sum() / 2, first])
+        apart = np.abs(_density(ordered, starts, places, width) - whole)
+        found.append((shares * np.trapezoid(apart, places, axis=0)).sum() / 2)
     return np.array(found)
 
 
-def _density(outputs: Floats, starts: npt.NDArray[np.intp], places: Floats) -> Floats:
+def first_orders(inputs: Floats, outputs: Floats, starts: Starts) -> Floats:
+    """Return the share of the variance between the classes of each parameter, as for `deltas`."""
+    sizes = np.diff(starts, append=len(outputs))[:, None]
+    ordered = outputs[np.argsort(inputs, axis=0, kind="stable")]
+    means = np.add.reduceat(ordered, starts, axis=0) / sizes
+    between = (sizes * (means - outputs.mean()) ** 2).sum(axis=0) / len(outputs)
+    return np.asarray(between / (outputs.var() or np.nan))
+
+
+def _density(outputs: Floats, starts: Starts, places: Floats, relative: float) -> Floats:
     """Return the density of each class of outputs at the places, (places, classes).
 
-    outputs: (runs,), sorted by class; starts: where the classes begin. Gaussian kernels of
-    Silverman's width, as scipy.stats.gaussian_kde has them; NaN for a class that does not vary.
+    outputs: (runs,), sorted by class; starts: where the classes begin; relative: width of the
+    Gaussian kernels over Silverman's. NaN for a class that does not vary.
     """
     sizes = np.diff(starts, append=len(outputs))
     means = np.repeat(np.add.reduceat(outputs, starts) / sizes, sizes)
     squares = np.add.reduceat((outputs - means) ** 2, starts) / (sizes - 1)
-    width = np.sqrt(squares) * (0.75 * sizes) ** -0.2
+    width = relative * np.sqrt(squares) * (0.75 * sizes) ** -0.2
     each = np.repeat(np.where(width > 0, width, np.nan), sizes)
     kernels = np.exp(-0.5 * ((places[:, None] - outputs) / each) ** 2)
     return np.asarray(

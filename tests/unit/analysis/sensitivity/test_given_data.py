@@ -14,7 +14,7 @@ from scipy.integrate import quad
 from scipy.stats import ks_2samp, norm, qmc, spearmanr
 
 from impactlab.analysis import sensitivity
-from impactlab.analysis.sensitivity.delta import resampled
+from impactlab.analysis.sensitivity.delta import deltas, first_orders
 from impactlab.analysis.sensitivity.pawn import distances, slides
 
 Build = Callable[..., xr.Dataset]
@@ -45,44 +45,42 @@ def exact_delta(share: float) -> float:
 
 def test_delta_of_a_linear_model(drawn: Build, normal: Any) -> None:
     found = sensitivity.analysis(drawn("delta", normal, normal @ WEIGHTS)).isel(response=0)
-    exact = [exact_delta(0.8), exact_delta(0.2), 0.0]
-    standard = found["delta_interval"] / 1.96
-    # classes of finite width see a little less than the density at a point
-    assert (abs(found["delta"] - exact) <= 3 * standard + 0.05).all()
-    assert (standard < 0.03).all()
+    exact = [exact_delta(0.8), exact_delta(0.2)]
+    assert (abs(found["delta"][:2] - exact) <= found["delta_interval"][:2]).all()
+    assert (found["delta_interval"] < 0.15).all()
     # of five classes, the part of the variance of a normal variable that lies between them
     heights = norm.pdf(norm.ppf(np.linspace(0, 1, 6)))
     between = 5 * (np.diff(heights) ** 2).sum()
     np.testing.assert_allclose(found["delta_first_order"], between * SHARES, atol=0.03)
-    assert abs(found["dummy_delta"] - found["delta"][2]) < 0.04
-    assert found["dummy_delta"] < 0.05
+    assert abs(found["dummy_delta"] - found["delta"][2]) < found["dummy_delta_interval"] < 0.1
     assert found["dummy_delta_first_order"] < 0.04
 
 
-def test_delta_is_free_of_the_bias_that_salib_keeps(drawn: Build, normal: Any) -> None:
-    """Eq. 30 about the estimate on the data; SALib 1.6 has it about one on a resample."""
-    outputs = normal @ WEIGHTS
-    found = sensitivity.analysis(drawn("delta", normal, outputs)).isel(response=0)
-    edges, places = np.linspace(0, 500, 6), np.linspace(outputs.min(), outputs.max(), 100)
-    plain = [salib_delta.calc_delta(outputs, places, column, edges) for column in normal.T]
-    assert found["delta"][2] < plain[2]
-    rng = np.random.default_rng(3)
-    rows = rng.integers(500, size=(100, 500))
-    again = [resampled(normal[i, 2:], outputs[i], edges, places)[0, 0] for i in rows]
-    np.testing.assert_allclose(found["delta"][2], 2 * plain[2] - np.mean(again), atol=0.006)
+@pytest.mark.parametrize("runs", [500, 2000])
+def test_intervals_of_delta_hold_the_exact_ones_of_ishigami(drawn: Build, runs: int) -> None:
+    """By quadrature; its densities have sharp modes, which smoothing brings closer together."""
+    x = np.random.default_rng(runs).uniform(-np.pi, np.pi, (runs, 3))
+    outputs = np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+    found = sensitivity.analysis(drawn("delta", x, outputs, resamples=30)).isel(response=0)
+    off = np.abs(found["delta"] - [0.264, 0.425, 0.209])
+    assert (off < found["delta_interval"]).all()
+    assert (found["delta_interval"] < {500: 0.3, 2000: 0.12}[runs]).all()
+    assert found["delta"].values.argmax() == 1
 
 
-def test_resamples_of_delta_are_those_of_salib(normal: Any) -> None:
+def test_delta_is_that_of_salib_at_its_width(normal: Any) -> None:
     """On runs drawn more than once, with classes of unequal size."""
     rows = np.random.default_rng(1).integers(500, size=499)
     inputs, outputs = normal[rows], normal[rows] @ WEIGHTS
     edges, places = np.linspace(0, 499, 8), np.linspace(-4, 4, 100)
-    ours = resampled(inputs, outputs, edges, places)
-    for column, found in zip(inputs.T, ours, strict=True):
+    starts = edges[:-1].astype(int)
+    ours = deltas(inputs, outputs, starts, places, 1.0), first_orders(inputs, outputs, starts)
+    for column, delta, first in zip(inputs.T, *ours, strict=True):
         theirs = salib_delta.calc_delta(outputs, places, column, edges)
-        np.testing.assert_allclose(found[0], theirs, rtol=1e-10)
-        first = salib_delta.sobol_first(outputs, column, edges)
-        np.testing.assert_allclose(found[1], first, rtol=1e-10)
+        np.testing.assert_allclose(delta, theirs, rtol=1e-10)
+        np.testing.assert_allclose(
+            first, salib_delta.sobol_first(outputs, column, edges), rtol=1e-10
+        )
 
 
 def test_delta_is_not_given_without_density(
