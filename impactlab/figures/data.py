@@ -1,12 +1,14 @@
 """What a figure shows, as drawn: its curves and bars as files, in the axes' units, and in words.
 
 NAME.csv has a row per point; NAME.nc holds the same as CF's contiguous ragged arrays. Bars of named
-things have the name in `category`. A map of colours has no curves: its numbers are in analysis.nc.
+things have the name in `category`, points with error bars the ends of these in `low` and `high`. A
+map of colours has no curves: its numbers are in analysis.nc.
 """
 
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
@@ -26,6 +28,12 @@ from impactlab.types import Floats
 
 FORMATS = ("csv", "nc")
 _LABELS = ("panel", "curve", "x_label", "y_label")
+_POINTS = {
+    "x": "x as drawn, in the unit of x_label",
+    "y": "y as drawn, in the unit of y_label",
+    "low": "lower end of the error bar, along the axis of the value",
+    "high": "upper end of the error bar, along the axis of the value",
+}
 _PANELS, _CURVES = 5, 3
 """Largest numbers of panels, and of curves per panel, that are described one by one."""
 
@@ -34,7 +42,8 @@ _PANELS, _CURVES = 5, 3
 class Drawn:
     """One curve: where it is, what it is called, and its points x, y of shape (points,).
 
-    category: the name of each point, where the axis has names in place of numbers; else "".
+    category: the name of each point, where the axis has names in place of numbers; else "". low,
+    high: ends of the error bar of each point, (points,), along the axis of its value; else NaN.
     """
 
     panel: str
@@ -43,6 +52,8 @@ class Drawn:
     y_label: str
     x: Floats
     y: Floats
+    low: Floats
+    high: Floats
     category: list[str]
 
 
@@ -59,11 +70,13 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         temporary.open("w", encoding="utf-8", newline="") as file,
     ):
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*_LABELS, "category", "x", "y"])
+        writer.writerow([*_LABELS, "category", *_POINTS])
         for one in found:
             texts = [getattr(one, label) for label in _LABELS]
-            points = zip(one.category, one.x.tolist(), one.y.tolist(), strict=True)
-            writer.writerows([*texts, of, f"{x:.9g}", f"{y:.9g}"] for of, x, y in points)
+            points = zip(*(getattr(one, axis).tolist() for axis in _POINTS), strict=True)
+            for name, point in zip(one.category, points, strict=True):
+                numbers = ["" if math.isnan(number) else f"{number:.9g}" for number in point]
+                writer.writerow([*texts, name, *numbers])
     with replaced(paths[1]) as temporary:
         dataset(found).to_netcdf(temporary, engine="netcdf4")
     return paths
@@ -80,9 +93,9 @@ def dataset(found: list[Drawn]) -> xr.Dataset:
         axis: (
             "point",
             np.concatenate([getattr(one, axis) for one in found]),
-            {"long_name": f"{axis} as drawn, in the unit of {axis}_label"},
+            {"long_name": long_name},
         )
-        for axis in ("x", "y")
+        for axis, long_name in _POINTS.items()
     }
     category = ("point", [name for one in found for name in one.category])
     return xr.Dataset({**columns, "points": counts, **points, "category": category})
@@ -98,43 +111,69 @@ def drawn(figure: Figure) -> Iterator[Drawn]:
         title = str(legend.get_title().get_text()) if legend else ""
         panel = ax.get_title(loc="left") or title or f"panel {number}"
         formatter = ax.yaxis.get_major_formatter()
-        names = [str(of) for of in formatter.seq] if isinstance(formatter, FixedFormatter) else [""]
-        for curve, x, y in _points(ax):
+        names = [""]
+        if isinstance(formatter, FixedFormatter):  # an axis of names has no label
+            names, up = [str(of) for of in formatter.seq], str(ax.get_ylabel())
+        for curve, x, y, low, high in _points(ax):
             kept = np.isfinite(x) & np.isfinite(y)
             nearest = np.clip(np.rint(y[kept]), 0, len(names) - 1).astype(int)
             if kept.any():
                 category = [names[at] for at in nearest]
-                yield Drawn(panel, curve, across, up, x[kept], y[kept], category)
+                yield Drawn(
+                    panel, curve, across, up, x[kept], y[kept], low[kept], high[kept], category
+                )
 
 
 def _label(figure: Figure, ax: Axes, axis: str) -> str:
-    """Return the axis's own label, or else the whole figure's, or else that of another panel."""
+    """Return the axis's own label, or else the whole figure's, or else that of its row or column.
+
+    A label stands at the first panel of a row, or at the last of a column, for all of them.
+    """
     own = str(getattr(ax, f"get_{axis}label")())
     whole = str(getattr(figure, f"get_sup{axis}label")())
-    others = (str(getattr(other, f"get_{axis}label")()) for other in figure.axes)
-    found = own or whole or next(filter(None, others), "")
+    place = "colspan" if axis == "x" else "rowspan"
+    here = {other: other.get_subplotspec() for other in figure.axes if other.get_subplotspec()}
+    span = getattr(here.get(ax), place, None)
+    beside = (
+        str(getattr(other, f"get_{axis}label")())
+        for other, spec in here.items()
+        if getattr(spec, place) == span
+    )
+    found = own or whole or next(filter(None, beside), "")
     return " ".join(found.split())
 
 
-def _points(ax: Axes) -> Iterator[tuple[str, Floats, Floats]]:
-    """Yield label, x and y of lines but guides, of points with intervals, and of bars' ends."""
+def _points(ax: Axes) -> Iterator[tuple[str, Floats, Floats, Floats, Floats]]:
+    """Yield label, x, y, low and high of lines but guides, of points with bars, of bars' ends."""
     for line in ax.lines:
         label = str(line.get_label())
         if label == "_only" or not label.startswith("_"):
             x, y = (np.asarray(values, dtype=float) for values in line.get_data())
-            yield label.removeprefix("_only"), x, y
+            yield label.removeprefix("_only"), x, y, *np.full((2, x.size), np.nan)
     for each in ax.containers:
         label = str(each.get_label())
         label = "" if label.startswith("_") else label  # a name that matplotlib makes up
         if isinstance(each, ErrorbarContainer) and each.lines[0] is not None:
             x, y = (np.asarray(values, dtype=float) for values in each.lines[0].get_data())
-            yield label, x, y
+            yield label, x, y, *_ends(each, x.size)
         elif isinstance(each, BarContainer):
             boxes = np.array([box.get_bbox().extents for box in each], dtype=float).reshape(-1, 4)
             left, bottom, right, top = boxes.T
             level = each.orientation == "horizontal"
             x, y = (right, 0.5 * (bottom + top)) if level else (0.5 * (left + right), top)
-            yield label, x, y
+            yield label, x, y, *_ends(each.errorbar, x.size)
+
+
+def _ends(bars: ErrorbarContainer | None, size: int) -> Floats:
+    """Return the lower and upper ends of error bars, (2, points), NaN without one."""
+    found = np.full((2, size), np.nan)
+    for each in bars.lines[2] if bars else ():
+        axis = 0 if bars and bars.has_xerr else 1
+        ends = [
+            segment[:, axis] if len(segment) else (np.nan,) * 2 for segment in each.get_segments()
+        ]
+        found[:] = np.sort(np.array(ends, dtype=float).T, axis=0)
+    return found
 
 
 def alt(figure: Figure) -> str:

@@ -8,6 +8,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedFormatter
+from matplotlib.transforms import ScaledTranslation
 
 from impactlab.fem3d.figures import differences
 from impactlab.figures import access, labels, scales, style
@@ -36,8 +38,8 @@ def _caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return (
         "Above: each model on its finest grid. Below: its difference from the 3-D "
         "finite-element model, in parts of that; bars: the numerical uncertainty of both models "
-        "together, left out where nothing bounds it and cut at the panel's edge. Markers are "
-        "shifted sideways a little. "
+        "together, left out where nothing bounds it and cut at the panel's edge. Markers below are "
+        "drawn a little beside their velocity, not to hide each other. "
         f"{access.missing_note(runs, _drawn(runs))}".strip()
     )
 
@@ -54,6 +56,7 @@ def _plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         for ax in (above, below):
             scales.logarithmic(ax, "x", runs["velocity"].values)
             scales.at(ax, "x", runs["velocity"].values)
+        below.set_xlim(0.85 * runs["velocity"].values.min(), 1.18 * runs["velocity"].values.max())
         below.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
     axes[len(names)].set_ylabel(labels.wrapped_axis("difference from the 3-D FE model", "%", 24))
     style.legend(
@@ -94,21 +97,28 @@ def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) ->
     first, *others = differences.models(runs)
     against = differences.side(runs, analysis, name, first)
     speeds = runs["velocity"].values
+    ends: list[float] = []
     for at, model in enumerate(others, 1):
         gap = differences.difference([differences.side(runs, analysis, name, model)], [against])
         bars = np.where(np.isfinite(gap.uncertainty), 100.0 * gap.uncertainty, np.nan)
-        shift = 1.0 + 0.04 * (at - 0.5 * (len(others) + 1))
+        points = 2.2 * (at - 0.5 * (len(others) + 1))  # beside its velocity, in the picture alone
+        shift = ScaledTranslation(points / 72.0, 0.0, ax.figure.dpi_scale_trans)
         if np.isfinite(gap.value).any():
             look = _look(at) | {"label": differences.label(model)}
-            ax.errorbar(shift * speeds, 100.0 * gap.value, yerr=bars, elinewidth=0.8, **look)
+            look |= {"elinewidth": 0.8, "transform": ax.transData + shift}
+            ax.errorbar(speeds, 100.0 * gap.value, yerr=bars, **look)
+            reach = np.nan_to_num(bars)
+            ends += [*(100.0 * gap.value - reach), *(100.0 * gap.value + reach)]
+    ax.set_title(f"Difference in {labels.response(name)}", loc="left")
     if not ax.containers:
         style.remark(ax, "no finite values")
         return
     ax.axhline(0.0, label="_guide", **style.GUIDE)
     scales.linear(ax, "y")
-    largest = max(_LEAST, *(np.nanmax(abs(np.asarray(line.get_ydata()))) for line in ax.lines))
-    low, high = ax.get_ylim()
-    ax.set_ylim(max(low, -_ROOM * largest), min(high, _ROOM * largest))
+    middle = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
+    room = _ROOM * max(_LEAST, float(np.nanmax(abs(middle))))
+    low, high = float(np.nanmin([0.0, *ends])), float(np.nanmax([0.0, *ends]))
+    ax.set_ylim(max(1.1 * low, -room), min(1.1 * high, room))
 
 
 _HISTORIES = ("contact_force", "indentation")
@@ -191,7 +201,8 @@ def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
         )
         marks.set_label(labels.response(name))
     ax.axvline(0.0, label="_guide", **style.GUIDE)
-    ax.set_yticks(range(len(differences.EFFECTS)), list(differences.EFFECTS.values()))
+    ax.set_yticks(range(len(differences.EFFECTS)))
+    ax.yaxis.set_major_formatter(FixedFormatter(list(differences.EFFECTS.values())))
     ax.invert_yaxis()
     ax.set_xlabel(labels.axis("change of the beam's answer", "%"))
     scales.linear(ax, "x")

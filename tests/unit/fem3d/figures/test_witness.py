@@ -10,6 +10,7 @@ import xarray as xr
 from impactlab.fem3d.figures import FIGURES, differences
 from impactlab.fem3d.study.report import _cell, sections
 from impactlab.figures.catalogue import CATALOGUE
+from impactlab.figures.data import drawn
 from impactlab.figures.labels import display
 
 SPEEDS = np.array(witnesses.SPEEDS)
@@ -37,10 +38,32 @@ def test_the_figure_has_values_above_and_differences_below(study):
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["3-D FE model", "Euler-Bernoulli", "Timoshenko"]
     assert np.asarray(force.lines[0].get_ydata()) == pytest.approx(10.1 * SPEEDS)
-    drawn = [np.asarray(marks.lines[0].get_ydata()) for marks in below.containers]
-    assert drawn == [pytest.approx([5.0] * 3), pytest.approx([-2.0] * 3)]
+    shown = [np.asarray(marks.lines[0].get_ydata()) for marks in below.containers]
+    assert shown == [pytest.approx([5.0] * 3), pytest.approx([-2.0] * 3)]
     assert CATALOGUE["element_size_convergence"].applies(*study)
     assert not CATALOGUE["convergence_cost"].applies(*study)
+
+
+def test_the_data_of_the_figure_are_its_numbers(study):
+    """Differences in % with their bars, at the velocities themselves."""
+    below = [one for one in drawn(FIGURES["witness"].plot(*study)) if "Diff" in one.panel]
+    assert [one.panel for one in below[::2]] == [
+        "Difference in peak force",
+        "Difference in contact duration",
+    ]
+    assert {one.y_label for one in below} == {"Difference from the 3-D FE model (%)"}
+    for one in below:
+        assert one.x == pytest.approx(SPEEDS)
+    width = 100.0 * 1.05 * 2 * 1.25 * 0.01 / 1.01
+    assert below[0].low == pytest.approx(5.0 - width, rel=1e-3)
+    assert below[0].high == pytest.approx(5.0 + width, rel=1e-3)
+
+
+def test_points_without_a_bound_have_no_bar(study):
+    runs, analysis = study[0], study[1].copy(deep=True)
+    analysis["nodes_uncertainty"].loc[{"velocity": 1.0}] = np.inf
+    below = [one for one in drawn(FIGURES["witness"].plot(runs, analysis)) if "Diff" in one.panel]
+    assert np.isnan(below[0].low).tolist() == [False, True, False]
 
 
 def test_elements_may_be_counted_over_the_radius(study):
@@ -54,8 +77,8 @@ def test_elements_may_be_counted_over_the_radius(study):
     assert CATALOGUE["element_size_convergence"].applies(*counted)
     figure = CATALOGUE["element_size_convergence"].plot(*counted)
     assert "contact radius (%)" in figure.get_supxlabel()
-    drawn = np.asarray(figure.axes[0].lines[0].get_xdata())
-    assert sorted(drawn) == pytest.approx([12.5, 25.0, 50.0])
+    sizes = np.asarray(figure.axes[0].lines[0].get_xdata())
+    assert sorted(sizes) == pytest.approx([12.5, 25.0, 50.0])
 
 
 def test_a_missing_run_leaves_a_gap_and_is_counted(study):
@@ -127,8 +150,10 @@ def test_their_figure_and_table(taken_apart):
     figure = FIGURES["witness_parts"].plot(*taken_apart)
     left, right = figure.axes
     assert len(left.lines) == 4
-    drawn = np.asarray(right.containers[0].lines[0].get_xdata())
-    assert drawn[2] == pytest.approx(100.0 * (0.8 / 0.9 - 1.0))
+    shares = np.asarray(right.containers[0].lines[0].get_xdata())
+    found = [one for one in drawn(figure) if one.curve == "peak force"]
+    assert (found[0].category, found[0].y_label) == (list(differences.EFFECTS.values()), "")
+    assert shares[2] == pytest.approx(100.0 * (0.8 / 0.9 - 1.0))
     assert "−11 % by the contact law in yielding" in FIGURES["witness_parts"].caption(*taken_apart)
     (section,) = sections(*taken_apart)
     assert section.tables[0].rows[2][1].text.startswith("−11 % ± ")
