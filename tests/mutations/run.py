@@ -44,6 +44,9 @@ def main(words: list[str]) -> int:
         print(*stale, sep="\n", file=sys.stderr)
         return 2
     print("| fault | checks that fail | first test that fails |\n|---|---|---|")
+    if report(Fault("none", "jit.py", "", ""), only_checks):
+        print("Something fails without any fault: mend that first.", file=sys.stderr)
+        return 2
     caught = [report(fault, only_checks) for fault in chosen]
     return 0 if all(caught) else 1
 
@@ -73,7 +76,7 @@ def report(fault: Fault, only_checks: bool) -> bool:
 def seed(fault: Fault, copy: Path) -> None:
     """The package and its tests in `copy`, with the fault."""
     skip = shutil.ignore_patterns("__pycache__", ".*")
-    for name in ("impactlab", "tests"):
+    for name in ("impactlab", "tests", "docs"):
         shutil.copytree(ROOT / name, copy / name, ignore=skip)
     shutil.copy(ROOT / "pyproject.toml", copy)
     path = copy / "impactlab/solver" / fault.file
