@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
 from impactlab.fem3d.solver.mesh.mesh import Integers, Truths
@@ -37,30 +36,17 @@ _PER_LINE = 16
 _NEAR = 1e-6
 """Distance from a plane at which a node is on it, over the size of an element."""
 
-Faces = NDArray[np.int64]
-"""(f, 2): element (from 0) and face (from 1)."""
-
-
-def _surfaces(mesh: Mesh) -> dict[str, Faces]:
-    """Return the faces of the sphere's surface below its centre, and those of the beam's top."""
-    ball, nodes = _outer(mesh, SPHERE)
-    middle = mesh.nodes[nodes, 2].mean(axis=1)
-    height = 0.5 * np.ptp(mesh.nodes[np.unique(nodes), 2])
-    cut = _on(mesh, nodes, 0) | _on(mesh, nodes, 1)
-    beam, corners = _outer(mesh, BEAM)
-    return {
-        "SPHERE_SURFACE": ball[~cut & (middle < height)],
-        "BEAM_SURFACE": beam[_on(mesh, corners, 2)],
-    }
-
 
 def _on(mesh: Mesh, nodes: Integers, axis: int) -> Truths:
     """Return which faces lie in the plane through the origin across `axis`."""
     return np.asarray(np.all(np.abs(mesh.nodes[nodes, axis]) < _NEAR * mesh.element_size, axis=1))
 
 
-def _outer(mesh: Mesh, body: int) -> tuple[Faces, Integers]:
-    """Return the faces that only one element of the body has, and their nodes, (f, 4)."""
+def _outer(mesh: Mesh, body: int) -> tuple[Integers, Integers]:
+    """Return the faces that only one element of the body has, and their nodes, (f, 4).
+
+    Faces are (f, 2): element (from 0) and face (from 1).
+    """
     own = np.flatnonzero(mesh.body == body)
     nodes = mesh.elements[own][:, _CORNERS].reshape(-1, 4)
     _, first, count = np.unique(
@@ -105,6 +91,16 @@ def geometry(mesh: Mesh, radius: float, kinds: Mapping[bool, str]) -> Iterator[s
         yield f"*NSET, NSET={name}"
         for at in range(0, len(members), _PER_LINE):
             yield ", ".join(str(node + 1) for node in members[at : at + _PER_LINE])
-    for name, faces in _surfaces(mesh).items():
+    # The sphere's surface below its centre, and the beam's top.
+    ball, corners = _outer(mesh, SPHERE)
+    middle = mesh.nodes[corners, 2].mean(axis=1)
+    height = 0.5 * np.ptp(mesh.nodes[np.unique(corners), 2])
+    cut = _on(mesh, corners, 0) | _on(mesh, corners, 1)
+    beam, above = _outer(mesh, BEAM)
+    surfaces = {
+        "SPHERE_SURFACE": ball[~cut & (middle < height)],
+        "BEAM_SURFACE": beam[_on(mesh, above, 2)],
+    }
+    for name, faces in surfaces.items():
         yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
         yield from (f"{element + 1}, S{face}" for element, face in faces.tolist())

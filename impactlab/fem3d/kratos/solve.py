@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
 import numpy as np
@@ -76,7 +77,7 @@ def solve_on(
     kratos = engine(integer("solve", "threads", threads, 1))
     run = Run(kratos, mesh, impact, duration=duration, time_step=time_step, penalty=penalty)
     run.go(progress)
-    return to_dataset(run, impact, time_step, penalty)
+    return to_dataset(run)
 
 
 _OWN = OWN | {
@@ -94,18 +95,18 @@ _RESPONSES = (
 """Responses of the histories that take no energies and no forces between the steps."""
 
 
-def to_dataset(run: Run, impact: Impact, time_step: float, penalty: float) -> xr.Dataset:
+def to_dataset(run: Run) -> xr.Dataset:
     """Return all answers of a run, as described in solve_on."""
     peeq, info = run.engine.variable("ACCUMULATED_PLASTIC_STRAIN"), run.part.ProcessInfo
     points = [each.CalculateOnIntegrationPoints(peeq, info) for each in run.part.Elements]
     strain = np.array(points)  # (e, 8)
     largest = strain.max(axis=1)
     # A contact that pauses for less than two steps is one.
-    answers, _ = history_responses(run.history, 2.0 * time_step)
+    answers, _ = history_responses(run.history, 2.0 * run.time_step)
     dataset = xr.Dataset(
         {
             **{name: answers[name] for name in _RESPONSES},
-            **plastic_responses(run.mesh, impact, largest),
+            **plastic_responses(run.mesh, run.impact, largest),
             "cpu_seconds": run.cpu_seconds,
             **{name: ("time", values) for name, values in histories(run.history).items()},
             "iterations": ("time", run.iterations),
@@ -115,9 +116,9 @@ def to_dataset(run: Run, impact: Impact, time_step: float, penalty: float) -> xr
         coords={
             "time": run.history.table()[0],
             "body": ("element", run.mesh.body),
-            "velocity": impact.velocity,
-            "time_step": time_step,
-            "penalty": penalty,
+            "velocity": run.impact.velocity,
+            "time_step": run.time_step,
+            "penalty": run.penalty,
             "element_size": run.mesh.element_size,
         },
         attrs=provenance() | {"model": f"Kratos Multiphysics {run.engine.version}"},
@@ -131,33 +132,33 @@ _HALVINGS = 5
 """Number of times that a step is cut in half if it does not converge."""
 
 
+@dataclass
 class Run:
-    """An impact on a mesh in Kratos.
+    """An impact on a mesh in Kratos; times in s, penalty in N/m3.
 
     history: at the start and at the end of each step so far, velocities included. iterations:
-    Newton's, in each.
+    Newton's, in each. Raises ValueError for a material that Kratos' law cannot follow.
     """
 
-    def __init__(
-        self,
-        engine: Engine,
-        mesh: Mesh,
-        impact: Impact,
-        *,
-        duration: float,
-        time_step: float,
-        penalty: float,
-    ) -> None:
-        """Take s, s and N/m3; raises ValueError for a material that Kratos' law cannot follow."""
+    engine: Engine
+    mesh: Mesh
+    impact: Impact
+    _: KW_ONLY
+    duration: float
+    time_step: float
+    penalty: float
+    cpu_seconds: float = 0.0
+
+    def __post_init__(self) -> None:
+        engine, mesh, impact = self.engine, self.mesh, self.impact
         self._started = time.process_time()
-        self.engine, self.mesh, self.duration = engine, mesh, duration
         self.history = History([Moment(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, impact.velocity)])
-        self.iterations, self.cpu_seconds = [0.0], 0.0
+        self.iterations = [0.0]
         model = engine.core.Model()
         self.part = model.CreateModelPart(PART)
         self.part.ProcessInfo[engine.variable("DOMAIN_SIZE")] = 3
-        parameters = engine.core.Parameters(settings(duration, time_step, penalty))
-        self._analysis = engine.analysis(model, parameters)
+        parameters = settings(self.duration, self.time_step, self.penalty)
+        self._analysis = engine.analysis(model, engine.core.Parameters(parameters))
         fill(engine, self.part, mesh, impact)
         self._analysis.Initialize()
         constrain(engine, self.part, mesh, impact)

@@ -2,7 +2,7 @@
 
 A quarter of beam and sphere in hexahedra (mesh), which answer motions with forces (elements,
 material); masses move under these by central differences (system, march), and matched
-nodes are kept from passing through each other (contact). Displacements and rotations may be large:
+nodes are kept from passing through each other. Displacements and rotations may be large:
 strains are rates of the current shape, stresses turn with the material (Jaumann). The contact takes
 matched nodes to stay above each other, which holds while they slide by less than an element.
 """

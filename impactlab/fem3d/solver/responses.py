@@ -14,8 +14,6 @@ from impactlab.variables import STATUS_FLAGS
 
 _IMBALANCE = 0.05
 """Largest imbalance of energy, over the initial kinetic energy, at which answers are given."""
-
-
 _CAUSES = {
     "first_contact_unfinished": "contact_duration",
     "in_contact_at_end": "total_contact_time",
@@ -38,7 +36,7 @@ def responses(history: History, impact: Impact, pause: float) -> tuple[dict[str,
     if velocity[-1] < min(0.0, (axis[-1] - axis[-2]) / (time[-1] - time[-2])):
         rebound = -float(np.interp(end, time, velocity))
     answers |= {"rebound_velocity": rebound, "restitution": rebound / impact.velocity}
-    reasons = [name for name, value in _CAUSES.items() if np.isnan(answers[value])]
+    reasons = [flag for flag, name in _CAUSES.items() if np.isnan(answers[name])]
     first = 0.5 * impact.sphere.total_mass * impact.velocity**2
     balances = np.array([entry.balance for entry in history.energies] or [np.nan])
     error = float(np.max(np.abs(balances - first)) / first)
@@ -92,19 +90,14 @@ def contacts(time: Floats, force: Floats, pause: float) -> Floats:
         return np.empty((0, 2))
     breaks = np.flatnonzero(np.diff(time[on]) > pause)
     first, last = on[np.append(0, breaks + 1)], on[np.append(breaks, on.size - 1)]
-    ends = [_end(time, force, int(step)) for step in last]
+    before = np.maximum(last - 1, 0)
+    fall, share = force[before] - force[last], np.ones(last.size)
+    np.divide(force[last], fall, out=share, where=fall > 0.0)
+    ends = time[last] + (time[last] - time[before]) * np.minimum(share, 1.0)
     if time[-1] - time[on[-1]] <= pause:
         ends[-1] = np.nan
     starts = np.where(first == 0, 0.0, time[first])
     return np.stack([starts, ends], axis=1)
-
-
-def _end(time: Floats, force: Floats, last: int) -> float:
-    """Return when the force after step `last` reaches zero, within the step."""
-    step = float(time[last] - time[last - 1]) if last else 0.0
-    fall = float(force[last - 1] - force[last]) if last else 0.0
-    share = float(force[last]) / fall if fall > 0.0 else 1.0
-    return float(time[last]) + step * min(share, 1.0)
 
 
 def peak(time: Floats, values: Floats) -> tuple[float, float]:
@@ -130,16 +123,18 @@ def fields(groups: list[Group], count: int) -> dict[str, Floats]:
     equivalent_plastic_strain, largest_equivalent_plastic_strain, plastic_strain (along the beam):
     1. von_mises_stress: Pa.
     """
-    names = ("equivalent_plastic_strain", "largest_equivalent_plastic_strain", "plastic_strain")
-    result = {name: np.full(count, np.nan) for name in (*names, "von_mises_stress")}
+    result: dict[str, Floats] = {}
     for group in groups:
         strain = group.of_points(PEEQ)
-        result[names[0]][group.elements] = strain.mean(axis=0)
-        result[names[1]][group.elements] = strain.max(axis=0)
-        result[names[2]][group.elements] = group.of_points(ALONG).mean(axis=0)
         s = np.stack([group.of_points(STRESS + row) for row in range(6)])
         squares = np.sum(s[:3] ** 2, axis=0) + 2.0 * np.sum(s[3:] ** 2, axis=0)
-        result["von_mises_stress"][group.elements] = np.sqrt(1.5 * squares).mean(axis=0)
+        for name, values in {
+            "equivalent_plastic_strain": strain.mean(axis=0),
+            "largest_equivalent_plastic_strain": strain.max(axis=0),
+            "plastic_strain": group.of_points(ALONG).mean(axis=0),
+            "von_mises_stress": np.sqrt(1.5 * squares).mean(axis=0),
+        }.items():
+            result.setdefault(name, np.empty(count))[group.elements] = values
     return result
 
 

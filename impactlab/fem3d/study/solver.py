@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -125,10 +125,7 @@ def _impact_of(case: Any) -> Impact:
 
 def work(cases: Array) -> Array:
     """Return the estimated time of each run in node-steps; 0 for a run that is listed again."""
-    found = np.zeros(cases.size)
-    solid = is_solid(cases)
-    found[~solid] = cost.work(_kernel_cases(cases))
-    found[solid] = [cost.A_SECOND * _cost(case.tobytes()).cpu_seconds for case in cases[solid]]
+    found = _priced(cases, cost.work, lambda run: cost.A_SECOND * run.cpu_seconds)
     _, first = np.unique(cases.view(f"V{cases.dtype.itemsize}"), return_index=True)
     once = np.zeros(cases.size)
     once[first] = found[first]
@@ -137,10 +134,15 @@ def work(cases: Array) -> Array:
 
 def memory(cases: Array) -> Array:
     """Return the estimated memory of each run in bytes."""
-    found = np.zeros(cases.size)
-    solid = is_solid(cases)
-    found[~solid] = cost.memory(_kernel_cases(cases))
-    found[solid] = [_cost(case.tobytes()).memory_bytes for case in cases[solid]]
+    return _priced(cases, cost.memory, lambda run: run.memory_bytes)
+
+
+def _priced(
+    cases: Array, of_beams: Callable[[Array], Array], of_solid: Callable[[Cost], float]
+) -> Array:
+    found, solid = np.zeros(cases.size), is_solid(cases)
+    found[~solid] = of_beams(_kernel_cases(cases))
+    found[solid] = [of_solid(_cost(case.tobytes())) for case in cases[solid]]
     return found
 
 

@@ -32,7 +32,7 @@ class Body:
         self._forces[:] = 0.0
         self.x = np.ascontiguousarray(x)
         group.kernel(
-            (0, group.blocks),
+            (0, len(group.nodes)),
             group.nodes,
             self._rows.of_groups[0],
             self.x,

@@ -31,17 +31,17 @@ def hertz_impact():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("element_size", "tolerance"),
-    [(0.5e-3, 0.015), pytest.param(0.25e-3, 0.01, marks=pytest.mark.long)],
+    ("element_size", "ratio"),
+    [(0.5e-3, 2.0), pytest.param(0.25e-3, 1.3, marks=pytest.mark.long)],
 )
-def test_a_sphere_on_a_large_block_is_hertz(element_size, tolerance):
+def test_a_sphere_on_a_large_block_is_hertz(element_size, ratio):
     impact = hertz_impact()
     peak, duration = whole_sphere.impact(impact)
     assert peak == pytest.approx(hertz.peak_force(*hertz.arguments(impact)), rel=0.02)
-    mesh = quarter_mesh(impact, element_size=element_size, coarsest=BLOCK / 8)
+    mesh = quarter_mesh(impact, element_size=element_size, ratio=ratio, coarsest=BLOCK / 8)
     answer = solve_on(mesh, impact, duration=1.1 * duration, threads=2)
-    assert float(answer["peak_force"]) == pytest.approx(peak, rel=tolerance)
-    assert float(answer["contact_duration"]) == pytest.approx(duration, rel=tolerance)
+    assert float(answer["peak_force"]) == pytest.approx(peak, rel=0.01)
+    assert float(answer["contact_duration"]) == pytest.approx(duration, rel=0.01)
     assert float(answer["contact_loss"][-1]) < 1e-4 * float(answer["kinetic_energy"][0])
     assert float(answer["energy_error"]) < 1e-4
     assert float(answer["peak_plastic_strain"]) == 0.0

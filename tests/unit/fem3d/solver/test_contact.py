@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.contact import close_gaps
+from impactlab.fem3d.solver.system import close_gaps
 
 DT = 0.1
 

@@ -63,9 +63,9 @@ def test_blocks_are_all_shared_out_in_their_order():
     _, (_, group) = two_groups()
     ends = [blocks_of(group, piece, piece + 1) for piece in range(MOST_THREADS)]
     assert ends[0][0] == 0
-    assert ends[-1][1] == group.blocks
+    assert ends[-1][1] == len(group.nodes)
     assert [end for _, end in ends[:-1]] == [first for first, _ in ends[1:]]
-    assert blocks_of(group, 0, MOST_THREADS) == (0, group.blocks)
+    assert blocks_of(group, 0, MOST_THREADS) == (0, len(group.nodes))
 
 
 STEEL = Material(density=8000.0, youngs_modulus=200e9, poissons_ratio=0.0, yield_stress=1e11)
