@@ -3,11 +3,14 @@
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 from command_line import called
 from command_line import done as impactlab
+
+from impactlab.cli.studies import FILES
 
 ROOT = Path(__file__).parents[2]
 
@@ -21,6 +24,14 @@ def test_a_project_brings_workflow_and_studies(tmp_path):
     again = called("new", "mine", cwd=tmp_path)
     assert again.returncode == 1
     assert "mine: is there already" in again.stderr
+
+
+def test_the_wheel_brings_what_a_project_copies():
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]
+    included = settings["hatch"]["build"]["targets"]["wheel"]["force-include"]
+    assert included == {name: f"impactlab/project/{name}" for name in included}
+    for name in FILES:
+        assert any(name == kept or name.startswith(f"{kept}/") for kept in included), name
 
 
 def run(*command, cwd):
