@@ -83,6 +83,8 @@ def write_netcdf(dataset: xr.Dataset, path: Path, content: str, *sources: xr.Dat
     made = f"{datetime.now(UTC).isoformat(timespec='seconds')}: {CONTENTS[content]}"
     history = "\n".join(filter(None, (dataset.attrs.get("history"), made)))
     dataset = dataset.assign_attrs(
+        title=dataset.attrs.get("title") or content,
+        Conventions="CF-1.11",
         content=content,
         made_from=" ".join(map(identity, sources)),
         history=history,
@@ -94,6 +96,7 @@ def write_netcdf(dataset: xr.Dataset, path: Path, content: str, *sources: xr.Dat
         attrs = dict(variable.attrs)
         if "Conventions" in attrs:  # from arithmetic with whole datasets
             attrs = {key: value for key, value in attrs.items() if key not in dataset.attrs}
+        attrs.setdefault("long_name", str(name).replace("_", " "))
         for flags in attrs.keys() & {"flag_values", "flag_masks"}:
             attrs[flags] = np.asarray(attrs[flags], variable.dtype)
         variable.attrs = attrs

@@ -78,7 +78,8 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
                 numbers = ["" if math.isnan(number) else f"{number:.9g}" for number in point]
                 writer.writerow([*texts, name, *numbers])
     with replaced(paths[1]) as temporary:
-        dataset(found).to_netcdf(temporary, engine="netcdf4")
+        attrs = {"title": name, "history": "impactlab figures", "Conventions": "CF-1.11"}
+        dataset(found).assign_attrs(attrs).to_netcdf(temporary, engine="netcdf4")
     return paths
 
 

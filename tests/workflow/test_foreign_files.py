@@ -6,6 +6,8 @@ import pytest
 import xarray as xr
 from command_line import CHECKS, SMALL, called, done
 
+from impactlab.files import read_netcdf, write_netcdf
+
 SAMPLE = """
 title: Sample
 impact: {base: paper}
@@ -150,3 +152,112 @@ def test_no_command_takes_them(results, command, name, damage):
     assert name in ended.stderr
     assert len(ended.stderr.splitlines()) == 1
     assert sorted(results.rglob("*")) == before
+
+
+@pytest.mark.parametrize("step", ["figures", "report"])
+def test_analyses_of_other_runs_are_refused(results, step):
+    """Also of runs that were solved again since, with another answer."""
+    ended = called(step, "small/runs.nc", "other/analysis.nc", cwd=results)
+    assert ended.returncode
+    assert "other/analysis.nc: was not made from small/runs.nc" in ended.stderr
+    runs = xr.load_dataset(results / "small" / "runs.nc")
+    write_netcdf(runs.assign(peak_force=3 * runs["peak_force"]), results / "small/runs.nc", "runs")
+    ended = called(step, *PAIR.split(), cwd=results)
+    assert ended.returncode
+    assert "`impactlab analyse small/runs.nc`" in ended.stderr
+
+
+def test_evidence_of_other_runs_is_refused(results):
+    runs = read_netcdf(results / "sample" / "runs.nc", "runs")
+    write_netcdf(runs.assign(peak_force=3 * runs["peak_force"]), results / "other.nc", "runs")
+    args = "analyse other.nc --refinement sample/refinement.nc"
+    ended = called(*args.split(), cwd=results)
+    assert ended.returncode
+    assert "sample/refinement.nc: was not made from other.nc" in ended.stderr
+
+
+def test_figures_of_other_results_are_refused(results):
+    path = results / "checks" / "findings.nc"
+    done("figures", path, cwd=results)
+    done("report", path, cwd=results)
+    captions = path.parent / "figures" / "captions.json"
+    sound = captions.read_text()
+    for hostile in ("[]", "{", '{"../../other": {}}', '{"a": 1}'):
+        captions.write_text(hostile)
+        ended = called("report", path, cwd=results)
+        assert ended.returncode
+        assert "captions.json: is damaged" in ended.stderr
+    captions.write_text(sound)
+    findings = read_netcdf(path, "findings")
+    write_netcdf(findings.assign(ours=2 * findings["ours"]), path, "findings")
+    ended = called("report", path, cwd=results)
+    assert ended.returncode
+    assert "figures: its figures were drawn from other results" in ended.stderr
+
+
+def test_an_index_names_a_foreign_file(results):
+    (results / "small" / "report.html").touch()
+    foreign(results / "small" / "runs.nc")
+    ended = called("index", ".", cwd=results)
+    assert ended.returncode
+    assert "small/runs.nc: has no checksums" in ended.stderr
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "simulate --output there",
+        "run studies/small.yaml --output there",
+        "design studies/small.yaml --output there",
+        "recommend studies/sample.yaml --output there",
+        "refine results/sample/runs.nc --output there",
+        "analyse results/small/runs.nc --output there",
+        "verify studies/checks.yaml --output there",
+        "report results/checks/findings.nc --output there",
+        "index results --output there",
+    ],
+)
+def test_an_output_that_is_a_folder_is_refused_at_once(made, command):
+    (made / "there").mkdir(exist_ok=True)
+    ended = called(*command.split(), cwd=made)
+    assert ended.returncode
+    assert "'there' is a directory" in ended.stderr
+    assert not list((made / "there").iterdir())
+
+
+def test_a_file_saved_again_unchanged_is_still_accepted(results):
+    for path in results.rglob("*.nc"):
+        before = xr.load_dataset(path)
+        before.to_netcdf(path)
+        assert read_netcdf(path, before.attrs["content"]).identical(before)
+
+
+def test_lazy_values_get_the_digests_of_those_in_memory(results, tmp_path):
+    path = results / "small" / "runs.nc"
+    with xr.open_dataset(path, chunks={"velocity": 1}) as lazy:
+        write_netcdf(lazy, tmp_path / "lazy.nc", "runs")
+    same = read_netcdf(tmp_path / "lazy.nc", "runs").attrs["checksums"]
+    assert same == read_netcdf(path, "runs").attrs["checksums"]
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_every_file_follows_cf(results):
+    """But for one rule: `time`, since first touch, is no date and has no standard_name."""
+    pytest.importorskip("compliance_checker")
+    from compliance_checker.runner import CheckSuite, ComplianceChecker
+
+    done("figures", "checks/findings.nc", cwd=results)
+    done("simulate", "--nodes", "21", "--output", "one.nc", cwd=results)
+    paths = [*results.glob("s*/*.nc"), *results.glob("*.nc"), results / "checks" / "findings.nc"]
+    paths.append(next(results.glob("checks/figures/*.nc")))
+    CheckSuite.load_all_available_checkers()
+    for path in paths:
+        passed, _ = ComplianceChecker.run_checker(
+            str(path),
+            ["cf:1.11"],
+            verbose=0,
+            criteria="strict",
+            skip_checks=["check_spatiotemporal_dims_have_coordinate_vars"],
+            output_filename=str(results / "cf.txt"),
+        )
+        assert passed, (results / "cf.txt").read_text()

@@ -13,6 +13,7 @@ import impactlab as il
 from impactlab.simulate import case_table
 from impactlab.study import store
 from impactlab.study.netcdf import KEY, Shard
+from impactlab.study.runs import removable_files
 from impactlab.study.solvers import impact
 from impactlab.study.store import OutputSpec, RunIndex, Shards, holder, locked, run_keys
 
@@ -277,3 +278,31 @@ def test_a_disk_too_full_for_a_note_is_left_to_what_is_more_than_one(tmp_path, m
 def test_nobody_works_in_an_unknown_folder(tmp_path):
     assert holder(tmp_path / "none") == ""
     assert not (tmp_path / "none").exists()
+
+
+@pytest.mark.parametrize("owner", [b"\xff\x00" * 9999, b"", b"\x1b[31m" + b"[" * 500, None])
+def test_garbage_for_an_owner_blocks_nothing(tmp_path, owner, caplog):
+    caplog.set_level("INFO")
+    if owner is None:
+        (tmp_path / "owner").mkdir()
+    else:
+        (tmp_path / "owner").write_bytes(owner)
+    with locked(tmp_path):
+        pass
+    assert caplog.messages == ["another process did not finish: resuming where it stopped"]
+    assert holder(tmp_path) == ""
+    assert (tmp_path / "owner").exists() == (owner is None)
+
+
+def test_what_people_left_among_shards_stays_as_it_is(shards, caplog):
+    _, _, path = written(shards, cases(0.5, 1.0))
+    (path.parent / ".notes").write_text("mine")
+    (path.parent / ".cache").mkdir()
+    (path.parent / "folder.nc").mkdir()
+    (path.parent / f"{32 * 'a'}.nc").mkdir()
+    (path.parent / "copy.nc").write_bytes(path.read_bytes())
+    before = sorted(path.parent.iterdir())
+    assert [found.size for found in shards.recover()] == [2]
+    assert sorted(path.parent.iterdir()) == before
+    assert removable_files(path.parents[1], []).keys() == {path}
+    assert caplog.messages == []
