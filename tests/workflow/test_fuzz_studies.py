@@ -61,7 +61,7 @@ def outcome(path):
             study = read_any(path)
             assert study.size
             if not isinstance(study, Verification):
-                cost = estimate(study, workers=2)
+                cost = estimate(study, path.parent, workers=2)
                 assert cost.seconds >= 0 < cost.memory < float("inf")
                 if isinstance(study, FunctionStudy) or (study.auto is None):
                     _ = design(study) if study.sampling.runs <= _DRAWN else None
