@@ -174,9 +174,9 @@ def test_a_folder_that_cannot_be_written_to_is_told_before_anything_is_solved(
 ):
     monkeypatch.setattr("impactlab.fem3d.comparison.run.solve_on", None)
     (tmp_path / "file").touch()
-    code, said = impactlab("witness", *COARSE, "--output", "file")
+    code, said = impactlab("witness", *COARSE, "--output", "file/folder")
     assert code == 1
-    assert "ERROR: --output file: File exists: nothing was solved" in said
+    assert "ERROR: --output file/folder: Not a directory: nothing was solved" in said
 
 
 def test_ctrl_c_keeps_what_was_computed(tmp_path):
