@@ -11,7 +11,7 @@ from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels, measures
 from impactlab.figures.access import design_dims, responses, usable
 from impactlab.figures.labels import display
-from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family, analysed
+from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family, Index, analysed
 from impactlab.report.cautions import beside
 from impactlab.report.convergence import ORDERED, Needs, finest, needed
 from impactlab.report.indices import in_units, with_margin
@@ -22,6 +22,8 @@ from impactlab.verification.stored import unpacked
 LINES = 5
 _MATTERS = 0.01
 """Smallest share of the largest index that is named."""
+_INTERACTS = 0.02
+"""Smallest share of the variance from interactions that is told."""
 _NOTHING = 1e-4
 """Share of the largest magnitude below which an end of a range is round-off."""
 _MINOR = (
@@ -100,17 +102,9 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
         sizes = np.where(index.above_noise, np.abs(index.values), 0.0)
         listed: list[str] = []
         for at in np.argsort(-sizes, kind="stable")[:most].tolist():
-            value, margin = float(index.values[at]), float(index.margins[at])
-            if family is SOBOL:
-                text = share(index, at)
-            elif family is MORRIS:
-                text = in_units(runs[name], value, margin)
-            else:
-                text = with_margin(value, margin)
+            text = _written(runs, analysis, family, index, name, at)
             if family is SOBOL and not found and not listed:
-                text += " of the variance"
-            if index.numerically_lost[at]:
-                text += ", which the numerical error may explain"
+                text = text.replace(")", ") of the variance", 1)
             if sizes[at] > _MATTERS * sizes.max():
                 listed.append(f"{names[at]} {text}")
         if listed and family is REGRESSION and "regression_r_squared" in analysis:
@@ -127,6 +121,23 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
             )
         )
     return found
+
+
+def _written(
+    runs: xr.Dataset, analysis: xr.Dataset, family: Family, index: Index, name: str, at: int
+) -> str:
+    """Return an index with its interval, and of a Sobol index what the parameter does alone."""
+    value, margin = float(index.values[at]), float(index.margins[at])
+    text = with_margin(value, margin)
+    if family is MORRIS:
+        text = in_units(runs[name], value, margin)
+    elif family is SOBOL:
+        text, first = share(index, at), measures.index(analysis, "first_order", name)
+        surplus = value - first.values[at]
+        reach = margin + first.margins[at] + index.numerical[at] + first.numerical[at]
+        if surplus > max(_INTERACTS, reach):
+            text += f", {max(0.0, 100 * first.values[at]):.0f} % alone"
+    return text + ", which the numerical error may explain" * bool(index.numerically_lost[at])
 
 
 def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
