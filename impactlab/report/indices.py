@@ -141,28 +141,4 @@ def numerical_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         rows.append([named(analysis, name), *cells, *([Cell(basis.words)] if basis else [])])
     head = ["Response", *_OF_RESPONSES.values(), *orders.values(), *["Basis"] * based]
     table = Table("Numerical uncertainty of each response", head, rows)
-    warnings = numerical_warnings(runs, analysis)
-    return [Section("numerical", "Numerical uncertainty", lead, warnings, [table])]
-
-
-def numerical_warnings(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    """Return one sentence per response and order with indices that numerical error may explain."""
-    warnings = []
-    for name in analysed(runs, analysis):
-        for measure in SOBOL.measures_in(analysis):
-            index = measures.index(analysis, measure.name, name)
-            lost = np.flatnonzero(index.numerically_lost)
-            if not lost.size:
-                continue
-            keys = measures.parameters(analysis)
-            listed = [
-                f"{labels.parameter(keys[at])} ({index.values[at]:.3f})".replace("-", "−")
-                for at in lost
-            ]
-            bound = labels.number(float(index.numerical[lost].max()), 2)
-            warnings.append(
-                f"{labels.sentence(labels.response(name))}, {measure.words}: these indices are not "
-                "resolved at this discretisation, because the numerical error could change them by "
-                f"as much (up to {bound}): {labels.listing(listed)}."
-            )
-    return warnings
+    return [Section("numerical", "Numerical uncertainty", lead, tables=[table])]

@@ -16,7 +16,7 @@ from impactlab.analysis.verdicts import flagged
 from impactlab.figures.draw import draw_all
 from impactlab.report import sensitivity
 from impactlab.report.answer import answers
-from impactlab.report.indices import numerical_warnings, with_margin
+from impactlab.report.indices import with_margin
 from impactlab.report.study import write_report
 
 Study = tuple[xr.Dataset, xr.Dataset]
@@ -78,19 +78,6 @@ def test_figures_are_numbered_as_they_stand(study: Study, tmp_path: Path, page: 
         if not attrs["href"].startswith("#") and attrs["href"] != "indices.csv":  # of the analysis
             assert (tmp_path / attrs["href"]).exists()
     html5lib.HTMLParser(strict=True).parse(text)
-
-
-def test_an_index_below_the_numerical_error_is_warned_of(study: Study) -> None:
-    runs, analysis = study
-    assert numerical_warnings(runs, analysis) == []
-    analysis["first_order_numerical"].loc[PEAK] = [0.0, 0.2, 0.0, 0.0]
-    (warning,) = numerical_warnings(runs, analysis)
-    value = float(analysis["first_order"].sel(PEAK)[1])
-    assert warning == (
-        "Peak force, first order: these indices are not resolved at this discretisation, because "
-        "the numerical error could change them by as much (up to 0.2): yield stress of the beam "
-        f"({value:.3f})."
-    )
 
 
 def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant(
