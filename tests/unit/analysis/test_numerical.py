@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.numerical import measured, numerical
-from impactlab.study.adaptive.refining import refined
+from impactlab.study.adaptive.refining import refine_cases
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 
@@ -141,7 +141,7 @@ def sample_of(solve, second="false"):
 @pytest.mark.parametrize("second", ["false", "true"])
 def test_the_indices_of_the_limit_are_within_the_uncertainty(order, second):
     solve = solver(order)
-    refinement = refined(sample_of(solve, second), solve)
+    refinement = refine_cases(sample_of(solve, second), solve)
     found = measured(refinement).sel(response="peak_force")
     here, finer = (shares(slopes(nodes, POINTS, order)) for nodes in (NODES, 2 * NODES - 1))
     for name in ("first_order", "total_order"):
@@ -157,14 +157,14 @@ def test_an_error_common_to_all_runs_moves_no_index():
 
     solve = solver(common=20.0, own=0.0)
     runs = sample_of(solve)
-    found = measured(refined(runs, solve))
+    found = measured(refine_cases(runs, solve))
     assert float(found["first_order"].max()) < 1e-12
     assert float(found["total_order"].max()) < 1e-12
 
 
 def test_one_more_coarse_grid_tells_that_the_changes_fall():
     solve = solver(order=2.0)
-    refinement = refined(sample_of(solve), solve)
+    refinement = refine_cases(sample_of(solve), solve)
     with_it = measured(refinement)["total_order"]
     without = measured(refinement.sel(grid=["used", "finer", "more_points"]))["total_order"]
     change = abs(measured(refinement)["total_order_change"])
@@ -174,7 +174,7 @@ def test_one_more_coarse_grid_tells_that_the_changes_fall():
 def test_points_count_too():
     """Nodes change nothing here, for the runs of all grids but one are those of the used grid."""
     solve = solver()
-    refinement = refined(sample_of(solve), solve)
+    refinement = refine_cases(sample_of(solve), solve)
     used = refinement["peak_force"].sel(grid="used", drop=True)
     more = refinement["grid"] == "more_points"
     refinement["peak_force"] = refinement["peak_force"].where(more, used)
@@ -189,7 +189,7 @@ def test_points_count_too():
 def test_failed_runs_are_dealt_with_as_the_study_says(policy, given):
     solve = solver(lost=[("finer", 3)])
     runs = sample_of(solve).assign_attrs(failed_runs=policy)
-    found = measured(refined(runs, solve))
+    found = measured(refine_cases(runs, solve))
     assert bool(np.isfinite(found["first_order"]).all()) is given
 
 
@@ -203,19 +203,19 @@ def analysis_of(index):
 def test_it_takes_the_place_of_the_bound_where_it_is_known():
     solve = solver()
     runs = sample_of(solve)
-    found = numerical(runs, analysis_of([0.6, np.nan, 0.1]), None, refined(runs, solve))
-    expected = measured(refined(runs, solve))["total_order"]
+    found = numerical(runs, analysis_of([0.6, np.nan, 0.1]), None, refine_cases(runs, solve))
+    expected = measured(refine_cases(runs, solve))["total_order"]
     amounts = found["total_order_numerical"].values[0]
     np.testing.assert_allclose(amounts, expected.values[0] * [1, np.nan, 1])
     assert found["numerical_from"].item() == 0
     failing = solver(lost=[("finer", 3)])
-    left = numerical(runs, analysis_of([0.6, 0.3, 0.1]), None, refined(runs, failing))
+    left = numerical(runs, analysis_of([0.6, 0.3, 0.1]), None, refine_cases(runs, failing))
     assert left["numerical_from"].item() == 2
     np.testing.assert_array_equal(left["total_order_numerical"].values[0], [0.6, 0.7, 0.9])
 
 
 def test_a_refinement_of_other_runs_is_refused():
     runs = sample_of(solver())
-    other = refined(sample_of(solver(common=1.0)), solver(common=1.0))
+    other = refine_cases(sample_of(solver(common=1.0)), solver(common=1.0))
     with pytest.raises(ValueError, match=r"impactlab refine results/some/runs.nc"):
         numerical(runs, analysis_of([0.6, 0.3, 0.1]), None, other)
