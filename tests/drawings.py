@@ -23,6 +23,11 @@ def curve(axes: Axes, label: str) -> tuple[np.ndarray, np.ndarray]:
     return points(next(line for line in axes.lines if line.get_label() == label))
 
 
+def is_guide(line: Line2D) -> bool:
+    """Whether a line is a guide, which is no data."""
+    return str(line.get_label()).startswith("_guide")
+
+
 def words(axes: Axes) -> list[str]:
     """What is written in the panel."""
     return [text.get_text() for text in axes.texts]

@@ -23,19 +23,22 @@ from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.types import Floats
 
 _FEWEST = 3
+_NAMED = 3
+"""Largest number of cases per response that a caption names."""
 _CAPTION = (
     "Difference to the limit, relative to it: Richardson's value, or where there is none that of "
     "the least-squares fit, or else the finest value. Thin dashes: the order p of that limit (in "
     "brackets where it is assumed, not observed). The bar at the finest value reaches up to its "
-    "numerical uncertainty. Grey: second order. A verdict is the worst over the whole grid, also "
-    "over what is not drawn."
+    "numerical uncertainty; an open marker is this uncertainty where the finest value is itself "
+    "the limit. A verdict is the worst over the whole grid, also over what is not drawn; what has "
+    "no limit by design is drawn as it is."
 )
 _BESIDE: dict[str, Any] = {
     "loc": "lower left",
     "bbox_to_anchor": (1.0, 0.0),
     "borderaxespad": 0.0,
     "fontsize": 6,
-    "handlelength": 1.0,
+    "handlelength": 2.4,
     "handletextpad": 0.4,
     "labelspacing": 0.2,
     "borderpad": 0.1,
@@ -83,9 +86,15 @@ class Refined:
         """Return whether the grid has at least three values on it."""
         return runs.sizes.get(self.dim, 0) >= _FEWEST and bool(self.names(runs))
 
-    def sentences(self, runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
-        """Return a caption's sentences on what is shown, held and missing."""
-        return self.plan(runs).note(runs), access.missing_note(runs, self.names(runs))
+    def sentences(self, runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, ...]:
+        """Return a caption's sentences on what converges, is shown, held and missing."""
+        names = self.names(runs)
+        return (
+            _enough(runs, analysis, self),
+            _unconverged(runs, analysis, self.name, names),
+            self.plan(runs).note(runs),
+            access.missing_note(runs, names),
+        )
 
 
 _NODES = Refined("nodes", "nodes", ("velocity", "points"))
@@ -138,10 +147,7 @@ def _has_elements(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     "Three-dimensional model alone; elements beyond the contact keep their largest size. "
     f"{_CAPTION}",
     _has_elements,
-    lambda runs, analysis: (
-        _elements(runs).plan(_solid(runs)).note(_solid(runs)),
-        access.missing_note(runs, _elements(runs).names(_solid(runs))),
-    ),
+    lambda runs, analysis: _elements(runs).sentences(_solid(runs), _solid(analysis)),
 )
 def element_size_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw against the size of the elements, or over the radius that the contact is to have."""
@@ -167,6 +173,9 @@ def _draw(
     figure, axes = responses_grid.panels(axis.names(runs), height=44)
     for name, ax in axes.items():
         responses_grid.write_verdict(ax, analysis, f"{axis.name}_summary", name)
+        if _without_limit(analysis, axis, name):
+            _draw_values(ax, runs, name, spacing, selected)
+            continue
         difference = _relative_difference(runs, analysis, axis, name)
         orders = []
         for curve, errors in _above_round_off(difference, selected):
@@ -180,6 +189,75 @@ def _draw(
             ax.legend(*zip(*orders, strict=True), **_BESIDE)
         _finish(ax, spacing, difference, axis.dim)
     return selected.finish(figure, label, "Relative difference (–)")
+
+
+def _without_limit(analysis: xr.Dataset, axis: Refined, name: str) -> bool:
+    flags = _of(analysis, f"{axis.name}_verdict", name)
+    if flags is None or "flag_values" not in flags.attrs:
+        return False
+    return any(found.flag == "not_convergent_by_design" for found in access.occurring(flags))
+
+
+def _draw_values(ax: Axes, runs: xr.Dataset, name: str, spacing: Floats, selected: Plan) -> None:
+    """Draw a response that has no limit to differ from."""
+    values, label = responses_grid.shown(runs, name)
+    for curve in selected.curves:
+        y = values.isel(selected.held | curve.where).values
+        if (y > 0).any():
+            curves.add(ax, spacing, y, curve)
+    ax.set_ylabel(label)
+    scales.fit(ax, "y", scales.drawn(ax, "y"))
+    if ax.get_yscale() == "linear":
+        ax.set_ylim(0.0, None)
+    _scale_spacing(ax, spacing)
+
+
+def _unconverged(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[str]) -> str:
+    """Return a sentence that names the cases behind each verdict that is a warning."""
+    found = []
+    for name in names:
+        flags = _of(analysis, f"{axis}_verdict", name)
+        if flags is None or "flag_values" not in flags.attrs:
+            continue
+        warnings = [verdict.value for verdict in access.occurring(flags) if not verdict.sound]
+        cases = np.argwhere(np.isin(flags.values, warnings))
+        shown = [
+            ", ".join(labels.value(runs[dim], at) for dim, at in zip(flags.dims, case, strict=True))
+            for case in cases[:_NAMED]
+        ]
+        more = [f"{len(cases) - _NAMED} more"] if len(cases) > _NAMED else []
+        which = f" ({'; '.join([*shown, *more])})" if any(shown) else ""
+        if len(cases):
+            count = f"{len(cases)} of {labels.counted(flags.size, 'case')}"
+            found.append(f"{labels.response(name)} in {count}{which}")
+    return f"Not converged: {labels.listing(found)}." if found else ""
+
+
+def _enough(runs: xr.Dataset, analysis: xr.Dataset, axis: Refined) -> str:
+    """Return a sentence on the coarsest grid that is within tolerance in all converging cases."""
+    from_on: dict[str, list[str]] = {}
+    finest = _finest(runs, axis.dim)
+    order = np.argsort(abs(np.argsort(np.argsort(runs[axis.dim].values)) - finest))
+    for name in axis.names(runs):
+        flags = _of(analysis, f"{axis.name}_verdict", name)
+        uncertainty = _of(analysis, f"{axis.name}_uncertainty", name)
+        if flags is None or uncertainty is None or "flag_values" not in flags.attrs:
+            continue
+        sound = [v.value for v in access.occurring(flags) if v.sound and v.flag != "at_round_off"]
+        values = usable(runs, name)
+        reference = values.isel({axis.dim: finest}, drop=True)
+        distance = abs(values / reference.where(reference != 0) - 1.0) + uncertainty
+        outside = (distance > _COST_TOLERANCE) & flags.isin(sound)
+        passes = ~outside.any([dim for dim in outside.dims if dim != axis.dim]).values[order]
+        if sound and passes[0]:
+            last = len(passes) if passes.all() else int(np.argmin(passes))
+            at = labels.value(runs[axis.dim], int(order[last - 1])).replace("_", " ")
+            from_on.setdefault(at, []).append(labels.response(name))
+    found = [f"{labels.listing(names)} from {at} on" for at, names in from_on.items()]
+    head = (
+        f"Within {100 * _COST_TOLERANCE:g} % of the limit, uncertainty included, where it converges"
+    )
+    return f"{head}: {'; '.join(found)}." if found else ""
 
 
 def _above_round_off(difference: xr.DataArray, selected: Plan) -> Iterator[tuple[Choice, Floats]]:
@@ -199,15 +277,18 @@ def _relative_difference(
 
     f0: the limit, or else the value of most nodes, or of the smallest courant or element size.
     """
-    values, refined = usable(runs, name), runs[axis.dim].values
-    smallest = axis.dim in ("courant", "element_size")
-    finest = int(np.argmin(refined) if smallest else np.argmax(refined))
-    reference = values.isel({axis.dim: finest}, drop=True)
+    values = usable(runs, name)
+    reference = values.isel({axis.dim: _finest(runs, axis.dim)}, drop=True)
     for kind in ("fit_extrapolated", "extrapolated"):
         limit = _of(analysis, f"{axis.name}_{kind}", name)
         reference = reference if limit is None else limit.where(np.isfinite(limit), reference)
     ratio = abs(values - reference) / abs(reference).where(reference != 0)
     return ratio.where((values != 0) | (reference != 0), 0.0).transpose(axis.dim, ...)
+
+
+def _finest(runs: xr.Dataset, dim: str) -> int:
+    refined = runs[dim].values
+    return int(np.argmin(refined) if dim in ("courant", "element_size") else np.argmax(refined))
 
 
 def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray | None:
@@ -239,6 +320,7 @@ def _draw_trend(
 ) -> None:
     """Draw the order through the errors of the three finest values, and the bar of the finest."""
     near, colour = np.argsort(spacing)[:_FEWEST], ax.lines[-1].get_color()
+    marker = ax.lines[-1].get_marker()
     scale = np.log(errors[near]) - order * np.log(spacing[near])
     if np.isfinite(scale).any():
         ends = np.array([spacing.min(), spacing.max()])
@@ -246,9 +328,12 @@ def _draw_trend(
         ax.plot(ends, power, color=colour, label="_order", **_DASHED)
     if np.isfinite(uncertainty) and uncertainty > responses_grid.ROUND_OFF:
         at, low = spacing[near[0]], errors[near[0]]
-        bar = [low if np.isfinite(low) else uncertainty, uncertainty]
-        ax.plot([at, at], bar, color=colour, linewidth=0.8, label="_bar")
-        ax.plot(at, uncertainty, color=colour, marker="_", markersize=6, label="_bar")
+        look: dict[str, Any] = {"marker": "_", "markersize": 6}
+        if np.isfinite(low):
+            ax.plot([at, at], [low, uncertainty], color=colour, linewidth=0.8, label="_bar")
+        else:  # no cap without its marker
+            look = {"marker": marker, "markerfacecolor": "white"}
+        ax.plot(at, uncertainty, color=colour, linestyle="", label="_bar", **look)
 
 
 def _finish(ax: Axes, spacing: Floats, difference: xr.DataArray, dim: str) -> None:
@@ -260,12 +345,16 @@ def _finish(ax: Axes, spacing: Floats, difference: xr.DataArray, dim: str) -> No
     shown = scales.drawn(ax, "y")
     ends = np.array([spacing.min(), spacing.max()])
     guide = 1.6 * np.nanmax(shown) * (ends / ends[1]) ** 2
-    ax.plot(ends, guide, label="_guide", linestyle="-", **style.GUIDE)
-    scales.logarithmic(ax, "x", spacing)
+    ax.plot(ends, guide, label="_guide: second order", linestyle="-", **style.GUIDE)
     scales.logarithmic(ax, "y", [*shown, *guide])
+    _scale_spacing(ax, spacing)
+
+
+def _scale_spacing(ax: Axes, spacing: Floats) -> None:
+    scales.logarithmic(ax, "x", spacing)
     if spacing.size <= 5:
         scales.at(ax, "x", scales.apart(spacing))
-    ax.set_xlim(0.85 * ends[0], 1.18 * ends[1])
+    ax.set_xlim(0.85 * spacing.min(), 1.18 * spacing.max())
 
 
 def _points_names(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
@@ -282,10 +371,11 @@ def _plan_points(runs: xr.Dataset, analysis: xr.Dataset) -> Plan:
 @record.figure(
     "Convergence in integration points",
     "Difference to the value with the most integration points over the depth (which is left "
-    f"out, being its own reference), relative to it. Grey: {_POINTS_TOLERANCE:g} %. A verdict "
+    "out, being its own reference), relative to it. A verdict "
     "is the worst over the whole grid, also over what is not drawn.",
     lambda runs, analysis: bool(_points_names(runs, analysis)),
     lambda runs, analysis: (
+        _unconverged(runs, analysis, "points", _points_names(runs, analysis)),
         _plan_points(runs, analysis).note(runs),
         access.missing_note(runs, _points_names(runs, analysis)),
     ),
@@ -309,14 +399,14 @@ def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.logarithmic(ax, "x", points)
         scales.at(ax, "x", points)
         ax.set_xlim(0.9 * points.min(), 1.1 * points.max())
-        _tolerance(ax, _POINTS_TOLERANCE)
+        _tolerance(ax, _POINTS_TOLERANCE, "1 %")
     return selected.finish(figure, labels.axis(labels.parameter("points"), ""), "Error (%)")
 
 
-def _tolerance(ax: Axes, tolerance: float) -> None:
+def _tolerance(ax: Axes, tolerance: float, words: str) -> None:
     """Make the vertical axis logarithmic, to hold a line at the tolerance."""
     scales.logarithmic(ax, "y", [*scales.drawn(ax, "y"), tolerance])
-    ax.axhline(tolerance, label="_guide", linestyle="--", **style.GUIDE)
+    ax.axhline(tolerance, label=f"_guide: {words}", linestyle="--", **style.GUIDE)
 
 
 def _has_cost(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -330,7 +420,7 @@ def _has_cost(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     "Difference to the limit at zero spacing (Richardson's value, that of the least-squares "
     "fit, or else the finest value) against the estimated work of a run: half its nodes times "
     "its time steps. What a step costs grows with the integration points, and is larger with "
-    f"the semi-implicit scheme. Grey: {100 * _COST_TOLERANCE:g} %.",
+    "the semi-implicit scheme.",
     _has_cost,
     _COST.sentences,
 )
@@ -354,7 +444,7 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.logarithmic(ax, "x", decades)
         scales.at(ax, "x", decades)
         ax.set_xlim(decades[0], decades[-1])
-        _tolerance(ax, _COST_TOLERANCE)
+        _tolerance(ax, _COST_TOLERANCE, "1 %")
     return selected.finish(figure, "Work (node-steps)", "Relative difference (–)")
 
 

@@ -20,6 +20,7 @@ Line = Callable[[xr.Dataset], tuple[Floats, Floats]]
 """From one run's dataset (no design dimensions) to the x and y of its curve."""
 
 _LARGE, _SMALL = ("nodes", "points", "elements_per_radius"), ("courant", "element_size")
+_JUMP, _FEW_STEPS = 5.0, 4
 _MOST = 6
 """Largest number of panels, and of curves if no other is asked for."""
 
@@ -152,6 +153,24 @@ def add(ax: Axes, x: Floats, y: Floats, curve: Choice, *, markers: bool = True) 
     if found:
         ax.plot(x, y, label=curve.label or "_only", **look(curve, markers=markers))
     return found
+
+
+def broken(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Return a curve with a gap, of NaN, in each jump: a step of another size than those beside it.
+
+    A step jumps if it is a tenth of the range or more, and _JUMP times as large and as steep as
+    both steps beside it.
+    """
+    rise, run = np.abs(np.diff(y)), np.abs(np.diff(x))
+    if rise.size < _FEW_STEPS or not np.isfinite(y).all() or not (run > 0).all():
+        return x, y
+    slope = rise / run
+    beside = [
+        np.maximum(np.append(0.0, each[:-1]), np.append(each[1:], 0.0)) for each in (rise, slope)
+    ]
+    jumps = (rise > 0.1 * np.ptp(y)) & (rise > _JUMP * beside[0]) & (slope > _JUMP * beside[1])
+    at = np.flatnonzero(jumps) + 1
+    return np.insert(x.astype(float), at, np.nan), np.insert(y.astype(float), at, np.nan)
 
 
 def chosen(runs: xr.Dataset, variable: str) -> Plan:

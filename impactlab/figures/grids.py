@@ -45,38 +45,39 @@ def _velocity_sentences(name: str, runs: xr.Dataset, analysis: xr.Dataset) -> tu
     return _velocity_plan(runs, name).note(runs), access.missing_note(runs, [name])
 
 
-def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, Axes]:
+def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, Axes, Plan]:
     """Draw a curve per contact law, or per value of what else is varied."""
     selected, valid = _velocity_plan(runs, name), usable(runs, name)
     unit, speed = display(valid.rename(name)), runs["velocity"].values
     figure, (ax,) = style.panels(1, columns=1, height=62)
     for curve in selected.curves:
-        curves.add(ax, speed, unit(valid.isel(selected.held | curve.where)), curve)
+        y = unit(valid.isel(selected.held | curve.where))
+        curves.add(ax, *curves.broken(speed, y), curve)
     if not ax.lines:
         style.remark(ax, "no finite values")
     ax.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
     ax.set_ylabel(labels.axis(label, unit.symbol))
-    return selected.finish(figure), ax
+    return figure, ax, selected
 
 
 @record.figure(
     "Contact duration against velocity",
     "Duration of the first contact (a later sub-impact does not count) against the impact "
-    "velocity. Grey: the slope −1/5 of Hertz's elastic impact on a half-space.",
+    "velocity. Grey: the slope of Hertz's elastic impact on a half-space. A jump is not joined.",
     partial(_on_velocities, _DURATION),
     partial(_velocity_sentences, _DURATION),
 )
 def contact_duration(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw on logarithmic axes, as durations follow powers of the velocity, with a guide."""
-    figure, ax = _against_velocity(runs, _DURATION, "duration of the first contact")
+    figure, ax, selected = _against_velocity(runs, _DURATION, "duration of the first contact")
     values, speed = scales.drawn(ax, "y"), runs["velocity"].values
     if values.size:
         scales.logarithmic(ax, "x", speed)
         scales.logarithmic(ax, "y", values)
         ends = np.array([speed.min(), speed.max()])
         guide = np.nanmax(values) * (ends / ends[0]) ** -0.2 * 1.08
-        ax.plot(ends, guide, label="_guide", linestyle="-", **style.GUIDE)
-    return figure
+        ax.plot(ends, guide, label="_guide: slope −1/5", linestyle="-", **style.GUIDE)
+    return selected.finish(figure)
 
 
 @record.figure(
@@ -88,12 +89,12 @@ def contact_duration(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 )
 def restitution_velocity(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw with an axis that holds zero and one."""
-    figure, ax = _against_velocity(runs, _RESTITUTION, labels.response(_RESTITUTION))
+    figure, ax, selected = _against_velocity(runs, _RESTITUTION, labels.response(_RESTITUTION))
     if ax.lines:
         scales.fit(ax, "x", runs["velocity"].values)
         scales.linear(ax, "y")
         ax.set_ylim(min(0.0, ax.get_ylim()[0]), max(1.0, ax.get_ylim()[1]))
-    return figure
+    return selected.finish(figure)
 
 
 def _law_variables(runs: xr.Dataset) -> list[str]:
@@ -203,7 +204,7 @@ def _plan_effects(runs: xr.Dataset) -> Plan:
     _has_effects,
     lambda runs, analysis: (
         f"Responses against the {labels.parameter(str(_along(runs)))}; where curves coincide, the "
-        "first in the legend lies on top.",
+        "first in the legend lies on top. A jump is not joined.",
         _plan_effects(runs).note(runs),
         access.missing_note(runs, responses(runs)),
     ),
@@ -217,7 +218,8 @@ def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         values, label = responses_grid.shown(runs, name)
         ax.set_title(label, loc="left")
         for curve in selected.curves:
-            curves.add(ax, unit(along), values.isel(selected.held | curve.where).values, curve)
+            y = values.isel(selected.held | curve.where).values
+            curves.add(ax, *curves.broken(unit(along), y), curve)
         scales.fit(ax, "x", unit(along))
         scales.fit(ax, "y", scales.drawn(ax, "y"))
         if not ax.lines:
@@ -244,8 +246,7 @@ def _shear_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, ...]:
     "Relative change by shear and rotary inertia: a Timoshenko beam over an Euler-Bernoulli "
     "one, minus one. Below, the same changes against how much shear and "
     "rotary inertia slow the wave that turns by π during the contact, which goes with depth "
-    "over contact duration: if it decided alone, the curves would coincide. Grey: changes of "
-    f"{labels.number(_THRESHOLD)} %.",
+    "over contact duration: if it decided alone, the curves would coincide.",
     _has_shear,
     _shear_sentences,
 )
@@ -307,7 +308,9 @@ def _scale_changes(ax: Axes) -> None:
     ax.set_ylim(1.3 * low, 1.3 * high)  # from no change on
     for sign in (-1.0, 1.0):
         if (sign * drawn > 0).any():
-            ax.axhline(sign * _THRESHOLD, label="_guide", linestyle=(0, (4, 2)), **style.GUIDE)
+            ax.axhline(
+                sign * _THRESHOLD, label="_guide: ±1 %", linestyle=(0, (4, 2)), **style.GUIDE
+            )
 
 
 def _shear_finding(runs: xr.Dataset, name: str) -> str:

@@ -49,8 +49,10 @@ def index_bars(name: str, family: Family) -> Figure:
     @record.figure(family.title, family.meaning, applies, sentences, name)
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per response, a row per parameter, a bar per measure."""
-        listed, shown = parameters(analysis), family.measures_in(analysis)
-        height = 10 + max(4.2, 1.4 * len(shown)) * len(listed)
+        shown = family.measures_in(analysis)
+        analysis = _largest_first(analysis, family)
+        listed = parameters(analysis)
+        height = 10 + max(5.2, 2.4 * len(shown)) * len(listed)
         figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
         for at, (response, ax) in enumerate(axes.items()):
             _bars(ax, analysis, family, response)
@@ -68,7 +70,11 @@ def index_bars(name: str, family: Family) -> Figure:
 
 def _bar_sentences(family: Family, analysis: xr.Dataset) -> list[str]:
     """Return a caption's sentences on what the bars, their lines and their shades are."""
-    estimator = analysis[family.measures_in(analysis)[0].name].attrs.get("estimator")
+    found = {
+        measure.words: analysis[measure.name].attrs.get("estimator")
+        for measure in family.measures_in(analysis)
+    }
+    estimators = [f"{words}: {source}" for words, source in found.items() if source]
     noise = "Pale: the interval holds zero."
     if any(f"dummy_{measure.name}" in analysis for measure in family.measures):
         noise = (
@@ -77,11 +83,21 @@ def _bar_sentences(family: Family, analysis: xr.Dataset) -> list[str]:
         )
     numerical = any(f"{measure.name}_numerical" in analysis for measure in family.measures)
     return [
-        f"Estimator: {estimator}." if estimator else "",
+        f"Estimators: {'; '.join(estimators)}." if estimators else "",
+        "Parameters are sorted by the largest index in any panel.",
         f"Lines on the bars: {access.confidence(analysis)} intervals.",
         noise,
         "Pale, too: below what the numerical error could change." if numerical else "",
     ]
+
+
+def _largest_first(analysis: xr.Dataset, family: Family) -> xr.Dataset:
+    """Return the analysis with its parameters sorted by the measure that ranks them."""
+    given = [measure.name for measure in family.measures_in(analysis)]
+    name = measures.ranking(family).name
+    index = abs(analysis[name if name in given else given[-1]])
+    largest = index.max([dim for dim in index.dims if dim != "parameter"]).fillna(-1.0)
+    return analysis.isel(parameter=np.argsort(-largest.values, kind="stable"))
 
 
 def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:

@@ -215,6 +215,7 @@ def surrogate_validation(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         )
     figure.supxlabel("Computed by the solver")
     figure.supylabel("Predicted by the surrogate")
+    style.legend(figure)
     return figure
 
 
@@ -231,7 +232,7 @@ def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> No
         return
     ends = np.array([computed[given], predicted[given]])
     low, high = float(ends.min()), float(ends.max())
-    ax.axline((low, low), (high, high), label="_guide", **style.GUIDE)
+    ax.axline((low, low), (high, high), label="_guide: agreement", **style.GUIDE)
     ax.plot(
         computed[given],
         predicted[given],
@@ -275,6 +276,7 @@ def failure_shares(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         _shares(ax, unit(runs[name].values), failed)
         ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
     figure.supylabel("Failed runs (%)")
+    style.legend(figure)
     return figure
 
 
@@ -299,7 +301,7 @@ def _shares(ax: Axes, x: Floats, failed: NDArray[np.bool_]) -> None:
         linestyle="",
         elinewidth=0.8,
     )
-    ax.axhline(100 * failed.mean(), label="_guide", linestyle="--", **style.GUIDE)
+    ax.axhline(100 * failed.mean(), label="_guide: all runs", linestyle="--", **style.GUIDE)
     ax.set_ylim(0.0, None)
     scales.linear(ax, "xy", 4)
 

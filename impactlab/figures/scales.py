@@ -17,7 +17,7 @@ Which = Literal["x", "y"]
 WIDE = 30.0
 """Ratio of the largest to the smallest value from which on an axis is logarithmic."""
 _PLAIN = FuncFormatter(lambda value, _: labels.number(value))
-_POWERS = FuncFormatter(lambda value, _: labels.number(value, plain=(1e-3, 1e5)))
+_POWERS = FuncFormatter(lambda value, _: labels.number(value, plain=(1.0, 10.5)))
 
 
 def fit(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
@@ -48,7 +48,8 @@ def logarithmic(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> 
     axes.set(**{f"{which}scale": "log"})
     axis: Axis = getattr(axes, f"{which}axis")
     axis.set_major_locator(LogLocator(subs=digits, numticks=ticks + 1))
-    axis.set_major_formatter(_POWERS)
+    plain = shown.size == 0 or (shown.min() >= 1e-3 and shown.max() < 1e5)
+    axis.set_major_formatter(_PLAIN if plain else _POWERS)  # one notation per axis
     axis.set_minor_formatter(NullFormatter())
 
 

@@ -127,7 +127,8 @@ def _has_displacements(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
 @record.figure(
     "Displacements against time",
     "Displacement of the sphere since first touch, deflection of the beam at mid-span, and "
-    "their difference, the indentation (below zero: the two are apart); downwards is positive.",
+    "their difference, the indentation (below zero: the two are apart); downwards is positive. "
+    "The sphere's flight after its last contact is cut off where it would hide the rest.",
     _has_displacements,
     lambda runs, analysis: (
         curves.note(runs, "sphere_displacement"),
@@ -150,6 +151,7 @@ def displacement_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
                 ax.plot(x, y, label=label, color=style.COLOURS[at], linestyle=style.LINES[at])
         if ax.lines:
             ax.set_xlim(0.0, float(x[-1]))
+            ax.set_ylim(_until_flight(runs.isel(where), unit))
             ax.axhline(0.0, label="_guide", linestyle="-", **style.GUIDE)
         else:
             style.remark(ax, "no finite values")
@@ -157,6 +159,19 @@ def displacement_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     figure.supxlabel(labels.axis(_TIME, time.symbol))
     style.legend(figure, order=list(_DISPLACEMENTS.values()))
     return figure
+
+
+def _until_flight(run: xr.Dataset, unit: Display) -> tuple[float, float]:
+    """Return limits that hold the beam's motion, and the sphere's up to its last contact."""
+    beam, sphere, depth = (
+        unit(run[name]) for name in ("midspan_deflection", "sphere_displacement", "indentation")
+    )
+    touching = np.flatnonzero(depth > 0)
+    end = int(touching[-1]) + 1 if touching.size else 1
+    held = np.concatenate([beam, sphere[:end], depth[:end]])
+    low, high = float(np.nanmin(held)), float(np.nanmax(held))
+    room = 0.08 * (high - low) or 1.0
+    return low - room, high + room
 
 
 def _has_loops(runs: xr.Dataset, analysis: xr.Dataset) -> bool:

@@ -39,6 +39,7 @@ _SETTINGS: dict[str, Any] = {
     "legend.fontsize": 7,
     "legend.title_fontsize": 7,
     "legend.frameon": False,
+    "legend.handlelength": 3.6,  # shows the line style beside the marker
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.linewidth": 0.6,
@@ -95,19 +96,25 @@ def panels(
 def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
     """Add one legend of all labelled artists above the panels; the figure grows to hold it.
 
-    order: labels in the order wanted; without it, that in which they are drawn. A label that is a
+    order: labels in the order wanted; without it, that in which they are drawn. Guides labelled
+    "_guide: WORDS" come last. A label that is a
     line in one panel and markers in another is both in the legend.
     """
     found: dict[str, Any] = {}
+    guides: dict[str, Any] = {}
     for axes in figure.axes:
+        for line in axes.lines:
+            if str(line.get_label()).startswith("_guide: "):
+                guides.setdefault(str(line.get_label()).removeprefix("_guide: "), line)
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             if label not in found:
                 found[label] = (handle,)
             elif len(found[label]) == 1 and _is_marker(handle) != _is_marker(found[label][0]):
                 found[label] += (handle,)
-    if len(found) < 2 and not title:
+    if len(found) + len(guides) < 2 and not title:
         return
     found = {label: found[label] for label in order if label in found} or found
+    found |= {label: (line,) for label, line in guides.items()}
     columns = _columns(figure.get_figwidth() / MILLIMETRE, list(found))
     rows = math.ceil(len(found) / columns) + bool(title)
     figure.set_figheight(figure.get_figheight() + (rows * 4.2 + 1.0) * MILLIMETRE)
@@ -153,7 +160,7 @@ _ABOVE: dict[str, Any] = {
 def _columns(width: float, labels: list[str], letter: float = 1.6) -> int:
     """Return the columns that fit into a width in mm; letters are up to 1.6 mm wide at 7 pt."""
     longest = max((len(label) for label in labels), default=1)
-    fit = int(width / (letter * longest + 10.0))
+    fit = int(width / (letter * longest + 12.5))
     return max(1, min(fit, len(labels)))
 
 

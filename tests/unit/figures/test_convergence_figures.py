@@ -71,7 +71,7 @@ def test_verdicts_are_written_and_warnings_stand_out(study: Study) -> None:
 
 
 def test_the_guide_has_second_order(study: Study) -> None:
-    x, y = curve(panel(NODES.plot(*study), "Peak force"), "_guide")
+    x, y = curve(panel(NODES.plot(*study), "Peak force"), "_guide: second order")
     assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(2.0)
 
 
@@ -192,3 +192,30 @@ def test_cost_against_error(study: Study) -> None:
     np.testing.assert_allclose(work[1:] / work[:-1], 8.0, rtol=0.05)
     _, same = curve(panel(NODES.plot(runs, analysis), "Peak force"), "0.99 m/s, 17 points")
     np.testing.assert_allclose(errors, same)
+
+
+def test_what_has_no_limit_by_design_is_drawn_as_it_is(study: Study) -> None:
+    runs, analysis = study
+    flags = {"flag_meanings": "converged not_convergent_by_design not_yet_converged"}
+    verdict = 0 * analysis["nodes_observed_order"].fillna(0.0).astype(np.int8)
+    verdict.loc[{"response": "peak_plastic_strain"}] = 1
+    verdict.loc[{"response": "peak_force", "points": 3, "velocity": 15.0}] = 2
+    verdict.attrs |= flags | {"flag_values": [0, 1, 2], "sound_flags": "converged"}
+    judged = analysis.assign(nodes_verdict=verdict)
+    axes = panel(NODES.plot(runs, judged), "Peak plastic strain")
+    _, strain = curve(axes, "15 m/s, 17 points")
+    stored = runs["peak_plastic_strain"].sel(velocity=15.0, points=17, rule="lobatto")
+    np.testing.assert_allclose(strain, 100.0 * stored)
+    assert axes.get_ylabel() == "Peak plastic strain (%)"
+    caption = NODES.caption(runs, judged)
+    assert "peak force in 3 of 24 cases (" in caption
+
+
+def test_an_uncertainty_without_a_difference_has_the_marker_of_its_curve(study: Study) -> None:
+    """The finest value of the strain is its own reference: no cap stands alone."""
+    runs, analysis = study
+    analysis["nodes_uncertainty"].loc[{"response": "peak_plastic_strain"}] = 0.1
+    lines = panel(NODES.plot(runs, analysis), "Peak plastic strain").lines
+    bars = [line for line in lines if line.get_label() == "_bar"]
+    assert {line.get_markerfacecolor() for line in bars} == {"white"}
+    assert "_" not in {line.get_marker() for line in bars}

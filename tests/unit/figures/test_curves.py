@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from drawings import panel, points
+from drawings import is_guide, panel, points
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.figures.curves import plan, spread
+from impactlab.figures.curves import broken, plan, spread
 
 Study = Any
 
@@ -75,7 +75,7 @@ NONE = xr.Dataset()
 def _curves(figure: Figure, title: str = "") -> dict[str, Line2D]:
     """Curves of the panel whose title starts so, by label; guides are none."""
     axes = panel(figure, title)
-    return {str(line.get_label()): line for line in axes.lines if line.get_label() != "_guide"}
+    return {str(line.get_label()): line for line in axes.lines if not is_guide(line)}
 
 
 def test_force_history_shows_the_stored_numbers(velocity_study: Study) -> None:
@@ -142,7 +142,7 @@ def test_contact_duration_leaves_a_gap(velocity_study: Study, failing: Any) -> N
 def test_the_guide_of_contact_duration_has_hertzs_slope(velocity_study: Study) -> None:
     runs, _ = velocity_study
     lines = panel(CATALOGUE["contact_duration"].plot(runs, NONE), "").lines
-    (guide,) = (points(line) for line in lines if line.get_label() == "_guide")
+    (guide,) = (points(line) for line in lines if is_guide(line))
     x, y = guide
     assert x.tolist() == [0.25, 20.0]
     assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(-0.2)
@@ -178,7 +178,7 @@ def test_plastic_strain_is_the_largest_over_the_depth_in_percent(velocity_study:
 def test_plastic_strain_marks_one_depth_and_the_papers_limit(velocity_study: Study) -> None:
     runs, _ = velocity_study
     axes = CATALOGUE["plastic_strain"].plot(runs, NONE).axes[0]
-    guides = [points(line) for line in axes.lines if line.get_label() == "_guide"]
+    guides = [points(line) for line in axes.lines if is_guide(line)]
     marks = sorted(float(x[0]) for x, y in guides if x[0] == x[1])
     assert marks == pytest.approx([390.0 - 27.8, 390.0 + 27.8])
     assert [float(y[0]) for x, y in guides if y[0] == y[1]] == [0.2]
@@ -254,3 +254,24 @@ def test_first_contact_ends_with_the_longest_first_one(velocity_study: Study) ->
     longest = 1e3 * float(runs["contact_duration"].max())
     assert first == pytest.approx(1.05 * longest, rel=0.03)
     assert first < whole
+
+
+def test_a_jump_is_not_joined_and_a_smooth_curve_is() -> None:
+    speed = np.array([15.0, 16.0, 17.0, 18.0, 19.0, 20.0])
+    x, y = broken(speed, np.array([0.155, 0.155, 0.157, 0.276, 0.272, 0.27]))
+    assert np.flatnonzero(np.isnan(y)).tolist() == [3]
+    assert np.delete(x, 3).tolist() == speed.tolist()
+    assert broken(speed, speed**-0.2)[1].size == 6
+
+
+def test_guides_are_in_the_legend(velocity_study: Study) -> None:
+    legend = CATALOGUE["contact_duration"].plot(velocity_study[0], NONE).legends[0]
+    assert [text.get_text() for text in legend.get_texts()] == ["Hertz", "Stronge", "slope −1/5"]
+
+
+def test_the_flight_after_the_last_contact_sets_no_scale(velocity_study: Study) -> None:
+    runs = velocity_study[0].copy(deep=True)
+    for name in ("sphere_displacement", "indentation"):
+        runs[name][..., -1] = -1.0  # a metre away
+    axes = panel(CATALOGUE["displacement_history"].plot(runs, NONE), "Hertz")
+    assert axes.get_ylim()[0] > -500.0

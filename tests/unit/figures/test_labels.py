@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.figures import labels
+from impactlab.figures import labels, scales, style
 from impactlab.figures.labels import display
 
 
@@ -97,3 +97,14 @@ def test_plastic_strain_is_in_percent() -> None:
 def test_missing_values_do_not_choose_the_unit() -> None:
     assert display(xr.DataArray([np.nan, 2e3], attrs={"units": "N"})).symbol == "kN"
     assert display(xr.DataArray([np.nan], attrs={"units": "N"})).symbol == "N"
+
+
+def test_an_axis_has_one_notation() -> None:
+    with style.applied():
+        _, (ax,) = style.panels(1, columns=1, height=40)
+    ax.plot([1, 2], [1e-4, 0.1])
+    scales.logarithmic(ax, "y", [1e-4, 0.1])
+    written = [ax.yaxis.get_major_formatter()(value, 0) for value in (1e-4, 1e-3, 0.1, 1.0)]
+    assert written == ["10⁻⁴", "10⁻³", "10⁻¹", "1"]
+    scales.logarithmic(ax, "y", [1e-2, 10.0])
+    assert ax.yaxis.get_major_formatter()(0.01, 0) == "0.01"
