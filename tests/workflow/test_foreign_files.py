@@ -261,3 +261,12 @@ def test_every_file_follows_cf(results):
             output_filename=str(results / "cf.txt"),
         )
         assert passed, (results / "cf.txt").read_text()
+
+
+def test_an_edited_resolution_is_found_anew(made, results):
+    shutil.copytree(made / "studies", results.parent / "studies")
+    tripled(results / "sample" / "resolution.nc")
+    ended = done("run", "studies/sample.yaml", cwd=results.parent)
+    assert "was changed after it was written" in ended.stderr
+    assert "the pilot runs are solved again" in ended.stderr
+    read_netcdf(results / "sample" / "resolution.nc", "resolution")
