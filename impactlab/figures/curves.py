@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import access, labels, style
 from impactlab.figures.access import design_dims, usable
+from impactlab.model.impact import SOLID
 from impactlab.types import Floats
 
 Line = Callable[[xr.Dataset], tuple[Floats, Floats]]
@@ -89,7 +90,12 @@ def plan(
         panels = [Choice({panel: at}, labels.value(runs[panel], at)) for at in where]
     rank = {dim: at for at, dim in enumerate(prefer)}
     left = sorted((dim for dim in dims if dim != panel), key=lambda dim: rank.get(dim, len(rank)))
-    shown = _shown({dim: runs.sizes[dim] for dim in left if runs.sizes[dim] > 1}, most)
+    # beside 3-D runs, as no model there is refined by what refines the other
+    finest = (
+        {*_LARGE, *_SMALL} - {*prefer} if SOLID in np.ravel(runs.get("beam_model", "")) else set()
+    )
+    several = (dim for dim in left if runs.sizes[dim] > 1 and dim not in finest)
+    shown = _shown({dim: runs.sizes[dim] for dim in several}, most)
     held = {d: _held(runs[d]) for d in left if d not in shown and runs.sizes[d] > 1}
     single = {dim: 0 for dim in left if runs.sizes[dim] == 1}
     return Plan(panels, _curves(runs, shown, single), shown, held)

@@ -46,7 +46,7 @@ _METHODS = {
     "pawn": "Latin hypercube for PAWN indices",
     "regression": "Latin hypercube for regression",
 }
-_NAMES = {"mjg": "MJG", "stronge_original": "Stronge (original)"}
+_NAMES = {"solid": "3-D FE model", "mjg": "MJG", "stronge_original": "Stronge (original)"}
 _FIXED = (
     "velocity",
     "contact",

@@ -59,6 +59,12 @@ def test_the_data_of_the_figure_are_its_numbers(study):
     assert below[0].high == pytest.approx(5.0 + width, rel=1e-3)
 
 
+def test_no_curve_is_of_a_refinement_that_its_model_does_not_know(study):
+    figure = CATALOGUE["contact_duration"].plot(*study)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["Euler-Bernoulli", "Timoshenko", "3-D FE model", "slope −1/5"]
+
+
 def test_points_without_a_bound_have_no_bar(study):
     runs, analysis = study[0], study[1].copy(deep=True)
     analysis["nodes_uncertainty"].loc[{"velocity": 1.0}] = np.inf
