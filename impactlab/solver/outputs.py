@@ -33,7 +33,7 @@ class Response:
     """A scalar answer of a run: its name, unit (UDUNITS) and meaning.
 
     missing: the status flag that explains why it is NaN (besides those of the whole run).
-    comment: what a reader of the number has to know.
+    comment: what a reader of the number has to know. beam_models_only: the 3-D model has none.
     """
 
     name: str
@@ -41,6 +41,7 @@ class Response:
     long_name: str
     missing: str | None = None
     comment: str | None = None
+    beam_models_only: bool = False
 
 
 RESPONSES = (
@@ -97,6 +98,7 @@ RESPONSES = (
         "in_contact_at_end",
         "below zero where the contact law itself creates energy, as Stronge's does for largest "
         "indentations of 1 to 2.673 times that of first yield; `remarks` says so, too",
+        beam_models_only=True,
     ),
     Response("plastic_dissipation", "J", "energy dissipated in the fibres"),
     Response("energy_error", "1", "largest energy imbalance over the initial kinetic energy"),

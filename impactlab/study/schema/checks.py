@@ -10,7 +10,7 @@ import numpy as np
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
-from impactlab.solver import BEAM_MODELS
+from impactlab.solver import BEAM_MODELS, outputs
 from impactlab.study.errors import unknown
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
@@ -27,8 +27,6 @@ _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
 """Parameters that move the places at which profiles are given."""
 _FIBRES = ("euler_bernoulli", "elastic")
 """Beam models that have both time schemes."""
-_NOT_SOLID = "contact_dissipation"
-"""The one response that the 3-D model cannot give by itself."""
 _TAILS = np.array([1e-3, 1 - 1e-3])
 
 
@@ -185,12 +183,10 @@ def _solid(file: StudyFile) -> Reasons:
         yield "discretisation.auto", reason
     if file.store.profiles:
         yield "store.profiles", f"must be false with beam_model: {SOLID}, which has no profiles"
-    if _NOT_SOLID in file.responses:
-        reason = (
-            f"{_NOT_SOLID} is not available with beam_model: {SOLID}, whose plastic_dissipation "
-            "includes that of the contact: list the responses without it"
-        )
-        yield "responses", reason
+    for entry in outputs.RESPONSES:
+        if entry.beam_models_only and entry.name in file.responses:
+            reason = f"{entry.name} is not available with beam_model: {SOLID}: leave it out"
+            yield "responses", reason
 
 
 CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (

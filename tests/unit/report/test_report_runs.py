@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -111,7 +112,7 @@ def test_small_grids_are_printed_run_by_run(
     runs, analysis = velocity_study
     page = report(failing(runs, {"velocity": 1, "contact": 0}), analysis)
     tables = [rows for name, rows in page.tables.items() if name.startswith("Every run")]
-    assert [len(rows) for rows in tables] == [17, 17, 17]
+    assert [len(rows) for rows in tables] == [17] * math.ceil(len(RESPONSES) / 6)
     head, *rows = tables[0]
     assert head[:3] == ["Impact velocity (m/s)", "Contact law", "Peak force (kN)"]
     assert rows[2][:3] == ["0.99", "Hertz", "missing"]
