@@ -29,10 +29,11 @@ from rich.console import Console
 from rich.table import Table
 
 import impactlab as il
+from impactlab.files import write_netcdf
 from impactlab.model.parameters import flatten
 from impactlab.study.engine import Engine
 from impactlab.study.execute import open_runs
-from impactlab.study.netcdf import Columns, write_netcdf
+from impactlab.study.netcdf import Columns
 from impactlab.study.solvers import impact
 from impactlab.study.store import OutputSpec
 
@@ -87,7 +88,7 @@ def measured(what: str, runs: int, threads: int) -> dict[str, object]:
     with tempfile.TemporaryDirectory() as folder, kernels() as spent:
         wall, processor = time.perf_counter(), time.process_time()
         with open_runs(asked, Path(folder), Engine(workers=threads)) as solved:
-            write_netcdf(solved, Path(folder) / "runs.nc")
+            write_netcdf(solved, Path(folder) / "runs.nc", "runs")
             line["runs_MB"] = solved.nbytes / 1e6
         line["wall_s"] = time.perf_counter() - wall
         line["processor_s"] = time.process_time() - processor

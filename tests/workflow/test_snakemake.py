@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from impactlab.study.netcdf import write_netcdf
+from impactlab.files import write_netcdf
 from impactlab.verification.finding import Finding, Outcome, relative
 from impactlab.verification.stored import packed
 
@@ -132,7 +132,7 @@ def test_failed_checks_come_after_the_report(folder):
     results = folder / "results" / "bad"
     entry = relative("peak force", "here", "N", 2.0, 1.0, 0.1)
     outcome = Outcome("half_space", "Half-space", "made up", 0.0, Finding([entry]))
-    write_netcdf(packed([outcome]), results / "findings.nc")
+    write_netcdf(packed([outcome]), results / "findings.nc", "findings")
     done = snakemake(folder, studies="bad")
     assert done.returncode != 0
     assert "half_space: 1 of 1 comparisons" in done.stderr
