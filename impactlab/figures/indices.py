@@ -210,7 +210,7 @@ def _lines(ax: Axes, analysis: xr.Dataset, variable: str, response: str) -> None
         bool(analysed(runs, analysis, _PAIRS)) and analysis.sizes["parameter"] > 1
     ),
     lambda runs, analysis: (
-        f"Grey: zero lies within the {access.confidence(analysis)} interval.",
+        f"Grey, without a number: zero lies within the {access.confidence(analysis)} interval.",
         _missing(runs, analysis),
     ),
 )
@@ -253,10 +253,9 @@ def _map(ax: Axes, values: Floats, significant: NDArray[np.bool_], colours: Norm
     shown = np.where(significant, values, np.nan)
     ax.imshow(np.where(np.isfinite(values), 0.93, np.nan), cmap="gray", vmin=0, vmax=1)
     image = ax.imshow(shown, cmap="Blues", norm=colours, interpolation="nearest")
-    for row, column in np.argwhere(np.isfinite(values)):
+    for row, column in np.argwhere(np.isfinite(values) & significant):
         value = values[row, column]
-        dark = bool(significant[row, column]) and colours(value) > 0.55
-        colour = "white" if dark else "black" if significant[row, column] else "0.5"
+        colour = "white" if colours(value) > 0.55 else "black"
         text = f"{value:z.0f}".replace("-", "−")
         ax.text(column, row, text, ha="center", va="center", fontsize=6, color=colour)
     return image
