@@ -1,4 +1,4 @@
-"""What tests look up in a drawn figure."""
+"""Look-ups of the tests in a drawn figure."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def curve(axes: Axes, label: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def is_guide(line: Line2D) -> bool:
-    """Whether a line is a guide, which is no data."""
+    """Return whether a line is a guide and no data."""
     return str(line.get_label()).startswith("_guide")
 
 
 def words(axes: Axes) -> list[str]:
-    """What is written in the panel."""
+    """Return what is written in the panel."""
     return [text.get_text() for text in axes.texts]
