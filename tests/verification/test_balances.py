@@ -84,6 +84,7 @@ def test_force_moves_the_beam():
     assert moved == pytest.approx(driven, rel=2e-3)
 
 
+@pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes hours as plain Python")
 def test_balances_of_hundreds_of_impacts():
     """Exact in an elastic beam; in one that yields, as good as the run itself reports."""
