@@ -74,9 +74,9 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         for one in found:
             texts = [getattr(one, label) for label in _LABELS]
             points = zip(*(getattr(one, axis).tolist() for axis in _POINTS), strict=True)
-            for name, point in zip(one.category, points, strict=True):
+            for category, point in zip(one.category, points, strict=True):
                 numbers = ["" if math.isnan(number) else f"{number:.9g}" for number in point]
-                writer.writerow([*texts, name, *numbers])
+                writer.writerow([*texts, category, *numbers])
     with replaced(paths[1]) as temporary:
         attrs = {"title": name, "history": "impactlab figures", "Conventions": "CF-1.11"}
         dataset(found).assign_attrs(attrs).to_netcdf(temporary, engine="netcdf4")
