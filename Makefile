@@ -24,6 +24,8 @@ BIN := $(VENV)/bin
 # Named for this folder and this Python: a copied checkout would otherwise run the other's code.
 KEY := $(shell { pwd -P; $(PYTHON) -c 'import sys; print(sys.version_info[:2])'; } 2>&1 | cksum | cut -d ' ' -f 1)
 MADE := $(VENV)/made-$(KEY)
+# Without it every step of a study compiles its libraries' bytecode again, for seconds.
+unexport PYTHONDONTWRITEBYTECODE
 IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 # Its default of 100/1s has it look around once a second for every job done: half a core in the end.
