@@ -105,30 +105,22 @@ def _remove_unused(root: Path) -> None:
             continue
 
 
-def _name(function: Callable[..., Any]) -> str:
-    return f"{function.__module__}.{function.__qualname__}"
-
-
-def _called(name: str) -> bool:
-    """Return whether Python can call a function: in a process that compiles one kernel, that alone.
-
-    What makes the others ready for Python would take half of the time.
-    """
-    return os.environ.get(_COMPILES, name) == name
-
-
 class KernelCache(_Cache):
     """The compiled forms of one function, as numba's dispatchers ask for them."""
 
-    def __init__(self, folder: Path, function: Callable[..., Any]) -> None:
-        """Cache `function` in `folder`."""
-        self.folder = folder
-        self._name = _name(function)
+    def __init__(self, folder: Path, name: str) -> None:
+        """Cache the function of this name in `folder`."""
+        self.folder, self.name = folder, name
+        self.files = f"{name}-{{}}{_SUFFIX}"
 
     @property
     def cache_path(self) -> str:
         """The folder, as numba's statistics name it."""
         return str(self.folder)
+
+    def _path(self, sig: Any) -> Path:
+        types = hashlib.sha256(repr(sig).encode()).hexdigest()[:16]
+        return self.folder / self.files.format(types)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the compiled form for these argument types, or None where there is none."""
@@ -139,14 +131,20 @@ class KernelCache(_Cache):
         return rebuild(target_context, *pickle.loads(payload))
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a compiled form that Python can call and that holds no addresses of this process."""
-        if data.library.has_dynamic_globals or data.lifted or not _called(self._name):
+        """Keep a compiled form that holds no addresses of this process: all of it or nothing."""
+        if data.library.has_dynamic_globals or data.lifted:
             return
+        path = self._path(sig)
+        part = path.with_name(f"{path.name}.{uuid4().hex}")
+        dumps: Any = serialize.dumps  # without types, as `_rebuild` above
+        payload = dumps(data._reduce())
         try:
-            dumps: Any = serialize.dumps  # without types, as `_rebuild` above
-            _write(self._path(sig), dumps(data._reduce()))
+            self.folder.mkdir(parents=True, exist_ok=True)
+            part.write_bytes(hashlib.sha256(payload).digest() + payload)
+            part.replace(path)
         except OSError as error:
             log.warning("%s: a compiled kernel could not be kept: %s", self.folder, error.strerror)
+            discard(self.folder, part.name)
 
     def enable(self) -> None:
         """Do nothing: a function without a cache has numba's NullCache."""
@@ -155,24 +153,12 @@ class KernelCache(_Cache):
 
     def flush(self) -> None:
         """Remove every compiled form of this function."""
-        for path in self._files():
-            path.unlink(missing_ok=True)
-
-    def is_kept(self) -> bool:
-        """Return whether there is a sound compiled form of this function."""
-        return any(_read(path) is not None for path in self._files())
-
-    def _files(self) -> list[Path]:
-        return list(self.folder.glob(f"{self._name}-*{_SUFFIX}"))
-
-    def _path(self, sig: Any) -> Path:
-        types = hashlib.sha256(repr(sig).encode()).hexdigest()[:16]
-        return self.folder / f"{self._name}-{types}{_SUFFIX}"
+        discard(self.folder, self.files.format("*"))
 
 
-def discard(folder: Path) -> None:
-    """Remove everything compiled from a folder."""
-    for path in folder.glob(f"*{_SUFFIX}*"):
+def discard(folder: Path, files: str = f"*{_SUFFIX}*") -> None:
+    """Remove everything compiled, or these files, from a folder."""
+    for path in folder.glob(files):
         path.unlink(missing_ok=True)
 
 
@@ -194,19 +180,8 @@ def _read(path: Path) -> bytes | None:
     return None
 
 
-def _write(path: Path, payload: bytes) -> None:
-    """Write checksum and payload into a file, all of it or nothing."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.{uuid4().hex}")
-    try:
-        part.write_bytes(hashlib.sha256(payload).digest() + payload)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
 class Compiler:
-    """The decorators of one package of kernels; under NUMBA_DISABLE_JIT=1 they change nothing.
+    """Makes the decorators of one package of kernels.
 
     sources_hash: SHA-256 (hex) of all sources of the package and of this one, and of numba's
     version. folder: where its compiled kernels are kept; None: they cannot be kept.
@@ -221,66 +196,42 @@ class Compiler:
         self.sources_hash = digest.hexdigest()
         self.folder = cache_folder(self.sources_hash)
 
-    def compiled(self, function: Function) -> Function:
-        """Return `function` as a compiled kernel.
-
-        It can neither make arrays nor free any: what it works on belongs to its caller. One that
-        makes an array does not compile.
-        """
-        return self._compile(function)
-
-    def allocating(self, function: Function) -> Function:
-        """Return what `compiled` does, of a function that makes or owns arrays.
-
-        It has numba's counting of references (`_nrt`), which costs time at each call. A record of
-        an array does not keep it alive here, so arrays of records come from Python.
-        """
-        return self._compile(function, allocates=True)
-
-    def vectorised(self, function: Function) -> Function:
-        """Return what `compiled` does, free to reorder sums and blind to NaN: for array loops."""
-        return self._compile(function, fastmath=True)
-
-    def ordered(self, function: Function) -> Function:
-        """Return what `compiled` does, free to fuse a product with a sum; sums keep their order."""
-        return self._compile(function, fastmath={"contract"})
-
-    def inlined(self, function: Function) -> Function:
-        """Return what `ordered` does, always part of its callers: their loops can be vectorised."""
-        return self._compile(function, fastmath={"contract"}, inline=True)
-
-    def linked(self, function: Function, name: str) -> Function:
-        """Return what `compiled` does, of a function made within another, under a name of its own.
-
-        Functions made in the same place need one: numba knows functions by their names, in its
-        cache and where it links code from there, and would take one for another. For the same
-        reason the function is kept in its callers' code alone.
-        """
-        function.__qualname__ = function.__name__ = name
-        return self._compile(function, kept=False)
-
-    def _compile(
+    def decorator(
         self,
-        function: Function,
         *,
         fastmath: Any = False,
         kept: bool = True,
         inline: bool = False,
         allocates: bool = False,
-    ) -> Function:
+    ) -> Callable[[Function], Function]:
+        """Return a decorator that compiles functions; under NUMBA_DISABLE_JIT=1 it changes nothing.
+
+        fastmath: what may be done to sums and products, as in LLVM. kept: whether in the cache.
+        inline: always part of the callers, whose loops can then be vectorised. allocates: whether
+        the functions may make or own arrays: then they have numba's counting of references
+        (`_nrt`), which costs time at each call; others that make an array do not compile.
+        """
         jit: Any = numba.njit  # its types do not list `_nrt`
-        dispatcher = jit(
-            nogil=True,
-            error_model="numpy",
-            fastmath=fastmath,
-            forceinline=inline,
-            _nrt=allocates,
-            no_cfunc_wrapper=True,
-            no_cpython_wrapper=not _called(_name(function)),
-        )(function)
-        if kept and self.folder is not None and dispatcher is not function:
-            dispatcher._cache = KernelCache(self.folder, function)
-        return cast(Function, dispatcher)
+
+        def compiled(function: Function) -> Function:
+            name = f"{function.__module__}.{function.__qualname__}"
+            # In a process that compiles one kernel, Python can call that alone, which alone is
+            # kept: what makes the others ready for Python would take half of the time.
+            called = os.environ.get(_COMPILES, name) == name
+            dispatcher = jit(
+                nogil=True,
+                error_model="numpy",
+                fastmath=fastmath,
+                forceinline=inline,
+                _nrt=allocates,
+                no_cfunc_wrapper=True,
+                no_cpython_wrapper=not called,
+            )(function)
+            if kept and called and self.folder is not None and dispatcher is not function:
+                dispatcher._cache = KernelCache(self.folder, name)
+            return cast(Function, dispatcher)
+
+        return compiled
 
 
 @functools.cache
@@ -298,13 +249,13 @@ def precompile(kernel: Any, program: str) -> None:
     paths = os.pathsep.join(filter(None, [here, os.environ.get("PYTHONPATH")]))
     try:
         with FileLock(cache.folder / "lock"):
-            if cache.is_kept():
+            if any(_read(path) for path in cache.folder.glob(cache.files.format("*"))):
                 return
             discard(cache.folder)
             print("impactlab: compiling kernels, once, about 10 s", file=sys.stderr, flush=True)
             done = subprocess.run(
                 [sys.executable, "-c", program],
-                env=os.environ | {_COMPILES: _name(kernel), "PYTHONPATH": paths},
+                env=os.environ | {_COMPILES: cache.name, "PYTHONPATH": paths},
                 capture_output=True,
                 text=True,
                 check=False,

@@ -10,8 +10,13 @@ _COMPILER = Compiler(Path(__file__).parent)
 SOURCES_HASH = _COMPILER.sources_hash
 """Hash of the kernels that this process runs: the same hash, the same numbers."""
 
-compiled = _COMPILER.compiled
-allocating = _COMPILER.allocating
-vectorised = _COMPILER.vectorised
-ordered = _COMPILER.ordered
-linked = _COMPILER.linked
+compiled = _COMPILER.decorator()
+"""It can neither make arrays nor free any: what a kernel works on belongs to its caller."""
+allocating = _COMPILER.decorator(allocates=True)
+"""A record of an array does not keep it alive here, so arrays of records come from Python."""
+vectorised = _COMPILER.decorator(fastmath=True)
+"""Free to reorder sums and blind to NaN: for loops over arrays."""
+ordered = _COMPILER.decorator(fastmath={"contract"})
+"""Free to fuse a product with a sum; sums keep their order."""
+linked = _COMPILER.decorator(kept=False)
+"""For functions made within another, which are kept in their callers' code alone."""

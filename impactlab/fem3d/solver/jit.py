@@ -19,5 +19,5 @@ _COMPILER = Compiler(Path(__file__).parent)
 SOURCES_HASH = _COMPILER.sources_hash
 """Hash of the sources that this process runs."""
 
-compiled = _COMPILER.ordered
-inlined = _COMPILER.inlined
+compiled = _COMPILER.decorator(fastmath={"contract"})
+inlined = _COMPILER.decorator(fastmath={"contract"}, inline=True)

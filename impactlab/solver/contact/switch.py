@@ -35,7 +35,9 @@ def _link(what: str, number: int, others: Any) -> Any:
             return chosen(*of)
         return others(law, *of)
 
-    return linked(ask, f"{what}_{number}")
+    # numba knows functions by their names and would take one made here for another
+    ask.__qualname__ = ask.__name__ = f"{what}_{number}"
+    return linked(ask)
 
 
 curve, limit = _no_curve, _no_limit
