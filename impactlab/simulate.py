@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +21,15 @@ from impactlab.solver.leapfrog import run_all
 from impactlab.solver.outputs import blank
 from impactlab.solver.section import rule_points
 from impactlab.solver.types import CASE
-from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, kept_bits, provenance
+from impactlab.variables import (
+    HISTORIES,
+    MARKED,
+    PROFILES,
+    RESPONSES,
+    described,
+    provenance,
+    status_bits,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,24 +39,6 @@ import impactlab as il
 from impactlab.simulate import case_table, solve
 solve(case_table(il.paper_impact(), il.Discretisation(nodes=5), duration=1e-6))
 """
-
-
-@dataclass(frozen=True)
-class Answers:
-    """The kernels' results of R runs.
-
-    responses: record array (R,) of solver.outputs.RESPONSE. histories: name -> (R, samples).
-    profiles: name -> (R, nodes, points), or (R, nodes) for the deflection. Both may be empty.
-    """
-
-    responses: np.ndarray[Any, Any]
-    histories: dict[str, np.ndarray[Any, Any]]
-    profiles: dict[str, np.ndarray[Any, Any]]
-
-    def columns(self) -> dict[str, np.ndarray[Any, Any]]:
-        """Return every response, history and profile by name, each of shape (R, ...)."""
-        responses = {name: self.responses[name].copy() for name in self.responses.dtype.names or ()}
-        return responses | self.histories | self.profiles
 
 
 def simulate(
@@ -75,9 +64,10 @@ def simulate(
     _warn(numbers(impact, grid))
     cases = case_table(impact, grid, duration=duration)
     answers = solve(cases, samples=samples, profiles=True)
+    times = {"time": np.linspace(0.0, duration, samples)}
     dataset = xr.Dataset(
-        answer_variables(answers.columns(), tuple(RESPONSES), ()),
-        coords=sample_coordinates(duration, samples) | profile_coordinates(impact, grid),
+        answer_variables(answers, tuple(RESPONSES), ()),
+        coords=times | profile_coordinates(impact, grid),
         attrs=provenance(),
     )
     fixed = flatten(impact, grid) | {"sphere_mass": impact.sphere.total_mass, "duration": duration}
@@ -110,7 +100,7 @@ def simulate_many(
     )
     labels = {name: ("run", np.asarray(values)) for name, values in varied.items()}
     dataset = xr.Dataset(
-        answer_variables(solve(cases).columns(), tuple(RESPONSES), ("run",)),
+        answer_variables(solve(cases), tuple(RESPONSES), ("run",)),
         coords=labels | {"run": np.arange(cases.size), "duration": duration},
         attrs=provenance(),
     )
@@ -166,11 +156,15 @@ def case_table(
     return cases
 
 
-def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False) -> Answers:
+def solve(
+    cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False
+) -> dict[str, np.ndarray[Any, Any]]:
     """Run the kernels over a case table, on the calling thread and without the GIL.
 
     samples: length of each history (0: none). profiles: keep the fields along the beam, for
-    which all cases must share nodes and points; raises ValueError where they do not.
+    which all cases must share nodes and points; raises ValueError where they do not. Returns by
+    name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles,
+    (R, nodes, points), or (R, nodes) for the deflection.
     """
     if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
         raise ValueError("profiles need the same nodes, points and rule in every run")
@@ -183,17 +177,14 @@ def solve(cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = Fal
     precompile(run_all, _COMPILE)
     contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
     run_all(cases, responses, contacts, events, histories, deflection, strains[0], strains[1])
-    return Answers(
-        responses,
-        dict(zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)) if samples else {},
-        {
-            "equivalent_plastic_strain": _mirror(_depth(strains[1], 1.0, points)),
-            "plastic_strain": _mirror(_depth(strains[0], -1.0, points)),
-            "deflection": _mirror(deflection),
-        }
-        if profiles
-        else {},
-    )
+    columns = {name: responses[name].copy() for name in responses.dtype.names or ()}
+    if samples:
+        columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
+    if profiles:
+        columns["equivalent_plastic_strain"] = _mirror(_depth(strains[1], 1.0, points))
+        columns["plastic_strain"] = _mirror(_depth(strains[0], -1.0, points))
+        columns["deflection"] = _mirror(deflection)
+    return columns
 
 
 def compile_all() -> str | None:
@@ -215,7 +206,7 @@ def answer_variables(
     `status` keeps the bits that matter to these responses; `remarks` are of the run as a whole.
     """
     lead = dims or ("run",)
-    bits = (answers["status"] & kept_bits(responses)).astype(np.int32)
+    bits = (answers["status"] & (status_bits(responses) | MARKED)).astype(np.int32)
     scalars = {name: (lead, answers[name]) for name in responses}
     fields = {
         name: ((*lead, *entry.dims), answers[name])
@@ -224,11 +215,6 @@ def answer_variables(
     }
     remarks = answers["remarks"].astype(np.int32)
     return scalars | fields | {"status": (lead, bits), "remarks": (lead, remarks)}
-
-
-def sample_coordinates(duration: float, samples: int) -> dict[str, Any]:
-    """Return the `time` coordinate of histories with this many samples."""
-    return {"time": np.linspace(0.0, duration, samples)}
 
 
 def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import os
 import platform
 import re
 import subprocess
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
@@ -70,7 +70,8 @@ STATUS_FLAGS = FAILURES | MARKS
 """All flags of `status`."""
 FAILED = sum(bit for bit, _ in FAILURES.values())
 """The bits of a run that failed."""
-_MARKED = sum(bit for bit, _ in MARKS.values())
+MARKED = sum(bit for bit, _ in MARKS.values())
+"""The bits of a run whose responses are to be taken with care."""
 
 WARNINGS: dict[str, tuple[int, str]] = {
     "contact_created_energy": (
@@ -195,55 +196,47 @@ def attributes(name: str) -> dict[str, Any]:
     return attrs
 
 
+_OF_LAWS = {
+    "source": "source",
+    "holds_for": "holds",
+    "flaws": "flaws",
+    "unconfirmed": "unconfirmed",
+}
+"""Attributes of `contact`, and the fields of a law that they come from."""
+
+
 def described(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset with the table's attributes on every variable that the table knows."""
+    """Return the dataset with the table's attributes on every variable that the table knows.
+
+    Those of `contact` are source, range, flaws and doubts, one line per law.
+    """
     known = VARIABLES | PARAMETERS | FLAGS
     for name, variable in dataset.variables.items():
         if name in known:
             variable.attrs = attributes(str(name)) | variable.attrs
     if "contact" in dataset.variables:
-        laws = np.unique(dataset["contact"].values).tolist()
-        dataset["contact"].attrs |= contact_attributes(laws)
+        laws = [CONTACT_LAWS[name] for name in np.unique(dataset["contact"].values)]
+        for key, field in _OF_LAWS.items():
+            lines = [f"{law.name}: {text}" for law in laws if (text := getattr(law, field))]
+            dataset["contact"].attrs |= {key: "\n".join(lines)} if lines else {}
     return dataset
 
 
-def contact_attributes(laws: Sequence[str]) -> dict[str, str]:
-    """Return the attributes of `contact`: source, range, flaws and doubts, one line per law."""
-    fields = {"source": "source", "holds_for": "holds", "flaws": "flaws"}
-    lines = {
-        key: [f"{law}: {text}" for law in laws if (text := getattr(CONTACT_LAWS[law], field))]
-        for key, field in (fields | {"unconfirmed": "unconfirmed"}).items()
-    }
-    return {key: "\n".join(entry) for key, entry in lines.items() if entry}
-
-
 def status_bits(responses: Iterable[str]) -> int:
-    """Return the status bits that take these responses away: the whole run's and each one's own."""
+    """Return the status bits that take these responses away: the whole run's and each one's own.
+
+    What the table does not know, such as the output of a test function, has none of its own.
+    """
     bits = outputs.DIVERGED | outputs.ENERGY_OUT_OF_BALANCE | _STOPPED
     for name in responses:
-        if reason := RESPONSES[name].missing:
+        if name in RESPONSES and (reason := RESPONSES[name].missing):
             bits |= STATUS_FLAGS[reason][0]
     return bits
 
 
-def kept_bits(responses: Iterable[str]) -> int:
-    """Return the status bits that matter to these responses: status_bits and the marks."""
-    return status_bits(responses) | _MARKED
-
-
-def reasons(bits: int) -> list[str]:
-    """Return the failures of a status in words."""
-    return [words for bit, words in FAILURES.values() if bits & bit]
-
-
-def marks(bits: int) -> list[str]:
-    """Return the marks of a status in words."""
-    return [words for bit, words in MARKS.values() if bits & bit]
-
-
-def warnings_in(bits: int) -> list[str]:
-    """Return the flags of `remarks` in words."""
-    return [words for bit, words in WARNINGS.values() if bits & bit]
+def reasons(bits: int, flags: Mapping[str, tuple[int, str]] = FAILURES) -> list[str]:
+    """Return the flags of a status, or of `remarks`, in words: its failures, or those given."""
+    return [words for bit, words in flags.values() if bits & bit]
 
 
 _PACKAGES = "impactlab numpy numba xarray netCDF4 dask SALib scikit-learn scipy"

@@ -6,7 +6,7 @@ by studies that have runs of it, so a study without 3-D runs loads nothing of fe
 
 from __future__ import annotations
 
-from importlib import import_module
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ COMMANDS = {
     "paper": "impactlab.paper.command:paper",
     "witness": "impactlab.fem3d.command:witness",
 }
-"""Commands, by name: module and function."""
+"""Commands, by name: module and function, as `pkgutil.resolve_name` takes them."""
 SOLVERS = {"witness": "impactlab.fem3d.study.solver:SOLVER"}
 """Solvers of runs, see study.solvers, by the name that designs hold."""
 SOLID = {
@@ -28,14 +28,7 @@ SOLID = {
 study.estimate), figures by name and sections of the report."""
 
 
-def load(reference: str) -> Any:
-    """Return a module ("a.b"), or what it holds under a name ("a.b:name")."""
-    module, _, name = reference.partition(":")
-    loaded = import_module(module)
-    return getattr(loaded, name) if name else loaded
-
-
 def added(what: str, runs: xr.Dataset) -> Any:
     """Return an entry of SOLID where some of the runs are 3-D, else None."""
     models = runs["beam_model"].values if "beam_model" in runs.coords else ()
-    return load(SOLID[what]) if "solid" in models else None
+    return resolve_name(SOLID[what]) if "solid" in models else None

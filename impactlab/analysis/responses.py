@@ -5,17 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.variables import FAILED, FAILURES, RESPONSES, status_bits
+from impactlab.variables import FAILED, FAILURES, status_bits
 
 
 def listed(runs: xr.Dataset, attribute: str) -> list[str]:
     """Return a list attribute as a list: netCDF gives a list of one back as a plain string."""
     return [str(entry) for entry in np.atleast_1d(runs.attrs[attribute])]
-
-
-def relevant_bits(name: str) -> int:
-    """Return the status bits that make this response missing."""
-    return status_bits([name] if name in RESPONSES else [])
 
 
 def usable(runs: xr.Dataset) -> xr.DataArray:
@@ -43,7 +38,7 @@ def usable(runs: xr.Dataset) -> xr.DataArray:
 
 def _excluded(runs: xr.Dataset, values: xr.DataArray) -> xr.DataArray:
     """Return True, on the dimensions of the values, where its status makes a response missing."""
-    bits = [relevant_bits(str(name)) for name in values["response"].values]
+    bits = [status_bits([name]) for name in values["response"].values]
     excluded = (runs["status"].compute() & xr.DataArray(bits, dims="response")) != 0
     return excluded.transpose(*values.dims)
 

@@ -6,6 +6,7 @@ import gc
 import logging
 import sys
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Annotated, Any
 
 import typer
@@ -51,7 +52,7 @@ class _Commands(TyperGroup):
         if cmd_name not in _COMMANDS:
             return None
         alone = typer.Typer(rich_markup_mode=None, add_completion=False)
-        alone.command(cmd_name, context_settings=_HELP)(wings.load(_COMMANDS[cmd_name]))
+        alone.command(cmd_name, context_settings=_HELP)(resolve_name(_COMMANDS[cmd_name]))
         return typer.main.get_command(alone)
 
 

@@ -56,7 +56,7 @@ def simulate(
     if output is None and plot is None:
         from impactlab.simulate import case_table, solve
 
-        print_responses(solve(case_table(impact, grid, duration=seconds)).responses[0])
+        print_responses(solve(case_table(impact, grid, duration=seconds)))
         return
     from impactlab.simulate import simulate as solve_one
 

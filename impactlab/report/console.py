@@ -14,7 +14,7 @@ from rich.table import Column, Table
 
 from impactlab.model.parameters import PARAMETERS
 from impactlab.study.quantities import engineering, time
-from impactlab.variables import FAILED, FAILURES, FLAGS, RESPONSES, marks, warnings_in
+from impactlab.variables import FAILED, FAILURES, FLAGS, MARKS, RESPONSES, WARNINGS, reasons
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,7 +29,7 @@ _AXES = ("nodes", "points", "courant")
 def print_responses(run: Any) -> None:
     """Print the scalar responses of one run with their units, and why responses are missing.
 
-    run: a dataset of simulate, or one record of solver.outputs.RESPONSE.
+    run: a dataset of `simulate`, or what `solve` returns of one run.
     """
     rows = [
         (name, _amount(name, run[name].item()), RESPONSES[name].long_name) for name in RESPONSES
@@ -41,7 +41,7 @@ def print_responses(run: Any) -> None:
             without = [name for name, entry in RESPONSES.items() if entry.missing == flag]
             missing = f"Missing because {words}; a longer duration may help: {', '.join(without)}."
             console.print(missing if without else f"Missing: {words}.", markup=False)
-    for note in (*marks(status), *warnings_in(run["remarks"].item())):
+    for note in (*reasons(status, MARKS), *reasons(run["remarks"].item(), WARNINGS)):
         console.print(f"note: {note}", markup=False)
 
 

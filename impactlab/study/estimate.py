@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from pkgutil import resolve_name
 from shutil import disk_usage
 from types import SimpleNamespace
 from typing import Any
@@ -119,7 +120,7 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
     else:
         model: Any = SimpleNamespace(table=case_table, work=work, memory=memory)
         if has_solid_runs(study):
-            model = wings.load(wings.SOLID["cases"])
+            model = resolve_name(wings.SOLID["cases"])
         sample = _cost_sample(study)
         cases = _cases(study, model, sample)
         costs = model.work(cases)

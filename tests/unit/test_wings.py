@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
 
@@ -12,6 +13,7 @@ from impactlab import wings
 
 PROGRAM = """
 import sys
+from pkgutil import resolve_name
 from command_line import done
 
 done("run", "study.yaml", "--output", "runs.nc", cwd=".")
@@ -41,4 +43,4 @@ def test_a_study_of_beams_imports_nothing_of_the_wings(tmp_path: Path) -> None:
     [*wings.COMMANDS.values(), *wings.SOLVERS.values(), *wings.SOLID.values()],
 )
 def test_what_a_wing_adds_is_there(reference: str) -> None:
-    assert wings.load(reference)
+    assert resolve_name(reference)

@@ -148,7 +148,7 @@ def planned(
     coarse = replace(case.discretisation, nodes=nodes, scheme="leapfrog")
     plain = replace(case.impact, beam_model=MODELS[0])
     answers = solve(case_table(plain, coarse, duration=case.longest))
-    first, usual = float(answers.responses[0]["contact_duration"]), case.longest
+    first, usual = float(answers["contact_duration"][0]), case.longest
     if not math.isnan(first):
         usual = min(float(f"{_CONTACTS * first:.2g}"), usual)
     simulated = usual if duration is None else duration

@@ -213,7 +213,7 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
 def solve(cases: Array, form: OutputSpec) -> Columns:
     """Return the answers of the kernels and of the 3-D FE model, in the order of the cases."""
     solid = is_solid(cases)
-    found = solve_cases(_kernel_cases(cases), samples=form.samples).columns()
+    found = solve_cases(_kernel_cases(cases), samples=form.samples)
     columns = {}
     for name, values in found.items():
         missing = np.nan if values.dtype.kind == "f" else 0

@@ -15,9 +15,8 @@ import xarray as xr
 
 from impactlab.analysis.convergence.judgement import judge
 from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL
-from impactlab.analysis.responses import relevant_bits
 from impactlab.types import Floats
-from impactlab.variables import RESPONSES, reasons
+from impactlab.variables import RESPONSES, reasons, status_bits
 
 Data = Mapping[str, xr.Dataset]
 """The runs of each study by its name."""
@@ -166,7 +165,7 @@ def select_response(runs: xr.Dataset, response: str, **where: Any) -> xr.DataArr
     except KeyError as error:
         study = runs.attrs.get("study", "?")
         raise UnknownError(f"the study {study} does not have {error.args[0]!r}") from None
-    bits = chosen["status"].values & relevant_bits(response)
+    bits = chosen["status"].values & status_bits([response])
     gaps = (bits != 0) | ~np.isfinite(chosen[response].values)
     if gaps.any():
         found = reasons(int(np.bitwise_or.reduce(np.ravel(bits)))) or ["no reason is recorded"]

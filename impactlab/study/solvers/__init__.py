@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
@@ -78,7 +79,7 @@ SOLVERS = {
 
 def solver_named(name: str) -> Solver:
     """Return the solver of this name."""
-    found: Solver = wings.load(SOLVERS[name])
+    found: Solver = resolve_name(SOLVERS[name])
     return found
 
 

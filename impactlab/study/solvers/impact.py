@@ -16,7 +16,6 @@ from impactlab.simulate import (
     answer_variables,
     case_table,
     profile_coordinates,
-    sample_coordinates,
     solve,
 )
 from impactlab.solver.jit import SOURCES_HASH
@@ -63,8 +62,8 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     }
     dataset = design.assign(variables)
     if output.samples:
-        times = sample_coordinates(design["duration"].item(), output.samples)
-        dataset = dataset.assign_coords(times)
+        times = np.linspace(0.0, design["duration"].item(), output.samples)
+        dataset = dataset.assign_coords(time=times)
     if output.profiles:
         dataset = dataset.assign_coords(profile_coordinates(*base(design)))
     return described(dataset.assign_attrs(provenance()))
@@ -90,8 +89,6 @@ SOLVER = Solver(
     cases=cases,
     cost=lambda cases: work(cases) + _OF_ANY_RUN,  # in node-steps of the paper's beam
     values=values,
-    solve=lambda cases, output: solve(
-        cases, samples=output.samples, profiles=output.profiles
-    ).columns(),
+    solve=lambda cases, form: solve(cases, samples=form.samples, profiles=form.profiles),
     labelled=labelled,
 )

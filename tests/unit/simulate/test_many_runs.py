@@ -10,7 +10,7 @@ import pytest
 import impactlab as il
 from impactlab.model.parameters import with_values
 from impactlab.simulate import case_table, solve
-from impactlab.variables import FLAGS, RESPONSES
+from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
@@ -72,19 +72,17 @@ def test_profiles_need_one_grid(name):
     cases = case_table(IMPACT, GRID, duration=DURATION, varied={name: varied[name]})
     with pytest.raises(ValueError, match="same nodes, points and rule"):
         solve(cases, profiles=True)
-    assert np.isfinite(solve(cases).responses["peak_force"]).all()
+    assert np.isfinite(solve(cases)["peak_force"]).all()
 
 
 def test_solve_keeps_only_what_was_asked_for():
     cases = case_table(IMPACT, GRID, duration=DURATION, varied={"velocity": [1.0, 2.0, 3.0]})
     bare = solve(cases)
-    assert bare.histories == {}
-    assert bare.profiles == {}
+    assert bare.keys() == {*RESPONSES, "status", "remarks"}
     full = solve(cases, samples=7, profiles=True)
-    assert full.responses.tobytes() == bare.responses.tobytes()
-    assert {values.shape for values in full.histories.values()} == {(3, 7)}
-    shapes = {name: values.shape for name, values in full.profiles.items()}
-    assert shapes == {
+    assert [full[name].tobytes() for name in bare] == [column.tobytes() for column in bare.values()]
+    assert {full[name].shape for name in HISTORIES} == {(3, 7)}
+    assert {name: full[name].shape for name in PROFILES} == {
         "equivalent_plastic_strain": (3, 21, 5),
         "plastic_strain": (3, 21, 5),
         "deflection": (3, 21),

@@ -9,7 +9,7 @@ import pytest
 
 import impactlab as il
 from impactlab.model.parameters import with_values
-from impactlab.variables import FAILURES, FLAGS, RESPONSES, STATUS_FLAGS, WARNINGS, warnings_in
+from impactlab.variables import FAILURES, FLAGS, RESPONSES, STATUS_FLAGS, WARNINGS, reasons
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
@@ -23,9 +23,9 @@ def test_a_run_in_which_the_contact_law_creates_energy_says_so():
     assert run.remarks.item() & WARNINGS["contact_created_energy"][0]
     assert run.contact_dissipation < 0
     assert "creates energy" in run.contact_dissipation.attrs["comment"]
-    assert "created energy" in warnings_in(run.remarks.item())[0]
+    assert "created energy" in reasons(run.remarks.item(), WARNINGS)[0]
     assert il.simulate(il.paper_impact(0.99), GRID, duration=4e-3).remarks == 0
-    assert warnings_in(0) == []
+    assert reasons(0, WARNINGS) == []
 
 
 WHOLE_RUN = {"diverged", "energy_out_of_balance", "stopped"}
