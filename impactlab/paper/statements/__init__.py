@@ -1,6 +1,6 @@
 """The paper's statements and misprints, tested on solved studies.
 
-A new statement is a `Statement` in the module of its subject and a line in STATEMENTS.
+A new statement is a function marked `@statement` in the module of its subject and a line here.
 """
 
 from __future__ import annotations
@@ -9,27 +9,27 @@ from impactlab.paper.statements import convergence, misprints, three_d, velocity
 from impactlab.paper.statements.statement import Data, Judgement, Statement
 
 STATEMENTS: tuple[Statement, ...] = (
-    convergence.NODES_SUFFICE,
-    convergence.POINTS_SUFFICE,
-    velocity.DURATION_FALLS,
-    velocity.ABOVE_SPRING_MASS,
-    velocity.DENT_GROWS,
-    velocity.ELASTIC_TO_5,
-    velocity.BELOW_LIMIT_AT_10,
-    velocity.ABOVE_LIMIT_AT_15,
-    velocity.PLASTICITY_BEGINS,
-    three_d.FORCE_OF_WITNESS,
-    three_d.DISPLACEMENT_OF_WITNESS,
-    three_d.DURATION_OF_WITNESS,
-    three_d.PLASTIC_ZONE_OF_WITNESS,
-    misprints.TIME_STEP,
-    misprints.UNLOADING_RADIUS,
-    misprints.ELASTIC_PHASE,
-    misprints.FULLY_PLASTIC,
-    misprints.BEAM_MASS,
-    misprints.FEW_POINTS,
-    misprints.RESTITUTION,
-    misprints.SUB_IMPACTS,
+    convergence.nodes_suffice,
+    convergence.points_suffice,
+    velocity.duration_falls,
+    velocity.above_spring_mass,
+    velocity.dent_grows,
+    velocity.elastic_to_5,
+    velocity.below_limit_at_10,
+    velocity.above_limit_at_15,
+    velocity.plasticity_begins,
+    three_d.force_of_witness,
+    three_d.displacement_of_witness,
+    three_d.duration_of_witness,
+    three_d.plastic_zone_of_witness,
+    misprints.time_step,
+    misprints.unloading_radius,
+    misprints.elastic_phase,
+    misprints.fully_plastic,
+    misprints.beam_mass,
+    misprints.few_points,
+    misprints.restitution,
+    misprints.sub_impacts,
 )
 
 

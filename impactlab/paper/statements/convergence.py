@@ -15,12 +15,12 @@ from impactlab.paper.statements.statement import (
     Data,
     Judgement,
     Number,
-    Statement,
     Verdict,
     finest_grid,
     judged,
     runs_of,
     select_response,
+    statement,
 )
 
 NODES_STUDY, POINTS_STUDY = "fig06_nodes", "fig06_points"
@@ -54,7 +54,18 @@ def _response_groups(data: Data, study: str) -> Iterator[Case]:
             yield f"{velocity:g} m/s, plastic strain (PEEQ)", velocity, STRAIN
 
 
-def _judge_nodes(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> Judgement:
+@statement(
+    text="N = 601 nodes are the least for convergence.",
+    test=(
+        "For every response f: |f(601) − f∞| + U ≤ 1 % of f∞, and no smaller N of the study does "
+        "as well. f∞: Richardson's value, or the value with the most nodes where there is none; "
+        "U: its uncertainty (grid convergence index). Plastic strain (PEEQ) is judged separately."
+    ),
+    cases=partial(_response_groups, study=NODES_STUDY),
+    studies=(NODES_STUDY,),
+)
+def nodes_suffice(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> Judgement:
+    """Judge 601 nodes by the error of each response."""
     found = [_nodes_error(data, velocity, name) for name in names]
     errors, needed = [error for error, _ in found], [least for _, least in found]
     worst = names[int(np.argmax([error.high for error in errors]))].replace("_", " ")
@@ -87,20 +98,6 @@ def _nodes_error(data: Data, velocity: float, name: str) -> tuple[Number, float]
     return Number(f"error of the {name.replace('_', ' ')}", at, "1", share, percent=True), least
 
 
-NODES_SUFFICE = Statement(
-    "nodes_suffice",
-    text="N = 601 nodes are the least for convergence.",
-    test=(
-        "For every response f: |f(601) − f∞| + U ≤ 1 % of f∞, and no smaller N of the study does "
-        "as well. f∞: Richardson's value, or the value with the most nodes where there is none; "
-        "U: its uncertainty (grid convergence index). Plastic strain (PEEQ) is judged separately."
-    ),
-    judge_case=_judge_nodes,
-    cases=partial(_response_groups, study=NODES_STUDY),
-    studies=(NODES_STUDY,),
-)
-
-
 def _points_cases(data: Data) -> Iterator[Case]:
     for reading, rule, points, literal in READINGS_OF_P:
         for words, velocity, names in _response_groups(data, POINTS_STUDY):
@@ -108,9 +105,20 @@ def _points_cases(data: Data) -> Iterator[Case]:
             yield f"{reading}; {words}", where, points, names, literal
 
 
-def _judge_points(
+@statement(
+    text="P = 2 integration points over the depth are the least for convergence.",
+    test=(
+        "For every response f: |f(P) − f(most)| + U ≤ 1 % of f(most), at 601 nodes. U: the change "
+        "of f between the most points and the next fewer. The paper does not say which points P "
+        "counts: every reading has a row."
+    ),
+    cases=_points_cases,
+    studies=(POINTS_STUDY,),
+)
+def points_suffice(
     case: str, data: Data, where: dict[str, Any], points: int, names: tuple[str, ...], literal: bool
 ) -> Judgement:
+    """Judge a reading of P = 2 by the error of each response."""
     errors = tuple(_points_error(data, where, points, name) for name in names)
     worst = max(errors, key=lambda error: error.high)
     within = worst.high <= TOLERANCE
@@ -128,17 +136,3 @@ def _points_error(data: Data, where: dict[str, Any], points: int, name: str) -> 
     gaps = (abs(value - most) / scale for value in (given, next_fewer))
     error, spread = (np.inf if np.isnan(gap) else float(gap) for gap in gaps)
     return Number(f"error of the {name.replace('_', ' ')}", error, "1", spread, percent=True)
-
-
-POINTS_SUFFICE = Statement(
-    "points_suffice",
-    text="P = 2 integration points over the depth are the least for convergence.",
-    test=(
-        "For every response f: |f(P) − f(most)| + U ≤ 1 % of f(most), at 601 nodes. U: the change "
-        "of f between the most points and the next fewer. The paper does not say which points P "
-        "counts: every reading has a row."
-    ),
-    judge_case=_judge_points,
-    cases=_points_cases,
-    studies=(POINTS_STUDY,),
-)

@@ -16,12 +16,12 @@ from impactlab.paper.statements.statement import (
     Data,
     Judgement,
     Number,
-    Statement,
     UnknownError,
     Verdict,
     judged,
     runs_of,
     select_response,
+    statement,
 )
 from impactlab.verification.solutions import bending, explicit_beam, hertz, quadrature
 from impactlab.verification.solutions.stronge import (
@@ -31,55 +31,17 @@ from impactlab.verification.solutions.stronge import (
     stronge_impact,
 )
 
-NODES, STEPS = 601, 20
-"""Grid and steps of the explicit integration that tests the printed time step."""
-SHARE_OF_LIMIT = 0.99
-"""Share of a limit that is tested: the printed rule says “less than”."""
-BOUNDED_GROWTH = 1e3
-"""Growth since the first step beyond which the solution counts as diverging."""
-DEPTHS = (3.0, 30.0, 300.0)
-"""Deepest over yield indentation at which the unloading curve is tested."""
 EQUAL = 1e-9
 """Relative difference within which two forces agree."""
-PRINTED_MASS = 10.929
-"""Mass of the beam, kg."""
-MASS_TOLERANCE, SECTION_TOLERANCE = 0.005, 0.05
-"""Relative differences."""
-FULLY_YIELDED = 1e3
-"""Curvature over that at first yield: every fibre but one on the axis has yielded."""
-CONTACTS_STUDY = "fig05"
 
 
-def _judge_time_step(case: str, data: Data, limit: Callable[[Beam, int], float]) -> Judgement:
-    beam = paper_impact().beam
-    dt = SHARE_OF_LIMIT * limit(beam, NODES)
-    frequency = explicit_beam.highest_frequency(beam, NODES)
-    largest = explicit_beam.march(beam, NODES, dt, STEPS)
-    grown = float(largest[-1] / largest[0])
-    numbers = (
-        Number("ω dt", frequency * dt, "1"),
-        Number("growth of the highest mode per step", explicit_beam.growth(frequency, dt), "1"),
-        Number(f"deflection after {STEPS} steps over that after 1", grown, "1"),
-    )
-    return judged(
-        case,
-        numbers,
-        frequency * dt <= 2.0 and grown < BOUNDED_GROWTH,
-        "The solution stays bounded.",
-        "It is the limit of a bar wave; bending is stiffer on a fine grid, and the solution "
-        "diverges.",
-    )
-
-
-TIME_STEP = Statement(
-    "time_step",
+@statement(
     text="The scheme is stable for dt < dx/√(E/ρ).",
     test=(
         "ω dt ≤ 2 with ω = (4/dx²) √(EI/ρA), the highest frequency of the grid; and an explicit "
         "integration of the elastic beam alone with that step, after an impulse at mid-span, stays "
         "bounded. N = 601."
     ),
-    judge_case=_judge_time_step,
     cases=(
         ("as printed", explicit_beam.bar_wave_step),
         ("the limit of bending instead, dt < (dx²/2) √(ρA/EI)", explicit_beam.bending_step),
@@ -89,15 +51,49 @@ TIME_STEP = Statement(
         "the contact ω² ≤ 16 (EI)q/(ρA dx⁴) + k (1/(ρA dx) + 1/m)"
     ),
 )
+def time_step(case: str, data: Data, limit: Callable[[Beam, int], float]) -> Judgement:
+    """Judge a step, given as a function of the beam and the number of nodes."""
+    beam, nodes, steps = paper_impact().beam, 601, 20
+    dt = 0.99 * limit(beam, nodes)  # the printed rule says “less than”
+    frequency = explicit_beam.highest_frequency(beam, nodes)
+    largest = explicit_beam.march(beam, nodes, dt, steps)
+    grown = float(largest[-1] / largest[0])
+    numbers = (
+        Number("ω dt", frequency * dt, "1"),
+        Number("growth of the highest mode per step", explicit_beam.growth(frequency, dt), "1"),
+        Number(f"deflection after {steps} steps over that after 1", grown, "1"),
+    )
+    return judged(
+        case,
+        numbers,
+        frequency * dt <= 2.0 and grown < 1e3,
+        "The solution stays bounded.",
+        "It is the limit of a bar wave; bending is stiffer on a fine grid, and the solution "
+        "diverges.",
+    )
 
 
-def _judge_unloading_radius(case: str, data: Data, exponent: float | None) -> Judgement:
+@statement(
+    text="The unloading curve has the radius R_e of Eq. 17 (and of Table 1).",
+    test=(
+        "With δ_r = δ_m − δ_y R_e/R* (Eq. 15), the unloading force (4/3) E* √R_e (δ_m − δ_r)^1.5 "
+        "at the deepest indentation equals the loading force F_m (Eq. 16) within 10⁻⁹, for "
+        "δ_m/δ_y = 3, 30, 300."
+    ),
+    cases=(
+        ("as printed", None),
+        ("as derived from Eqs. 15 and 16", 0.75),
+        ("the root drawn over the whole product", 0.375),
+    ),
+    holds="R_e = √(3 F_m/(4 E*)) (R*/δ_y)^(3/4), that is R_e/R* = √(F_m/F_y)",
+)
+def unloading_radius(case: str, data: Data, exponent: float | None) -> Judgement:
     """Judge R_e = sqrt(3 F_m/(4 E*)) (R*/delta_y)^exponent; a length for any exponent."""
     if exponent is None:
         raise UnknownError("The root in Eq. 17 is garbled: what it covers cannot be read.")
     law = stronge_impact(paper_impact())
     jumps = []
-    for depth in DEPTHS:
+    for depth in (3.0, 30.0, 300.0):  # over the yield indentation
         peak = law.loading_force(depth * law.yield_indentation)
         ratio = law.effective_radius / law.yield_indentation
         radius = math.sqrt(0.75 * peak / law.effective_modulus) * ratio**exponent
@@ -114,25 +110,13 @@ def _judge_unloading_radius(case: str, data: Data, exponent: float | None) -> Ju
     )
 
 
-UNLOADING_RADIUS = Statement(
-    "unloading_radius",
-    text="The unloading curve has the radius R_e of Eq. 17 (and of Table 1).",
-    test=(
-        "With δ_r = δ_m − δ_y R_e/R* (Eq. 15), the unloading force (4/3) E* √R_e (δ_m − δ_r)^1.5 "
-        "at the deepest indentation equals the loading force F_m (Eq. 16) within 10⁻⁹, for "
-        "δ_m/δ_y = 3, 30, 300."
-    ),
-    judge_case=_judge_unloading_radius,
-    cases=(
-        ("as printed", None),
-        ("as derived from Eqs. 15 and 16", 0.75),
-        ("the root drawn over the whole product", 0.375),
-    ),
-    holds="R_e = √(3 F_m/(4 E*)) (R*/δ_y)^(3/4), that is R_e/R* = √(F_m/F_y)",
+@statement(
+    text="Table 1, elastic phase: F = (4/3) E* √R* δ_y^(3/2).",
+    test="F = 0 where the contact begins (δ = 0), and the force grows with the indentation.",
+    cases=(("as printed", 1.0), ("with δ in the place of δ_y", 0.0)),
+    holds="F = (4/3) E* √R* δ^(3/2)",
 )
-
-
-def _judge_elastic_phase(case: str, data: Data, begins: float) -> Judgement:
+def elastic_phase(case: str, data: Data, begins: float) -> Judgement:
     """Judge the expression; begins: its depth over delta_y where the contact begins."""
     law = stronge_impact(paper_impact())
     stiffness = hertz.stiffness(law.effective_modulus, law.effective_radius)
@@ -142,17 +126,16 @@ def _judge_elastic_phase(case: str, data: Data, begins: float) -> Judgement:
     return judged(case, numbers, first == 0.0 < last, "It grows from zero.", constant)
 
 
-ELASTIC_PHASE = Statement(
-    "elastic_phase",
-    text="Table 1, elastic phase: F = (4/3) E* √R* δ_y^(3/2).",
-    test="F = 0 where the contact begins (δ = 0), and the force grows with the indentation.",
-    judge_case=_judge_elastic_phase,
-    cases=(("as printed", 1.0), ("with δ in the place of δ_y", 0.0)),
-    holds="F = (4/3) E* √R* δ^(3/2)",
+@statement(
+    text="The fully plastic phase begins at an indentation that the paper does not give.",
+    test=(
+        "The elastic-plastic force F_y u (1 + ln(u)/3.3) and the fully plastic one 2.8 F_y u/1.1 "
+        "agree there within 10⁻⁹; u = 2 δ/δ_y − 1."
+    ),
+    cases=(("the often quoted 84 δ_y", 84.0), ("by continuity", 0.5 * (U_PLASTIC + 1.0))),
+    holds="continuity: ln(u) = 3 (2.8 − 1.1), δ/δ_y = 82.511",
 )
-
-
-def _judge_fully_plastic(case: str, data: Data, depth: float) -> Judgement:
+def fully_plastic(case: str, data: Data, depth: float) -> Judgement:
     """Judge a depth over the yield indentation at which the phase would begin."""
     u = 2.0 * depth - 1.0
     jump = HARDNESS / CONSTRAINT / (1.0 + math.log(u) / (3.0 * CONSTRAINT)) - 1.0
@@ -161,70 +144,62 @@ def _judge_fully_plastic(case: str, data: Data, depth: float) -> Judgement:
     return judged(case, numbers, abs(jump) <= EQUAL, "The two forces agree.", jumps)
 
 
-FULLY_PLASTIC = Statement(
-    "fully_plastic",
-    text="The fully plastic phase begins at an indentation that the paper does not give.",
-    test=(
-        "The elastic-plastic force F_y u (1 + ln(u)/3.3) and the fully plastic one 2.8 F_y u/1.1 "
-        "agree there within 10⁻⁹; u = 2 δ/δ_y − 1."
-    ),
-    judge_case=_judge_fully_plastic,
-    cases=(("the often quoted 84 δ_y", 84.0), ("by continuity", 0.5 * (U_PLASTIC + 1.0))),
-    holds="continuity: ln(u) = 3 (2.8 − 1.1), δ/δ_y = 82.511",
+@statement(
+    text="The beam has a mass of 10.929 kg (Table 2).",
+    test="ρ B H L, of the paper's density and sizes, agrees with the printed mass within 0.5 %.",
+    cases=(("density 7800 kg/m³, 27.8 × 60 × 780 mm", 10.929),),
+    holds="10.148 kg; a beam of 840 mm would have 10.929 kg",
 )
-
-
-def _judge_beam_mass(case: str, data: Data) -> Judgement:
+def beam_mass(case: str, data: Data, printed: float) -> Judgement:
+    """Judge the `printed` mass in kg."""
     beam = paper_impact().beam
     per_length = beam.material.density * beam.width * beam.depth
     mass = per_length * beam.span
     numbers = (
         Number("ρ B H L", mass, "kg"),
-        Number("span of the printed mass", PRINTED_MASS / per_length, "m"),
+        Number("span of the printed mass", printed / per_length, "m"),
     )
-    off = PRINTED_MASS / mass - 1.0
+    off = printed / mass - 1.0
     why = f"Printed and computed mass differ by {100 * off:.1f} % of the latter."
-    return judged(case, numbers, abs(off) <= MASS_TOLERANCE, why)
+    return judged(case, numbers, abs(off) <= 0.005, why)
 
 
-BEAM_MASS = Statement(
-    "beam_mass",
-    text="The beam has a mass of 10.929 kg (Table 2).",
-    test="ρ B H L, of the paper's density and sizes, agrees with the printed mass within 0.5 %.",
-    judge_case=_judge_beam_mass,
-    cases=(("density 7800 kg/m³, 27.8 × 60 × 780 mm",),),
-    holds="10.148 kg; a beam of 840 mm would have 10.929 kg",
+@statement(
+    text="Two integration points represent the section (“P = 2 suffices”).",
+    test=(
+        "The rule's elastic stiffness B Σ E w z² and its full plastic moment B Σ σ_y w |z| agree "
+        "within 5 % with E B H³/12 and σ_y B H²/4."
+    ),
+    cases=READINGS_OF_P,
+    holds="2 Lobatto points are 3 times too stiff; with 3 the section yields all at once",
 )
-
-
-def _judge_few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> Judgement:
+def few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> Judgement:
+    """Judge an integration rule by its stiffness and its plastic moment."""
     beam = paper_impact().beam
-    curvature = np.array([1e-6, FULLY_YIELDED]) * bending.yield_curvature(beam)
+    # At a thousand times that of first yield every fibre but one on the axis has yielded.
+    curvature = np.array([1e-6, 1e3]) * bending.yield_curvature(beam)
     exact = np.array([beam.bending_stiffness * curvature[0], bending.plastic_moment(beam)])
     moments = bending.rule_moment(beam, curvature, *quadrature.rule(rule, points))
     ratios = dict(zip(("stiffness", "full plastic moment"), moments / exact, strict=True))
     numbers = tuple(
         Number(f"{name} over the exact one", float(ratio), "1") for name, ratio in ratios.items()
     )
-    wrong = [name for name, ratio in ratios.items() if abs(ratio - 1.0) > SECTION_TOLERANCE]
+    wrong = [name for name, ratio in ratios.items() if abs(ratio - 1.0) > 0.05]
     off = f"Off by more than 5 %: {', '.join(wrong)}."
     return judged(case, numbers, not wrong, "Both agree.", off, literal=literal)
 
 
-FEW_POINTS = Statement(
-    "few_points",
-    text="Two integration points represent the section (“P = 2 suffices”).",
+@statement(
+    text="Unloading with force continuity (Eqs. 15 to 17) returns part of the energy.",
     test=(
-        "The rule's elastic stiffness B Σ E w z² and its full plastic moment B Σ σ_y w |z| agree "
-        "within 5 % with E B H³/12 and σ_y B H²/4."
+        "The coefficient of restitution of the contact alone is at most 1 for every "
+        "1 < δ_m/δ_y < 300."
     ),
-    judge_case=_judge_few_points,
-    cases=READINGS_OF_P,
-    holds="2 Lobatto points are 3 times too stiff; with 3 the section yields all at once",
+    cases=(("Stronge's law",),),
+    holds="the coefficient is above 1 for small δ_m/δ_y: the law itself creates energy there",
 )
-
-
-def _judge_restitution(case: str, data: Data) -> Judgement:
+def restitution(case: str, data: Data) -> Judgement:
+    """Judge the law by the works of its loading and unloading."""
     law = stronge_impact(paper_impact())
     ratios = np.geomspace(1.0, 300.0, 4001)[1:]
     depths = ratios * law.yield_indentation
@@ -241,34 +216,18 @@ def _judge_restitution(case: str, data: Data) -> Judgement:
     return Judgement(case, numbers, Verdict.FAILS, why)
 
 
-RESTITUTION = Statement(
-    "restitution",
-    text="Unloading with force continuity (Eqs. 15 to 17) returns part of the energy.",
-    test=(
-        "The coefficient of restitution of the contact alone is at most 1 for every "
-        "1 < δ_m/δ_y < 300."
-    ),
-    judge_case=_judge_restitution,
-    cases=(("Stronge's law",),),
-    holds="the coefficient is above 1 for small δ_m/δ_y: the law itself creates energy there",
+@statement(
+    text="“The contact time”, as if there were one contact.",
+    test="The runs of figure 5 have one contact each.",
+    cases=(("Stronge contact, 0.99 m/s",),),
+    studies=("fig05",),
+    holds="an impact has several sub-impacts: state which contact is meant (here the first)",
 )
-
-
-def _judge_sub_impacts(case: str, data: Data) -> Judgement:
-    runs = runs_of(data, CONTACTS_STUDY)
+def sub_impacts(case: str, data: Data) -> Judgement:
+    """Judge the largest number of contacts."""
+    runs = runs_of(data, "fig05")
     where = {"contact": "stronge"} if "contact" in runs.dims else {}
     count = float(select_response(runs, "number_of_contacts", **where).max())
     number = Number(f"contacts within {float(runs['duration']) * 1e3:g} ms", count, "1")
     again = "The beam comes back and strikes the sphere again."
     return judged(case, (number,), count == 1.0, "There is one.", again)
-
-
-SUB_IMPACTS = Statement(
-    "sub_impacts",
-    text="“The contact time”, as if there were one contact.",
-    test="The runs of figure 5 have one contact each.",
-    judge_case=_judge_sub_impacts,
-    cases=(("Stronge contact, 0.99 m/s",),),
-    studies=(CONTACTS_STUDY,),
-    holds="an impact has several sub-impacts: state which contact is meant (here the first)",
-)

@@ -78,18 +78,18 @@ class Statement:
     """A statement of the paper, or a misprint, with its test.
 
     name: identifies it in the CSV files and in links.
-    text: the paper's words in short. test: the formula in words.
     judge_case: a function (words of the case, data, the rest of the case) that judges one case; it
         raises UnknownError where a run is missing.
+    text: the paper's words in short. test: the formula in words.
     cases: tuples that begin with their words, or a function that returns them for the data.
     studies: names of the studies that it is judged on; empty where closed forms suffice.
     holds: what holds in place of a misprint; empty for a statement.
     """
 
     name: str
+    judge_case: Callable[..., Judgement]
     text: str
     test: str
-    judge_case: Callable[..., Judgement]
     cases: tuple[Case, ...] | Callable[[Data], Iterable[Case]]
     studies: tuple[str, ...] = ()
     holds: str = ""
@@ -102,6 +102,11 @@ class Statement:
             except UnknownError as reason:
                 judgement = Judgement(words, (), Verdict.UNKNOWN, str(reason))
             yield judgement
+
+
+def statement(**fields: Any) -> Callable[[Callable[..., Judgement]], Statement]:
+    """Return a decorator that makes a function the `Statement` of its name; fields: the others."""
+    return lambda function: Statement(function.__name__, function, **fields)
 
 
 def judged(
@@ -126,22 +131,15 @@ def judged(
 class Curve:
     """A response against the velocity.
 
-    velocity (m/s, ascending), value and uncertainty (SI): each of shape (velocities,).
+    velocity (m/s, ascending), value, uncertainty, and the smallest and largest value that it allows
+    (SI): each of shape (velocities,).
     """
 
     velocity: Floats
     value: Floats
     uncertainty: Floats
-
-    @property
-    def low(self) -> Floats:
-        """The smallest values that the uncertainty allows."""
-        return self.value - self.uncertainty
-
-    @property
-    def high(self) -> Floats:
-        """The largest values that the uncertainty allows."""
-        return self.value + self.uncertainty
+    low: Floats
+    high: Floats
 
     def number(self, at: int, name: str, units: str) -> Number:
         """Return the value at one velocity, given by its index."""
@@ -214,5 +212,5 @@ def response_curve(data: Data, study: str, response: str, **where: Any) -> Curve
         if np.isnan(number.uncertainty):
             raise UnknownError(f"at {velocity:g} m/s there are fewer than three grids")
         found.append((number.value, number.uncertainty))
-    values, uncertainties = np.array(found).T
-    return Curve(velocities, values, uncertainties)
+    value, uncertainty = np.array(found).T
+    return Curve(velocities, value, uncertainty, value - uncertainty, value + uncertainty)

@@ -21,31 +21,23 @@ from impactlab.paper.statements.statement import (
     judged,
     response_curve,
     runs_of,
+    statement,
 )
 
 DURATION_STUDY, LATE, EARLY = "fig08", "fig10_nodes", "fig10_first"
 """Studies: over the contact laws, after all contacts, and after the first contact."""
-SPRING_MASS = "spring_mass"
-"""The beam model that puts a spring and a mass in the beam's place."""
-_ACRONYMS = {"mjg": "MJG"}
 LIMIT = 0.002
 """The plastic strain that the paper compares with."""
-ELASTIC_UP_TO = 5.0
-BELOW_LIMIT_AT = 10.0
-ABOVE_LIMIT_AT = (15.0, 20.0)
-FIRST_YIELD_BETWEEN = (5.0, 10.0)
-"""Velocities in the statements, m/s."""
-AWAY = (
+READINGS = (
     ("away from the impact, after all contacts (25 ms)", LATE, "remote_plastic_strain", True),
     ("away from the impact, after 1 ms", EARLY, "remote_plastic_strain", False),
-)
-"""Readings: words, study, response, whether it is the literal one. Away is farther than one beam
-depth from the impact: the paper does not say how far, nor when."""
-ANYWHERE = (
     ("anywhere in the beam, after all contacts (25 ms)", LATE, "peak_plastic_strain", False),
     ("anywhere in the beam, after 1 ms", EARLY, "peak_plastic_strain", False),
 )
-"""The whole beam, with the zone under the sphere."""
+"""Words, study, response, whether it is the literal one. Away is farther than one beam depth from
+the impact: the paper does not say how far, nor when. Anywhere includes the zone under the sphere.
+"""
+AWAY = READINGS[:2]
 
 
 def _contact_laws(data: Data) -> Iterator[tuple[str, str]]:
@@ -54,10 +46,22 @@ def _contact_laws(data: Data) -> Iterator[tuple[str, str]]:
     if DURATION_STUDY in data and "contact" in data[DURATION_STUDY].dims:
         laws = [str(law) for law in data[DURATION_STUDY]["contact"].values]
     for law in laws:
-        yield f"{_ACRONYMS.get(law) or law.replace('_', '-').title()} contact", law
+        name = "MJG" if law == "mjg" else law.replace("_", "-").title()
+        yield f"{name} contact", law
 
 
-def _judge_duration(case: str, data: Data, law: str) -> Judgement:
+@statement(
+    text="The contact duration falls as the impact velocity rises.",
+    test=(
+        "t(v₂) + U₂ < t(v₁) − U₁ for every two neighbouring velocities v₁ < v₂; t: duration of the "
+        "first contact. The statement holds under a reading where this is so over more than half "
+        "of the velocities, from the lowest on."
+    ),
+    cases=_contact_laws,
+    studies=(DURATION_STUDY,),
+)
+def duration_falls(case: str, data: Data, law: str) -> Judgement:
+    """Judge the fall from each velocity to the next."""
     curve = response_curve(data, DURATION_STUDY, "contact_duration", contact=law)
     falls = curve.high[1:] < curve.low[:-1]
     count = falls.size if falls.all() else int(np.argmin(falls))
@@ -80,26 +84,23 @@ def _judge_duration(case: str, data: Data, law: str) -> Judgement:
     return Judgement(case, numbers, outcome, why)
 
 
-DURATION_FALLS = Statement(
-    "duration_falls",
-    text="The contact duration falls as the impact velocity rises.",
+@statement(
+    text="The model's contact duration lies above the spring-mass prediction.",
     test=(
-        "t(v₂) + U₂ < t(v₁) − U₁ for every two neighbouring velocities v₁ < v₂; t: duration of the "
-        "first contact. The statement holds under a reading where this is so over more than half "
-        "of the velocities, from the lowest on."
+        "t(model) − U > t(spring-mass) + U at every velocity, under the same contact law; t: "
+        "duration of the first contact. The statement holds under a reading where this is so at "
+        "some velocities."
     ),
-    judge_case=_judge_duration,
     cases=_contact_laws,
     studies=(DURATION_STUDY,),
 )
-
-
-def _judge_spring_mass(case: str, data: Data, law: str) -> Judgement:
+def above_spring_mass(case: str, data: Data, law: str) -> Judgement:
+    """Judge the durations of both models under the same contact law."""
     if "beam_model" not in runs_of(data, DURATION_STUDY).dims:
         raise UnknownError(f"the study {DURATION_STUDY} does not vary beam_model")
-    response = "contact_duration"
-    ours = response_curve(data, DURATION_STUDY, response, contact=law)
-    theirs = response_curve(data, DURATION_STUDY, response, contact=law, beam_model=SPRING_MASS)
+    study = DURATION_STUDY, "contact_duration"
+    ours = response_curve(data, *study, contact=law)
+    theirs = response_curve(data, *study, contact=law, beam_model="spring_mass")
     above = ours.low > theirs.high
     ratio = ours.value / theirs.value
     width = ratio * (ours.uncertainty / ours.value + theirs.uncertainty / theirs.value)
@@ -118,21 +119,14 @@ def _judge_spring_mass(case: str, data: Data, law: str) -> Judgement:
     return Judgement(case, numbers, Verdict.READING, why)
 
 
-ABOVE_SPRING_MASS = Statement(
-    "above_spring_mass",
-    text="The model's contact duration lies above the spring-mass prediction.",
-    test=(
-        "t(model) − U > t(spring-mass) + U at every velocity, under the same contact law; t: "
-        "duration of the first contact. The statement holds under a reading where this is so at "
-        "some velocities."
-    ),
-    judge_case=_judge_spring_mass,
-    cases=_contact_laws,
-    studies=(DURATION_STUDY,),
+@statement(
+    text="The permanent indentation grows with the impact velocity.",
+    test="d(v₂) − U₂ > d(v₁) + U₁ for every two neighbouring velocities v₁ < v₂ of the study.",
+    cases=(("Stronge contact, after the last contact",),),
+    studies=(LATE,),
 )
-
-
-def _judge_indentation(case: str, data: Data) -> Judgement:
+def dent_grows(case: str, data: Data) -> Judgement:
+    """Judge the growth from each velocity to the next."""
     curve = response_curve(data, LATE, "permanent_indentation")
     grows = curve.low[1:] > curve.high[:-1]
     numbers = tuple(curve.number(at, f"dent at {curve.velocity[at]:g} m/s", "m") for at in (0, -1))
@@ -145,36 +139,23 @@ def _judge_indentation(case: str, data: Data) -> Judgement:
     return judged(case, numbers, not steps, "It grows at every step.", shrinks)
 
 
-DENT_GROWS = Statement(
-    "dent_grows",
-    text="The permanent indentation grows with the impact velocity.",
-    test="d(v₂) − U₂ > d(v₁) + U₁ for every two neighbouring velocities v₁ < v₂ of the study.",
-    judge_case=_judge_indentation,
-    cases=(("Stronge contact, after the last contact",),),
-    studies=(LATE,),
-)
-
-
-def _judge_elastic(case: str, data: Data, study: str, response: str, literal: bool) -> Judgement:
-    curve = response_curve(data, study, response)
-    low = curve.velocity <= ELASTIC_UP_TO
-    if curve.velocity[low].max(initial=0.0) < ELASTIC_UP_TO:
-        raise UnknownError(f"the study {study} has no run at {ELASTIC_UP_TO:g} m/s")
-    worst = int(curve.high[low].argmax())
-    largest = curve.number(worst, f"largest PEEQ up to {ELASTIC_UP_TO:g} m/s", "1")
-    elastic = "No fibre there yields on any grid."
-    yields = f"Some fibre there yields at {curve.velocity[worst]:g} m/s."
-    return judged(case, (largest,), largest.high == 0.0, elastic, yields, literal=literal)
-
-
-ELASTIC_TO_5 = Statement(
-    "elastic_to_5",
+@statement(
     text="Up to 5 m/s there is no plastic strain away from the impact.",
     test="PEEQ + U = 0 farther than one beam depth from mid-span, at every velocity up to 5 m/s.",
-    judge_case=_judge_elastic,
     cases=AWAY,
     studies=(LATE, EARLY),
 )
+def elastic_to_5(case: str, data: Data, study: str, response: str, literal: bool) -> Judgement:
+    """Judge the largest strain up to 5 m/s."""
+    curve = response_curve(data, study, response)
+    low = curve.velocity <= 5.0
+    if curve.velocity[low].max(initial=0.0) < 5.0:
+        raise UnknownError(f"the study {study} has no run at 5 m/s")
+    worst = int(curve.high[low].argmax())
+    largest = curve.number(worst, "largest PEEQ up to 5 m/s", "1")
+    elastic = "No fibre there yields on any grid."
+    yields = f"Some fibre there yields at {curve.velocity[worst]:g} m/s."
+    return judged(case, (largest,), largest.high == 0.0, elastic, yields, literal=literal)
 
 
 def _judge_limit(
@@ -196,57 +177,50 @@ def _judge_limit(
     return judged(case, (strain,), under is below, why, literal=literal)
 
 
-BELOW_LIMIT_AT_10 = Statement(
+below_limit_at_10 = Statement(
     "below_limit_at_10",
+    _judge_limit,
     text="At 10 m/s the plastic strain along the beam stays below 0.2 %.",
     test=(
         "PEEQ + U < 0.2 %; it does not hold where PEEQ − U > 0.2 %, and cannot be judged in "
         "between."
     ),
-    judge_case=_judge_limit,
-    cases=tuple((*reading, BELOW_LIMIT_AT, True) for reading in (*AWAY, *ANYWHERE)),
+    cases=tuple((*reading, 10.0, True) for reading in READINGS),
     studies=(LATE, EARLY),
 )
-ABOVE_LIMIT_AT_15 = Statement(
+above_limit_at_15 = Statement(
     "above_limit_at_15",
+    _judge_limit,
     text="At 15 and 20 m/s the plastic strain is above 0.2 % away from the impact, too.",
     test=(
         "PEEQ − U > 0.2 % farther than one beam depth from mid-span; it does not hold where "
         "PEEQ + U < 0.2 %, and cannot be judged in between."
     ),
-    judge_case=_judge_limit,
     cases=tuple(
         (f"{velocity:g} m/s, {words}", *reading, velocity, False)
-        for velocity in ABOVE_LIMIT_AT
+        for velocity in (15.0, 20.0)
         for words, *reading in AWAY
     ),
     studies=(LATE, EARLY),
 )
 
 
-def _judge_first_yield(
-    case: str, data: Data, study: str, response: str, literal: bool
-) -> Judgement:
+@statement(
+    text="Plasticity outside the contact begins between 5 and 10 m/s.",
+    test=(
+        "The largest velocity with PEEQ = 0 and the smallest with PEEQ > 0 both lie from 5 to 10 "
+        "m/s. The uncertainty is half of the gap between the two, on the finest grid."
+    ),
+    cases=READINGS,
+    studies=(LATE, EARLY),
+)
+def plasticity_begins(case: str, data: Data, study: str, response: str, literal: bool) -> Judgement:
+    """Judge the velocities that enclose the first yield."""
     curve = response_curve(data, study, response)
     first = int(np.argmax(curve.value > 0))
     if first == 0:  # no strain anywhere, or strain from the lowest velocity on
         raise UnknownError(f"the velocities of {study} do not enclose the first yield")
     below, above = float(curve.velocity[first - 1]), float(curve.velocity[first])
     found = Number("velocity at first yield", 0.5 * (below + above), "m s-1", 0.5 * (above - below))
-    low, high = FIRST_YIELD_BETWEEN
-    within = low <= below and above <= high
     why = f"No plastic strain at {below:g} m/s, some at {above:g} m/s."
-    return judged(case, (found,), within, why, literal=literal)
-
-
-PLASTICITY_BEGINS = Statement(
-    "plasticity_begins",
-    text="Plasticity outside the contact begins between 5 and 10 m/s.",
-    test=(
-        "The largest velocity with PEEQ = 0 and the smallest with PEEQ > 0 both lie from 5 to 10 "
-        "m/s. The uncertainty is half of the gap between the two, on the finest grid."
-    ),
-    judge_case=_judge_first_yield,
-    cases=(*AWAY, *ANYWHERE),
-    studies=(LATE, EARLY),
-)
+    return judged(case, (found,), below >= 5.0 and above <= 10.0, why, literal=literal)

@@ -20,9 +20,9 @@ AXES = {
     "element_size": [1e-3, 0.75e-3, 0.5e-3],
 }
 BEAM_AND_SOLID = (
-    three_d.FORCE_OF_WITNESS,
-    three_d.DURATION_OF_WITNESS,
-    three_d.DISPLACEMENT_OF_WITNESS,
+    three_d.force_of_witness,
+    three_d.duration_of_witness,
+    three_d.displacement_of_witness,
 )
 
 
@@ -54,20 +54,20 @@ def verdicts(judgements: Any) -> list[Verdict]:
 
 
 def test_the_peak_force_within_the_limit(witness: Any) -> None:
-    found = list(three_d.FORCE_OF_WITNESS.judge(witness()))
+    found = list(three_d.force_of_witness.judge(witness()))
     assert verdicts(found) == [HOLDS, READING, READING, READING]
     beam, solid, gap = found[0].numbers
     assert beam.value == pytest.approx(0.99 * 1.01, rel=1e-4)
     assert solid.value == pytest.approx(0.99, rel=2e-4)
     assert gap.value == pytest.approx(0.01, abs=2e-4)
     assert 1e-4 < gap.uncertainty < 5e-4
-    assert verdicts(three_d.FORCE_OF_WITNESS.judge(witness(gap=-0.03))) == [FAILS] * 4
+    assert verdicts(three_d.force_of_witness.judge(witness(gap=-0.03))) == [FAILS] * 4
 
 
 def test_a_limit_within_the_uncertainty_cannot_be_judged(witness: Any) -> None:
-    assert verdicts(three_d.FORCE_OF_WITNESS.judge(witness(gap=0.01, error=0.02))) == [UNKNOWN] * 4
+    assert verdicts(three_d.force_of_witness.judge(witness(gap=0.01, error=0.02))) == [UNKNOWN] * 4
     assert (
-        verdicts(three_d.DURATION_OF_WITNESS.judge(witness(gap=0.05, error=0.01))) == [UNKNOWN] * 4
+        verdicts(three_d.duration_of_witness.judge(witness(gap=0.05, error=0.01))) == [UNKNOWN] * 4
     )
 
 
@@ -76,7 +76,7 @@ def test_finer_meshes_are_used_at_the_papers_velocity(witness: Any) -> None:
     finer = witness(gap=0.01, error=1e-4)["witness"].isel(nodes=0).sel(velocity=0.99)
     data["witness_mesh"] = finer.sel(beam_model=["solid"])
     coarse = [UNKNOWN, UNKNOWN]
-    assert verdicts(three_d.FORCE_OF_WITNESS.judge(data)) == [HOLDS, READING, *coarse]
+    assert verdicts(three_d.force_of_witness.judge(data)) == [HOLDS, READING, *coarse]
 
 
 def test_element_counts_per_radius_replace_element_sizes(witness: Any) -> None:
@@ -91,32 +91,32 @@ def test_element_counts_per_radius_replace_element_sizes(witness: Any) -> None:
             for mine, its in zip(one.numbers, other.numbers, strict=True):
                 assert mine.value == pytest.approx(its.value)
                 assert mine.uncertainty == pytest.approx(its.uncertainty, rel=1e-6)
-    (zone, _) = three_d.PLASTIC_ZONE_OF_WITNESS.judge(counted)
+    (zone, _) = three_d.plastic_zone_of_witness.judge(counted)
     assert zone.verdict == UNKNOWN
     assert "witness_mesh has not been solved" in zone.why
 
 
 def test_the_contact_duration(witness: Any) -> None:
-    assert verdicts(three_d.DURATION_OF_WITNESS.judge(witness(gap=0.03))) == [READING] * 4
-    assert verdicts(three_d.DURATION_OF_WITNESS.judge(witness(gap=0.08))) == [FAILS] * 4
+    assert verdicts(three_d.duration_of_witness.judge(witness(gap=0.03))) == [READING] * 4
+    assert verdicts(three_d.duration_of_witness.judge(witness(gap=0.08))) == [FAILS] * 4
 
 
 def test_the_displacements(witness: Any) -> None:
-    found = list(three_d.DISPLACEMENT_OF_WITNESS.judge(witness(gap=0.06)))
+    found = list(three_d.displacement_of_witness.judge(witness(gap=0.06)))
     assert verdicts(found) == [READING] * 4
     assert found[0].numbers[0].value == pytest.approx(0.06, abs=1e-3)
     assert "displacement, more than the uncertainty" in found[0].why
-    assert verdicts(three_d.DISPLACEMENT_OF_WITNESS.judge(witness(gap=0.2))) == [FAILS] * 4
+    assert verdicts(three_d.displacement_of_witness.judge(witness(gap=0.2))) == [FAILS] * 4
     bare = {"witness": witness()["witness"].drop_vars("midspan_deflection")}
-    assert verdicts(three_d.DISPLACEMENT_OF_WITNESS.judge(bare)) == [UNKNOWN] * 2 + [READING] * 2
+    assert verdicts(three_d.displacement_of_witness.judge(bare)) == [UNKNOWN] * 2 + [READING] * 2
 
 
 def test_the_plastic_zone(witness: Any) -> None:
-    for found in three_d.PLASTIC_ZONE_OF_WITNESS.judge(witness()):
+    for found in three_d.plastic_zone_of_witness.judge(witness()):
         assert found.verdict == READING
         assert found.numbers[0].value == pytest.approx(1.5e-3)
         assert found.numbers[0].uncertainty == pytest.approx(0.5e-3)  # an element
-    assert verdicts(three_d.PLASTIC_ZONE_OF_WITNESS.judge(witness(reach=2.5e-3))) == [FAILS] * 2
+    assert verdicts(three_d.plastic_zone_of_witness.judge(witness(reach=2.5e-3))) == [FAILS] * 2
 
 
 def test_a_missing_study_or_run_is_reported(witness: Any) -> None:
@@ -125,8 +125,8 @@ def test_a_missing_study_or_run_is_reported(witness: Any) -> None:
     data = witness()
     data["witness"]["peak_force"].loc[{"velocity": 5.0, "beam_model": "solid"}] = np.nan
     data["witness"]["status"].loc[{"velocity": 5.0, "beam_model": "solid"}] = 256
-    found = list(three_d.FORCE_OF_WITNESS.judge(data))
+    found = list(three_d.force_of_witness.judge(data))
     assert verdicts(found) == [HOLDS, READING, UNKNOWN, UNKNOWN]
     assert "the 3-D model stopped before its time" in found[-1].why
     two = {"witness": witness()["witness"].isel(element_size=[0], nodes=slice(None))}
-    assert UNKNOWN in verdicts(three_d.FORCE_OF_WITNESS.judge(two))
+    assert UNKNOWN in verdicts(three_d.force_of_witness.judge(two))
