@@ -25,7 +25,7 @@ class Discretisation:
     time in which a bar wave crosses a spacing, unless the contact allows less, of semi_implicit.
     element_size, elements_per_radius: of the "solid" model alone, which needs one of them and
     nothing else of these: the size of its elements about the contact, in m; or how many lie over
-    the contact radius to expect (fem3d.solver.mesh.estimates), so that it follows the velocity.
+    the contact radius to expect (fem3d.solver.estimates), so that it follows the velocity.
 
     The two schemes tend to the same answers, but for what does not converge anyway: the peak
     plastic strain of a perfectly plastic beam depends on the time step, too.

@@ -9,7 +9,7 @@ from dask.system import CPU_COUNT
 from distributed.system import MEMORY_LIMIT
 
 from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, least_cost, quarter_mesh
-from impactlab.fem3d.solver.mesh.estimates import checked_patch, contact_radius
+from impactlab.fem3d.solver.estimates import checked_patch, contact_radius
 from impactlab.model import cost
 from impactlab.model.checks import positive
 from impactlab.model.discretisation import Discretisation

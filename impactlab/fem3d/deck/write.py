@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from impactlab.fem3d.deck.mesh import LENGTH, element_groups, geometry
-from impactlab.fem3d.solver.mesh import Mesh
-from impactlab.fem3d.solver.mesh.estimates import contact_radius
-from impactlab.fem3d.solver.mesh.mesh import sphere_density
+from impactlab.fem3d.solver.estimates import contact_radius
+from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Integers, Mesh, sphere_density
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.model.checks import instance, one_of, positive
 from impactlab.model.discretisation import Discretisation
@@ -22,16 +21,24 @@ from impactlab.model.impact import Impact, Material
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.verification.solutions import hertz
 
-_STRESS = 1e-6
-"""MPa per Pa."""
+LENGTH, _STRESS = 1e3, 1e-6
+"""mm per m, and MPa per Pa."""
+_BODIES = {BEAM: "BEAM", SPHERE: "SPHERE"}
+
+_CORNERS = np.array(
+    [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]]
+)
+"""An element's nodes on its faces S1 to S6."""
+_PER_LINE = 16
+"""Entries that a data line may hold in both programs."""
+_NEAR = 1e-6
+"""Distance from a plane at which a node is on it, over the size of an element."""
 _OVERCLOSURE = 0.002
 """Overclosure at the contact's centre over the indentation, in Hertz's contact, in CalculiX."""
 _LONGEST = 10.0
 """Plastic strain at which the tables end; both programs keep the stress from there on."""
 _SAMPLES = 60
 """Intervals in the contact duration of an elastic half-space."""
-_SAME = 1e-9
-"""Relative difference of lengths that are the same."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,6 +126,10 @@ def write_deck(
     # Hertz's largest pressure is 2 E* a/(pi R), his indentation a^2/R.
     modulus, radius = hertz.effective_modulus(impact), contact_radius(impact)
     given = flatten(impact, Discretisation())
+    groups = {
+        f"{_BODIES[body]}_{'FINE' if full else 'COARSE'}": (full, numbers)
+        for body, full, numbers in mesh.groups()
+    }
     text = _TEMPLATES.get_template(f"{flavour}.inp.j2").render(
         flavour=chosen,
         version=version("impactlab"),
@@ -128,12 +139,9 @@ def write_deck(
         interval=interval,
         plastic=plastic,
         given=[(PARAMETERS[name], given[name]) for name in IMPACT_PARAMETERS if name in given],
-        geometry="\n".join(geometry(mesh, impact.sphere.radius, chosen.elements)),
-        groups=element_groups(mesh),
-        materials={
-            "BEAM": (beam, beam.density),
-            "SPHERE": (ball, sphere_density(mesh, impact)),
-        },
+        geometry="\n".join(_geometry(mesh, groups, impact.sphere.radius, chosen)),
+        groups=groups,
+        materials={"BEAM": (beam, beam.density), "SPHERE": (ball, sphere_density(mesh, impact))},
         stiffness=2.0 * modulus / (math.pi * radius * _OVERCLOSURE),  # in Pa/m
     )
     path = Path(path)
@@ -153,11 +161,73 @@ def _check_mesh(mesh: Mesh, impact: Impact) -> None:
         ("beam's depth", -nodes[:, 2].min(), beam.depth),
         ("sphere's radius", 0.5 * nodes[:, 2].max(), impact.sphere.radius),
     ):
-        if not math.isclose(meshed, wanted, rel_tol=_SAME):
+        if not math.isclose(meshed, wanted, rel_tol=1e-9):
             raise ValueError(
                 f"deck.mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in the "
                 "impact: make the mesh from this impact (quarter_mesh)"
             )
+
+
+def _outer(mesh: Mesh, body: int) -> tuple[Integers, Integers]:
+    """Return the body's outer faces, (f, 2): element (from 0) and face (from 1); nodes, (f, 4)."""
+    own = np.flatnonzero(mesh.body == body)
+    nodes = mesh.elements[own][:, _CORNERS].reshape(-1, 4)
+    _, first, count = np.unique(
+        np.sort(nodes, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    outer = np.sort(first[count == 1])
+    faces = np.stack([own[outer // 6], outer % 6 + 1], axis=1)
+    return faces, nodes[outer]
+
+
+def _geometry(
+    mesh: Mesh, groups: Mapping[str, tuple[bool, Integers]], radius: float, flavour: Flavour
+) -> Iterator[str]:
+    """Yield the mesh's lines, numbered from 1. radius: of the sphere in m."""
+    yield "*NODE, NSET=ALL_NODES"
+    for place, (x, y, z) in enumerate((LENGTH * mesh.nodes).tolist(), start=1):
+        # 19 characters at most, of the 20 that CalculiX reads, with 13 digits.
+        yield f"{place}, {x:.12e}, {y:.12e}, {z:.12e}"
+    for name, (full, numbers) in groups.items():
+        yield f"*ELEMENT, TYPE={flavour.elements[full]}, ELSET={name}"
+        rows = np.column_stack([numbers, mesh.elements[numbers]]) + 1
+        yield from (", ".join(map(str, row)) for row in rows.tolist())
+    for body in _BODIES.values():
+        yield f"*ELSET, ELSET={body}"
+        yield from (name for name in groups if name.startswith(f"{body}_"))
+    centre = np.linalg.norm(mesh.nodes - np.array([0.0, 0.0, radius]), axis=1).argmin()
+    tracked = {
+        "MIDSPAN": mesh.axis_node,
+        "SPHERE_CENTRE": int(centre),
+        "SPHERE_POLE": mesh.pole,
+        "BEAM_TOP": mesh.top_node,
+    }
+    sets: dict[str, list[int]] = {
+        "SPHERE_NODES": np.unique(mesh.elements[mesh.body == SPHERE]).tolist(),
+        "SYMMETRY_X": mesh.symmetry_x.tolist(),
+        "SYMMETRY_Y": mesh.symmetry_y.tolist(),
+        "SUPPORT": mesh.support.tolist(),
+        **{name: [node] for name, node in tracked.items()},
+        "TRACKED": list(tracked.values()),
+    }
+    for name, members in sets.items():
+        yield f"*NSET, NSET={name}"
+        for at in range(0, len(members), _PER_LINE):
+            yield ", ".join(str(node + 1) for node in members[at : at + _PER_LINE])
+    # The sphere's surface below its centre, and the beam's top.
+    on_plane = np.abs(mesh.nodes) < _NEAR * mesh.element_size  # through the origin, across an axis
+    ball, corners = _outer(mesh, SPHERE)
+    middle = mesh.nodes[corners, 2].mean(axis=1)
+    height = 0.5 * np.ptp(mesh.nodes[np.unique(corners), 2])
+    cut = on_plane[corners, :2].all(axis=1).any(axis=1)
+    beam, above = _outer(mesh, BEAM)
+    surfaces = {
+        "SPHERE_SURFACE": ball[~cut & (middle < height)],
+        "BEAM_SURFACE": beam[on_plane[above, 2].all(axis=1)],
+    }
+    for name, faces in surfaces.items():
+        yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
+        yield from (f"{element + 1}, S{face}" for element, face in faces.tolist())
 
 
 def _values(*entries: float) -> str:

@@ -23,8 +23,14 @@ from impactlab.fem3d.kratos.engine import (
 )
 from impactlab.fem3d.solver import Mesh, PatchTooSmallError, quarter_mesh
 from impactlab.fem3d.solver.march import History, Moment, Progress
-from impactlab.fem3d.solver.mesh import BEAM, SPHERE
-from impactlab.fem3d.solver.mesh.mesh import Floats, Integers, nodal_masses, sphere_density
+from impactlab.fem3d.solver.mesh import (
+    BEAM,
+    SPHERE,
+    Floats,
+    Integers,
+    nodal_masses,
+    sphere_density,
+)
 from impactlab.fem3d.solver.responses import history_responses, plastic_responses
 from impactlab.fem3d.solver.solve import OWN, histories, named
 from impactlab.model.checks import integer, positive
@@ -39,10 +45,7 @@ TIME_STEP, PENALTY = 8e-6, 1e15
 def solve(
     impact: Impact, *, element_size: float, patch: float | None = None, **options: Any
 ) -> xr.Dataset:
-    """Solve one impact on the mesh that quarter_mesh makes of element_size and patch (m).
-
-    options, and what is returned and raised, as in solve_on.
-    """
+    """Solve one impact as solve_on, on the mesh of quarter_mesh; element_size, patch: in m."""
     mesh = quarter_mesh(impact, element_size=element_size, patch=patch)
     return solve_on(mesh, impact, **options)
 

@@ -63,28 +63,43 @@ _ROOT = 1.0 / math.sqrt(3.0)
 
 
 @compiled
-def one_point_forces(
+def add_forces(
     blocks: tuple[int, int],
+    full: bool,
+    metal: Metal,
     nodes: Array,
     rows: Array,
+    state: Array,
     x: Array,
     v: Array,
     dt: float,
-    metal: Metal,
-    state: Array,
     forces: Array,
     s: Array,
 ) -> None:
     """Take a step's motion into `state`, and add the nodal forces that answer it.
 
-    blocks: the first and the one past the last. nodes, and the rows of forces that are theirs:
-    (blocks, 8 W). x: (n, 3) in m, at the step's end; v: (n, 3) in m/s, at its middle; dt in s.
-    state: (blocks, ONE_POINT_ROWS W). forces: (., 3) in N. s: scratch, (SCRATCH W,).
+    blocks: the first and the one past the last. full: with eight integration points. nodes, and the
+    rows of forces that are theirs: (blocks, 8 W). x: (n, 3) in m, at the step's end; v: (n, 3) in
+    m/s, at its middle; dt in s. state: (blocks, rows W), rows FULL_ROWS or ONE_POINT_ROWS. forces:
+    (., 3) in N. s: scratch, (SCRATCH W,).
     """
     for block in range(blocks[0], blocks[1]):
         gather(s, nodes[block], x, v)
-        for lane in range(W):
-            _element(s, state[block], lane, dt, metal)
+        held = state[block]
+        if full:
+            for lane in range(W):
+                _begin(s, held, lane, dt, metal)
+            for corner in range(8):
+                xi = _ROOT * (2 * (corner & 1) - 1)
+                eta = _ROOT * ((corner & 2) - 1)
+                zeta = _ROOT * ((corner >> 1 & 2) - 1)
+                for lane in range(W):
+                    _point(s, held, corner * POINT_ROWS, lane, (xi, eta, zeta), dt, metal)
+            for lane in range(W):
+                nodal(s, lane, _load(s, _T, lane))
+        else:
+            for lane in range(W):
+                _element(s, held, lane, dt, metal)
         scatter(s, rows[block], forces)
 
 
@@ -108,7 +123,7 @@ def _element(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None
     size = volume(c, B)
     L = mean_gradient(w, B, size)
     row = POINT_ROWS
-    Q, work = hourglass(state, row + 4, lane, c, w, L, size, dt, metal)
+    Q, work = hourglass(state, lane, c, w, L, size, dt, metal)
     state[(row + HOURGLASS_WORK) * W + lane] += work
     L = midway(L, dt)
     S, work, dissipated = advance(state, 0, lane, L, dt, metal)
@@ -142,20 +157,13 @@ def _row(stress: Vector, g: Four, Q: Four, axis: int, share: float) -> Vector:
 
 @inlined
 def hourglass(
-    state: Array,
-    row: int,
-    lane: int,
-    c: Shape,
-    w: Shape,
-    L: Tensor,
-    V: float,
-    dt: float,
-    metal: Metal,
+    state: Array, lane: int, c: Shape, w: Shape, L: Tensor, V: float, dt: float, metal: Metal
 ) -> tuple[Four, float]:
     """Return the four hourglass forces (N) at a step's end, and their work (J) in it.
 
-    L: dv/dx at the step's end. row: the first in `state` of the forces, which are updated.
+    L: dv/dx at the step's end. The forces in `state` are updated.
     """
+    row = POINT_ROWS + 4
     e = _frame(c)
     half = (dot(e[0], c[0]), dot(e[1], c[1]), dot(e[2], c[2]))
     q1, q2 = _rate(e, c[3], w[3], L), _rate(e, c[4], w[4], L)
@@ -218,36 +226,6 @@ def _raised(state: Array, row: int, lane: int, rise: Vector, q: Vector) -> tuple
     after = plus(before, 1.0, rise)
     store(state, row, lane, after)
     return after, dot(plus(before, 0.5, rise), q)
-
-
-@compiled
-def full_forces(
-    blocks: tuple[int, int],
-    nodes: Array,
-    rows: Array,
-    x: Array,
-    v: Array,
-    dt: float,
-    metal: Metal,
-    state: Array,
-    forces: Array,
-    s: Array,
-) -> None:
-    """Do the same as one_point_forces, with eight points and FULL_ROWS."""
-    for block in range(blocks[0], blocks[1]):
-        gather(s, nodes[block], x, v)
-        held = state[block]
-        for lane in range(W):
-            _begin(s, held, lane, dt, metal)
-        for corner in range(8):
-            xi = _ROOT * (2 * (corner & 1) - 1)
-            eta = _ROOT * ((corner & 2) - 1)
-            zeta = _ROOT * ((corner >> 1 & 2) - 1)
-            for lane in range(W):
-                _point(s, held, corner * POINT_ROWS, lane, (xi, eta, zeta), dt, metal)
-        for lane in range(W):
-            nodal(s, lane, _load(s, _T, lane))
-        scatter(s, rows[block], forces)
 
 
 @inlined

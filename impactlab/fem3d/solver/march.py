@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.fem3d.solver.mesh.estimates import largest_patch
-from impactlab.fem3d.solver.mesh.mesh import Floats
+from impactlab.fem3d.solver.elements import DISSIPATED, HOURGLASS_WORK, WORK
+from impactlab.fem3d.solver.estimates import largest_patch
+from impactlab.fem3d.solver.mesh import Floats
 from impactlab.fem3d.solver.system import System, corner_volumes, critical_step
 from impactlab.model.impact import Impact
 
@@ -141,7 +142,9 @@ class March:
             self._take()
         system, mesh, history = self.system, self.system.mesh, self.history
         before = system.v.copy()
-        worked = 4.0 * np.sum([group.works() for group in system.groups], axis=0)
+        rows = (WORK, DISSIPATED, HOURGLASS_WORK)
+        works = [[group.of_elements(row).sum() for row in rows] for group in system.groups]
+        worked = 4.0 * np.sum(works, axis=0)
         self._take()
         # Energies at the start of this step, kinetic by the velocities around it.
         moment = history.moments[-1]
@@ -164,8 +167,17 @@ class March:
         at = (mesh.pole, mesh.axis_node, mesh.top_node)
         pole, axis, top = mesh.nodes[at, 2] - system.x[at, 2]
         system.move(self._velocity_dt, self._dt)
-        if system.beyond:
-            raise self._outgrown()
+        if system.beyond:  # for the patch needed, work grows with radius**4 at least (plastic)
+            first = self.impact.velocity**2
+            left = min(self._velocity, 0.999 * first**0.5) ** 2
+            needed = 1.1 * mesh.patch * (first / (first - left)) ** 0.25
+            message = (
+                f"at {self._time:.4g} s the contact has grown beyond the matched patch of "
+                f"{1e3 * mesh.patch:.4g} mm: take patch = {needed:.4g} m or more"
+            )
+            if needed > (room := largest_patch(self.impact)):
+                message += f"; beam and sphere have room for {room:.4g} m"
+            raise PatchTooSmallError(message, needed)
         force = 4.0 * system.impulse / self._velocity_dt
         mass = self.impact.sphere.total_mass
         self._velocity += self._velocity_dt * (self.impact.gravity - force / mass)
@@ -201,16 +213,3 @@ class March:
         shorter = self._step * min(1.0, shortest / self._shortest)
         self._velocity_dt, self._dt = 0.5 * (self._dt + shorter), shorter
         return ""
-
-    def _outgrown(self) -> PatchTooSmallError:
-        """Return the error; for the patch needed, work grows with radius**4 at least (plastic)."""
-        mesh, first = self.system.mesh, self.impact.velocity**2
-        left = min(self._velocity, 0.999 * first**0.5) ** 2
-        needed = 1.1 * mesh.patch * (first / (first - left)) ** 0.25
-        message = (
-            f"at {self._time:.4g} s the contact has grown beyond the matched patch of "
-            f"{1e3 * mesh.patch:.4g} mm: take patch = {needed:.4g} m or more"
-        )
-        if needed > (room := largest_patch(self.impact)):
-            message += f"; beam and sphere have room for {room:.4g} m"
-        return PatchTooSmallError(message, needed)

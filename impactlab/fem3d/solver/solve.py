@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
-from impactlab.fem3d.solver.mesh import Mesh, quarter_mesh
-from impactlab.fem3d.solver.mesh.mesh import Floats
+from impactlab.fem3d.solver.mesh import Floats, Mesh
+from impactlab.fem3d.solver.quarter import quarter_mesh
 from impactlab.fem3d.solver.responses import fields, plastic_responses, responses
 from impactlab.fem3d.solver.system import System, ThreadPool
 from impactlab.model.checks import integer, positive
@@ -23,10 +23,7 @@ from impactlab.variables import described, provenance
 def solve(
     impact: Impact, *, element_size: float, patch: float | None = None, **options: Any
 ) -> xr.Dataset:
-    """Solve one impact on the mesh that quarter_mesh makes of element_size and patch (m).
-
-    options, and what is returned and raised, as in solve_on.
-    """
+    """Solve one impact as solve_on, on the mesh of quarter_mesh; element_size, patch: in m."""
     mesh = quarter_mesh(impact, element_size=element_size, patch=patch)
     return solve_on(mesh, impact, **options)
 

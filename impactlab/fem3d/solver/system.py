@@ -15,20 +15,19 @@ from typing import Any
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from impactlab.fem3d.solver.elements import (
-    DISSIPATED,
-    FULL_ROWS,
-    HOURGLASS_WORK,
-    ONE_POINT_ROWS,
-    WORK,
-    full_forces,
-    one_point_forces,
-)
+from impactlab.fem3d.solver.elements import FULL_ROWS, ONE_POINT_ROWS, add_forces
 from impactlab.fem3d.solver.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.jit import Array, compiled
 from impactlab.fem3d.solver.material import POINT_ROWS, Metal
-from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
-from impactlab.fem3d.solver.mesh.mesh import NEIGHBOURS, Floats, Integers, nodal_masses
+from impactlab.fem3d.solver.mesh import (
+    BEAM,
+    NEIGHBOURS,
+    SPHERE,
+    Floats,
+    Integers,
+    Mesh,
+    nodal_masses,
+)
 from impactlab.model.impact import Impact, Material
 
 
@@ -41,9 +40,8 @@ class Group:
     """
 
     elements: Array
-    nodes: Array
     points: int
-    kernel: Callable[..., None]
+    nodes: Array
     metal: Metal
     state: Array
 
@@ -59,36 +57,14 @@ class Group:
         values = self.state.reshape(len(self.nodes), -1, W)[:, row]
         return values.reshape(-1)[: self.elements.size]
 
-    def works(self) -> Array:
-        """Return the works in J of all elements: of stresses, dissipated, against hourglassing."""
-        rows = (WORK, DISSIPATED, HOURGLASS_WORK)
-        return np.array([self.of_elements(row).sum() for row in rows])
 
-
-def make_groups(mesh: Mesh, impact: Impact) -> list[Group]:
-    """Return the groups at rest, without empty ones."""
-    metals = {BEAM: metal(impact.beam.material), SPHERE: metal(impact.sphere.material)}
-    return [
-        make_group(mesh.elements, np.flatnonzero(chosen), whole, metals[body])
-        for body in (BEAM, SPHERE)
-        for whole in (True, False)
-        if np.any(chosen := (mesh.body == body) & (mesh.full == whole))
-    ]
-
-
-def make_group(elements: Array, numbers: Array, whole: bool, steel: Metal) -> Group:
-    """Return a group at rest of these numbers of the elements; whole: fully integrated."""
+def make_group(elements: Array, numbers: Array, full: bool, steel: Metal) -> Group:
+    """Return a group at rest of these numbers of the elements."""
     blocks = -(-numbers.size // W)
     filled = np.append(numbers, np.repeat(numbers[-1], blocks * W - numbers.size))
     nodes = elements[filled].reshape(blocks, W, 8).transpose(0, 2, 1).reshape(blocks, 8 * W)
-    return Group(
-        elements=numbers,
-        nodes=np.ascontiguousarray(nodes),
-        points=8 if whole else 1,
-        kernel=full_forces if whole else one_point_forces,
-        metal=steel,
-        state=np.zeros((blocks, (FULL_ROWS if whole else ONE_POINT_ROWS) * W)),
-    )
+    state = np.zeros((blocks, (FULL_ROWS if full else ONE_POINT_ROWS) * W))
+    return Group(numbers, 8 if full else 1, np.ascontiguousarray(nodes), steel, state)
 
 
 def metal(material: Material) -> Metal:
@@ -210,13 +186,7 @@ def integrate(
 
 @compiled
 def close_gaps(
-    pairs: Array,
-    rim: Array,
-    inverse_mass: Array,
-    x: Array,
-    v: Array,
-    dt: float,
-    approach: Array,
+    pairs: Array, rim: Array, inverse_mass: Array, x: Array, v: Array, dt: float, approach: Array
 ) -> tuple[float, float, bool]:
     """Correct x (m, at the step's end) and v (m/s, at its middle) of pairs that would overlap.
 
@@ -261,7 +231,11 @@ class System:
         """Start at first touch: the sphere moves at the impact's velocity, the beam is at rest."""
         self.mesh, self.pool = mesh, pool
         self.x, self.v = mesh.nodes.copy(), np.zeros_like(mesh.nodes)
-        self.groups = make_groups(mesh, impact)
+        metals = {BEAM: metal(impact.beam.material), SPHERE: metal(impact.sphere.material)}
+        self.groups = [
+            make_group(mesh.elements, numbers, full, metals[body])
+            for body, full, numbers in mesh.groups()
+        ]
         self.assembly = force_assembly(self.groups, len(mesh.nodes))
         self.forces = np.zeros((self.assembly.count, 3))
         self.mass = nodal_masses(mesh, impact)
@@ -281,20 +255,11 @@ class System:
         """Strain the elements by a motion of dt (s) with v, which has led to x."""
 
         def work(part: int) -> None:
-            pieces = self.pool.share(part, MOST_THREADS)
+            pieces, scratch = self.pool.share(part, MOST_THREADS), self._scratch[part]
             for group, rows in zip(self.groups, self.assembly.of_groups, strict=True):
-                group.kernel(
-                    blocks_of(group, *pieces),
-                    group.nodes,
-                    rows,
-                    self.x,
-                    self.v,
-                    dt,
-                    group.metal,
-                    group.state,
-                    self.forces,
-                    self._scratch[part],
-                )
+                blocks = blocks_of(group, *pieces)
+                own = (group.points == 8, group.metal, group.nodes, rows, group.state)
+                add_forces(blocks, *own, self.x, self.v, dt, self.forces, scratch)
 
         self.pool.run(work)
 
@@ -317,13 +282,7 @@ class System:
 
         self.pool.run(work)
         self.impulse, self.lost, self.beyond = close_gaps(
-            self.mesh.pairs,
-            self.mesh.rim,
-            self.inverse_mass,
-            self.x,
-            self.v,
-            dt,
-            self.approach,
+            self.mesh.pairs, self.mesh.rim, self.inverse_mass, self.x, self.v, dt, self.approach
         )
 
 

@@ -20,8 +20,8 @@ from numpy.lib.recfunctions import require_fields
 
 from impactlab.fem3d.solver import Cost, estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver import solve as solve_alone
+from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.jit import SOURCES_HASH as SOLID_HASH
-from impactlab.fem3d.solver.mesh.estimates import contact_radius
 from impactlab.fem3d.solver.responses import surface_reach
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.model import cost

@@ -8,7 +8,7 @@ import decks
 import pytest
 
 from impactlab.fem3d.deck import write_deck
-from impactlab.fem3d.solver.mesh import quarter_mesh
+from impactlab.fem3d.solver import quarter_mesh
 from impactlab.model.impact import Beam, paper_impact
 
 

@@ -11,7 +11,7 @@ import pytest
 import whole_sphere
 
 from impactlab.fem3d.deck import write_deck
-from impactlab.fem3d.solver.mesh import quarter_mesh
+from impactlab.fem3d.solver import quarter_mesh
 from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
 from impactlab.verification.solutions import hertz
 

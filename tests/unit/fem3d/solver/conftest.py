@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.elements import MEAN
+from impactlab.fem3d.solver.elements import MEAN, add_forces
 from impactlab.fem3d.solver.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.material import STRESS
-from impactlab.fem3d.solver.mesh.mesh import brick
+from impactlab.fem3d.solver.mesh import brick
 from impactlab.fem3d.solver.system import force_assembly, make_group, metal
 from impactlab.model.impact import Material
 
@@ -20,8 +20,8 @@ class Body:
 
     def __init__(self, nodes, elements, kind, steel=STEEL):
         self.x, self.elements = nodes.copy(), elements
-        whole = kind == "full"
-        self.group = make_group(elements, np.arange(len(elements)), whole, metal(steel))
+        numbers = np.arange(len(elements))
+        self.group = make_group(elements, numbers, kind == "full", metal(steel))
         self._rows = force_assembly([self.group], len(nodes))
         self._forces = np.zeros((self._rows.count, 3))
         self._scratch = np.zeros(SCRATCH * W)
@@ -31,18 +31,10 @@ class Body:
         group, v = self.group, (x - self.x) / dt
         self._forces[:] = 0.0
         self.x = np.ascontiguousarray(x)
-        group.kernel(
-            (0, len(group.nodes)),
-            group.nodes,
-            self._rows.of_groups[0],
-            self.x,
-            v,
-            dt,
-            group.metal,
-            group.state,
-            self._forces,
-            self._scratch,
-        )
+        rows = self._rows.of_groups[0]
+        own = (group.points == 8, group.metal, group.nodes, rows, group.state)
+        blocks = (0, len(group.nodes))
+        add_forces(blocks, *own, self.x, v, dt, self._forces, self._scratch)
         return self.forces()
 
     def forces(self):

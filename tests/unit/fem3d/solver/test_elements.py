@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.elements import HOURGLASS_WORK, WORK
-from impactlab.fem3d.solver.mesh.mesh import brick
+from impactlab.fem3d.solver.mesh import brick
 from impactlab.model.impact import Material
 
 G, K = 200e9 / 2.6, 200e9 / 1.2

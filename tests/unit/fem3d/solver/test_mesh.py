@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.mesh import BEAM, SPHERE, estimate, quarter_mesh
-from impactlab.fem3d.solver.mesh.estimates import contact_radius
-from impactlab.fem3d.solver.mesh.mesh import CORNERS, graded
+from impactlab.fem3d.solver import estimate, quarter_mesh
+from impactlab.fem3d.solver.estimates import contact_radius
+from impactlab.fem3d.solver.mesh import BEAM, CORNERS, SPHERE, graded
 from impactlab.model.impact import paper_impact
 
 

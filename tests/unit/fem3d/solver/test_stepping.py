@@ -7,8 +7,7 @@ import pytest
 
 from impactlab.fem3d.solver.hexahedron import W
 from impactlab.fem3d.solver.march import March
-from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh
-from impactlab.fem3d.solver.mesh.mesh import brick
+from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh, brick
 from impactlab.fem3d.solver.system import (
     MOST_THREADS,
     System,

@@ -11,8 +11,7 @@ import xarray as xr
 
 from impactlab.fem3d.solver import estimate, quarter_mesh, solve_on
 from impactlab.fem3d.solver.march import SAFETY
-from impactlab.fem3d.solver.mesh import BEAM, SPHERE
-from impactlab.fem3d.solver.mesh.mesh import nodal_masses
+from impactlab.fem3d.solver.mesh import BEAM, SPHERE, nodal_masses
 from impactlab.fem3d.solver.system import System, ThreadPool, critical_step
 from impactlab.model.impact import paper_impact
 

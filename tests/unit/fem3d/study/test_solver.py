@@ -10,7 +10,7 @@ import pytest
 
 import impactlab as il
 from impactlab.fem3d import solver as solid
-from impactlab.fem3d.solver.mesh.estimates import contact_radius
+from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.study import solver as witness
 from impactlab.model.cost import A_SECOND
 from impactlab.study.engine import Engine

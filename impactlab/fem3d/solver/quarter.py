@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
-from impactlab.fem3d.solver.mesh.estimates import bending_yields, checked_patch, checked_size
-from impactlab.fem3d.solver.mesh.mesh import (
+from impactlab.fem3d.solver.estimates import bending_yields, checked_patch, checked_size
+from impactlab.fem3d.solver.mesh import (
     BEAM,
     SPHERE,
     Floats,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from impactlab.fem3d.solver.mesh.mesh import BEAM, SPHERE, Mesh, uniform
+from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh, uniform
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact, Material
 from impactlab.verification.solutions import hertz

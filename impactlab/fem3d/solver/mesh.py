@@ -72,6 +72,15 @@ class Mesh:
                 "take a smaller element_size"
             )
 
+    def groups(self) -> list[tuple[int, bool, Integers]]:
+        """Return the groups of elements alike in body and full: both, and the numbers in each."""
+        return [
+            (body, full, np.flatnonzero(chosen).astype(np.int32))
+            for body in (BEAM, SPHERE)
+            for full in (True, False)
+            if np.any(chosen := (self.body == body) & (self.full == full))
+        ]
+
     @property
     def pole(self) -> int:
         """Return the sphere's node at the origin."""
