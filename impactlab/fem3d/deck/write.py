@@ -219,7 +219,7 @@ def _geometry(
     ball, corners = _outer(mesh, SPHERE)
     middle = mesh.nodes[corners, 2].mean(axis=1)
     height = 0.5 * np.ptp(mesh.nodes[np.unique(corners), 2])
-    cut = on_plane[corners, :2].all(axis=1).any(axis=1)
+    cut = np.any(on_plane[corners, :2].all(axis=1), axis=1)
     beam, above = _outer(mesh, BEAM)
     surfaces = {
         "SPHERE_SURFACE": ball[~cut & (middle < height)],
