@@ -1,4 +1,4 @@
-# make study   the main studies, from their files to results/index.html (5 minutes on two cores)
+# make study   the main studies, from their files to results/index.html (4 minutes on two cores)
 # make paper   the figures and statements of the paper, in results/paper (about 40 minutes)
 # make all     every study, the large ones too, and the paper (one to two hours)
 # make test    the checks, and the tests of up to a minute

@@ -65,6 +65,7 @@ CONTENTS = {
     "impact": "impactlab simulate",
     "witness": "impactlab witness",
     "beams": "impactlab witness",
+    "figure": "impactlab figures",
 }
 """What a dataset's file may hold, and the command that makes it."""
 _CACHE = 1_000_000
@@ -75,12 +76,15 @@ _UNCHECKED = {"created", "versions", "source_revision", "processor", "history", 
 """Attributes that differ between equal datasets."""
 
 
-def write_netcdf(dataset: xr.Dataset, path: Path, content: str, *sources: xr.Dataset) -> None:
+def write_netcdf(
+    dataset: xr.Dataset, path: Path, content: str, *sources: xr.Dataset, dated: bool = True
+) -> None:
     """Write a dataset, large variables compressed. Raises OSError as `replaced`.
 
-    content: one of CONTENTS. sources: datasets read from files that it was made from.
+    content: one of CONTENTS. sources: datasets read from files that it was made from. dated:
+    whether its history has the time, without which equal datasets give the same bytes.
     """
-    made = f"{datetime.now(UTC).isoformat(timespec='seconds')}: {CONTENTS[content]}"
+    made = f"{datetime.now(UTC).isoformat(timespec='seconds')}: " * dated + CONTENTS[content]
     history = "\n".join(filter(None, (dataset.attrs.get("history"), made)))
     dataset = dataset.assign_attrs(
         title=dataset.attrs.get("title") or content,
@@ -88,7 +92,6 @@ def write_netcdf(dataset: xr.Dataset, path: Path, content: str, *sources: xr.Dat
         content=content,
         made_from=" ".join(map(identity, sources)),
         history=history,
-        checksums="",  # known in the end
     )
     digests = {_ATTRIBUTES: _digest(dataset.attrs)}
     encoding: dict[str, dict[str, Any]] = {}
@@ -108,11 +111,13 @@ def write_netcdf(dataset: xr.Dataset, path: Path, content: str, *sources: xr.Dat
             digests[str(name)] = _digest(*_parts(variable))
         else:  # in the one pass in which the values are computed
             variable.data = _noted(variable, str(name), digests)
+    dataset.attrs["checksums"] = json.dumps(digests, sort_keys=True)
     set_chunk_cache(_CACHE)
     with replaced(path, dataset.nbytes) as unfinished:
         dataset.to_netcdf(unfinished, engine="netcdf4", encoding=encoding)
-        with Dataset(unfinished, "a") as file:
-            file.setncattr("checksums", json.dumps(digests, sort_keys=True))
+        if dataset.chunks:  # only now are all digests known
+            with Dataset(unfinished, "a") as file:
+                file.setncattr("checksums", json.dumps(digests, sort_keys=True))
 
 
 @contextmanager

@@ -17,6 +17,8 @@ COMMANDS = {
     "witness": "impactlab.fem3d.command:witness",
 }
 """Commands, by name: module and function, as `pkgutil.resolve_name` takes them."""
+COMPILE = "impactlab.fem3d.solver.solve:compile_all"
+"""What compiles the kernels of the 3-D model."""
 SOLVERS = {"witness": "impactlab.fem3d.study.solver:SOLVER"}
 """Solvers of runs, see study.solvers, by the name that designs hold."""
 SOLID = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import logging
 import sys
+import warnings
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Annotated, Any
@@ -100,7 +101,7 @@ def configure(
         bool, typer.Option(help="Log details, the place of an error included.")
     ] = False,
 ) -> None:
-    """Set up logging and Ctrl-C for every command."""
+    """Set up logging, warnings and Ctrl-C for every command."""
     stop_quietly()
     logger = logging.getLogger("impactlab")
     logger.setLevel(logging.DEBUG if debug else logging.INFO)
@@ -111,3 +112,4 @@ def configure(
     logger.handlers[:] = handlers
     for handler in handlers:
         handler.setFormatter(logging.Formatter("%(levelname)s: %(message)s"))
+    warnings.showwarning = lambda message, *_, **__: logger.warning("%s", message)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from impactlab import wings
 from impactlab.cli.options import given, new_file
 
 if TYPE_CHECKING:
@@ -99,7 +100,9 @@ def _checked(values: dict[str, Value]) -> tuple[Impact, Discretisation]:
     return case
 
 
-def compile_kernels() -> None:
+def compile_kernels(
+    fem3d: Annotated[bool, typer.Option("--fem3d", help="Those of the 3-D model, too.")] = False,
+) -> None:
     """Compile the kernels of the beam models into their cache.
 
     For images of containers, and for clusters before their jobs begin: without it, the first
@@ -107,5 +110,6 @@ def compile_kernels() -> None:
     """
     from impactlab.simulate import compile_all
 
-    folder = compile_all()
-    print(f"Compiled kernels: {folder}" if folder else "Compiled kernels cannot be kept.")
+    for compiles in (compile_all, *[wings.load(wings.COMPILE)] * fem3d):
+        folder = compiles()
+        print(f"Compiled kernels: {folder}" if folder else "Compiled kernels cannot be kept.")

@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter
 
 from impactlab.figures import labels
-from impactlab.files import replaced
+from impactlab.files import replaced, write_netcdf
 from impactlab.types import Floats
 
 FORMATS = ("csv", "nc")
@@ -77,9 +77,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
             for category, point in zip(one.category, points, strict=True):
                 numbers = ["" if math.isnan(number) else f"{number:.9g}" for number in point]
                 writer.writerow([*texts, category, *numbers])
-    with replaced(paths[1]) as temporary:
-        attrs = {"title": name, "history": "impactlab figures", "Conventions": "CF-1.11"}
-        dataset(found).assign_attrs(attrs).to_netcdf(temporary, engine="netcdf4")
+    write_netcdf(dataset(found).assign_attrs(title=name), paths[1], "figure", dated=False)
     return paths
 
 

@@ -14,7 +14,7 @@ from impactlab.figures.labels import display
 from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family, Index, analysed
 from impactlab.report.cautions import beside
 from impactlab.report.convergence import ORDERED, Needs, finest, needed
-from impactlab.report.indices import in_units, with_margin
+from impactlab.report.indices import in_units, uncertainty, with_margin
 from impactlab.report.sensitivity import share
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
@@ -158,8 +158,8 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
         text += labels.span(numbers, 3)
         text += f" {unit.symbol}" * bool(unit.symbol)
         if "numerical_uncertainty" in analysis and access.known(analysis, name):
-            error = labels.percent(float(analysis["numerical_uncertainty"].sel(response=name)))
-            text += f" (numerically ± {error})"
+            error = float(analysis["numerical_uncertainty"].sel(response=name))
+            text += f" (numerically {uncertainty(error)})"
         doubts = [f"{int(array.isnull().sum())} missing"] * bool(array.isnull().any())
         if doubts := [*doubts, *filter(None, [beside(runs, analysis, name)])]:
             text += f" ({'; '.join(doubts)})"
@@ -191,7 +191,7 @@ def _convergence(analysis: xr.Dataset, needs: Needs) -> list[Entry]:
     """Return one entry per grid that keeps responses within tolerance, and those without any."""
     runs, found = needs.runs, []
     for need, names in _grouped(needs.grids):
-        told = [f"± {labels.percent(max(float(needs.errors[name][need]) for name in names))}"]
+        told = [uncertainty(max(float(needs.errors[name][need]) for name in names))]
         for axis in (ORDERED[dim] for dim in needs.axes if dim in ORDERED):
             orders = finest(analysis[f"{axis}_observed_order"], runs).sel(response=names).values
             if np.isfinite(orders).any():
@@ -203,7 +203,7 @@ def _convergence(analysis: xr.Dataset, needs: Needs) -> list[Entry]:
     beyond = []
     for name in [name for name in needs.errors if name not in needs.grids]:
         error = float(needs.errors[name].min())
-        told = [f"± {labels.percent(error)}"] if error < 1 else []
+        told = [uncertainty(error)] if error < 1 else []
         told += needs.doubts(analysis, name)
         beyond.append(f"{labels.response(name)} ({', '.join(told)})")
     return found + ([("On no grid of this study", labels.listing(beyond))] if beyond else [])

@@ -17,6 +17,8 @@ _FINE = 0.005
 """Half-width below which a third decimal means something."""
 _LEAST = 0.001
 """Magnitude below which an index and its half-width are not printed separately."""
+_TINY = 0.001
+"""Share below which an uncertainty is only bounded."""
 _LEAD = (
     "The runs have a numerical error, which was estimated by refining the discretisation. An index "
     "that this error could change by as much as its own value is not distinguishable from it, "
@@ -105,6 +107,11 @@ def with_margin(value: float, margin: float) -> str:
     decimals = 3 if margin < _FINE else 2
     text = f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")
     return f"{text} ± {margin:.{decimals}f}" if np.isfinite(margin) else text
+
+
+def uncertainty(share: float) -> str:
+    """Return a relative uncertainty in per cent: "± 1.5 %"; a tiny one is only bounded."""
+    return f"± {labels.percent(share)}" if share >= _TINY else f"below {labels.percent(_TINY)}"
 
 
 def in_units(response: xr.DataArray, value: float, margin: float = np.inf) -> str:

@@ -23,7 +23,7 @@ from impactlab.figures.measures import (
     analysed,
 )
 from impactlab.report import indices
-from impactlab.report.indices import in_units, named
+from impactlab.report.indices import in_units, named, uncertainty
 from impactlab.report.page import Cell, Row, Section, Table
 
 _COARSE = 0.02
@@ -186,5 +186,6 @@ def share(index: Index, at: int) -> str:
         float(each[at]) for each in (index.values, index.margins, index.numerical)
     )
     decimals = 0 if margin >= _COARSE and value >= _SMALL else 1
-    numerically = f", numerically ± {100 * error:.{decimals}f}" if error else ""
-    return f"{100 * value:.{decimals}f} % (± {100 * margin:.{decimals}f}{numerically})"
+    numerically = f", numerically {uncertainty(error)}" if error else ""
+    within = f"± {100 * margin:.{decimals}f}" if margin >= 0.0005 else uncertainty(margin)
+    return f"{100 * value:.{decimals}f} % ({within}{numerically})"

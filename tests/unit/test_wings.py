@@ -40,7 +40,7 @@ def test_a_study_of_beams_imports_nothing_of_the_wings(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "reference",
-    [*wings.COMMANDS.values(), *wings.SOLVERS.values(), *wings.SOLID.values()],
+    [wings.COMPILE, *wings.COMMANDS.values(), *wings.SOLVERS.values(), *wings.SOLID.values()],
 )
 def test_what_a_wing_adds_is_there(reference: str) -> None:
     assert resolve_name(reference)

@@ -19,5 +19,8 @@ _COMPILER = Compiler(Path(__file__).parent)
 SOURCES_HASH = _COMPILER.sources_hash
 """Hash of the sources that this process runs."""
 
+FOLDER = _COMPILER.folder
+"""Where the compiled loops are kept; None where they cannot be."""
+
 compiled = _COMPILER.decorator(fastmath={"contract"})
 inlined = _COMPILER.decorator(fastmath={"contract"}, inline=True)

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from impactlab.figures import catalogue, data, scales, style
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.draw import draw_all, save
-from impactlab.files import replaced
+from impactlab.files import read_netcdf, replaced
 
 Study = Any
 
@@ -162,7 +162,7 @@ def test_every_point_that_is_drawn_and_no_guide(tmp_path: Path) -> None:
 
 def test_netcdf_holds_the_same(tmp_path: Path) -> None:
     paths = data.save(made_figure(), tmp_path, "made_figure")
-    stored = xr.load_dataset(paths[1])
+    stored = read_netcdf(paths[1], "figure")
     assert stored["x"].values.tolist() == [float(row["x"]) for row in rows(paths[0])]
     assert stored["points"].values.tolist() == [2, 2, 2]
     assert stored["curve_label"].values.tolist() == ["one", "", "first"]

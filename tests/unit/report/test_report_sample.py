@@ -87,12 +87,14 @@ def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant
     for order in ("first_order", "total_order"):
         analysis[f"{order}_numerical"].loc[PEAK] = 0.9
     assert answers(runs, analysis)[0] == (
-        "Peak force (usable): impact velocity 79 % (± 4, numerically ± 90) of the variance, which "
-        "the numerical error may explain, yield stress of the beam 14 % (± 4, numerically ± 90), "
-        "which the numerical error may explain."
+        "Peak force (usable): impact velocity 79 % (± 4, numerically ± 90 %) of the variance, "
+        "which the numerical error may explain, yield stress of the beam 14 % (± 4, numerically ± "
+        "90 %), which the numerical error may explain."
     )
     rows = _table(report(runs, analysis), "Ranks of the parameters by Sobol indices, total order")
     assert rows[1] == ["Peak force", "numerical", "numerical", "noise", "noise"]
+    analysis["total_order_numerical"].loc[PEAK] = 1e-6
+    assert "79 % (± 4, numerically below 0.1 %) of" in answers(runs, analysis)[0]
 
 
 @pytest.mark.parametrize(
