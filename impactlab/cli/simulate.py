@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import warnings
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -110,6 +111,6 @@ def compile_kernels(
     """
     from impactlab.simulate import compile_all
 
-    for compiles in (compile_all, *[wings.load(wings.COMPILE)] * fem3d):
+    for compiles in (compile_all, *[resolve_name(wings.COMPILE)] * fem3d):
         folder = compiles()
         print(f"Compiled kernels: {folder}" if folder else "Compiled kernels cannot be kept.")
