@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from impactlab.fem3d.comparison.plan import Plan
     from impactlab.fem3d.solver.march import Progress
 
+_UNITS = {"velocity": "m s-1", "element-size": "m", "patch": "m", "duration": "s"}
+
 
 def witness(
     study: Annotated[
@@ -77,8 +79,7 @@ def witness(
     A table compares their answers; fields, histories and figures are kept. Ctrl-C keeps what was
     computed until then.
     """
-    from impactlab.fem3d.comparison.plan import case_of, paper_case, planned
-    from impactlab.fem3d.comparison.terminal import print_comparison, print_plan, print_yielding
+    from impactlab.fem3d.comparison.plan import case_of, paper_case, planned, print_plan
     from impactlab.fem3d.deck import FLAVOURS
     from impactlab.study.schema.files import read_impacts
 
@@ -87,31 +88,26 @@ def witness(
     if elastic and not deck:
         raise ValueError("--elastic: applies to a deck only; select one with --deck")
     options = {
-        "velocity": (velocity, "m s-1"),
-        "contact": (contact, ""),
-        "element-size": (element_size, "m"),
-        "patch": (patch, "m"),
-        "duration": (duration, "s"),
+        "velocity": velocity,
+        "contact": contact,
+        "element-size": element_size,
+        "patch": patch,
+        "duration": duration,
     }
-    asked = {name: text for name, (text, _) in options.items() if text}
+    asked = {name: text for name, text in options.items() if text}
     numbers = {
-        name: given(f"--{name}", text, units)
-        for name, (text, units) in options.items()
-        if text and units
+        name.replace("-", "_"): given(f"--{name}", asked[name], units)
+        for name, units in _UNITS.items()
+        if name in asked
     }
     case = case_of(read_impacts(study)) if study else paper_case()
-    case = case.with_impact(numbers.get("velocity"), contact or None)
+    case = case.with_impact(numbers.pop("velocity", None), contact or None)
     if case.held:
         values = ", ".join(f"{name} = {value}" for name, value in case.held.items())
         logging.getLogger("impactlab").info(
             "%s varies parameters of which this command takes one value: %s", case.file, values
         )
-    plan = planned(
-        case,
-        element_size=numbers.get("element-size"),
-        patch=numbers.get("patch"),
-        duration=numbers.get("duration"),
-    )
+    plan = planned(case, **numbers)
     # So that no answers to other options are overwritten.
     parts = [re.sub(r"[^\w.]+", "-", f"{name}-{text}") for name, text in asked.items()]
     folder = output or results_file(case.name, "_".join([WITNESS, *parts]))
@@ -124,7 +120,7 @@ def witness(
     if deck:
         _write_deck(plan, deck, folder, plastic=not elastic)
         return
-    from impactlab.fem3d.comparison.run import compare
+    from impactlab.fem3d.comparison.run import compare, print_comparison, print_yielding
 
     solid, responses, folder = compare(plan, folder, workers=workers, watched=_watched())
     print_comparison(responses)

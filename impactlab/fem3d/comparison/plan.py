@@ -10,6 +10,7 @@ from distributed.system import MEMORY_LIMIT
 
 from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver.estimates import checked_patch, contact_radius
+from impactlab.figures.labels import counted
 from impactlab.model import cost
 from impactlab.model.checks import positive
 from impactlab.model.discretisation import Discretisation
@@ -191,3 +192,33 @@ def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
             break
         usual = size
     return usual
+
+
+def print_plan(plan: Plan, workers: int | None, problem: str) -> None:
+    """Print what is solved and what it costs, one line each, and the problem, if any.
+
+    workers: None for a deck, which another program solves.
+    """
+    solid, across = plan.cost, plan.contact_radius / plan.element_size
+    contact = f"the first contact is longer than {1e3 * plan.case.longest:.4g} ms"
+    if not math.isnan(plan.first_contact):
+        lasting = f"{1e3 * plan.first_contact:.2g} ms"
+        contact = f"an Euler-Bernoulli beam's first contact takes about {lasting}"
+        if plan.duration > 1.5 * plan.usual_duration:
+            contact += f": for it alone, {1e3 * plan.usual_duration:.4g} ms would do"
+    lines = {
+        "case": f"{plan.case.file}, at {plan.case.impact.velocity:g} m/s",
+        "element size": f"{1e3 * plan.element_size:g} mm in a patch of {1e3 * plan.patch:.3g} mm: "
+        f"about {across:.2g} elements over the contact's radius",
+        "duration": f"{1e3 * plan.duration:.4g} ms; {contact}",
+        "elements": f"{solid.elements:,}",
+        "time steps": f"about {solid.steps:,}",
+    }
+    if workers:
+        threads = counted(workers, "thread")
+        lines["wall"] = f"about {time(plan.seconds(workers))} on {threads}"
+        lines["memory"] = f"about {amount(solid.memory_bytes)}"
+    for name, text in lines.items():
+        print(f"{name:15s}{text}")
+    if problem:
+        print(f"exceeds the limit: {problem}")

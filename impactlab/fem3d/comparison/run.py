@@ -1,4 +1,4 @@
-"""A 3-D run beside the beam models: solved, compared, written to files and drawn."""
+"""A 3-D run beside the beam models: solved, compared, written to files, drawn and printed."""
 
 from __future__ import annotations
 
@@ -6,17 +6,23 @@ import csv
 import tempfile
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from pyevtk.hl import unstructuredGridToVTK
 from pyevtk.vtk import VtkHexahedron
+from rich import box
+from rich.console import Console
+from rich.table import Column, Table
 
 from impactlab.fem3d.comparison.plan import MODELS, Plan
 from impactlab.fem3d.figures.run import draw_witness
 from impactlab.fem3d.solver import solve_on
 from impactlab.fem3d.solver.march import Progress
+from impactlab.figures import labels
+from impactlab.figures.labels import display
 from impactlab.files import opened, replaced, write_netcdf
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
@@ -26,6 +32,10 @@ from impactlab.variables import RESPONSES, UNLIKE, attributes, reasons, status_b
 _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")
 COUNTS = ("number_of_contacts",)
 """Responses of which a relative difference tells nothing."""
+_WHOLE = 9.95
+"""Difference in % from which on it is printed without a decimal."""
+_FAR = 1e-3
+"""PEEQ of elements that are not fully integrated, from which on it is printed."""
 
 
 def compare(
@@ -174,3 +184,58 @@ def write_vtu(dataset: xr.Dataset, path: Path) -> None:
             pointData=points,
         )
         Path(written).replace(unfinished)
+
+
+def print_comparison(found: xr.Dataset) -> None:
+    """Print one row per response: the 3-D value, and each beam model's with its difference in %.
+
+    found: see compared. Below the table, the missing responses and the reasons, by model.
+    """
+    names = found["model"].values.tolist()
+    models = ["3-D" if name == SOLID else name.replace("_", "-").title() for name in names]
+    right = [Column(name, justify="right") for name in models]
+    table = Table(  # narrow enough for 80 columns
+        Column("response", no_wrap=True), *right, box=box.SIMPLE, show_edge=False, padding=0
+    )
+    for name in found["response"].values.tolist():
+        one = found.sel(response=name)
+        values = one["value"].rename(name).assign_attrs(units=one["units"].item())
+        unit = display(values)  # fits the largest value
+        cells = map(_cell, unit(values), 100.0 * one["difference"].values)
+        table.add_row(f"{name} ({unit.symbol})" if unit.symbol else name, *cells)
+    missing: dict[str, list[str]] = {}
+    for model, status in zip(models, found["status"].values.tolist(), strict=True):
+        for reason in reasons(status):
+            missing.setdefault(reason, []).append(model)
+    console = Console()
+    console.print(table)
+    console.print("In %: difference from the 3-D FE model.", markup=False)
+    for why in dict.fromkeys(UNLIKE.values()):
+        which = labels.listing([name for name, given in UNLIKE.items() if given == why])
+        console.print(f"not compared: {which}: {why}", markup=False)
+    for reason, lacking in missing.items():
+        who = "all models" if lacking == models else ", ".join(lacking)
+        console.print(f"missing ({who}): {reason}", markup=False)
+
+
+def print_yielding(solid: xr.Dataset) -> None:
+    """Print one line per body or region that yields where the responses do not show it.
+
+    solid: a dataset of fem3d.solver. Elements with one integration point yield as a whole, and late
+    in bending.
+    """
+    show = partial(Console().print, markup=False, highlight=False)
+    if (sphere := float(solid["sphere_plastic_strain"])) > 0.0:
+        show(f"the sphere yields, too: PEEQ up to {sphere:.2%}, in plastic_dissipation alone")
+    if (coarse := float(solid["one_point_plastic_strain"])) > _FAR:
+        show(
+            f"elements with one integration point yield: PEEQ up to {coarse:.2%} away from contact "
+            "and middle, where they are too stiff in bending"
+        )
+
+
+def _cell(value: float, share: float) -> str:
+    if np.isnan(value):
+        return "missing"
+    digits = 1 if abs(share) < _WHOLE else 0
+    return f"{value:.4g}" + ("" if np.isnan(share) else f" {share:+.{digits}f}%")

@@ -13,8 +13,7 @@ import xarray as xr
 from made_solid import RESPONSES, beam_models, solid
 
 from impactlab.fem3d.comparison import run
-from impactlab.fem3d.comparison.run import compared, write_csv, write_vtu
-from impactlab.fem3d.comparison.terminal import print_comparison
+from impactlab.fem3d.comparison.run import compared, print_comparison, write_csv, write_vtu
 from impactlab.fem3d.study.report import sections
 from impactlab.variables import STATUS_FLAGS
 
