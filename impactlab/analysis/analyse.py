@@ -19,8 +19,11 @@ _TABLE: dict[str, tuple[Callable[[xr.Dataset], bool], Callable[[xr.Dataset], xr.
     "convergence_in_nodes": (NODES.applies, NODES.analysis),
     "convergence_in_time_step": (TIME_STEP.applies, TIME_STEP.analysis),
     "convergence_in_element_size": (ELEMENT_SIZE.applies, ELEMENT_SIZE.analysis),
-    "convergence_in_points": (points.applies, points.analysis),
-    "sensitivity": (sensitivity.applies, sensitivity.analysis),
+    "convergence_in_points": (lambda runs: runs.sizes.get("points", 0) >= 2, points.analysis),
+    "sensitivity": (
+        lambda runs: runs.attrs.get("method") in sensitivity.METHODS,
+        sensitivity.analysis,
+    ),
     "surrogate": (surrogate.applies, surrogate.analysis),
 }
 """Every analysis by its name: whether the runs are of the kind that it is about, and its variables,

@@ -8,8 +8,9 @@ refused in studies and commands, and implausible ones give a warning.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from math import inf, sqrt
+from operator import attrgetter
+from typing import NamedTuple
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
@@ -28,8 +29,7 @@ class ImplausibleWarning(UserWarning):
     """A value that is implausible, or even impossible."""
 
 
-@dataclass(frozen=True)
-class Implausibility:
+class Implausibility(NamedTuple):
     """A parameter with an implausible, or even impossible, value, and the reason."""
 
     name: str
@@ -72,7 +72,7 @@ def numbers(impact: Impact, discretisation: Discretisation) -> dict[str, tuple[f
 
 def implausibilities(ends: Extremes) -> list[Implausibility]:
     """Return the impossible and implausible values, one per parameter."""
-    found: list[tuple[str, str, bool]] = []
+    found = []
     for name, (least, low, high, most, units, words) in _LIMITS.items():
         first, last = ends.get(name, (low, high))
         for value, impossible, doubted in (
@@ -81,13 +81,14 @@ def implausibilities(ends: Extremes) -> list[Implausibility]:
         ):
             if impossible or doubted:
                 what = "is impossible" if impossible else "is implausible"
-                found.append((name, f"{value:g} {units} {what}: {words}", impossible))
-    found = sorted([*found, *_together(ends)], key=lambda each: each[2])
-    return list({each[0]: Implausibility(*each) for each in found}.values())
+                reason = f"{value:g} {units} {what}: {words}"
+                found.append(Implausibility(name, reason, impossible))
+    found = sorted([*found, *_together(ends)], key=attrgetter("impossible"))
+    return list({each.name: each for each in found}.values())
 
 
-def _together(ends: Extremes) -> Iterator[tuple[str, str, bool]]:
-    """Yield parameters, reasons and whether impossible: values beside others, at the worst ends."""
+def _together(ends: Extremes) -> Iterator[Implausibility]:
+    """Yield what is implausible of values beside others, at the worst ends."""
     velocity = ends["velocity"][1]
     for body in ("beam", "sphere"):
         lightest, heaviest = ends[f"{body}_density"]
@@ -98,30 +99,30 @@ def _together(ends: Extremes) -> Iterator[tuple[str, str, bool]]:
                 f"a bar wave in the {body} would run at {fastest:.3g} m/s, faster than light: "
                 "check the units of density and Young's modulus"
             )
-            yield f"{body}_density", reason, True
+            yield Implausibility(f"{body}_density", reason, True)
         if velocity >= (wave := sqrt(soft / min(heaviest, HEAVIEST))):
             reason = (
                 f"{velocity:g} m/s is above the speed of a bar wave in the {body} ({wave:.4g} m/s)"
                 ": quasi-static contact laws and beam theory do not apply: reduce it"
             )
-            yield "velocity", reason, True
+            yield Implausibility("velocity", reason, True)
         number = min(lightest, HEAVIEST) * velocity**2 / weak
         if number > _PIERCES:
             reason = (
                 f"{velocity:g} m/s: density velocity²/yield stress of the {body} is {number:.2g}; "
                 f"above {_PIERCES} metals flow, and the dent is no longer small"
             )
-            yield "velocity", reason, False
+            yield Implausibility("velocity", reason, False)
         if strong > 0.1 * soft:
             reason = (
                 f"{strong:g} Pa is above a tenth of Young's modulus, the strength of a perfect "
                 "crystal: are both in Pa?"
             )
-            yield f"{body}_yield_stress", reason, False
+            yield Implausibility(f"{body}_yield_stress", reason, False)
     depth, span, radius = ends["beam_depth"][1], ends["beam_span"][0], ends["sphere_radius"][1]
     if depth > _STOCKY * span:
         reason = f"{depth:g} m is above a fifth of the span: shear matters (beam_model: timoshenko)"
-        yield "beam_depth", reason, False
+        yield Implausibility("beam_depth", reason, False)
     if radius > 0.5 * span:
         reason = f"{radius:g} m makes the sphere wider than the span"
-        yield "sphere_radius", reason, False
+        yield Implausibility("sphere_radius", reason, False)

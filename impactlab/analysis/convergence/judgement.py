@@ -49,15 +49,8 @@ class How(Verdict):
     NOTHING = 7, False, "one grid, or a drift that does not slow down: nothing bounds the error"
 
 
-class Uncertainty(NamedTuple):
-    """amounts: half-width about each value that holds the limit, in its unit, (grids,)."""
-
-    amounts: Floats
-    how: How
-
-
-def numerical_uncertainty(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Uncertainty:
-    """Return how far the value of each grid may lie from the limit at zero spacing.
+def numerical_uncertainty(values: npt.ArrayLike, spacings: npt.ArrayLike) -> tuple[Floats, How]:
+    """Return how far the value of each grid may lie from the limit at zero spacing, and its basis.
 
     values: in any unit, NaN where a run is missing; spacings: in any unit; both (grids,), finest
     first. A missing grid is left out and is infinitely uncertain, as are all where nothing bounds
@@ -70,19 +63,19 @@ def numerical_uncertainty(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Unc
     there = np.isfinite(f)
     amounts = np.full(f.shape, math.inf)
     amounts[there], how = _of_present(f[there], h[there])
-    return Uncertainty(amounts, how)
+    return amounts, how
 
 
-def _of_present(f: Floats, h: Floats) -> Uncertainty:
-    nothing = Uncertainty(np.full(f.shape, math.inf), How.NOTHING)
+def _of_present(f: Floats, h: Floats) -> tuple[Floats, How]:
+    nothing = np.full(f.shape, math.inf), How.NOTHING
     if f.size < 2:
         return nothing
     if np.ptp(f) <= ROUND_OFF * np.max(abs(f)):
-        return Uncertainty(np.full(f.shape, ROUND_OFF * float(np.max(abs(f)))), How.ROUND_OFF)
+        return np.full(f.shape, ROUND_OFF * float(np.max(abs(f)))), How.ROUND_OFF
     apart = abs(f - f[0])
     if f.size == 2:
         first_order = abs(f[1] - f[0]) / (h[1] / h[0] - 1.0)
-        return Uncertainty(apart + SAFETY_DOUBTFUL * float(first_order), How.TWO_GRIDS)
+        return apart + SAFETY_DOUBTFUL * float(first_order), How.TWO_GRIDS
     triples = [estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
     finest, steps = triples[0], np.diff(f)
     fitted = least_squares.fit(f, h) if f.size >= least_squares.FEWEST else None
@@ -90,17 +83,17 @@ def _of_present(f: Floats, h: Floats) -> Uncertainty:
     least, monotone = CREDIBLE_ORDERS[0], finest.behaviour is Behaviour.MONOTONE
     slows_down = (monotone and finest.order >= least) or (fitted and fitted.free_order >= least)
     if not slows_down and ((steps > 0).all() or (steps < 0).all()):
-        drift = Uncertainty(apart + finest.uncertainty(SAFETY_DOUBTFUL), How.SLOW_DRIFT)
-        return drift if monotone else nothing
-    by_index = Uncertainty(apart + finest.uncertainty(safety(triples)), How.GCI)
+        drift = apart + finest.uncertainty(SAFETY_DOUBTFUL)
+        return (drift, How.SLOW_DRIFT) if monotone else nothing
+    by_index = apart + finest.uncertainty(safety(triples))
     if fitted is None:
-        by_range = Uncertainty(apart + SAFETY_DOUBTFUL * float(np.ptp(f)), How.RANGE)
-        return by_index if finest.credible else by_range
+        by_range = apart + SAFETY_DOUBTFUL * float(np.ptp(f))
+        return (by_index, How.GCI) if finest.credible else (by_range, How.RANGE)
     by_fit = least_squares.uncertainty(fitted, f)
     if not finest.credible:
-        return Uncertainty(by_fit, How.FIT)
+        return by_fit, How.FIT
     # Scatter passes for an order easily: the index alone would hold the limit in 6 of 10 cases.
-    return Uncertainty(np.maximum(by_index.amounts, by_fit), How.GCI_AND_FIT)
+    return np.maximum(by_index, by_fit), How.GCI_AND_FIT
 
 
 VANISHING = 0.1
@@ -162,8 +155,8 @@ def judge(values: Floats, spacings: Floats) -> Judgement:
     """
     triples = [estimate(values[i : i + 3], spacings[i : i + 3]) for i in range(len(values) - 2)]
     finest, factor = triples[0], safety(triples)
-    bound = numerical_uncertainty(values, spacings)
-    uncertainty = relative(bound.amounts[0], values[0])
+    amounts, how = numerical_uncertainty(values, spacings)
+    uncertainty = relative(amounts[0], values[0])
     complete = len(values) >= least_squares.FEWEST and np.isfinite(values).all()
     differ = complete and np.ptp(values) > ROUND_OFF * np.max(abs(values))
     fitted = least_squares.fit(values, spacings) if differ else None
@@ -179,9 +172,9 @@ def judge(values: Floats, spacings: Floats) -> Judgement:
         relative(least_squares.uncertainty(fitted, values)[0], values[0]) if fitted else np.nan,
         uncertainty,
         fitted.expansion if fitted else Expansion.NONE,
-        bound.how,
+        how,
         finest.behaviour,
-        _verdict(triples, bound.how.sound and uncertainty <= TOLERANCE),
+        _verdict(triples, how.sound and uncertainty <= TOLERANCE),
     )
 
 

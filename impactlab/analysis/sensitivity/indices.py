@@ -31,11 +31,6 @@ METHODS: Mapping[str, SensitivityMethod] = {
 """By their names in study files."""
 
 
-def applies(runs: xr.Dataset) -> bool:
-    """Return True if the runs are a sample of one of the methods."""
-    return runs.attrs.get("method") in METHODS
-
-
 def analysis(runs: xr.Dataset) -> xr.Dataset:
     """Return sensitivity indices of every response, by the method the sample was drawn for.
 
@@ -167,12 +162,15 @@ COLUMNS = (*_LABELS, "index", "value", "low", "high", "units", "verdict")
 
 def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
     """Return the sensitivity variables of an analysis: indices, intervals and verdicts."""
-
-    def is_index(array: xr.DataArray) -> bool:
-        known = "response" in array.dims and set(array.dims) <= set(_LABELS)
-        return known and ("estimator" in array.attrs or "parameter" in array.dims)
-
-    wanted = [name for name, array in analysis.items() if is_index(array) or name in _BESIDE]
+    wanted = [
+        name
+        for name, array in analysis.items()
+        if name in _BESIDE
+        or (
+            {"response"} <= set(array.dims) <= set(_LABELS)
+            and ("estimator" in array.attrs or "parameter" in array.dims)
+        )
+    ]
     return analysis[wanted]
 
 

@@ -50,7 +50,7 @@ def _solid_response(data: Data, response: str, velocity: float, least: float = 0
     spacings = ELEMENT_SIZE.spacings[elements](runs[elements].values.astype(float))
     finest_first = np.argsort(spacings)
     found = values.values.astype(float)[finest_first]
-    width = max(float(numerical_uncertainty(found, spacings[finest_first]).amounts[0]), least)
+    width = max(float(numerical_uncertainty(found, spacings[finest_first])[0][0]), least)
     entry = (RESPONSES | WITNESS)[response]
     return _bounded(Number(f"{entry.long_name} (3-D)", found[0], entry.units, width))
 

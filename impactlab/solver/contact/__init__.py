@@ -11,32 +11,20 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
-class Measured:
-    """The numbers that the tests hold a law to, for steel.
-
-    Steel: E* = 115 GPa, S_y = 345 MPa, nu = 0.3. yield_pressure: the largest Hertz pressure at
-    first yield over S_y. jumps: of the loading force: (indentation over that of first yield,
-    relative height) each. unloading_start: the force at the start of unloading over the loading
-    force, at the worst. restitution: the largest. creates: from and to which indentation, over that
-    of first yield, the law creates energy. dent: the lowest residual over the largest indentation.
-    """
-
-    yield_pressure: float = 1.295 * math.exp(0.736 * 0.3)
-    jumps: tuple[tuple[float, float], ...] = ()
-    unloading_start: float = 1.0
-    restitution: float = 1.0
-    creates: tuple[float, float] = (1.0, 1.0)
-    dent: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
 class ContactLaw:
     """A contact law: its name, where it comes from, how far it holds, and how sure we are.
 
     title: in words. source: whom it follows, and where its equations are from. holds: its range.
     unconfirmed: what of it was not confirmed by the primary source or by public code written
     after it; "" where all was. flaws: jumps, energy that it creates, dents below zero, for steel
-    where the law is not free of such; "" if there are none. measured: the same in numbers.
+    where the law is not free of such; "" if there are none.
+
+    The tests hold the law to numbers, for steel (E* = 115 GPa, S_y = 345 MPa, nu = 0.3).
+    yield_pressure: the largest Hertz pressure at first yield over S_y. jumps: of the loading force:
+    (indentation over that of first yield, relative height) each. unloading_start: the force at the
+    start of unloading over the loading force, at the worst. restitution: the largest. creates: from
+    and to which indentation, over that of first yield, the law creates energy. dent: the lowest
+    residual over the largest indentation.
     """
 
     name: str
@@ -45,7 +33,12 @@ class ContactLaw:
     holds: str
     unconfirmed: str = ""
     flaws: str = ""
-    measured: Measured = Measured()
+    yield_pressure: float = 1.295 * math.exp(0.736 * 0.3)
+    jumps: tuple[tuple[float, float], ...] = ()
+    unloading_start: float = 1.0
+    restitution: float = 1.0
+    creates: tuple[float, float] = (1.0, 1.0)
+    dent: float = 0.0
 
 
 _CIRCLE = (
@@ -75,9 +68,10 @@ _REGISTRY = (
             "there, and the contact dissipation below zero. Up to 1.998 times it, it leaves a "
             "dent below zero."
         ),
-        measured=Measured(
-            yield_pressure=1.65, restitution=1.1008, creates=(1.0, 2.673), dent=-0.04057
-        ),
+        yield_pressure=1.65,
+        restitution=1.1008,
+        creates=(1.0, 2.673),
+        dent=-0.04057,
     ),
     ContactLaw(
         name="stronge_original",
@@ -93,12 +87,10 @@ _REGISTRY = (
             "indentation of first yield on). It creates energy where the largest indentation "
             "lies between 1 and 1.253 times that of first yield (restitution up to 1.0123)."
         ),
-        measured=Measured(
-            yield_pressure=1.65,
-            unloading_start=1.1 / 2.8,
-            restitution=1.0123,
-            creates=(1.0, 1.2526),
-        ),
+        yield_pressure=1.65,
+        unloading_start=1.1 / 2.8,
+        restitution=1.0123,
+        creates=(1.0, 1.2526),
     ),
     ContactLaw(
         name="jackson_green",
@@ -113,7 +105,7 @@ _REGISTRY = (
         ),
         unconfirmed=f"all constants: {_READ}",
         flaws="The force jumps up by 0.47 % at 1.9 times the indentation of first yield.",
-        measured=Measured(jumps=((1.9, 0.00474),)),
+        jumps=((1.9, 0.00474),),
     ),
     ContactLaw(
         name="mjg",
@@ -133,7 +125,7 @@ _REGISTRY = (
             "its onset, and is not used, nor is its unloading"
         ),
         flaws="The force jumps up by 0.47 % at 1.9 times the indentation of first yield.",
-        measured=Measured(jumps=((1.9, 0.00470),)),
+        jumps=((1.9, 0.00470),),
     ),
     ContactLaw(
         name="thornton",
@@ -145,7 +137,7 @@ _REGISTRY = (
             "Far softer than the others when deep: its limiting pressure is that of first yield, "
             "and not the hardness."
         ),
-        measured=Measured(yield_pressure=1.6),
+        yield_pressure=1.6,
     ),
     ContactLaw(
         name="kogut_etsion",
@@ -167,12 +159,10 @@ _REGISTRY = (
             "of first yield. It creates energy from 1 to 1.248 times that of first yield "
             "(restitution up to 1.0149)."
         ),
-        measured=Measured(
-            yield_pressure=2.8 * (0.454 + 0.41 * 0.3),
-            jumps=((1.0, 0.03), (6.0, 0.016788), (110.0, 0.078776)),
-            restitution=1.01489,
-            creates=(1.0, 1.2483),
-        ),
+        yield_pressure=2.8 * (0.454 + 0.41 * 0.3),
+        jumps=((1.0, 0.03), (6.0, 0.016788), (110.0, 0.078776)),
+        restitution=1.01489,
+        creates=(1.0, 1.2483),
     ),
     ContactLaw(
         name="brake",
@@ -187,9 +177,10 @@ _REGISTRY = (
             "there to 2.00 times it, it creates energy (restitution up to 1.0047) and leaves a "
             "dent below zero."
         ),
-        measured=Measured(
-            jumps=((1.9, 0.00470),), restitution=1.0047, creates=(1.9, 2.0011), dent=-0.0047
-        ),
+        jumps=((1.9, 0.00470),),
+        restitution=1.0047,
+        creates=(1.9, 2.0011),
+        dent=-0.0047,
     ),
     ContactLaw(
         name="abbott_firestone",
@@ -205,7 +196,7 @@ _REGISTRY = (
             "Hertz; the unloading, for which Hertz's curve is taken"
         ),
         flaws="Stiff, and elastic too long: nothing yields before full plasticity.",
-        measured=Measured(yield_pressure=3.0 * 2.8),
+        yield_pressure=3.0 * 2.8,
     ),
 )
 CONTACT_LAWS: dict[str, ContactLaw] = {law.name: law for law in _REGISTRY}

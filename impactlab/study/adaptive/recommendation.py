@@ -188,7 +188,7 @@ def _axis(pilots: Pilots, axis: str, levels: Levels, at: Discretisation) -> dict
     def judge(row: Floats) -> Floats:
         if spacings is None:
             return points.numerical_uncertainty(row)
-        return numerical_uncertainty(row, spacings).amounts
+        return numerical_uncertainty(row, spacings)[0]
 
     found: xr.DataArray = xr.apply_ufunc(
         judge, finest_first, input_core_dims=[[axis]], output_core_dims=[[axis]], vectorize=True

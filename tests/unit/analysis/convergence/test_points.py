@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from impactlab.analysis.analyse import analyse
 from impactlab.analysis.convergence import points as in_points
 
 POINTS = [2, 3, 5, 9, 17]
@@ -81,7 +82,7 @@ def test_a_reference_of_zero_makes_other_values_infinitely_wrong(grid_runs: Buil
 @pytest.mark.parametrize(("points", "applies"), [([3], False), ([3, 5], True)])
 def test_needs_two_values(grid_runs: Build, points: list[int], applies: bool) -> None:
     runs = grid_runs({"points": points}, peak_force=lambda points: points)
-    assert in_points.applies(runs) is applies
+    assert ("points_error" in analyse(runs)) is applies
 
 
 @pytest.mark.parametrize(

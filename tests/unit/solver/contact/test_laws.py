@@ -28,7 +28,7 @@ every_pair = pytest.mark.parametrize("bodies", BODIES.values(), ids=BODIES)
 def first_yield(law, bodies=STEEL):
     """Indentation of first yield by the law's own measure, which is that of nu = 0.3."""
     E, R, S_y, _ = bodies
-    return R * (0.5 * np.pi * CONTACT_LAWS[law].measured.yield_pressure * S_y / E) ** 2
+    return R * (0.5 * np.pi * CONTACT_LAWS[law].yield_pressure * S_y / E) ** 2
 
 
 def depths(law, bodies, number=2001):
@@ -102,7 +102,7 @@ def test_force_is_never_negative_and_grows_within_the_laws_range(law, bodies):
 
 def candidates(law):
     """Return where the loading force of steel may jump: first yield, known joints, those stated."""
-    stated = first_yield(law) * np.array([at for at, _ in CONTACT_LAWS[law].measured.jumps])
+    stated = first_yield(law) * np.array([at for at, _ in CONTACT_LAWS[law].jumps])
     found = [
         d
         for d in [first_yield(law), *joints(*STEEL)]
@@ -119,7 +119,7 @@ def test_jumps_of_the_loading_force(law):
         F = along(law, STEEL, joint * np.array([1 - 1e-9, 1 + 1e-9]))[0]
         if abs(F[1] / F[0] - 1) > 1e-7:
             jumps.append((joint / first_yield(law), F[1] / F[0] - 1))
-    stated = CONTACT_LAWS[law].measured.jumps
+    stated = CONTACT_LAWS[law].jumps
     np.testing.assert_allclose(np.ravel(jumps), np.ravel(stated), rtol=2e-3)
 
 
@@ -138,7 +138,7 @@ def test_force_at_the_start_of_unloading(law):
     F, K, delta_r, n = along(law, STEEL, deltas)
     share = K * (deltas - delta_r) ** n / F
     assert share.max() < 1 + 1e-9
-    assert share.min() == pytest.approx(CONTACT_LAWS[law].measured.unloading_start, rel=1e-6)
+    assert share.min() == pytest.approx(CONTACT_LAWS[law].unloading_start, rel=1e-6)
 
 
 @every_law
@@ -155,7 +155,7 @@ def test_energy_created_and_where(law):
     ]
     work = np.interp(deltas, ends, np.append(0.0, np.cumsum(pieces)))
     restitution = np.sqrt(released(deltas, K, delta_r, n) / work)
-    flaws = CONTACT_LAWS[law].measured
+    flaws = CONTACT_LAWS[law]
     assert restitution.max() == pytest.approx(flaws.restitution, abs=2e-4)
     creating = deltas[restitution > 1 + 1e-6] / unit
     if flaws.restitution == 1.0:
@@ -195,7 +195,7 @@ def test_unloading_and_reloading_are_one_curve_and_its_work_is_the_energy_given_
 @every_law
 def test_what_it_does_to_energy_is_said(law):
     """A flaw that the tests know is one that the reader is told."""
-    flaws, told = CONTACT_LAWS[law].measured, CONTACT_LAWS[law].flaws
+    flaws, told = CONTACT_LAWS[law], CONTACT_LAWS[law].flaws
     assert ("jumps" in told) == bool(flaws.jumps)
     assert ("creates energy" in told) == (flaws.restitution > 1)
     assert ("dent below zero" in told) == (flaws.dent < 0)
