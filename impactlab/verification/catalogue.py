@@ -6,7 +6,6 @@ from impactlab.verification import (
     beam_limits,
     contact,
     energy,
-    lumped,
     modal_series,
     observed_order,
     plasticity,
@@ -32,8 +31,8 @@ _CHECKS = (
     plasticity.rigid_plastic_mode,
     modal_series.timoshenko_beam,
     beam_limits.slender_limit,
-    lumped.spring_mass,
-    lumped.rigid_beam,
+    contact.spring_mass,
+    contact.rigid_beam,
     energy.balances,
 )
 CATALOGUE: dict[str, Check] = {check.name: check for check in _CHECKS}
