@@ -235,13 +235,13 @@ def check(verification: Verification) -> xr.Dataset:
     from impactlab.solver.jit import SOURCES_HASH
     from impactlab.study.progress import items_done
     from impactlab.variables import provenance
-    from impactlab.verification.catalogue import run
+    from impactlab.verification.catalogue import CATALOGUE
     from impactlab.verification.stored import packed
 
     outcomes: list[Outcome] = []
     with items_done(len(verification.checks), 0, "checks") as advance:
         for name in verification.checks:
-            outcomes.append(run(name))
+            outcomes.append(CATALOGUE[name].run())
             advance(1, int(outcomes[-1].verdict != "passed"))
     attrs = {
         "study": verification.name,

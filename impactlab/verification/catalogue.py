@@ -7,12 +7,11 @@ from impactlab.verification import (
     contact,
     energy,
     modal_series,
-    observed_order,
     plasticity,
     schemes,
     symmetry,
 )
-from impactlab.verification.finding import Check, Outcome
+from impactlab.verification.finding import Check
 
 _CHECKS = (
     contact.half_space,
@@ -21,7 +20,7 @@ _CHECKS = (
     modal_series.modal_series,
     modal_series.sub_impacts,
     beam_limits.infinite_beam,
-    observed_order.observed_order,
+    schemes.observed_order,
     schemes.schemes,
     symmetry.time_reversal,
     symmetry.similarity,
@@ -37,8 +36,3 @@ _CHECKS = (
 )
 CATALOGUE: dict[str, Check] = {check.name: check for check in _CHECKS}
 """Every check by name, in the order of the report."""
-
-
-def run(name: str) -> Outcome:
-    """Run a check of the catalogue."""
-    return CATALOGUE[name].run()
