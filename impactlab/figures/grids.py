@@ -18,7 +18,7 @@ from impactlab.model.impact import Beam, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.types import Floats
 from impactlab.variables import MARKS
-from impactlab.verification.solutions.shear import impact_share
+from impactlab.verification.solutions.beam_modes import impact_share
 
 _PEAK, _DURATION, _RESTITUTION = "peak_force", "contact_duration", "restitution"
 _FORCE, _INDENTATION, _DENT = "contact_force", "indentation", "permanent_indentation"

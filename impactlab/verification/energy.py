@@ -38,14 +38,10 @@ class Audit:
     plastic: float
     brought: float
 
-    def answer(self, name: str) -> float:
-        """Return a response of the run."""
-        return float(self.run[name])
-
     @property
     def ended(self) -> bool:
         """True if the contact has ended."""
-        return not math.isnan(self.answer("contact_dissipation"))
+        return not math.isnan(self.run.contact_dissipation.item())
 
     @property
     def marked(self) -> bool:
@@ -129,9 +125,9 @@ def balances() -> Finding:
     momentum = [case.momentum for case in audits]
     contact, plastic = [], []
     for case in audits:
-        lost = case.answer("contact_dissipation") if case.ended else case.contact
+        lost = case.run.contact_dissipation.item() if case.ended else case.contact
         contact.append((lost - case.contact) / case.brought)
-        plastic.append((case.answer("plastic_dissipation") - case.plastic) / case.brought)
+        plastic.append((case.run.plastic_dissipation.item() - case.plastic) / case.brought)
     found = []
     for quantity, errors, tolerance in (
         ("energy in excess, the beam elastic", elastic, 1e-7),
@@ -147,7 +143,7 @@ def balances() -> Finding:
         ("plastic_dissipation", audits),
         ("contact_dissipation", [case for case in audits if not case.marked]),
     ):
-        least = float(np.nanmin([case.answer(name) / case.brought for case in cases]))
+        least = float(np.nanmin([case.run[name].item() / case.brought for case in cases]))
         where = f"least of {len(cases)} cases, over what is brought"
         values = min(least, 0.0), 0.0
         found.append(absolute(name.replace("_", " "), where, "1", *values, 1e-9))
@@ -195,7 +191,7 @@ def _created(audits: list[Audit]) -> list[Comparison]:
     marked, known = [], []
     for found in audits:
         if found.impact.contact in ("hertz", "stronge") and found.ended:
-            law, deepest = stronge_impact(found.impact), found.answer("maximum_indentation")
+            law, deepest = stronge_impact(found.impact), found.run.maximum_indentation.item()
             yields = found.impact.contact == "stronge" and deepest > law.yield_indentation
             marked.append(found.marked)
             known.append(yields and law.released_work(deepest) > law.loading_work(deepest))
@@ -211,8 +207,8 @@ def _loop_panel(audits: list[Audit]) -> Panel:
     """Draw the dissipation over the work of loading, where the law creates energy and beyond."""
     points = []
     for found in audits:
-        law, lost = stronge_impact(found.impact), found.answer("contact_dissipation")
-        times = found.answer("maximum_indentation") / law.yield_indentation
+        law, lost = stronge_impact(found.impact), found.run.contact_dissipation.item()
+        times = found.run.maximum_indentation.item() / law.yield_indentation
         if found.impact.contact == "stronge" and 0.2 < times < 8.0 and found.ended:
             points.append((times, lost / law.loading_work(times * law.yield_indentation)))
     solver = np.array(sorted(points)).reshape(-1, 2)

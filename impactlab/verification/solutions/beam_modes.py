@@ -1,4 +1,4 @@
-"""Odd modes of the simply supported beam loaded at mid-span.
+"""Odd modes of the simply supported beam loaded at mid-span, and the effects of shear.
 
 y_n (m) is the mid-span deflection in mode n: y_n'' + omega_n^2 y_n = F/m_n; Euler's and Bernoulli's
 theory has m_n = rho A L/2 (kg). Even modes have a node at mid-span and are not excited. The modes
@@ -13,8 +13,8 @@ a = k G A; w = M = 0 at both ends. With w = W sin(q x), psi = Psi cos(q x), q = 
 
 two coupled oscillators, and so two frequencies for each n: mostly deflection, and mostly rotation.
 Sources: Timoshenko, Vibration Problems in Engineering, on forced vibrations of beams; S.
-Timoshenko, Phil. Mag. 43 (1922) 125; the second spectrum: R. W. Traill-Nash and A. R. Collar,
-Q. J. Mech. Appl. Math. 6 (1953) 186.
+Timoshenko, Phil. Mag. 41 (1921) 744 and 43 (1922) 125; the second spectrum: R. W. Traill-Nash and
+A. R. Collar, Q. J. Mech. Appl. Math. 6 (1953) 186.
 """
 
 from __future__ import annotations
@@ -26,7 +26,6 @@ import numpy as np
 
 from impactlab.model.impact import Beam
 from impactlab.types import Floats
-from impactlab.verification.solutions.shear import shear_stiffness
 
 
 @dataclass(frozen=True)
@@ -96,3 +95,29 @@ def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
     flexibilities = 2.0 * shares / (mu * beam.span * squares)
     curvatures = mu * squares / a - both**2
     return BeamModes(beam, both, np.sqrt(squares), flexibilities, curvatures, 1.0 / a)
+
+
+def shear_stiffness(beam: Beam) -> float:
+    """Return k G A in N, k the shear coefficient, G = E/(2 (1 + nu))."""
+    modulus = beam.material.youngs_modulus / (2.0 * (1.0 + beam.material.poissons_ratio))
+    return beam.shear_coefficient * modulus * beam.width * beam.depth
+
+
+def shear_deflection(beam: Beam, load: float) -> float:
+    """Return what shear adds to the elastic mid-span deflection, P L/(4 k G A) in m; P in N."""
+    return load * beam.span / (4.0 * shear_stiffness(beam))
+
+
+def impact_share(beam: Beam, duration: float) -> float:
+    """Return by how much shear and rotary inertia slow the waves of a contact of `duration` (s).
+
+    omega = c q^2 (1 - q^2 I (1 + E/(k G))/(2 A) + ...), c = sqrt(EI/(rho A)), of the wave that
+    turns by pi during the contact, c q^2 = pi/duration: pi I (1 + E/(k G))/(2 A c duration). It
+    goes with depth/duration and not with the span: a short contact feels shear in any beam. The
+    paper's case: 0.044, where the peak force changes by half as much.
+    """
+    wave_constant = math.sqrt(beam.bending_stiffness / beam.mass_per_length)
+    square = math.pi / (wave_constant * duration)
+    area = beam.width * beam.depth
+    ratio = beam.material.youngs_modulus * area / shear_stiffness(beam)
+    return 0.5 * square * beam.depth**2 / 12.0 * (1.0 + ratio)

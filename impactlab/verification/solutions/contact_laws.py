@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
 
 from scipy.integrate import quad
@@ -38,18 +38,13 @@ def stronge(d: float, E: float, R: float, S: float, nu: float) -> float:
     return math.pi * R * (2.0 * d - d_y) * pressure
 
 
-def jackson_green(d: float, E: float, R: float, S: float, nu: float) -> float:
-    """Return the force of Jackson and Green 2005."""
-    return _fitted(d, E, R, S, nu, False)
+def jackson_green(
+    d: float, E: float, R: float, S: float, nu: float, modified: bool = False
+) -> float:
+    """Return the force of Jackson and Green 2005.
 
-
-def mjg(d: float, E: float, R: float, S: float, nu: float) -> float:
-    """Return the force of Ghaednia, Brake, Berryhill and Jackson 2019, without hardening."""
-    return _fitted(d, E, R, S, nu, True)
-
-
-def _fitted(d: float, E: float, R: float, S: float, nu: float, modified: bool) -> float:
-    """Return the force of Jackson and Green with their hardness H, or that of the modified law."""
+    modified: with the hardness H of Ghaednia, Brake, Berryhill and Jackson 2019, no hardening.
+    """
     C = 1.295 * math.exp(0.736 * nu)
     d_c = R * (math.pi * C * S / (2.0 * E)) ** 2
     if d <= 1.9 * d_c:
@@ -63,6 +58,9 @@ def _fitted(d: float, E: float, R: float, S: float, nu: float, modified: bool) -
     faded = math.exp(-math.pow(y, 5.0 / 12.0) / 4.0)
     grown = 1.0 - math.exp(-math.pow(y, 5.0 / 9.0) / 25.0)
     return F_c * (faded * math.pow(y, 1.5) + 4.0 * H / (C * S) * grown * y)
+
+
+mjg = partial(jackson_green, modified=True)
 
 
 def thornton(d: float, E: float, R: float, S: float, nu: float) -> float:
@@ -243,7 +241,5 @@ def law_on_half_space(impact: Impact) -> LawOnHalfSpace:
     """Return the law and the bodies of `impact` as if the beam were a half-space."""
     sphere, beam = impact.sphere.material, impact.beam.material
     softer = beam if beam.yield_stress <= sphere.yield_stress else sphere
-    modulus, radius = hertz_forms.effective_modulus(impact), hertz_forms.effective_radius(impact)
-    return LawOnHalfSpace(
-        impact.contact, modulus, radius, softer.yield_stress, softer.poissons_ratio
-    )
+    bodies = hertz_forms.effective_modulus(impact), impact.sphere.radius
+    return LawOnHalfSpace(impact.contact, *bodies, softer.yield_stress, softer.poissons_ratio)

@@ -24,11 +24,6 @@ def effective_modulus(impact: Impact) -> float:
     return 1.0 / (sphere + beam)
 
 
-def effective_radius(impact: Impact) -> float:
-    """Return R* in m: the radius of the sphere, since the beam is flat."""
-    return impact.sphere.radius
-
-
 def stiffness(modulus: float, radius: float) -> float:
     """Return the stiffness k in N m^-1.5 of F = k delta^1.5, from E* (Pa) and R* (m)."""
     return 4.0 / 3.0 * modulus * math.sqrt(radius)
@@ -36,7 +31,7 @@ def stiffness(modulus: float, radius: float) -> float:
 
 def contact_stiffness(impact: Impact) -> float:
     """Return the Hertz stiffness k in N m^-1.5 of the two bodies of `impact`."""
-    return stiffness(effective_modulus(impact), effective_radius(impact))
+    return stiffness(effective_modulus(impact), impact.sphere.radius)
 
 
 def maximum_indentation(mass: float, velocity: float, modulus: float, radius: float) -> float:
@@ -56,6 +51,6 @@ def contact_duration(mass: float, velocity: float, modulus: float, radius: float
 
 
 def arguments(impact: Impact) -> tuple[float, float, float, float]:
-    """Return (mass, velocity, modulus, radius) of `impact`, as the closed forms take them."""
-    bodies = effective_modulus(impact), effective_radius(impact)
-    return (impact.sphere.total_mass, impact.velocity, *bodies)
+    """Return (mass, velocity, E*, R*) of `impact`, as the closed forms take them."""
+    sphere = impact.sphere
+    return sphere.total_mass, impact.velocity, effective_modulus(impact), sphere.radius

@@ -119,7 +119,7 @@ def stronge_impact(impact: Impact) -> StrongeImpact:
     """Return the bodies of `impact` on a half-space; its contact law and gravity are ignored."""
     return StrongeImpact(
         hertz.effective_modulus(impact),
-        hertz.effective_radius(impact),
+        impact.sphere.radius,
         min(impact.sphere.material.yield_stress, impact.beam.material.yield_stress),
     )
 

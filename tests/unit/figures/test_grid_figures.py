@@ -13,7 +13,7 @@ from drawings import curve
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.model.impact import paper_impact
 from impactlab.solver.contact import LAWS
-from impactlab.verification.solutions.shear import impact_share
+from impactlab.verification.solutions.beam_modes import impact_share
 
 NONE = xr.Dataset()
 LAWS_FIGURE, SHEAR_FIGURE = CATALOGUE["contact_laws"], CATALOGUE["shear"]

@@ -158,7 +158,7 @@ def test_asking_for_the_energies_changes_nothing(law):
 def test_pair_of_the_papers_case(make_case):
     pair, impact = make_pair(make_case()), il.paper_impact()
     assert hertz.effective_modulus(impact) == pytest.approx(pair.E, rel=1e-14)
-    assert hertz.effective_radius(impact) == pair.R
+    assert impact.sphere.radius == pair.R
     assert LAWS[pair.law] == impact.contact
 
 

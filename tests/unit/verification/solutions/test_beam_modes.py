@@ -10,8 +10,11 @@ from scipy.integrate import quad
 from scipy.linalg import eigh
 
 from impactlab.model.impact import paper_impact
-from impactlab.verification.solutions.beam_modes import odd_modes, timoshenko_odd_modes
-from impactlab.verification.solutions.shear import shear_stiffness
+from impactlab.verification.solutions.beam_modes import (
+    odd_modes,
+    shear_stiffness,
+    timoshenko_odd_modes,
+)
 
 BEAM = paper_impact().beam
 STIFFNESS = 210e9 * 0.06 * 0.0278**3 / 12

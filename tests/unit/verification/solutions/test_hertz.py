@@ -64,7 +64,3 @@ def test_effective_modulus_takes_both_bodies():
     assert hertz.effective_modulus(paper_impact()) == pytest.approx(
         208e9 * 210e9 / (418e9 * 0.91), rel=1e-12
     )
-
-
-def test_effective_radius_is_that_of_the_sphere():
-    assert hertz.effective_radius(paper_impact()) == 0.035

@@ -30,11 +30,6 @@ def answers(solution):
     return np.array([solution.peak_force, solution.contact_duration])
 
 
-def hertz_arguments(impact):
-    modulus, radius = hertz.effective_modulus(impact), hertz.effective_radius(impact)
-    return impact.sphere.total_mass, impact.velocity, modulus, radius
-
-
 def test_mass_and_stiffness_by_quadrature_of_the_static_shape():
     beam, L = PAPER.beam, PAPER.beam.span
 
@@ -58,7 +53,7 @@ def test_frequency_is_rayleighs_estimate():
 @pytest.mark.parametrize("impact", [PAPER, TIMOSHENKO], ids=["paper", "timoshenko"])
 def test_rigid_beam_without_gravity_is_hertz(impact):
     impact = replace(impact, gravity=0.0)
-    arguments = hertz_arguments(impact)
+    arguments = hertz.arguments(impact)
     peak, duration = hertz.peak_force(*arguments), hertz.contact_duration(*arguments)
     solution = lumped.solve(impact, 1.5 * duration)
     np.testing.assert_allclose(answers(solution), [peak, duration], rtol=1e-10)
@@ -75,13 +70,13 @@ def test_rigid_beam_with_gravity_by_energy():
     depth = brentq(lambda d: 0.4 * k * d**2.5 - mass * 9.81 * d - energy, 1e-9, 1e-3, xtol=1e-18)
     solution = lumped.solve(impact, 2e-3)
     assert solution.peak_force == pytest.approx(k * depth**1.5, rel=1e-10)
-    bare = hertz.peak_force(*hertz_arguments(impact))
+    bare = hertz.peak_force(*hertz.arguments(impact))
     assert solution.peak_force > 1.01 * bare
 
 
 def test_a_free_mass_is_hertz_with_the_reduced_mass():
     impact = replace(PAPER, gravity=0.0)
-    mass, velocity, *rest = hertz_arguments(impact)
+    mass, velocity, *rest = hertz.arguments(impact)
     reduced = 1 / (1 / mass + 1 / 5.0)
     expected = [f(reduced, velocity, *rest) for f in (hertz.peak_force, hertz.contact_duration)]
     solution = lumped.solve(impact, 4e-4, mass=5.0)

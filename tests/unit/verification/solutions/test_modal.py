@@ -12,10 +12,9 @@ from scipy.optimize import brentq
 from impactlab.model.impact import paper_impact
 from impactlab.verification.cases import slimmer, timoshenko_impact
 from impactlab.verification.solutions import hertz
-from impactlab.verification.solutions.beam_modes import odd_modes
+from impactlab.verification.solutions.beam_modes import odd_modes, shear_stiffness
 from impactlab.verification.solutions.hertz import contact_stiffness
 from impactlab.verification.solutions.modal import solve, solve_timoshenko, solve_with
-from impactlab.verification.solutions.shear import shear_stiffness
 
 PAPER, TIMOSHENKO = paper_impact(contact="hertz"), timoshenko_impact()
 STUBBY = replace(PAPER, beam=replace(PAPER.beam, span=0.2))
