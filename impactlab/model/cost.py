@@ -16,8 +16,8 @@ def node_steps(cases: Any) -> Any:
     """Return the estimated cost of a run, or of each: half the nodes times the time steps.
 
     cases: a record of solver.types.CASE, or an array of them. Their largest step is that of bending
-    for the paper's beam by leapfrog; half a bar wave's for the semi-implicit scheme and, roughly,
-    for the other models of the beam.
+    for the paper's beam by leapfrog; half a bar wave's for the other schemes and, roughly, for the
+    other models of the beam.
     """
     dx = cases["beam_span"] / (cases["nodes"] - 1)
     wave = 0.5 * dx * np.sqrt(cases["beam_density"] / cases["beam_youngs_modulus"])
@@ -30,7 +30,8 @@ def node_steps(cases: Any) -> Any:
 
 _RATES = (1.0, 1.0, 3.0, 4.0, 4.0)
 """Cost of a node per step over the paper's, by beam model."""
-_FILTERED = 5.0
+_SCHEME_RATES = (1.0, 5.0, 1.5)
+"""The same by scheme in time."""
 _BESIDES = 20.0
 """Cost of a step beside its nodes, in nodes."""
 _LUMPED = 1000.0
@@ -45,7 +46,6 @@ def work(cases: Any) -> Any:
     and schemes take a step. Fibres that yield may cost several times as much.
     """
     nodes, model = cases["nodes"], cases["beam_model"]
-    filtered = cases["scheme"] != SCHEMES.index("leapfrog")
     lumped = model >= BEAM_MODELS.index("spring_mass")
     compliance = sum(
         (1.0 - cases[f"{body}_poissons_ratio"] ** 2) / cases[f"{body}_youngs_modulus"]
@@ -62,10 +62,11 @@ def work(cases: Any) -> Any:
     contact = cases["duration"] / (cases["courant"] * step)
     bending = node_steps(cases) / (0.5 * nodes)
     steps = 1.0 + np.where(lumped, _LUMPED * contact, np.hypot(bending, contact))
-    rate = np.take(_RATES, model) * np.where(filtered, _FILTERED, 1.0)
+    rate = np.take(_RATES, model) * np.take(_SCHEME_RATES, cases["scheme"])
     return steps * (0.5 * nodes * rate + _BESIDES)
 
 
 def memory(cases: Any) -> Any:
     """Return the estimated bytes that the march of a run, or of each, takes."""
-    return cases["nodes"] * (80.0 + 4.0 * cases["points"])
+    modes = np.where(cases["scheme"] == SCHEMES.index("modal"), 2.0 * cases["nodes"], 0.0)
+    return cases["nodes"] * (80.0 + 4.0 * cases["points"] + modes)

@@ -19,15 +19,16 @@ class Discretisation:
 
     nodes: odd, at least 5, so that mid-span is a node. points: at least 2, counted over the
     whole depth. rule: "lobatto" (the paper), "legendre" or "layers" (midpoints of equal layers,
-    Zhang et al.). scheme: "leapfrog" (the paper: explicit, cost growing with nodes^3) or
-    "semi_implicit" (with nodes^2, from 17 nodes on; see solver/semi_implicit.py). courant: time
-    step over the scheme's largest, in (0, 1]: over the critical one of leapfrog; over half of the
-    time in which a bar wave crosses a spacing, unless the contact allows less, of semi_implicit.
+    Zhang et al.). scheme: "leapfrog" (the paper: explicit, cost growing with nodes^3), "modal"
+    (sine modes, the same answers from far fewer nodes; see solver/modal.py) or "semi_implicit"
+    (cost growing with nodes^2, from 17 nodes on; see solver/semi_implicit.py). courant: time step
+    over the scheme's largest, in (0, 1]: over the critical one of leapfrog; over half of the time
+    in which a bar wave crosses a spacing, unless the contact allows less, of the others.
     element_size, elements_per_radius: of the "solid" model alone, which needs one of them and
     nothing else of these: the size of its elements about the contact, in m; or how many lie over
     the contact radius to expect (fem3d.solver.estimates), so that it follows the velocity.
 
-    The two schemes tend to the same answers, but for what does not converge anyway: the peak
+    The schemes tend to the same answers, but for what does not converge anyway: the peak
     plastic strain of a perfectly plastic beam depends on the time step, too.
 
     Raises ValueError naming the field otherwise.

@@ -39,6 +39,15 @@ from impactlab.solver.fibre_plasticity import (
 )
 from impactlab.solver.jit import allocating, compiled
 from impactlab.solver.lumped import Lumped, lumped_energy, lumped_step, make_lumped
+from impactlab.solver.modal import (
+    Modes,
+    bend_sections,
+    deflect,
+    make_modes,
+    modal_energy,
+    mode_curvature,
+    move_modes,
+)
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.solver.section import Section, make_section
 from impactlab.solver.semi_implicit import (
@@ -50,7 +59,15 @@ from impactlab.solver.semi_implicit import (
 )
 from impactlab.solver.stability import discretise
 from impactlab.solver.timoshenko import Shear, make_shear, shear_energy, shear_step
-from impactlab.solver.types import ELASTIC, SEMI_IMPLICIT, TIMOSHENKO, Array, Record
+from impactlab.solver.types import (
+    ELASTIC,
+    LEAPFROG,
+    MODAL,
+    SEMI_IMPLICIT,
+    TIMOSHENKO,
+    Array,
+    Record,
+)
 
 _AUDITS = 500
 _LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
@@ -63,8 +80,8 @@ WORST_ENERGY_ERROR = 0.05
 class State(NamedTuple):
     """What a run marches: contact pair, section and grid, and the state of the beam.
 
-    filter, shear and lumped are of the models and schemes beside the paper's; empty where a case
-    needs none.
+    filter, modes, shear and lumped are of the models and schemes beside the paper's; empty where a
+    case needs none.
     """
 
     pair: Pair
@@ -73,6 +90,7 @@ class State(NamedTuple):
     beam: Beam
     plastic: PlasticState
     filter: Filter
+    modes: Modes
     shear: Shear
     lumped: Lumped
 
@@ -86,8 +104,6 @@ def _sample(
     here: tuple[float, float, float, float, float],
 ) -> None:
     """Fill the samples of `out`, shape (5, samples), that fall into the step that ends here."""
-    if out.shape[1] == 0:
-        return
     per_step = (out.shape[1] - 1) / steps
     k = max(math.ceil((step - 1) * per_step - 1e-9), 0)
     while k < out.shape[1] and k <= step * per_step * (1.0 + 1e-12):
@@ -122,6 +138,9 @@ def _imbalance(
     elif case.beam_model == TIMOSHENKO:
         elastic = shear_energy(beam, state.shear, M_0, section.stiffness, grid)
         in_beam = stored + dissipated + elastic
+    elif case.scheme == MODAL:
+        q, u, _, D, push, source = state.modes[:6]
+        in_beam = stored + dissipated + modal_energy(q, u, D, push, source, F)
     else:
         elastic = bending_energy(beam, M_0, section.stiffness, grid, now)
         if state.filter.length > 0:
@@ -131,6 +150,26 @@ def _imbalance(
         in_beam = stored + dissipated + elastic + moving
     kept, lost = contact_history.energies(contact, state.pair, delta)
     return abs(falling + in_beam + kept + lost - start) / start
+
+
+@compiled
+def _mid_curvature(w: Array, now: int, psi: Array, q: Array, bent: Array, grid: Grid) -> float:
+    """Return the curvature at mid-span in 1/m, of any model and scheme."""
+    if q.size > 0:
+        return mode_curvature(q, bent, grid.mid)
+    return curvature(w, now, psi, grid, np.uint64(grid.mid))
+
+
+@compiled
+def _step(beam_model: int, state: State, now: int, F: float) -> None:
+    """Move the beam of another model, or by the semi-implicit scheme, by one step."""
+    _, section, grid, beam, plastic = state[:5]
+    if beam_model == TIMOSHENKO:
+        shear_step(beam, state.shear, plastic, section, grid, now, F)
+    elif beam_model <= ELASTIC:
+        filtered_step(beam, plastic, section, grid, state.filter, now, F)
+    else:
+        lumped_step(beam, state.lumped, grid, now, F)
 
 
 @compiled
@@ -158,7 +197,8 @@ def march(
     w, u, plastic, psi = beam.w, beam.u, beam.plastic, state.shear.psi
     kappa_min, kappa_max, M_0 = plastic_state.kappa_min, plastic_state.kappa_max, plastic_state.M_0
     on_tangent, tangent = plastic_state.on_tangent, plastic_state.tangent
-    paper = case.beam_model <= ELASTIC and case.scheme != SEMI_IMPLICIT
+    q, v, k2, D, push, source, bent, seen, near, slack = state.modes
+    paper = case.beam_model <= ELASTIC and case.scheme == LEAPFROG
     kappa_y, dt, mid = section.yield_curvature, grid.dt, grid.mid
     stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
     # half a step before the first touch
@@ -174,9 +214,10 @@ def march(
         F = contact_force(contact, events, pair, delta, step * dt, dt)
         v_after = v_s + dt * (case.gravity - F * per_mass)
         event_tracker.update_events(events, delta, contact.delta_r, w_mid, F, v_s, step * dt, dt)
-        kappa = curvature(w, now, psi, grid, np.uint64(mid))
-        before, here = here, (F, w_mid, kappa, w_s, delta)
-        _sample(samples, step, steps, before, here)
+        if samples.shape[1] > 0:
+            kappa = _mid_curvature(w, now, psi, q, bent, grid)
+            before, here = here, (F, w_mid, kappa, w_s, delta)
+            _sample(samples, step, steps, before, here)
 
         if paper:
             if on_tangent[0] > 0 and follow_tangents(
@@ -184,20 +225,20 @@ def march(
             ):
                 leave_tangents(beam, now, psi, plastic_state, section, grid)
             outside = move_virgin(w, now, u, first, yielded, grid, kappa_y)
-            if yielded <= mid:
-                outside += move(w, now, u, plastic, kappa_min, kappa_max, yielded, grid)
+            outside += move(w, now, u, plastic, kappa_min, kappa_max, yielded, grid)
             if outside > 0.0:
-                bent = begin_tangents(
+                outermost = begin_tangents(
                     beam, now, psi, outside, plastic_state, section, grid, u, w[1 - now]
                 )
-                yielded = min(yielded, max(bent - 1, 2))
+                yielded = min(yielded, max(outermost - 1, 2))
             strike(w, now, u, F, grid)
-        elif case.beam_model == TIMOSHENKO:
-            shear_step(beam, state.shear, plastic_state, section, grid, now, F)
-        elif case.beam_model <= ELASTIC:
-            filtered_step(beam, plastic_state, section, grid, state.filter, now, F)
+        elif q.size > 0:
+            if near[0] > 0 or slack[1] >= slack[0]:
+                bend_sections(state.modes, plastic_state, section, grid)
+            w[1 - now, mid] = move_modes(q, v, D, push, source, k2, seen, slack, F)
+            u[mid] = w[1 - now, mid] - w_mid
         else:
-            lumped_step(beam, state.lumped, grid, now, F)
+            _step(case.beam_model, state, now, F)
 
         to_audit -= 1
         if to_audit == 0 or step == steps:
@@ -249,6 +290,12 @@ def run_all(
             make_beam(grid),
             make_plastic_state(grid, section),
             make_filter(grid, section.stiffness) if filtered else no_filter(),
+            make_modes(
+                case.nodes // 2 if case.scheme == MODAL else 0,
+                grid,
+                section.stiffness,
+                section.yield_curvature,
+            ),
             make_shear(case, grid.mid + 3 if case.beam_model == TIMOSHENKO else 0),
             make_lumped(case, section.stiffness, grid),
         )
@@ -265,6 +312,8 @@ def run_all(
             responses.read_contact(answer, events[r], contacts[r], pair)
             responses.read_rebound(answer, case, events[r])
             responses.read_beam(answer, case, events[r], state.plastic.peeq, grid, dissipated)
+        if case.scheme == MODAL and deflection.shape[1] > 0:
+            deflect(state.modes, state.beam.w, now, grid.mid)
         # element by element: slices would compile the message of numpy's error, for seconds
         for i in range(deflection.shape[1]):
             deflection[r, i] = state.beam.w[now, i + 1]

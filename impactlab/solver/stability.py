@@ -8,7 +8,9 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
                       taken, for accuracy: no wave asks for small steps here
 The semi-implicit scheme takes half of the time in which a bar wave crosses a spacing, for accuracy;
 and what the contact spring between the bare masses of node and sphere allows, for stability: the
-filter makes the node's mass larger.
+filter makes the node's mass larger. The modal scheme takes the same for accuracy; for stability
+D <= 2 and the contact, with the modes' masses no smaller together than the node's, must stay
+below 4/dt^2 together: half of the contact's leapfrog limit in dt^2.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
 from impactlab.solver.section import Section
 from impactlab.solver.timoshenko import shear_stiffness
-from impactlab.solver.types import SEMI_IMPLICIT, SPRING_MASS, TIMOSHENKO, Record
+from impactlab.solver.types import MODAL, SEMI_IMPLICIT, SPRING_MASS, TIMOSHENKO, Record
 
 _GROWTH = 1.25
 _LARGEST_SHARE = 0.01
@@ -82,9 +84,11 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
             omega_squared += (k_c + stiffness) / mass
         return 2.0 / math.sqrt(omega_squared) / _LUMPED_STEPS
     contact = k_c * (1.0 / (mu * dx) + 1.0 / case.sphere_mass)
+    wave = 0.5 * dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
     if case.scheme == SEMI_IMPLICIT:
-        wave = 0.5 * dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
         return min(wave, 2.0 / math.sqrt(contact))
+    if case.scheme == MODAL:
+        return min(wave, math.sqrt(2.0 / contact))
     if case.beam_model == TIMOSHENKO:
         inertia, kGA = mu * case.beam_depth**2 / 12.0, shear_stiffness(case)
         omega_squared = (4.0 * EI / dx**2 + kGA) / inertia

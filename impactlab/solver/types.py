@@ -24,7 +24,9 @@ ELASTIC = BEAM_MODELS.index("elastic")
 TIMOSHENKO = BEAM_MODELS.index("timoshenko")
 SPRING_MASS = BEAM_MODELS.index("spring_mass")
 RIGID = BEAM_MODELS.index("rigid")
+LEAPFROG = SCHEMES.index("leapfrog")
 SEMI_IMPLICIT = SCHEMES.index("semi_implicit")
+MODAL = SCHEMES.index("modal")
 
 
 def record(real: str, whole: str = "") -> np.dtype[Any]:

@@ -1,0 +1,195 @@
+"""The beam in its sine modes, each moved exactly: the scheme `modal`.
+
+w(y, t) = sum of q_p(t) cos(k_p y), y the distance from mid-span, k_p = p pi/L for the odd p up to
+N - 2: as many as the half beam has nodes, which are its sections. Curvature is exact, -k_p^2 of
+each mode, and the sum over the nodes that takes the sections' moments to the modes is exact for
+any product of two modes, so the elastic beam falls apart into oscillators of the exact frequencies
+omega_p = k_p^2 sqrt((EI)_q/(rho A)) and the stiffness K_p = (EI)_q k_p^4 L/2:
+
+    q(t + dt) - 2 q(t) + q(t - dt) = -D q + D/K (F + source),  D = 2 - 2 cos(omega dt)
+
+The contact force F and the source, the modes' share of the plastic moment M_0 = M + (EI)_q kappa,
+are constant over a step; D is exact for any force that is (Gautschi 1961). Beyond
+omega dt = pi/2, D stays at 2: such modes follow quasi-statically, which bounds the time step by
+the contact alone.
+
+It is leapfrog with the masses K dt^2/D, so it conserves as exactly the energy
+
+    sum of u_before u_after K/(2 D) + K q^2/2 - source q, u = dt dq/dt at half steps
+
+and is stable with perfectly plastic sections, too: with a share Pi of the sections yielding, the
+step has the eigenvalues of D^(1/2) (1 - Pi) D^(1/2), which lie between 0 and 2.
+
+Source: W. Gautschi, Numer. Math. 3 (1961) 381; Hochbruck, Lubich, Numer. Math. 83 (1999) 403.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from impactlab.solver.beam import Grid
+from impactlab.solver.fibre_plasticity import PlasticState
+from impactlab.solver.jit import allocating, compiled, vectorised
+from impactlab.solver.section import Section, bend
+from impactlab.solver.types import Array
+
+_STEPS_UNSEEN = 8.0
+"""Steps, at the present pace, for which sections far from yielding are left alone."""
+
+
+class Modes(NamedTuple):
+    """The modes of a run, n of them; n = 0 for a run of another scheme.
+
+    q: amplitude (m). u: dt dq/dt half a step before (m). k2: k_p^2 (1/m2). D: see above. push: D/K
+    (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n,). bent:
+    curvature of node i per amplitude, (n + 4, n), 1/m2; nodes as in beam.py. seen: q when all
+    sections were last looked at, (n,). near: the number of sections that could yield before the
+    next such look, then which they are, (n + 1,). slack: what the curvature of any other may have
+    changed by until that look, and can have changed by now (1/m), (2,).
+    """
+
+    q: Array
+    u: Array
+    k2: Array
+    D: Array
+    push: Array
+    source: Array
+    bent: Array
+    seen: Array
+    near: Array
+    slack: Array
+
+
+@allocating
+def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
+    """Return the n modes of a half beam of n spacings, at rest."""
+    k2, D, push = np.empty(n), np.empty(n), np.empty(n)
+    bent = np.zeros((grid.mid + 3, n))
+    for p in range(n):
+        k2[p] = ((2 * p + 1) * math.pi / (2 * n * grid.dx)) ** 2
+        turn = grid.dt * k2[p] * math.sqrt(EI / grid.mu)
+        D[p] = 2.0 - 2.0 * math.cos(min(turn, 0.5 * math.pi))
+        push[p] = D[p] / (EI * k2[p] ** 2 * n * grid.dx)
+    cosine = np.empty(4 * n)
+    for i in range(4 * n):
+        cosine[i] = math.cos(0.5 * math.pi * i / n)
+    for i in range(n):
+        for p in range(n):
+            bent[grid.mid - i, p] = -k2[p] * cosine[(2 * p + 1) * i % (4 * n)]
+    slack = np.zeros(2)
+    slack[0] = yield_curvature
+    return Modes(
+        np.zeros(n),
+        np.zeros(n),
+        k2,
+        D,
+        push,
+        np.zeros(n),
+        bent,
+        np.zeros(n),
+        np.zeros(n + 1, dtype=np.int64),
+        slack,
+    )
+
+
+@vectorised
+def mode_curvature(q: Array, bent: Array, i: int) -> float:
+    """Return the curvature of section i (1/m)."""
+    kappa = 0.0
+    for p in range(q.size):
+        kappa += bent[i, p] * q[p]
+    return kappa
+
+
+@vectorised
+def _add_moment(source: Array, bent: Array, i: int, moment: float) -> None:
+    for p in range(source.size):
+        source[p] += bent[i, p] * moment
+
+
+@vectorised
+def move_modes(
+    q: Array,
+    u: Array,
+    D: Array,
+    push: Array,
+    source: Array,
+    k2: Array,
+    seen: Array,
+    slack: Array,
+    F: float,
+) -> float:
+    """Move all modes by one step under the contact force F (N).
+
+    Returns the deflection at mid-span (m).
+    """
+    w, change = 0.0, 0.0
+    for p in range(q.size):
+        u[p] += push[p] * (F + source[p]) - D[p] * q[p]
+        q[p] += u[p]
+        w += q[p]
+        change += k2[p] * abs(q[p] - seen[p])
+    slack[1] = change
+    return w
+
+
+@compiled
+def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
+    """Find the sections that could yield in the next steps, and how long that holds."""
+    near, pace = 0, 0.0
+    for p in range(modes.q.size):
+        modes.seen[p] = modes.q[p]
+        pace += modes.k2[p] * abs(modes.u[p])
+    modes.slack[0] = plastic.kappa_max[mid] - plastic.kappa_min[mid]
+    for i in range(2, mid + 1):
+        kappa = mode_curvature(modes.q, modes.bent, i)
+        left = min(plastic.kappa_max[i] - kappa, kappa - plastic.kappa_min[i])
+        if left <= _STEPS_UNSEEN * pace:
+            near += 1
+            modes.near[near] = i
+        else:
+            modes.slack[0] = min(modes.slack[0], left)
+    modes.near[0] = near
+
+
+@compiled
+def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: Grid) -> None:
+    """Bend the sections that yield, and bring their moments to the modes."""
+    if modes.slack[1] >= modes.slack[0]:
+        _look_at_all(modes, plastic, grid.mid)
+    for k in range(1, modes.near[0] + 1):
+        i = modes.near[k]
+        kappa = mode_curvature(modes.q, modes.bent, i)
+        if kappa > plastic.kappa_max[i] or kappa < plastic.kappa_min[i]:
+            M_0, plastic.kappa_min[i], plastic.kappa_max[i] = bend(
+                section, kappa, plastic.plastic_strain, plastic.peeq, i
+            )
+            length = grid.dx if i == grid.mid else 2.0 * grid.dx
+            _add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
+            plastic.M_0[i] = M_0
+
+
+@vectorised
+def modal_energy(q: Array, u: Array, D: Array, push: Array, source: Array, F: float) -> float:
+    """Return the energy in J of a step's beginning, above what plastic strains store unbent.
+
+    After the step, made under the contact force F (N).
+    """
+    energy = 0.0
+    for p in range(q.size):
+        q_now, stiffness = q[p] - u[p], D[p] / push[p]
+        u_before = u[p] + D[p] * q_now - push[p] * (F + source[p])
+        energy += 0.5 * u_before * u[p] / push[p] + (0.5 * stiffness * q_now - source[p]) * q_now
+    return energy
+
+
+@compiled
+def deflect(modes: Modes, w: Array, now: int, mid: int) -> None:
+    """Set the nodes' deflections w[now] (m) at the beginning of the last step."""
+    for i in range(2, mid + 1):
+        w[now, i] = 0.0
+        for p in range(modes.q.size):
+            w[now, i] -= modes.bent[i, p] / modes.k2[p] * (modes.q[p] - modes.u[p])
