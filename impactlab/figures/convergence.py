@@ -22,6 +22,7 @@ from impactlab.model.parameters import ELEMENTS
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.types import Floats
 
+_DIFFERENCE = "Relative difference (–)"
 _FEWEST = 3
 _NAMED = 3
 """Largest number of cases per response that a caption names."""
@@ -38,16 +39,15 @@ _BESIDE: dict[str, Any] = {
     "bbox_to_anchor": (1.0, 0.0),
     "borderaxespad": 0.0,
     "fontsize": 6,
-    "handlelength": 2.4,
+    "handlelength": 4.0,
     "handletextpad": 0.4,
     "labelspacing": 0.2,
     "borderpad": 0.1,
 }
 """Legend of the orders, to the right of a panel."""
 _DASHED: dict[str, Any] = {"linestyle": (0, (2, 1.5)), "linewidth": 0.6}
-_POINTS_TOLERANCE = 1.0
-"""Error that the analysis asks for, in %."""
-_COST_TOLERANCE = 0.01
+_TOLERANCE = 0.01
+"""Relative difference that the analysis asks for."""
 _INPUTS = (
     "beam_span",
     "beam_depth",
@@ -188,7 +188,7 @@ def _draw(
         if orders:
             ax.legend(*zip(*orders, strict=True), **_BESIDE)
         _finish(ax, spacing, difference, axis.dim)
-    return selected.finish(figure, label, "Relative difference (–)")
+    return selected.finish(figure, label, _DIFFERENCE)
 
 
 def _without_limit(analysis: xr.Dataset, axis: Refined, name: str) -> bool:
@@ -247,16 +247,14 @@ def _enough(runs: xr.Dataset, analysis: xr.Dataset, axis: Refined) -> str:
         values = usable(runs, name)
         reference = values.isel({axis.dim: finest}, drop=True)
         distance = abs(values / reference.where(reference != 0) - 1.0) + uncertainty
-        outside = (distance > _COST_TOLERANCE) & flags.isin(sound)
+        outside = (distance > _TOLERANCE) & flags.isin(sound)
         passes = ~outside.any([dim for dim in outside.dims if dim != axis.dim]).values[order]
         if sound and passes[0]:
             last = len(passes) if passes.all() else int(np.argmin(passes))
             at = labels.value(runs[axis.dim], int(order[last - 1])).replace("_", " ")
             from_on.setdefault(at, []).append(labels.response(name))
     found = [f"{labels.listing(names)} from {at} on" for at, names in from_on.items()]
-    head = (
-        f"Within {100 * _COST_TOLERANCE:g} % of the limit, uncertainty included, where it converges"
-    )
+    head = f"At most {_TOLERANCE} from the limit, uncertainty included, where it converges"
     return f"{head}: {'; '.join(found)}." if found else ""
 
 
@@ -386,11 +384,8 @@ def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     figure, axes = responses_grid.panels(_points_names(runs, analysis), height=40)
     for name, ax in axes.items():
         responses_grid.write_verdict(ax, analysis, "points_summary", name)
-        error = 100.0 * abs(analysis["points_error"].sel(response=name)).transpose("points", ...)
-        for curve in selected.curves:
-            values = scales.positive(
-                error.isel(selected.held | curve.where), above=100 * responses_grid.ROUND_OFF
-            )
+        error = abs(analysis["points_error"].sel(response=name)).transpose("points", ...)
+        for curve, values in _above_round_off(error, selected):
             curves.add(ax, points, values, curve)
         if not ax.lines:
             enough = bool((error.count("points") > 1).any())
@@ -399,14 +394,14 @@ def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.logarithmic(ax, "x", points)
         scales.at(ax, "x", points)
         ax.set_xlim(0.9 * points.min(), 1.1 * points.max())
-        _tolerance(ax, _POINTS_TOLERANCE, "1 %")
-    return selected.finish(figure, labels.axis(labels.parameter("points"), ""), "Error (%)")
+        _draw_tolerance(ax)
+    return selected.finish(figure, labels.axis(labels.parameter("points"), ""), _DIFFERENCE)
 
 
-def _tolerance(ax: Axes, tolerance: float, words: str) -> None:
+def _draw_tolerance(ax: Axes) -> None:
     """Make the vertical axis logarithmic, to hold a line at the tolerance."""
-    scales.logarithmic(ax, "y", [*scales.drawn(ax, "y"), tolerance])
-    ax.axhline(tolerance, label=f"_guide: {words}", linestyle="--", **style.GUIDE)
+    scales.logarithmic(ax, "y", [*scales.drawn(ax, "y"), _TOLERANCE])
+    ax.axhline(_TOLERANCE, label=f"_guide: tolerance {_TOLERANCE}", linestyle="--", **style.GUIDE)
 
 
 def _has_cost(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -444,8 +439,8 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.logarithmic(ax, "x", decades)
         scales.at(ax, "x", decades)
         ax.set_xlim(decades[0], decades[-1])
-        _tolerance(ax, _COST_TOLERANCE, "1 %")
-    return selected.finish(figure, "Work (node-steps)", "Relative difference (–)")
+        _draw_tolerance(ax)
+    return selected.finish(figure, "Work (node-steps)", _DIFFERENCE)
 
 
 def _coded(parameter: xr.DataArray) -> xr.DataArray:

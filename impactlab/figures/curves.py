@@ -191,18 +191,18 @@ def chosen(runs: xr.Dataset, variable: str) -> Plan:
 
 def draw(
     runs: xr.Dataset, variable: str, line: Line, x: str, y: str, *, markers: bool = False
-) -> tuple[Figure, list[Axes]]:
-    """Draw each chosen run that has finite values; the others leave a gap.
+) -> tuple[Figure, list[Axes], Plan]:
+    """Draw each chosen run that has finite values, still without a legend; the others leave a gap.
 
     variable: runs without finite values of it have no curve. x, y: labels of the axes, x below each
     column, y at the left of each row.
     """
     selected = chosen(runs, variable)
     valid = runs.assign({variable: usable(runs, variable)})
-    count = len(selected.panels)
-    figure, axes = style.panels(count, columns=min(count, 3), height=62, sharex=True, sharey=True)
+    columns = min(len(selected.panels), 3)
+    titles = [labels.sentence(panel.label) for panel in selected.panels]
+    figure, axes = style.titled_panels(titles, columns=columns, height=62, sharex=True, sharey=True)
     for ax, panel in zip(axes, selected.panels, strict=True):
-        ax.set_title(labels.sentence(panel.label), loc="left")
         for curve in selected.curves:
             run = valid.isel(selected.runs(panel, curve))
             if np.isfinite(run[variable]).any():
@@ -214,7 +214,7 @@ def draw(
         place = ax.get_subplotspec()
         assert place is not None
         ax.set(xlabel=x, ylabel=y if place.is_first_col() else None)
-    return selected.finish(figure), axes
+    return figure, axes, selected
 
 
 def note(runs: xr.Dataset, variable: str) -> str:

@@ -11,6 +11,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import xarray as xr
+from matplotlib import rcParams
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from impactlab.figures import data, findings, style
@@ -119,10 +122,12 @@ def listed(folder: Path) -> dict[str, dict[str, str]]:
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:
     """Write the figure in each format, atomically, without a date inside. Returns the paths."""
-    paths = [folder / f"{name}.{kind}" for kind in FORMATS]
-    for path in paths:
-        metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-        with style.applied(), replaced(path) as temporary:
-            figure.savefig(temporary, format=path.suffix[1:], metadata=metadata)
+    svg, png = (folder / f"{name}.{kind}" for kind in FORMATS)
+    with style.applied(), replaced(svg) as vectors, replaced(png) as pixels:
+        # Figure.savefig would draw each twice
+        figure.dpi = rcParams["savefig.dpi"]
+        FigureCanvasSVG(figure).print_svg(vectors, metadata={"Date": None})
         figure.set_layout_engine("none")  # laid out once: that takes most of the time
-    return paths
+        figure.dpi = rcParams["savefig.dpi"]
+        FigureCanvasAgg(figure).print_png(pixels, metadata={"Software": None})
+    return [svg, png]

@@ -29,8 +29,8 @@ _SAMPLES = "base_samples"
 _ENDS = (-0.25, 1.25)
 """Largest limits of the axis; intervals from few samples can be many times wider."""
 _PAIRS = "second_order"
-_WEAK = 10.0
-"""Smallest upper end of the colour scale, in %."""
+_WEAK = 0.1
+"""Smallest upper end of the colour scale."""
 
 
 def _missing(runs: xr.Dataset, analysis: xr.Dataset) -> str:
@@ -204,38 +204,50 @@ def _lines(ax: Axes, analysis: xr.Dataset, variable: str, response: str) -> None
 
 @record.figure(
     "Sobol indices of second order",
-    "Share of the variance, in %, that two parameters bring together; columns are "
-    "numbered as the rows.",
-    lambda runs, analysis: (
-        bool(analysed(runs, analysis, _PAIRS)) and analysis.sizes["parameter"] > 1
-    ),
+    "Share of the variance that two parameters bring together; columns are numbered as the rows.",
+    lambda runs, analysis: bool(_significant_pairs(runs, analysis)),
     lambda runs, analysis: (
         f"Grey, without a number: zero lies within the {access.confidence(analysis)} interval.",
+        _without_pairs(runs, analysis),
         _missing(runs, analysis),
     ),
 )
 def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, a cell per pair, all on one colour scale."""
-    shown, listed = analysed(runs, analysis), parameters(analysis)
-    figure, axes = responses_grid.panels(shown, 12 + 4.6 * len(listed), beneath=14)
-    values = {name: 100 * pairs(analysis[_PAIRS].sel(response=name)) for name in shown}
-    # without an interval nothing is significant
-    interval = analysis.get(f"{_PAIRS}_interval", xr.full_like(analysis[_PAIRS], np.inf))
-    margins = {name: 100 * pairs(interval.sel(response=name)) for name in shown}
-    significant = {name: np.abs(values[name]) > margins[name] for name in shown}
+    significant, listed = _significant_pairs(runs, analysis), parameters(analysis)
+    figure, axes = responses_grid.panels(list(significant), 12 + 4.6 * len(listed), beneath=14)
+    values = {name: pairs(analysis[_PAIRS].sel(response=name)) for name in significant}
     # no weaker than _WEAK, to keep noise pale
-    tops = [np.max(values[n], initial=_WEAK, where=significant[n]) for n in shown]
+    tops = [np.max(values[n], initial=_WEAK, where=where) for n, where in significant.items()]
     colours = Normalize(0.0, max(map(float, tops)))
     for at, (name, ax) in enumerate(axes.items()):
         image = _map(ax, values[name], significant[name], colours)
-        _undefined(ax, analysis, name, _PAIRS)
+        responses_grid.write_verdict(ax, analysis, _VERDICT, name, sound=False)
         _number(ax, listed, named=at % responses_grid.COLUMNS == 0)
-    thin = 20 * min(len(shown), 2)
+    thin = 20 * min(len(axes), 2)
     bar = figure.colorbar(
         image, ax=list(axes.values()), location="bottom", fraction=0.05, aspect=thin, shrink=0.6
     )
-    bar.set_label("Share of the variance (%)")
+    bar.set_label("Share of the variance (–)")
     return figure
+
+
+def _significant_pairs(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, NDArray[np.bool_]]:
+    """Return the responses with an index of second order beyond its interval, and which are so."""
+    interval = f"{_PAIRS}_interval"
+    found = {
+        name: abs(pairs(analysis[_PAIRS].sel(response=name)))
+        > pairs(analysis[interval].sel(response=name))
+        for name in analysed(runs, analysis, _PAIRS, interval)
+    }
+    return {name: where for name, where in found.items() if where.any()}
+
+
+def _without_pairs(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    """Return a caption's sentence on the responses that are left out."""
+    left = len(analysed(runs, analysis)) - len(_significant_pairs(runs, analysis))
+    words = f"{labels.counted(left, 'response')} without an index that differs from zero"
+    return f"Left out: {words}." if left else ""
 
 
 def pairs(index: xr.DataArray) -> Floats:
@@ -249,14 +261,14 @@ def pairs(index: xr.DataArray) -> Floats:
 
 
 def _map(ax: Axes, values: Floats, significant: NDArray[np.bool_], colours: Normalize) -> AxesImage:
-    """Draw the cells, with their values in whole per cent, as a cell has room for two digits."""
+    """Draw the cells, with two decimals of their values, as a cell has no room for more."""
     shown = np.where(significant, values, np.nan)
     ax.imshow(np.where(np.isfinite(values), 0.93, np.nan), cmap="gray", vmin=0, vmax=1)
     image = ax.imshow(shown, cmap="Blues", norm=colours, interpolation="nearest")
     for row, column in np.argwhere(np.isfinite(values) & significant):
         value = values[row, column]
         colour = "white" if colours(value) > 0.55 else "black"
-        text = f"{value:z.0f}".replace("-", "−")
+        text = f"{value:z.2f}".replace("0.", ".").replace("-", "−")
         ax.text(column, row, text, ha="center", va="center", fontsize=6, color=colour)
     return image
 

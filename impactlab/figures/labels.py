@@ -14,7 +14,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from impactlab.model.impact import SOLID
 from impactlab.model.parameters import PARAMETERS
+from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.types import Floats
 
 _STEPS: dict[str, tuple[tuple[float, float, str], ...]] = {
@@ -46,7 +48,6 @@ _METHODS = {
     "pawn": "Latin hypercube for PAWN indices",
     "regression": "Latin hypercube for regression",
 }
-_NAMES = {"solid": "3-D FE model", "mjg": "MJG", "stronge_original": "Stronge (original)"}
 _FIXED = (
     "velocity",
     "contact",
@@ -97,6 +98,11 @@ def display(array: xr.DataArray) -> Display:
 def response(name: str) -> str:
     """Return a response's name in words: "peak force"."""
     return name.replace("_", " ")
+
+
+def beam_model(name: str) -> str:
+    """Return the proper name of a model of the beam: "Euler-Bernoulli"."""
+    return "3-D FE model" if name == SOLID else "-".join(map(str.capitalize, name.split("_")))
 
 
 def parameter(name: str) -> str:
@@ -168,16 +174,16 @@ def span(values: Floats, digits: int) -> str:
 def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
     """Return the values at these positions as text, in the display unit, without its symbol.
 
-    Words of study files are spelt as in papers; contact laws and beam models have proper names.
+    Words of study files are spelt as in papers; contact laws have their titles.
     """
     if coordinate.dtype.kind in "if":
         shown = display(coordinate)(coordinate.values)
         return [number(float(shown[at])) for at in where]
     words = [str(coordinate.values[at]) for at in where]
-    if coordinate.name in ("contact", "beam_model"):
-        return [
-            _NAMES.get(word) or "-".join(map(str.capitalize, word.split("_"))) for word in words
-        ]
+    if coordinate.name == "contact":
+        return [CONTACT_LAWS[word].title for word in words]
+    if coordinate.name == "beam_model":
+        return [beam_model(word) for word in words]
     return [_SPELLED.get(word, word.replace("_", " ")) for word in words]
 
 
@@ -198,7 +204,10 @@ def value(coordinate: xr.DataArray, at: int) -> str:
 
 def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:
     """Return a parameter with some of its values: "impact velocity = 1, 5 and 20 m/s"."""
-    listed = listing(values(coordinate, where))
+    texts = values(coordinate, where)
+    if any(", " in text for text in texts):
+        texts = [f"“{text}”" for text in texts]
+    listed = listing(texts)
     return f"{parameter(str(coordinate.name))} = {listed}{unit(coordinate)}"
 
 

@@ -20,6 +20,17 @@ _PLAIN = FuncFormatter(lambda value, _: labels.number(value))
 _POWERS = FuncFormatter(lambda value, _: labels.number(value, plain=(1.0, 10.5)))
 
 
+class _OneNotation(FuncFormatter):
+    """Plain numbers, or powers of ten at every tick where one of them needs it."""
+
+    def format_ticks(self, values: ArrayLike) -> list[str]:
+        sizes = np.abs(np.asarray(values, dtype=float))
+        zero = sizes <= 1e-9 * sizes.max(initial=0.0)  # but for round-off
+        plain = bool((zero | ((sizes >= 1e-4) & (sizes < 1e5))).all())
+        write = _PLAIN if plain else _POWERS
+        return [write(value) for value in np.where(zero, 0.0, values)]
+
+
 def fit(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
     """Make the axis logarithmic for positive values over more than a factor WIDE, else linear."""
     finite = _finite(values)
@@ -34,7 +45,7 @@ def linear(axes: Axes, which: Which | Literal["xy"], ticks: int = 5) -> None:
     for letter in which:
         axis: Axis = getattr(axes, f"{letter}axis")
         axis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 2.5, 5, 10]))
-        axis.set_major_formatter(_PLAIN)
+        axis.set_major_formatter(_OneNotation(_PLAIN))
 
 
 def logarithmic(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
@@ -58,7 +69,7 @@ def at(axes: Axes, which: Which, values: ArrayLike) -> None:
     axis: Axis = getattr(axes, f"{which}axis")
     axis.set_major_locator(FixedLocator([float(value) for value in np.ravel(values)]))
     axis.set_minor_locator(FixedLocator([]))
-    axis.set_major_formatter(_PLAIN)
+    axis.set_major_formatter(_OneNotation(_PLAIN))
 
 
 def positive(values: ArrayLike, above: float = 0.0) -> Floats:

@@ -22,7 +22,7 @@ _COLUMNS = 4
 """Largest number of force histories side by side."""
 _plan_by_law = partial(plan, variable=_FORCE, panel="velocity", prefer=["contact"])
 _WIDE = 3
-"""Columns up to which a panel's title has room on one line."""
+"""Largest number of contact laws whose displacements fit side by side."""
 _DISPLACEMENTS = {
     "sphere_displacement": "sphere",
     "midspan_deflection": "beam at mid-span",
@@ -52,7 +52,7 @@ def _force_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
 def first_contact(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a curve per run, up to the end of the longest first contact."""
     force, time = display(runs[_FORCE]), display(runs["time"])
-    figure, axes = curves.draw(
+    figure, axes, selected = curves.draw(
         runs,
         _FORCE,
         lambda run: (time(run["time"]), force(run[_FORCE])),
@@ -67,13 +67,13 @@ def first_contact(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     for ax in axes:
         scales.linear(ax, "xy")
         ax.set(xlim=(0.0, 1.05 * end or None), ylim=(0.0, None))
-    return figure
+    return selected.finish(figure)
 
 
 @record.figure(
     "Contact force against time",
-    "Contact force from first touch to the end of the last contact; each panel has a scale of "
-    "force of its own, and a peak after a gap is a sub-impact.",
+    "Contact force from first touch to the end of the last contact; each panel has scales of its "
+    "own, and a peak after a gap is a sub-impact.",
     _has_force,
     _force_sentences,
 )
@@ -83,39 +83,38 @@ def force_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     time, unit = display(runs["time"]), display(runs[_FORCE])
     laws = len(selected.panels)
     columns = math.ceil(laws / math.ceil(laws / _COLUMNS))
-    height = 32.0 if laws * len(selected.curves) <= 3 * columns else 21.0
-    figure, panels = _panel_per_run(selected, columns, height)
-    x, end = time(runs["time"]), 0.0
+    height = 32.0 if laws * len(selected.curves) <= 3 * columns else 24.0
+    figure, panels = _panel_per_run(selected, columns, height, sharex=False)
+    x = time(runs["time"])
     for ax, where, curve in panels:
-        scales.linear(ax, "x")
+        scales.linear(ax, "x", ticks=4)
         scales.linear(ax, "y", ticks=3)
         y = unit(force.isel(where))
         if np.isfinite(y).any():
             look = curves.look(curve) | {"linestyle": "-", "linewidth": 0.9}
             ax.plot(x, y, label=curve.label or "_only", **look)
-            ax.set_ylim(0.0, None)
-            end = max(end, float(x.max(initial=0.0, where=y > 0)))
+            ax.fill_between(x, y, color=look["color"], alpha=0.3, linewidth=0.0)
+            end = float(x.max(initial=0.0, where=y > 0))
+            ax.set(xlim=(0.0, 1.05 * end or None), ylim=(0.0, None))
         else:
             style.remark(ax, "no finite values")
     figure.supylabel(labels.axis("contact force", unit.symbol))
     figure.supxlabel(labels.axis(_TIME, time.symbol))
-    panels[0][0].set_xlim(0.0, 1.02 * end or None)
     return figure
 
 
 def _panel_per_run(
-    selected: Plan, columns: int, height: float
+    selected: Plan, columns: int, height: float, *, sharex: bool
 ) -> tuple[Figure, list[tuple[Axes, dict[str, int], Choice]]]:
     """Return a figure and, for each chosen run, its panel, its place among the runs, its curve."""
     shown = [(panel, curve) for curve in selected.curves for panel in selected.panels]
-    figure, axes = style.panels(len(shown), columns=columns, height=height, sharex=True)
-    between = ", " if columns <= _WIDE else "\n"
-    panels = []
-    for ax, (panel, curve) in zip(axes, shown, strict=True):
-        texts = labels.sentence(panel.label), curve.label
-        ax.set_title(between.join(filter(None, texts)), loc="left")
-        panels.append((ax, selected.runs(panel, curve), curve))
-    return figure, panels
+    titles = [
+        ", ".join(filter(None, (labels.sentence(panel.label), curve.label)))
+        for panel, curve in shown
+    ]
+    figure, axes = style.titled_panels(titles, columns=columns, height=height, sharex=sharex)
+    places = [(selected.runs(panel, curve), curve) for panel, curve in shown]
+    return figure, [(ax, *place) for ax, place in zip(axes, places, strict=True)]
 
 
 def _has_displacements(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
@@ -140,7 +139,7 @@ def displacement_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     selected = curves.chosen(runs, "sphere_displacement")
     laws = len(selected.panels)
     columns = laws if laws > 1 else min(len(selected.curves), 2)
-    figure, panels = _panel_per_run(selected, columns, height=45)
+    figure, panels = _panel_per_run(selected, columns, height=45, sharex=True)
     time, unit = display(runs["time"]), display(runs["midspan_deflection"])
     x = time(runs["time"])
     for ax, where, _ in panels:
@@ -188,7 +187,7 @@ def _has_loops(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
 def force_indentation(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a curve per run, broken where sphere and beam are apart."""
     force, depth = display(runs[_FORCE]), display(runs[_INDENTATION])
-    figure, axes = curves.draw(
+    figure, axes, selected = curves.draw(
         runs,
         _FORCE,
         lambda run: _loop(run, depth, force),
@@ -198,7 +197,7 @@ def force_indentation(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     for ax in axes:
         scales.linear(ax, "xy")
         ax.set(xlim=(0.0, None), ylim=(0.0, None))
-    return figure
+    return selected.finish(figure)
 
 
 def _loop(run: xr.Dataset, depth: Display, force: Display) -> tuple[Floats, Floats]:
@@ -286,8 +285,7 @@ def _strain_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str,
 @record.figure(
     "Equivalent plastic strain along the beam",
     "Equivalent plastic strain (PEEQ) along the beam at the end of the run, the largest over "
-    "the depth at each place. Dotted: one beam depth from the impact; dashed: the paper's "
-    f"{_PAPER_LIMIT} %.",
+    "the depth at each place.",
     _has_profiles,
     _strain_sentences,
 )
@@ -301,7 +299,7 @@ def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         return place(largest["x"]), strain(largest.where(largest > 0))
 
     along = labels.axis("distance from the left support", place.symbol)
-    figure, axes = curves.draw(kept, _STRAIN, line, along, labels.axis("PEEQ", "%"))
+    figure, axes, selected = curves.draw(kept, _STRAIN, line, along, labels.axis("PEEQ", "%"))
     for ax in axes:
         values = scales.drawn(ax, "y")
         scales.linear(ax, "x")
@@ -314,9 +312,11 @@ def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         if not kept["beam_depth"].ndim and not kept["beam_span"].ndim:
             middle, depth = float(kept["beam_span"]) / 2, float(kept["beam_depth"])
             for mark in (middle - depth, middle + depth):
-                ax.axvline(place.scale * mark, linestyle=":", label="_guide", **style.GUIDE)
-        ax.axhline(_PAPER_LIMIT, linestyle="--", label="_guide", **style.GUIDE)
-    return figure
+                words = "_guide: one beam depth from the impact"
+                ax.axvline(place.scale * mark, linestyle=":", label=words, **style.GUIDE)
+        words = f"_guide: {_PAPER_LIMIT} %, the paper's limit"
+        ax.axhline(_PAPER_LIMIT, linestyle="--", label=words, **style.GUIDE)
+    return selected.finish(figure)
 
 
 @record.figure(
@@ -338,7 +338,7 @@ def plastic_strain_depth(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
     across = labels.axis("PEEQ", strain.symbol)
     down = labels.axis("distance below the axis", depth.symbol)
-    figure, axes = curves.draw(kept, _STRAIN, line, across, down, markers=True)
+    figure, axes, selected = curves.draw(kept, _STRAIN, line, across, down, markers=True)
     for ax in axes:
         values = scales.drawn(ax, "x")
         if np.isfinite(values).any():
@@ -349,4 +349,4 @@ def plastic_strain_depth(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             style.remark(ax, "no plastic strain")
         scales.linear(ax, "y")
     axes[0].set_ylim(*sorted(axes[0].get_ylim(), reverse=True))
-    return figure
+    return selected.finish(figure)

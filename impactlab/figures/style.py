@@ -6,6 +6,7 @@ Colours: Okabe and Ito (2008), "Color Universal Design".
 from __future__ import annotations
 
 import math
+import textwrap
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -91,6 +92,18 @@ def panels(
         for axes in grid[max(count - columns, 0) : count]:
             axes.tick_params(labelbottom=True)
     return figure, list(grid[:count])
+
+
+def titled_panels(
+    titles: Sequence[str], *, columns: int, height: float, **shared: bool
+) -> tuple[Figure, list[Axes]]:
+    """Return a panel per title, see `panels`; the figure grows to hold titles of several lines."""
+    filled = [textwrap.fill(title, 96 // max(columns, 2)) for title in titles]
+    height += 3.4 * max(title.count("\n") for title in filled)
+    figure, axes = panels(len(titles), columns=columns, height=height, **shared)
+    for ax, title in zip(axes, filled, strict=True):
+        ax.set_title(title, loc="left")
+    return figure, axes
 
 
 def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:

@@ -44,11 +44,6 @@ def models(runs: xr.Dataset) -> list[str]:
     return [SOLID, *(name for name in listed if name != SOLID)]
 
 
-def label(model: str) -> str:
-    """Return the label of a model of the beam."""
-    return "3-D FE model" if model == SOLID else "-".join(map(str.capitalize, model.split("_")))
-
-
 def compared_responses(runs: xr.Dataset) -> list[str]:
     """Return the responses, without the check of the numerics."""
     return [name for name in responses(runs) if name != "energy_error"]

@@ -21,6 +21,7 @@ from impactlab.fem3d.solver.mesh import BEAM
 from impactlab.figures import labels, scales, style
 from impactlab.figures.draw import Drawing, draw
 from impactlab.figures.labels import display
+from impactlab.solver.contact import CONTACT_LAWS
 
 Floats = NDArray[np.float64]
 
@@ -183,7 +184,7 @@ def _histories_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
     """Return the caption: the quantities, and their meaning in each model."""
     velocity = labels.number(float(solid["velocity"]))
     size = labels.number(1e3 * float(solid["element_size"]))
-    law = str(beams["contact"].item())
+    law = CONTACT_LAWS[str(beams["contact"].item())].title
     return (
         f"Contact force, deflection of the beam's axis at mid-span and indentation (approach of "
         f"the sphere's centre of mass and that axis) at {velocity} m/s: of the 3-D FE model with "

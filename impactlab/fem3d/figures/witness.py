@@ -62,7 +62,7 @@ def _plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     style.legend(
         figure,
         "Model of the beam",
-        [differences.label(model) for model in differences.models(runs)],
+        [labels.beam_model(model) for model in differences.models(runs)],
     )
     return figure
 
@@ -82,7 +82,7 @@ def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
     for at, model in enumerate(differences.models(runs)):
         values = unit(differences.side(runs, analysis, name, model).value)
         if np.isfinite(values).any():
-            ax.plot(runs["velocity"].values, values, label=differences.label(model), **_look(at))
+            ax.plot(runs["velocity"].values, values, label=labels.beam_model(model), **_look(at))
     ax.set_title(labels.sentence(labels.response(name)), loc="left")
     ax.set_ylabel(labels.axis(labels.response(name), unit.symbol))
     if not ax.lines:
@@ -104,7 +104,7 @@ def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) ->
         points = 2.2 * (at - 0.5 * (len(others) + 1))  # beside its velocity, in the picture alone
         shift = ScaledTranslation(points / 72.0, 0.0, ax.figure.dpi_scale_trans)
         if np.isfinite(gap.value).any():
-            look = _look(at) | {"label": differences.label(model)}
+            look = _look(at) | {"label": labels.beam_model(model)}
             look |= {"elinewidth": 0.8, "transform": ax.transData + shift}
             ax.errorbar(speeds, 100.0 * gap.value, yerr=bars, **look)
             reach = np.nan_to_num(bars)

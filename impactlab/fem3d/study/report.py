@@ -51,7 +51,7 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     caption = labels.axis(labels.response(name), unit.symbol)
     if name in UNLIKE:
         caption = f"{caption}: not compared, {UNLIKE[name]}"
-    return Table(caption, ["Impact velocity", *map(differences.label, models)], rows)
+    return Table(caption, ["Impact velocity", *map(labels.beam_model, models)], rows)
 
 
 def _cell(

@@ -107,7 +107,7 @@ def test_failed_runs_leave_gaps_in_both(study: Study, failing: Any) -> None:
     assert "1 of 72 runs is missing" in NODES.caption(broken, analysis)
 
 
-def test_points_errors_are_percent_and_an_infinite_one_is_left_out(study: Study) -> None:
+def test_an_infinite_error_in_points_is_left_out(study: Study) -> None:
     runs, analysis = study
     analysis["points_error"].loc[{"response": "peak_force", "points": 3}] = np.inf
     points, error = curve(
@@ -118,7 +118,7 @@ def test_points_errors_are_percent_and_an_infinite_one_is_left_out(study: Study)
     )
     assert points.tolist() == [3, 5, 9, 17]
     assert np.isnan(error[0])
-    assert error[1] == pytest.approx(100 * float(stored))
+    assert error[1] == pytest.approx(float(stored))
 
 
 def test_a_varied_span_makes_the_spacing_relative(study: Study) -> None:

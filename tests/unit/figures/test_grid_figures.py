@@ -35,7 +35,7 @@ def test_every_law_has_a_curve_of_its_own_look_in_every_panel(laws_study):
 def test_curves_are_the_stored_values(laws_study):
     runs, _ = laws_study
     ax = LAWS_FIGURE.plot(runs, NONE).axes[1]
-    (line,) = (line for line in ax.lines if line.get_label() == "MJG")
+    (line,) = (line for line in ax.lines if line.get_label() == "Modified Jackson and Green")
     assert line.get_xdata().tolist() == [0.1, 1.0, 10.0]
     assert line.get_ydata().tolist() == runs["restitution"].sel(contact="mjg").values.tolist()
 

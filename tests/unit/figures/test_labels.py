@@ -46,8 +46,11 @@ def test_setting_shows_values_in_one_unit() -> None:
 def test_laws_and_rules_are_named_as_in_papers() -> None:
     laws = xr.DataArray(["jackson_green"], dims="contact", name="contact")
     rules = xr.DataArray(["lobatto"], dims="rule", name="rule")
-    assert labels.values(laws, [0]) == ["Jackson-Green"]
+    assert labels.values(laws, [0]) == ["Jackson and Green"]
     assert labels.values(rules, [0]) == ["Gauss-Lobatto"]
+    commas = xr.DataArray(["hertz", "stronge"], dims="contact", name="contact")
+    words = "contact law = “Hertz” and “Stronge, unloading after Wang et al.”"
+    assert labels.setting(commas, [0, 1]) == words
 
 
 def test_one_value_says_what_it_counts() -> None:
@@ -108,3 +111,7 @@ def test_an_axis_has_one_notation() -> None:
     assert written == ["10⁻⁴", "10⁻³", "10⁻¹", "1"]
     scales.logarithmic(ax, "y", [1e-2, 10.0])
     assert ax.yaxis.get_major_formatter()(0.01, 0) == "0.01"
+    scales.linear(ax, "y")
+    ticks = ax.yaxis.get_major_formatter().format_ticks
+    assert ticks([0.0, 5e-5, 1e-4]) == ["0", "5×10⁻⁵", "10⁻⁴"]
+    assert ticks([-0.1, 1e-17, 0.1]) == ["−0.1", "0", "0.1"]

@@ -23,7 +23,7 @@ def test_varied_and_fixed_parameters_with_units(report: Any, material_study: Stu
     fixed = "Parameters that are the same in every run"
     assert _row(page, fixed, "Span of the beam")[1] == "780 mm"
     assert _row(page, fixed, "Simulated time")[1] == "4 ms"
-    assert _row(page, fixed, "Contact law")[1] == "Stronge"
+    assert _row(page, fixed, "Contact law")[1] == "Stronge, unloading after Wang et al."
     names = {row[-1] for row in page.tables[fixed]}
     assert "beam_yield_stress" not in names
 
@@ -71,7 +71,10 @@ def test_failed_runs_are_counted_named_and_explained(
     assert first[0] == "impact velocity = 0.25 m/s, contact law = Hertz"
     assert first[1] == words
     assert "restitution" in first[2]
-    assert second[0] == "impact velocity = 10 m/s, contact law = Stronge"
+    assert (
+        second[0]
+        == "impact velocity = 10 m/s, contact law = “Stronge, unloading after Wang et al.”"
+    )
     assert second[2] == "all"
     assert "2 varied parameters · 0 figures · 1 failed, 1 without an answer" in page.text
 
@@ -101,7 +104,10 @@ def test_ranges_of_a_grid_say_where(report: Any, velocity_study: Study, failing:
     assert row[0] == "Peak force" + RESPONSES["peak_force"].long_name
     largest = 1e-3 * float(runs["peak_force"].sel(velocity=20.0, contact="stronge"))
     assert row[1] == "kN"
-    assert row[3] == f"{largest:.4g}impact velocity = 20 m/s, contact law = Stronge"
+    assert (
+        row[3]
+        == f"{largest:.4g}impact velocity = 20 m/s, contact law = “Stronge, unloading after Wang et al.”"
+    )
     assert row[4] == "1"
     assert _row(page, "Range of each response", "Number of contacts")[2] == "2in every run"
 
@@ -117,4 +123,4 @@ def test_small_grids_are_printed_run_by_run(
     assert head[:3] == ["Impact velocity (m/s)", "Contact law", "Peak force (kN)"]
     assert rows[2][:3] == ["0.99", "Hertz", "missing"]
     stored = 1e-3 * float(runs["peak_force"].sel(velocity=0.99, contact="stronge"))
-    assert rows[3][:3] == ["0.99", "Stronge", f"{stored:.4g}"]
+    assert rows[3][:3] == ["0.99", "Stronge, unloading after Wang et al.", f"{stored:.4g}"]
