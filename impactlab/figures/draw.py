@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import xarray as xr
 from matplotlib import rcParams
@@ -124,10 +124,12 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
     """Write the figure in each format, atomically, without a date inside. Returns the paths."""
     svg, png = (folder / f"{name}.{kind}" for kind in FORMATS)
     with style.applied(), replaced(svg) as vectors, replaced(png) as pixels:
-        # Figure.savefig would draw each twice
+        # Figure.savefig would draw each file twice
+        vector: Any = FigureCanvasSVG(figure)
         figure.dpi = rcParams["savefig.dpi"]
-        FigureCanvasSVG(figure).print_svg(vectors, metadata={"Date": None})
+        vector.print_svg(vectors, metadata={"Date": None})
         figure.set_layout_engine("none")  # laid out once: that takes most of the time
+        bitmap: Any = FigureCanvasAgg(figure)
         figure.dpi = rcParams["savefig.dpi"]
-        FigureCanvasAgg(figure).print_png(pixels, metadata={"Software": None})
+        bitmap.print_png(pixels, metadata={"Software": None})
     return [svg, png]
