@@ -221,10 +221,7 @@ def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[
     """Return the `x` and `z` coordinates (m) of fields along the beam."""
     beam = impact.beam
     points = rule_points(discretisation.rule, discretisation.points)
-    return {
-        "x": np.linspace(0.0, beam.span, discretisation.nodes),
-        "z": 0.5 * beam.depth * points,
-    }
+    return {"x": np.linspace(0.0, beam.span, discretisation.nodes), "z": 0.5 * beam.depth * points}
 
 
 def _one_by_one(

@@ -63,7 +63,7 @@ MARKS: dict[str, tuple[int, str]] = {
         outputs.OUTSIDE_CONTACT_LAW,
         "the largest indentation is beyond the range of the contact law (which `contact` states): "
         "the responses are there, but extrapolated",
-    ),
+    )
 }
 """Further flags of `status`, by name: bits that leave every response as it is."""
 STATUS_FLAGS = FAILURES | MARKS
@@ -196,15 +196,6 @@ def attributes(name: str) -> dict[str, Any]:
     return attrs
 
 
-_OF_LAWS = {
-    "source": "source",
-    "holds_for": "holds",
-    "flaws": "flaws",
-    "unconfirmed": "unconfirmed",
-}
-"""Attributes of `contact`, and the fields of a law that they come from."""
-
-
 def described(dataset: xr.Dataset) -> xr.Dataset:
     """Return the dataset with the table's attributes on every variable that the table knows.
 
@@ -216,8 +207,8 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
             variable.attrs = attributes(str(name)) | variable.attrs
     if "contact" in dataset.variables:
         laws = [CONTACT_LAWS[name] for name in np.unique(dataset["contact"].values)]
-        for key, field in _OF_LAWS.items():
-            lines = [f"{law.name}: {text}" for law in laws if (text := getattr(law, field))]
+        for key in ("source", "holds_for", "flaws", "unconfirmed"):
+            lines = [f"{law.name}: {text}" for law in laws if (text := getattr(law, key))]
             dataset["contact"].attrs |= {key: "\n".join(lines)} if lines else {}
     return dataset
 

@@ -32,9 +32,7 @@ with `response` among their coordinates. A new one is one line here and one in v
 
 
 def analyse(
-    runs: xr.Dataset,
-    resolution: xr.Dataset | None = None,
-    refinement: xr.Dataset | None = None,
+    runs: xr.Dataset, resolution: xr.Dataset | None = None, refinement: xr.Dataset | None = None
 ) -> xr.Dataset:
     """Return failures, convergence and sensitivity of a study, whichever apply, in one dataset.
 

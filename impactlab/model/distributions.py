@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 import scipy  # its stats are loaded when first used
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from impactlab.types import Floats
 
 Arguments = Mapping[str, Any]
-Values = NDArray[np.float64]
 
 
 _FORMS: dict[str, Callable[..., Any]] = {
@@ -42,11 +43,6 @@ ARGUMENTS = {name: tuple(signature(form).parameters) for name, form in _FORMS.it
 """Names of the arguments of each distribution."""
 
 
-def is_distributed(attributes: Arguments) -> bool:
-    """Return whether these attributes hold a distribution."""
-    return attributes.get("distribution") in _FORMS
-
-
 def arguments(attributes: Arguments) -> dict[str, Any]:
     """Return the name and the arguments of a distribution, without any other attribute.
 
@@ -61,7 +57,7 @@ def arguments(attributes: Arguments) -> dict[str, Any]:
     return {"distribution": name} | {key: float(attributes[key]) for key in keys}
 
 
-def quantile(attributes: Arguments, probability: ArrayLike) -> Values:
+def quantile(attributes: Arguments, probability: ArrayLike) -> Floats:
     """Return the values (same shape) below which a draw lies with these probabilities in [0, 1].
 
     Never beyond `low` and `high`, which rounding may pass by a digit. Raises ValueError as
@@ -72,7 +68,7 @@ def quantile(attributes: Arguments, probability: ArrayLike) -> Values:
     return np.asarray(np.clip(values, given.get("low", -np.inf), given.get("high", np.inf)))
 
 
-def cumulative(attributes: Arguments, values: ArrayLike) -> Values:
+def cumulative(attributes: Arguments, values: ArrayLike) -> Floats:
     """Return the probabilities (same shape) that a draw lies below these values: undo `quantile`.
 
     Raises ValueError as `arguments`.

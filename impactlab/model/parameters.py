@@ -112,7 +112,7 @@ def with_values(
 
     Raises ValueError for an unknown name, or where the model classes refuse a value.
     """
-    tree: dict[str, Any] = {}
+    tree: dict[str, Any] = {"impact": {}, "discretisation": {}}
     for name, value in values.items():
         if name not in PARAMETERS:
             raise ValueError(f"unknown parameter {name!r}: choose from {', '.join(PARAMETERS)}")
@@ -121,10 +121,7 @@ def with_values(
         for part in parents:
             node = node.setdefault(part, {})
         node[leaf] = value
-    return (
-        _replaced(impact, tree.get("impact", {})),
-        _replaced(discretisation, tree.get("discretisation", {})),
-    )
+    return _replaced(impact, tree["impact"]), _replaced(discretisation, tree["discretisation"])
 
 
 def _replaced(node: Any, changes: Mapping[str, Any]) -> Any:

@@ -33,7 +33,7 @@ def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
             if number := int((beyond & (runs["contact"] == law)).sum()):
                 yield (
                     f"{number} of {count(runs)} runs went beyond the range of the contact law "
-                    f"“{law}”, which holds for {CONTACT_LAWS[law].holds}. Their responses are "
+                    f"“{law}”, which holds for {CONTACT_LAWS[law].holds_for}. Their responses are "
                     "kept, but they are extrapolated."
                 )
     for bit, text in WARNINGS.values() if "remarks" in runs else ():

@@ -75,24 +75,18 @@ class Axis:
         said = {"tolerance": TOLERANCE, "comment": comment}
         if self.name in WITHOUT_LIMIT and _STRAIN in values["response"].values:
             said["without_limit"] = f"{_STRAIN}: {WITHOUT_LIMIT[self.name][1]}"
-        dataset = xr.Dataset(self._variables(found, comment))
+        dataset = xr.Dataset()
+        for key, (long_name, units, about) in _NUMBERS.items():
+            attrs = {"long_name": long_name.format(self.words)}
+            attrs |= {"comment": f"{about} {comment}".strip()} | ({"units": units} if units else {})
+            dataset[f"{self.name}_{key}"] = found[key].assign_attrs(attrs)
+        for key, (kind, long_name) in _FLAGS.items():
+            dataset[f"{self.name}_{key}"] = flagged(found[key], kind, f"{long_name} {self.words}")
+        words = f"convergence with {self.words}"
+        dataset.update(verdict_variables(found["verdict"], AxisVerdict, self.name, words))
         for key in ("verdict", "summary"):
             dataset[f"{self.name}_{key}"].attrs |= said
         return dataset
-
-    def _variables(
-        self, found: Mapping[str, xr.DataArray], comment: str
-    ) -> dict[str, xr.DataArray]:
-        variables = {}
-        for key, (long_name, units, said) in _NUMBERS.items():
-            attrs = {"long_name": long_name.format(self.words)}
-            attrs |= {"comment": f"{said} {comment}".strip()} | ({"units": units} if units else {})
-            variables[f"{self.name}_{key}"] = found[key].assign_attrs(attrs)
-        for key, (kind, long_name) in _FLAGS.items():
-            flags = flagged(found[key], kind, f"{long_name} {self.words}")
-            variables[f"{self.name}_{key}"] = flags
-        words = f"convergence with {self.words}"
-        return variables | verdict_variables(found["verdict"], AxisVerdict, self.name, words)
 
 
 _FLAGS: dict[str, tuple[type[Verdict], str]] = {

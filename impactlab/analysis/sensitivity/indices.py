@@ -14,12 +14,7 @@ from scipy.stats import rankdata
 from impactlab.analysis.responses import usable
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity import delta, fast, morris, pawn, regression, sobol, verdict
-from impactlab.analysis.sensitivity.method import (
-    BY_SAMPLES,
-    PAIR,
-    Index,
-    SensitivityMethod,
-)
+from impactlab.analysis.sensitivity.method import BY_SAMPLES, PAIR, Index, SensitivityMethod
 from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
 from impactlab.analysis.surrogate import fit
 from impactlab.analysis.verdicts import flagged

@@ -52,11 +52,7 @@ class SensitivityVerdict(Verdict):
         "more than 1, are below zero, or exceed their total",
     )
     IMPUTED = 6, False, "runs failed, and a surrogate supplied their values (see imputed_share)"
-    MOSTLY_CONSTANT = (
-        7,
-        False,
-        "nine runs in ten share one value: the indices hang on the others",
-    )
+    MOSTLY_CONSTANT = 7, False, "nine runs in ten share one value: the indices hang on the others"
     NO_DENSITY = (
         8,
         False,

@@ -14,7 +14,7 @@ from impactlab.analysis.responses import listed, usable
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.surrogate.chaos import drawn, fewest_runs, fit, indices, influence
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
-from impactlab.model.distributions import cumulative, is_distributed
+from impactlab.model.distributions import ARGUMENTS, cumulative
 from impactlab.types import Floats
 
 _SHARE = 0.2
@@ -29,7 +29,8 @@ _LENGTHS = {"fast": "samples"}
 def applies(runs: xr.Dataset) -> bool:
     """Return True if the runs are a sample, by any method, with distributions of parameters."""
     return "run" in runs.dims and all(
-        name in runs.coords and is_distributed(runs[name].attrs) for name in listed(runs, "varied")
+        name in runs.coords and runs[name].attrs.get("distribution") in ARGUMENTS
+        for name in listed(runs, "varied")
     )
 
 
@@ -189,11 +190,7 @@ _NUMBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
         "predictivity of the surrogate: 1 - mean squared error / variance over the runs held out",
         "1",
     ),
-    "rmse": (
-        (),
-        "root mean squared error over the runs held out, in the unit of the response",
-        "",
-    ),
+    "rmse": ((), "root mean squared error over the runs held out, in the unit of the response", ""),
     "runs": ((), "runs that the surrogate was fitted to", "1"),
     "held_out": (
         ("held_out",),

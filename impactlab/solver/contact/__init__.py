@@ -14,8 +14,8 @@ from dataclasses import dataclass
 class ContactLaw:
     """A contact law: its name, where it comes from, how far it holds, and how sure we are.
 
-    title: in words. source: whom it follows, and where its equations are from. holds: its range.
-    unconfirmed: what of it was not confirmed by the primary source or by public code written
+    title: in words. source: whom it follows, and where its equations are from. holds_for: its
+    range. unconfirmed: what of it was not confirmed by the primary source or by public code written
     after it; "" where all was. flaws: jumps, energy that it creates, dents below zero, for steel
     where the law is not free of such; "" if there are none.
 
@@ -30,7 +30,7 @@ class ContactLaw:
     name: str
     title: str
     source: str
-    holds: str
+    holds_for: str
     unconfirmed: str = ""
     flaws: str = ""
     yield_pressure: float = 1.295 * math.exp(0.736 * 0.3)
@@ -52,7 +52,7 @@ _REGISTRY = (
         name="hertz",
         title="Hertz",
         source="Hertz 1881; Johnson, Contact Mechanics (1985), eq. 4.23",
-        holds=f"elastic bodies, {_CIRCLE} (indentation up to the sphere's radius)",
+        holds_for=f"elastic bodies, {_CIRCLE} (indentation up to the sphere's radius)",
     ),
     ContactLaw(
         name="stronge",
@@ -61,7 +61,7 @@ _REGISTRY = (
             "Stronge, Impact Mechanics (2000), chapter 6; unloading with force continuity after "
             "Wang et al., as in the paper's Table 1 and Eqs. 15 to 17"
         ),
-        holds=f"{_CIRCLE} (indentation up to half its radius)",
+        holds_for=f"{_CIRCLE} (indentation up to half its radius)",
         flaws=(
             "It creates energy where the largest indentation lies between 1 and 2.673 times that "
             "of first yield: the coefficient of restitution of the contact alone is up to 1.101 "
@@ -77,7 +77,7 @@ _REGISTRY = (
         name="stronge_original",
         title="Stronge",
         source="Stronge, Impact Mechanics (2000), chapter 6, with its own unloading",
-        holds=f"{_CIRCLE} (indentation up to half its radius)",
+        holds_for=f"{_CIRCLE} (indentation up to half its radius)",
         unconfirmed=(
             "the joint of the elastic-plastic and the fully plastic regime, which is put where "
             "the two forces agree"
@@ -99,7 +99,7 @@ _REGISTRY = (
             "Jackson and Green 2005 (J. Tribology 127, 343); unloading: Jackson, Chusoipin and "
             "Green 2005 (J. Tribology 127, 484)"
         ),
-        holds=(
+        holds_for=(
             "contact radius up to 0.41 of the sphere's, and indentation up to 4725 times that of "
             "first yield, where the fit of the unloading ends"
         ),
@@ -114,7 +114,7 @@ _REGISTRY = (
             "loading: Ghaednia, Brake, Berryhill and Jackson 2019 (J. Tribology 141), eqs. 5, 6, "
             "23, 24 and 27 to 29, without hardening; unloading: Jackson, Chusoipin and Green 2005"
         ),
-        holds=(
+        holds_for=(
             "contact radius up to that of the sphere, where its hardness stops falling, and "
             "indentation up to 4725 times that of first yield, where the fit of the unloading "
             "ends"
@@ -131,7 +131,7 @@ _REGISTRY = (
         name="thornton",
         title="Thornton",
         source="Thornton 1997 (J. Applied Mechanics 64, 383); Thornton and Ning 1998",
-        holds=f"{_CIRCLE} (indentation up to its radius)",
+        holds_for=f"{_CIRCLE} (indentation up to its radius)",
         unconfirmed="the limiting pressure of 1.6 yield stresses",
         flaws=(
             "Far softer than the others when deep: its limiting pressure is that of first yield, "
@@ -146,7 +146,7 @@ _REGISTRY = (
             "Kogut and Etsion 2002 (J. Applied Mechanics 69, 657); Etsion, Kligerman and Kadin "
             "2005 (Int. J. Solids and Structures 42, 3716)"
         ),
-        holds=(
+        holds_for=(
             "indentation up to 110 times that of first yield, where the fits end; beyond, full "
             "plasticity at the hardness of 2.8 yield stresses"
         ),
@@ -170,7 +170,9 @@ _REGISTRY = (
         source=(
             "loading: that of mjg; unloading: Brake 2015 (Int. J. Solids and Structures 62, 104)"
         ),
-        holds="contact radius up to that of the sphere, where the loading's hardness stops falling",
+        holds_for=(
+            "contact radius up to that of the sphere, where the loading's hardness stops falling"
+        ),
         unconfirmed=f"all constants: {_READ}; the range; the loading is not Brake's own",
         flaws=(
             "The force jumps up by 0.47 % at 1.9 times the indentation of first yield. From "
@@ -189,7 +191,7 @@ _REGISTRY = (
             "Abbott and Firestone 1933 (Mechanical Engineering 55, 569), as in Jackson and Green "
             "2005 (J. Tribology 127, 343)"
         ),
-        holds=f"full plasticity, {_CIRCLE} (indentation up to half its radius)",
+        holds_for=f"full plasticity, {_CIRCLE} (indentation up to half its radius)",
         unconfirmed=(
             "that it describes contact at all, since it was meant for wear; the hardness of 2.8 "
             "yield stresses; the onset of full plasticity, which is put where its force is that of "

@@ -8,7 +8,7 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from impactlab.model.distributions import arguments, cumulative, is_distributed, quantile
+from impactlab.model.distributions import arguments, cumulative, quantile
 
 GAUSS = NormalDist(345e6, 25e6)
 CASES = {
@@ -57,8 +57,6 @@ def test_bounds_are_kept_to_the_last_digit() -> None:
 def test_arguments_leave_other_attributes_out() -> None:
     given = {"distribution": "uniform", "low": np.float64(1.0), "high": 2, "units": "m"}
     assert arguments(given) == {"distribution": "uniform", "low": 1.0, "high": 2.0}
-    assert is_distributed(given)
-    assert not is_distributed({"units": "m"})
 
 
 def test_what_is_no_distribution_is_named() -> None:

@@ -59,7 +59,7 @@ def test_every_law_has_its_file_and_its_texts():
         assert law.name == name
         assert law.title
         assert law.source
-        assert law.holds
+        assert law.holds_for
 
 
 def test_the_page_has_every_law_derived_twice_and_none_that_is_unknown():
