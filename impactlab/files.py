@@ -9,9 +9,10 @@ from __future__ import annotations
 import json
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import partial
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
@@ -108,9 +109,11 @@ def write_netcdf(
         elif variable.dtype.kind == "f" and variable.size > 10_000:
             encoding[str(name)] = {"zlib": True, "complevel": 1}
         if variable.chunks is None:
-            digests[str(name)] = _digest(*_parts(variable))
+            digests[str(name)] = _digest(_head(variable), variable.data)
         else:  # in the one pass in which the values are computed
-            variable.data = _noted(variable, str(name), digests)
+            whole = variable.data.rechunk(-1)
+            note = partial(_note_digest, digests, str(name), _head(variable))
+            variable.data = whole.map_blocks(note, dtype=whole.dtype, meta=whole._meta)
     dataset.attrs["checksums"] = json.dumps(digests, sort_keys=True)
     set_chunk_cache(_CACHE)
     with replaced(path, dataset.nbytes) as unfinished:
@@ -130,7 +133,14 @@ def opened(path: Path, *contents: str) -> Iterator[xr.Dataset]:
     with _readable(path):
         dataset = xr.open_dataset(path, engine="netcdf4")
     with dataset:
-        _check_content(dataset, path, contents)
+        wrong = ""
+        if not {"content", "checksums", "made_from"} <= dataset.attrs.keys():
+            wrong = "has no checksums, so another program or an older impactlab wrote it"
+        elif dataset.attrs["content"] not in contents:
+            wrong = f"holds {dataset.attrs['content']}, not {' or '.join(contents)}"
+        if contents and wrong:
+            command = " or ".join(f"`{CONTENTS[each]}`" for each in contents)
+            raise ValueError(f"{path}: {wrong}: make one with {command}")
         yield dataset
 
 
@@ -142,7 +152,7 @@ def read_netcdf(path: Path, *contents: str) -> xr.Dataset:
     with opened(path, *contents) as lazy, _readable(path):
         dataset = lazy.load()
     kept: dict[str, str] = json.loads(dataset.attrs["checksums"])
-    found = {str(name): _digest(*_parts(each)) for name, each in dataset.variables.items()}
+    found = {str(name): _digest(_head(each), each.data) for name, each in dataset.variables.items()}
     found[_ATTRIBUTES] = _digest(dataset.attrs)
     if changed := sorted(name for name in kept.keys() | found if kept.get(name) != found.get(name)):
         command = CONTENTS[dataset.attrs["content"]]
@@ -168,22 +178,6 @@ def check_source(made: xr.Dataset, path: Path, source: xr.Dataset, source_path: 
         )
 
 
-def _check_content(dataset: xr.Dataset, path: Path, contents: Sequence[str]) -> None:
-    if not contents:
-        return
-    command = " or ".join(f"`{CONTENTS[each]}`" for each in contents)
-    if not {"content", "checksums", "made_from"} <= dataset.attrs.keys():
-        raise ValueError(
-            f"{path}: has no checksums, so another program or an older impactlab wrote it: make "
-            f"one with {command}"
-        )
-    if dataset.attrs["content"] not in contents:
-        raise ValueError(
-            f"{path}: holds {dataset.attrs['content']}, not {' or '.join(contents)}: make "
-            f"one with {command}"
-        )
-
-
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
     try:
@@ -192,34 +186,24 @@ def _readable(path: Path) -> Iterator[None]:
         raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
 
 
-def _noted(variable: xr.Variable, name: str, digests: dict[str, str]) -> Any:
-    """Return a lazy variable's values; computing them puts their digest into `digests`."""
-    head, _ = _parts(variable)
-
-    def note(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-        digests[name] = _digest(head, values)
-        return values
-
-    whole = variable.data.rechunk(-1)
-    return whole.map_blocks(note, dtype=whole.dtype, meta=whole._meta)
+def _note_digest(digests: dict[str, str], name: str, head: Mapping[Any, Any], values: Any) -> Any:
+    """Put the digest of a variable into `digests`, and return its values."""
+    digests[name] = _digest(head, values)
+    return values
 
 
-def _parts(variable: xr.Variable) -> tuple[dict[str, Any], Any]:
-    """Return what is known of a variable beside its values, and the values."""
-    text = variable.dtype.kind in "OUS"
-    kind = "text" if text else variable.dtype.name
-    head = variable.attrs | {" dims": variable.dims, " shape": variable.shape, " kind": kind}
-    return head, variable.data
+def _head(variable: xr.Variable) -> dict[str, Any]:
+    """Return what is known of a variable beside its values."""
+    kind = "text" if variable.dtype.kind in "OUS" else variable.dtype.name
+    return variable.attrs | {" dims": variable.dims, " shape": variable.shape, " kind": kind}
 
 
 def _digest(attrs: Mapping[Any, Any], values: Any = None) -> str:
     """Return a hash of attributes and values, the same before writing and after reading."""
     plain = {key: np.ravel(each).tolist() for key, each in attrs.items() if key not in _UNCHECKED}
     digest = blake2b(json.dumps(plain, sort_keys=True, default=str).encode(), digest_size=16)
-    if values is None:
-        pass
-    elif values.dtype.kind in "OUS":
+    if values is not None and values.dtype.kind in "OUS":
         digest.update(json.dumps(values.tolist(), default=str).encode())
-    else:
+    elif values is not None:
         digest.update(np.ascontiguousarray(values).data)
     return digest.hexdigest()

@@ -45,7 +45,7 @@ def open_runs(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterat
         solver, index = work.solver, RunIndex(work.keys)
         shards = Shards(shards_folder, work.output, solver.version)
         for keys in shards.recover():
-            index.mark(index.find(keys)[1])
+            index.done[index.find(keys)[1]] = True
         missing, repeats = index.missing(), index.size - index.distinct
         before = index.distinct - missing.size
         equal = f" ({repeats} more are equal to one of them)" if repeats else ""
@@ -55,7 +55,7 @@ def open_runs(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterat
             with items_done(index.distinct, before, "runs") as advance:
                 for runs, columns in solved(work, missing, engine):
                     shards.write(work.keys[runs], columns)
-                    index.mark(runs)
+                    index.done[runs] = True
                     advance(runs.size, int(np.count_nonzero(columns["status"] & bits)))
         shards.merge()
         answers = open_answers(shards, index, solver.columns(design))

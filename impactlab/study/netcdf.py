@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +59,7 @@ def write_shard(path: Path, keys: Array, columns: Columns) -> None:
 class Shard:
     """A shard open for reading. Opening takes longer than reading a column.
 
-    Every method raises one of DAMAGE where the file is no sound shard.
+    names: of its columns. Every method raises one of DAMAGE where the file is no sound shard.
     """
 
     def __init__(self, path: Path) -> None:
@@ -69,18 +68,17 @@ class Shard:
         self._file.set_auto_maskandscale(False)
         self._checksums = json.loads(self._file.getncattr("checksums"))
         self._places = json.loads(self._file.getncattr("places"))
+        self.names = tuple(self._places)
         rows = [variable.shape[0] for variable in self._file.variables.values()]
         if self._checksums.keys() != self._places.keys() or len(self._places) != sum(rows):
             raise ValueError("it lacks a column, or has one too many")
 
-    def __enter__(self) -> Shard:
-        return self
-
-    def __exit__(self, *_: object) -> None:
+    def close(self) -> None:
+        """Close the file."""
         self._file.close()
 
     def layout(self, name: str) -> tuple[tuple[int, ...], np.dtype[Any]]:
-        """Return the shape of a column's row and its type."""
+        """Return the shape of a column's row and its type, without reading it."""
         variable = self._file[self._places[name][0]]
         return tuple(variable.shape[2:]), variable.dtype
 
@@ -94,10 +92,6 @@ class Shard:
         if _checksum(self._path, name, values) != self._checksums[name]:
             raise ValueError(f"the checksum of its column {name} does not hold")
         return np.frombuffer(values.tobytes(), dtype=KEY) if name == KEYS else values
-
-    def columns(self, names: Collection[str] = ()) -> Columns:
-        """Return the columns of these names, or all of them; keys are under KEYS."""
-        return {name: self.read(name) for name in names or self._checksums}
 
 
 def _checksum(path: Path, name: str, values: Array) -> str:

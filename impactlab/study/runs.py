@@ -6,7 +6,7 @@ import math
 import os
 import time
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -29,6 +29,7 @@ from impactlab.study.store import (
     holder,
     run_keys,
     shard_files,
+    sound_runs,
 )
 
 _CHUNK = 10_000
@@ -77,9 +78,9 @@ def open_answers(
     parts: list[tuple[Path, Array, Array]] = []
     found = np.zeros(index.size, dtype=bool)
     kept: dict[Path, Shard] = {}
-    with ExitStack() as closing:
-        opened = partial(_open_shard, kept=kept, closing=closing)
-        for path in shards.files():
+    with ExitStack() as stack:
+        opened = partial(_open_shard, kept=kept, stack=stack)
+        for path in shard_files(shards.folder):
             with opened(path) as shard:
                 requested, runs = index.find(shard.read(KEYS))
             if runs.size:
@@ -95,26 +96,26 @@ def open_answers(
                     values[runs] = shard.read(name)[rows]
             return index.spread(values)
 
-        with opened(parts[0][0]) as shard:
-            layouts = {name: shard.layout(name) for name in names}
         columns = {}
-        for name, (row, kind) in layouts.items():
-            shape = (index.size, *row)
-            block = delayed(read)(name, shape, kind)
-            columns[name] = da.from_delayed(block, shape, kind)  # type: ignore[no-untyped-call]
+        with opened(parts[0][0]) as shard:
+            for name in names:
+                row, kind = shard.layout(name)
+                shape = (index.size, *row)
+                block = delayed(read)(name, shape, kind)
+                columns[name] = da.from_delayed(block, shape, kind)  # type: ignore[no-untyped-call]
         yield columns
 
 
 @contextmanager
-def _open_shard(path: Path, kept: dict[Path, Shard], closing: ExitStack) -> Iterator[Shard]:
+def _open_shard(path: Path, kept: dict[Path, Shard], stack: ExitStack) -> Iterator[Shard]:
     """Open a shard, or take one that is kept open. Raises OSError where it is damaged."""
     try:
         if path not in kept and len(kept) < _OPEN:
-            kept[path] = closing.enter_context(Shard(path))
+            kept[path] = stack.enter_context(closing(Shard(path)))
         if path in kept:
             yield kept[path]
         else:
-            with Shard(path) as shard:
+            with closing(Shard(path)) as shard:
                 yield shard
     except DAMAGE as error:
         raise OSError(f"{path} was damaged after it was written ({error}): {_AGAIN}") from error
@@ -144,10 +145,10 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
     bits = np.zeros(index.size, dtype=np.int32)
     for keys, columns in shards.read("status"):
         requested, runs = index.find(keys)
-        index.mark(runs)
+        index.done[runs] = True
         bits[runs] = columns["status"][requested]
     failures = work.solver.failures(design)
-    times = [each.st_mtime for each in file_stats(shards.files())]
+    times = [each.st_mtime for each in file_stats(shard_files(shards.folder))]
     return Status(
         runs=index.size,
         done=index.size - index.left(),
@@ -189,8 +190,8 @@ def removable_files(folder: Path, designs: Collection[xr.Dataset] | None) -> dic
             if place not in wanted:
                 found[path] = "belongs to another version of the solver, or another output"
             elif designs:
-                keys = Shards.keys(path)
-                if keys.size and not any(np.isin(keys, each).any() for each in wanted[place]):
+                sound = sound_runs(path)
+                if sound and not any(np.isin(sound[0], each).any() for each in wanted[place]):
                     found[path] = "holds no run of the study"
     if designs is not None and not designs:
         found = dict.fromkeys(found, "its study does not exist")

@@ -12,8 +12,8 @@ import logging
 import os
 import re
 import socket
-from collections.abc import Collection, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Iterator
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
 from hashlib import blake2b
@@ -83,21 +83,11 @@ class Shards:
         shards, runs may come twice, but none is left out.
         """
         seen: set[Path] = set()
-        while fresh := [path for path in self.files() if path not in seen]:
+        while fresh := [path for path in shard_files(self.folder) if path not in seen]:
             seen.update(fresh)
             for path in fresh:
-                if found := _sound(path, names):
+                if found := sound_runs(path, *names):
                     yield found
-
-    @staticmethod
-    def keys(path: Path) -> Array:
-        """Return the keys of the runs in one shard; none where it is damaged."""
-        found = _sound(path)
-        return found[0] if found else np.zeros(0, dtype=KEY)
-
-    def files(self) -> list[Path]:
-        """Return the paths of all shards, sound or not; of nothing else that lies there."""
-        return shard_files(self.folder)
 
     def recover(self) -> Iterator[Array]:
         """Yield the keys of every sound shard, and tidy up; only for the process that writes here.
@@ -107,12 +97,13 @@ class Shards:
         """
         for unfinished in unfinished_files(self.folder):
             unfinished.unlink()
-        for path in self.files():
-            if found := _sound(path):
-                self._noted(path, *found)
-                yield found[0]
-            else:
+        for path in shard_files(self.folder):
+            if not (found := sound_runs(path)):
                 path.replace(path.with_name(path.name + DAMAGED))
+                continue
+            if _size(*found) < _SMALL:
+                self._small[path] = found
+            yield found[0]
 
     def write(self, keys: Array, columns: Columns) -> Path:
         """Write runs and return their file, named for their keys.
@@ -121,7 +112,8 @@ class Shards:
         """
         path = self.folder / f"{hashlib.sha256(keys.tobytes()).hexdigest()[:32]}.nc"
         write_shard(path, keys, columns)
-        self._noted(path, keys, columns)
+        if _size(keys, columns) < _SMALL:
+            self._small[path] = keys, columns
         if len(self._small) >= _MANY or sum(starmap(_size, self._small.values())) >= _SMALL:
             self.merge()
         return path
@@ -137,13 +129,9 @@ class Shards:
         for path in merged.keys() - {kept}:
             path.unlink()
 
-    def _noted(self, path: Path, keys: Array, columns: Columns) -> None:
-        if _size(keys, columns) < _SMALL:
-            self._small[path] = keys, columns
-
 
 def shard_files(folder: Path) -> list[Path]:
-    """Return the files in a folder that have the name of a shard."""
+    """Return the shards in a folder, sound or not; of nothing else that lies there."""
     return sorted(path for path in folder.glob("[0-9a-f]" * 32 + ".nc") if path.is_file())
 
 
@@ -162,10 +150,12 @@ def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
     )
 
 
-def _sound(path: Path, names: Collection[str] = ()) -> tuple[Array, Columns] | None:
+def sound_runs(path: Path, *names: str) -> tuple[Array, Columns] | None:
+    """Return keys and columns (all by default) of a shard; None where it is damaged or gone."""
     try:
-        with Shard(path) as shard:
-            columns = shard.columns((KEYS, *names) if names else ())
+        with closing(Shard(path)) as shard:
+            wanted = (KEYS, *names) if names else shard.names
+            columns = {name: shard.read(name) for name in wanted}
         return columns.pop(KEYS), columns
     except FileNotFoundError:  # merged into another meanwhile
         return None
@@ -177,7 +167,8 @@ def _sound(path: Path, names: Collection[str] = ()) -> tuple[Array, Columns] | N
 class RunIndex:
     """The runs of a design by key: which are answered, and which are equal to another.
 
-    size: their number. distinct: the number of those that are equal to none before them.
+    size: their number. distinct: the number of those that are equal to none before them. done: a
+    mask of the runs that are answered, shape (runs,); of equal ones the first stands for all.
     """
 
     def __init__(self, keys: Array) -> None:
@@ -186,8 +177,8 @@ class RunIndex:
         self._order = np.argsort(keys, kind="stable")
         ascending = keys[self._order]
         self._repeats = self._order[1:][ascending[1:] == ascending[:-1]]
-        self._done = np.zeros(keys.size, dtype=bool)
-        self._done[self._repeats] = True
+        self.done = np.zeros(keys.size, dtype=bool)
+        self.done[self._repeats] = True
         self._firsts = self.find(keys[self._repeats])[1]
         self.size = int(keys.size)
         self.distinct = self.size - int(self._repeats.size)
@@ -199,17 +190,13 @@ class RunIndex:
         requested: Array = self._keys[runs] == keys
         return requested, runs[requested]
 
-    def mark(self, runs: Array) -> None:
-        """Note that these runs, by number, are answered."""
-        self._done[runs] = True
-
     def missing(self) -> Array:
         """Return the runs without an answer, ascending; the first of equal runs stands for all."""
-        return np.flatnonzero(~self._done)
+        return np.flatnonzero(~self.done)
 
     def left(self) -> int:
         """Count the runs of the design without an answer, equal ones each."""
-        return int(np.count_nonzero(~self._done) + np.count_nonzero(~self._done[self._firsts]))
+        return int(np.count_nonzero(~self.done) + np.count_nonzero(~self.done[self._firsts]))
 
     def spread(self, values: Array) -> Array:
         """Copy the row of the first of equal runs to the others, in place; shape (runs, ...)."""

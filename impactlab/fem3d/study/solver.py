@@ -18,6 +18,7 @@ import xarray as xr
 from distributed.system import MEMORY_LIMIT
 from numpy.lib.recfunctions import require_fields
 
+from impactlab.analysis.responses import listed
 from impactlab.fem3d.solver import Cost, estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver import solve as solve_alone
 from impactlab.fem3d.solver.estimates import contact_radius
@@ -35,7 +36,7 @@ from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
 from impactlab.study.netcdf import Columns
-from impactlab.study.solvers import Solver, flattened, impact, run_shape, varied_names
+from impactlab.study.solvers import Solver, flattened, impact, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FAILURES, HISTORIES, RESPONSES, WITNESS, described
 
@@ -205,7 +206,7 @@ def columns(design: xr.Dataset) -> tuple[str, ...]:
 
 def cases(design: xr.Dataset, runs: Array) -> Array:
     """Return the table of these runs. Raises ValueError naming a run that the model refuses."""
-    varied = {name: flattened(design, name, runs) for name in varied_names(design)}
+    varied = {name: flattened(design, name, runs) for name in listed(design, "varied")}
     duration = design["duration"].item()
     return table(*impact.base(design), duration=duration, varied=varied, first_run=int(runs[0]))
 

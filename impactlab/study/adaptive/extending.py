@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -37,78 +37,51 @@ def extend_sample(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
         runs = solve(design)
         analysis = analyse(runs.assign_attrs(analyses="sensitivity"))
         found, count = largest_interval(analysis, [str(name) for name in names]), runs.sizes["run"]
-        if not found.response:
+        half_width, index = found["until_widest"], found["until_widest_index"].replace("_", "-")
+        response, parameter = found["until_widest_response"], found["until_widest_parameter"]
+        widest = f"the widest interval is that of the {index} index of {response} to {parameter}"
+        if not response:
             reason = "no response has indices that more runs could narrow"
-        elif found.half_width <= limit:
-            reason = f"{found}, within {limit:g}"
+        elif half_width <= limit:
+            reason = f"{widest}, ± {half_width:.3g}, within {limit:g}"
         elif 2 * count > most:
-            reason = f"{found}, above {limit:g}, but twice as many runs are more than {most:,}"
+            more = f"but twice as many runs are more than {most:,}"
+            reason = f"{widest}, ± {half_width:.3g}, above {limit:g}, {more}"
         else:
-            log.info("%d runs: %s: twice as many", count, found)
+            log.info("%d runs: %s, ± %.3g: twice as many", count, widest, half_width)
             design = doubled(design)
             continue
         log.info("%d runs: %s", count, reason)
-        return runs.assign_attrs(
-            until_reached=int(found.half_width <= limit),
-            until_reason=reason,
-            until_widest=found.half_width,
-            until_widest_index=found.index,
-            until_widest_response=found.response,
-            until_widest_parameter=found.parameter,
-            until_left_out="\n".join(found.left_out),
-        )
+        reached = int(half_width <= limit)
+        return runs.assign_attrs(until_reached=reached, until_reason=reason, **found)
 
 
-_INDICES = ("first_order", "total_order")
-
-
-@dataclass(frozen=True)
-class LargestInterval:
-    """The half-width of the largest interval, and its index, response and parameter.
-
-    They are NaN and empty where no response has indices. left_out: the responses without, each with
-    the reason.
-    """
-
-    half_width: float
-    index: str
-    response: str
-    parameter: str
-    left_out: tuple[str, ...]
-
-    def __str__(self) -> str:
-        """Return the interval in words."""
-        if not self.response:
-            return "no interval"
-        return (
-            f"the widest interval is that of the {self.index.replace('_', '-')} index of "
-            f"{self.response} to {self.parameter}, ± {self.half_width:.3g}"
-        )
-
-
-def largest_interval(analysis: xr.Dataset, responses: Sequence[str]) -> LargestInterval:
+def largest_interval(analysis: xr.Dataset, responses: Sequence[str]) -> dict[str, Any]:
     """Return the largest interval of the first and total-order indices of these responses.
 
     analysis: <index>_interval on (response, parameter), NaN for a response without indices, and
-    sensitivity_verdict (response) with the reason.
+    sensitivity_verdict (response) with the reason. It is returned as the attributes until_widest,
+    until_widest_index, until_widest_response, until_widest_parameter and until_left_out (see
+    extend_sample): NaN and empty where no response has indices.
     """
     requested = analysis.sel(response=list(responses))
-    found = requested[[f"{name}_interval" for name in _INDICES]].to_array("index")
-    found = found.transpose("index", "response", "parameter")
-    without = np.isnan(found.values).all(axis=(0, 2))
+    intervals = requested[["first_order_interval", "total_order_interval"]].to_array("index")
+    missing = intervals.isnull().all(["index", "parameter"]).values
     verdicts = requested["sensitivity_verdict"]
     lines = str(verdicts.attrs["flag_descriptions"]).splitlines()
     told = dict(zip(np.atleast_1d(verdicts.attrs["flag_values"]), lines, strict=True))
-    given_none = zip(np.array(responses)[without], verdicts.values[without], strict=True)
-    left_out = tuple(f"{name} ({told[verdict]})" for name, verdict in given_none)
-    if without.all():
-        return LargestInterval(np.nan, "", "", "", left_out)
-    given = found.isel(response=~without).fillna(np.inf)
-    index, response, parameter = np.unravel_index(given.values.argmax(), given.shape)
-    return LargestInterval(
-        float(given.values[index, response, parameter]),
-        _INDICES[index],
-        str(given["response"].values[response]),
-        str(given["parameter"].values[parameter]),
-        left_out,
-    )
+    without = zip(np.array(responses)[missing], verdicts.values[missing], strict=True)
+    left_out = "\n".join(f"{name} ({told[verdict]})" for name, verdict in without)
+    half_width, index, response, parameter = np.nan, "", "", ""
+    if not missing.all():
+        given = intervals.isel(response=~missing).fillna(np.inf)
+        widest = given.isel(given.argmax(["index", "response", "parameter"]))
+        half_width, index = widest.item(), widest["index"].item().removesuffix("_interval")
+        response, parameter = widest["response"].item(), widest["parameter"].item()
+    return {
+        "until_widest": half_width,
+        "until_widest_index": index,
+        "until_widest_response": response,
+        "until_widest_parameter": parameter,
+        "until_left_out": left_out,
+    }

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.study.solvers import solver_of, varied_names
+from impactlab.analysis.responses import listed
+from impactlab.study.solvers import solver_of
 
 MOST, FEWEST, SHARE = 64, 16, 8
 """Base samples that are solved again: at most, at least, and as a share (1/SHARE) of all."""
@@ -38,7 +39,7 @@ def refine_cases(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr
         )
     if solver_of(runs) != "impact":
         raise ValueError(f"study {study!r}: its runs are not impacts, so they have no grid")
-    names, first = varied_names(runs), _first(runs.sortby("run"), count)
+    names, first = listed(runs, "varied"), _first(runs.sortby("run"), count)
     nodes, points = int(runs["nodes"]), int(runs["points"])
     grids = {
         "used": (nodes, points),
@@ -55,7 +56,7 @@ def refine_cases(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr
         points=("grid", [points for _, points in grids.values()]),
     )
     solved = solve(design.assign_attrs(varied=[*names, "nodes", "points"], histories=0, profiles=0))
-    return solved.assign_attrs(varied=list(names))
+    return solved.assign_attrs(varied=names)
 
 
 def base_samples(whole: int) -> int:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from impactlab.analysis.responses import listed
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.sampling.grid import Grid
@@ -19,7 +20,7 @@ from impactlab.study.sampling.sections import Grouped
 from impactlab.study.schema.checks import has_solid_runs
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.schema.study import FunctionStudy, Study, StudyBase
-from impactlab.study.solvers import run_shape, varied_names
+from impactlab.study.solvers import run_shape
 from impactlab.study.validity import Refusal, check_alone, refused_run
 from impactlab.types import Floats
 from impactlab.variables import described
@@ -139,7 +140,7 @@ def doubled(small: xr.Dataset) -> xr.Dataset:
         )
     twice = {"base_samples": 2 * int(small.attrs["base_samples"])}
     large = design(replace(study, sampling=study.sampling.model_copy(update=twice)))
-    for name in varied_names(small):
+    for name in listed(small, "varied"):
         if not np.array_equal(small[name].values, large[name].values[: small.sizes["run"]]):
             raise ValueError(
                 f"the design of study {study.name!r} was drawn by another version of impactlab "

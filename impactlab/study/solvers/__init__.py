@@ -11,13 +11,9 @@ import numpy as np
 import xarray as xr
 
 from impactlab import wings
+from impactlab.analysis.responses import listed
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.store import OutputSpec
-
-
-def varied_names(design: xr.Dataset) -> tuple[str, ...]:
-    """Return the varied parameters, in the order of the study."""
-    return tuple(str(name) for name in np.atleast_1d(design.attrs["varied"]))
 
 
 def run_shape(design: xr.Dataset) -> tuple[tuple[str, ...], tuple[int, ...]]:
@@ -25,7 +21,7 @@ def run_shape(design: xr.Dataset) -> tuple[tuple[str, ...], tuple[int, ...]]:
 
     They are in the study's order: netCDF does not keep the order of a dataset's own dimensions.
     """
-    dims = (str(dim) for name in varied_names(design) for dim in design[name].dims)
+    dims = (str(dim) for name in listed(design, "varied") for dim in design[name].dims)
     once = tuple(dict.fromkeys(dims))
     return once, tuple(design.sizes[dim] for dim in once)
 

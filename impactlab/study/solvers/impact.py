@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
+from impactlab.analysis.responses import listed
 from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
@@ -20,7 +20,7 @@ from impactlab.simulate import (
 )
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.netcdf import Array
-from impactlab.study.solvers import Solver, flattened, run_shape, varied_names
+from impactlab.study.solvers import Solver, flattened, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 
@@ -33,7 +33,7 @@ def columns(design: xr.Dataset) -> tuple[str, ...]:
     output = OutputSpec.of(design)
     histories = HISTORIES if output.samples else ()
     profiles = PROFILES if output.profiles else ()
-    return (*_responses(design), "status", "remarks", *histories, *profiles)
+    return (*listed(design, "responses"), "status", "remarks", *histories, *profiles)
 
 
 def cases(design: xr.Dataset, runs: Array) -> Array:
@@ -41,7 +41,7 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
 
     Raises ValueError naming the run when the model refuses a value.
     """
-    varied = {name: flattened(design, name, runs) for name in varied_names(design)}
+    varied = {name: flattened(design, name, runs) for name in listed(design, "varied")}
     duration = design["duration"].item()
     return case_table(*base(design), duration=duration, varied=varied, first_run=int(runs[0]))
 
@@ -55,7 +55,7 @@ def values(cases: Array, output: OutputSpec) -> int:
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """Return the answers of a design's runs, in its order, under its labels and with provenance."""
     (dims, shape), output = run_shape(design), OutputSpec.of(design)
-    flat = answer_variables(answers, _responses(design), ("run",))
+    flat = answer_variables(answers, tuple(listed(design, "responses")), ("run",))
     variables = {
         name: ((*dims, *others[1:]), values.reshape(*shape, *values.shape[1:]))
         for name, (others, values) in flat.items()
@@ -69,13 +69,9 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     return described(dataset.assign_attrs(provenance()))
 
 
-def _responses(design: xr.Dataset) -> tuple[str, ...]:
-    return tuple(str(name) for name in np.atleast_1d(design.attrs["responses"]))
-
-
 def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
     """Return the impact and the discretisation without what is varied."""
-    varied = varied_names(design)
+    varied = listed(design, "varied")
     variables = design.variables  # quicker to get than arrays with labels
     stated = [name for name in PARAMETERS if name in variables and name not in varied]
     fixed = {name: variables[name].values.item() for name in stated}
@@ -85,7 +81,7 @@ def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
 SOLVER = Solver(
     version=SOURCES_HASH,
     columns=columns,
-    failures=lambda design: status_bits(_responses(design)),
+    failures=lambda design: status_bits(listed(design, "responses")),
     cases=cases,
     cost=lambda cases: work(cases) + _OF_ANY_RUN,  # in node-steps of the paper's beam
     values=values,

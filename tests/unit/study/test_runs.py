@@ -12,7 +12,7 @@ from impactlab.study.runs import (
     removable_files,
     status,
 )
-from impactlab.study.store import OutputSpec, RunIndex, Shards, locked
+from impactlab.study.store import OutputSpec, RunIndex, Shards, locked, shard_files
 
 OTHER_SOLVER = "belongs to another version of the solver, or another output"
 KEYS = np.array([b"a" * 16, b"b" * 16, b"c" * 16, b"b" * 16])
@@ -47,7 +47,7 @@ def test_a_run_without_answers_is_an_error(shards):
 
 
 def test_a_shard_that_is_damaged_meanwhile_is_an_error(shards):
-    first, second = shards.files()
+    first, second = shard_files(shards.folder)
     with open_answers(shards, RunIndex(KEYS), ["force"]) as columns:
         first.write_bytes(second.read_bytes())
         with pytest.raises(OSError, match=f"{first.name} was damaged"):

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -15,7 +16,15 @@ from impactlab.study import store
 from impactlab.study.netcdf import KEY, Shard
 from impactlab.study.runs import removable_files
 from impactlab.study.solvers import impact
-from impactlab.study.store import OutputSpec, RunIndex, Shards, holder, locked, run_keys
+from impactlab.study.store import (
+    OutputSpec,
+    RunIndex,
+    Shards,
+    holder,
+    locked,
+    run_keys,
+    shard_files,
+)
 
 OUTPUT = OutputSpec(samples=11, profiles=True)
 VERSION = impact.SOLVER.version
@@ -69,7 +78,7 @@ def truncated(path, other):
 
 def flipped(path, other):
     content = bytearray(path.read_bytes())
-    with Shard(path) as shard:
+    with closing(Shard(path)) as shard:
         force = shard.read("peak_force").tobytes()
     content[content.index(force)] ^= 1
     path.write_bytes(content)
@@ -98,7 +107,7 @@ def test_damaged_shards_are_named_and_set_aside(shards, damage, caplog):
     assert path.exists()  # reading changes nothing
     assert len(list(shards.recover())) == 1
     assert path.with_name(path.name + ".damaged").exists()
-    assert shards.files() == [other]
+    assert shard_files(shards.folder) == [other]
 
 
 def test_a_shard_of_another_folder_is_found_out(shards, tmp_path, caplog):
@@ -123,8 +132,8 @@ def test_one_shard_takes_the_place_of_all_small_ones(shards, monkeypatch, tmp_pa
         *_, large = written(Shards(tmp_path, OUTPUT, VERSION), cases(2.0))
     second, *_ = written(shards, cases(1.0, 3.0))
     shards.merge()
-    assert large in shards.files()
-    assert len(shards.files()) == 2
+    assert large in shard_files(shards.folder)
+    assert len(shard_files(shards.folder)) == 2
     assert found_keys(shards) == {
         *first,
         *second,
@@ -140,7 +149,7 @@ def test_small_shards_are_merged_while_they_come(shards, monkeypatch):
     velocities = np.linspace(1, 2, 10)
     for velocity in velocities:
         written(shards, cases(velocity))
-        assert len(shards.files()) <= 4
+        assert len(shard_files(shards.folder)) <= 4
     assert found_keys(shards) == set(run_keys(cases(*velocities), OUTPUT, VERSION))
 
 
@@ -161,11 +170,11 @@ def test_a_crash_between_merging_and_clearing_loses_nothing(shards, monkeypatch,
         crash.setattr(type(tmp_path), "unlink", crashing)
         with pytest.raises(KeyboardInterrupt):
             shards.merge()
-    assert len(shards.files()) == 3
+    assert len(shard_files(shards.folder)) == 3
     again = Shards(tmp_path, OUTPUT, VERSION)
     list(again.recover())
     again.merge()
-    assert len(again.files()) == 1
+    assert len(shard_files(again.folder)) == 1
     assert found_keys(again) == keys
     assert sum(found.size for found, _ in again.read()) == 2
 
@@ -194,7 +203,7 @@ def test_answers_find_the_runs_of_their_keys():
     requested, runs = index.find(keys(2, 999, 256))
     assert requested.tolist() == [True, False, True]
     assert runs.tolist() == [3, 0]
-    index.mark(runs)
+    index.done[runs] = True
     assert index.missing().tolist() == [1, 2]
     assert index.left() == 2
 
@@ -204,7 +213,7 @@ def test_the_first_of_equal_runs_stands_for_all():
     assert index.missing().tolist() == [0, 1]
     assert index.left() == 5
     assert index.distinct == 2
-    index.mark(index.find(keys(3))[1])
+    index.done[index.find(keys(3))[1]] = True
     assert index.left() == 3
     values = np.array([[7.0, 70.0], [3.0, 30.0], [0, 0], [0, 0], [0, 0]])
     assert index.spread(values)[:, 1].tolist() == [70.0, 30.0, 70.0, 30.0, 70.0]

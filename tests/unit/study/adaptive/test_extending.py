@@ -90,7 +90,10 @@ def test_the_sample_grows_until_the_widest_interval_is_narrow_enough(sample, sol
     assert runs.attrs["until_widest_index"] == "first_order"
     assert runs.attrs["until_widest_response"] == "contact_duration"
     assert runs.attrs["until_widest_parameter"] == "velocity"
-    assert runs.attrs["until_reason"].endswith("contact_duration to velocity, ± 0.1, within 0.1")
+    assert runs.attrs["until_reason"] == (
+        "the widest interval is that of the first-order index of contact_duration to velocity, "
+        "± 0.1, within 0.1"
+    )
     assert runs.attrs["until_left_out"] == "number_of_contacts (constant: it is still)"
 
 
@@ -156,34 +159,33 @@ def analysis():
 
 
 def test_the_widest_is_named(analysis):
-    found = largest_interval(analysis, ["force", "still", "time"])
-    assert found.half_width == 0.5
-    assert (found.index, found.response, found.parameter) == ("first_order", "force", "a")
-    assert found.left_out == ("still (constant: does not vary)",)
-    assert str(found) == (
-        "the widest interval is that of the first-order index of force to a, ± 0.5"
-    )
+    assert largest_interval(analysis, ["force", "still", "time"]) == {
+        "until_widest": 0.5,
+        "until_widest_index": "first_order",
+        "until_widest_response": "force",
+        "until_widest_parameter": "a",
+        "until_left_out": "still (constant: does not vary)",
+    }
 
 
 def test_only_what_is_asked_counts(analysis):
     found = largest_interval(analysis, ["time"])
-    assert (found.half_width, found.index, found.parameter) == (0.4, "first_order", "b")
-    assert found.left_out == ()
+    assert list(found.values()) == [0.4, "first_order", "time", "b", ""]
 
 
 def test_total_order_counts_too(analysis):
     analysis["first_order_interval"] *= 0
-    assert largest_interval(analysis, ["time", "force"]).index == "total_order"
+    found = largest_interval(analysis, ["time", "force"])
+    assert list(found.values()) == [0.3, "total_order", "time", "a", ""]
 
 
 def test_without_any_index_there_is_none(analysis):
-    found = largest_interval(analysis, ["still"])
-    assert math.isnan(found.half_width)
-    assert (found.index, found.response, found.parameter) == ("", "", "")
-    assert found.left_out == ("still (constant: does not vary)",)
+    half_width, *names = largest_interval(analysis, ["still"]).values()
+    assert math.isnan(half_width)
+    assert names == ["", "", "", "still (constant: does not vary)"]
 
 
 def test_a_gap_among_numbers_is_not_narrow(analysis):
     analysis["total_order_interval"][2, 1] = np.nan
     found = largest_interval(analysis, ["force", "time"])
-    assert (found.half_width, found.response, found.parameter) == (math.inf, "time", "b")
+    assert list(found.values()) == [math.inf, "total_order", "time", "b", ""]
