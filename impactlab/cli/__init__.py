@@ -3,15 +3,29 @@
 Heavy imports wait until a command needs them.
 """
 
-from impactlab.cli.interrupt import stop_without_more, stopped
+import gc
+import signal
+import sys
+
+from impactlab.cli.interrupt import stop_at_once
 
 
 def main() -> None:
-    """Run the command line, see impactlab.cli.app.main; Ctrl-C ends it from the start."""
-    stop_without_more()
-    from impactlab.cli.app import main
+    """Run the command line; a user's mistake ends in one message and exit code 1."""
+    stop_at_once()  # nothing has begun, and imports swallow exceptions
+    import logging
 
+    from impactlab.cli.app import app
+
+    gc.set_threshold(100_000)  # loading modules makes many objects, but no rubbish
     try:
-        main()
+        app()
+    except (ValueError, OSError) as error:
+        from impactlab.study.errors import printable
+
+        logger = logging.getLogger("impactlab")
+        logger.error("%s", "\n".join(map(printable, str(error).split("\n"))))
+        logger.debug("it came from here", exc_info=True)
+        sys.exit(1)
     finally:
-        stopped()
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process is about to end by itself

@@ -1,10 +1,8 @@
-"""The command `impactlab`: its commands, its log, and how it ends."""
+"""The command `impactlab`: its commands and its log."""
 
 from __future__ import annotations
 
-import gc
 import logging
-import sys
 import warnings
 from pathlib import Path
 from pkgutil import resolve_name
@@ -67,20 +65,6 @@ app = typer.Typer(
     rich_markup_mode=None,  # plain help: boxes and colours take twice as long
     add_completion=False,
 )
-
-
-def main() -> None:
-    """Run the command line; a user's mistake ends in one message and exit code 1."""
-    gc.set_threshold(100_000)  # loading modules makes many objects, but no rubbish
-    try:
-        app()
-    except (ValueError, OSError) as error:
-        from impactlab.study.errors import printable
-
-        logger = logging.getLogger("impactlab")
-        logger.error("%s", "\n".join(map(printable, str(error).split("\n"))))
-        logger.debug("it came from here", exc_info=True)
-        sys.exit(1)
 
 
 def _version(asked: bool) -> None:

@@ -14,21 +14,6 @@ _INTERRUPTED = b"impactlab: interrupted\n"
 _STOPPING = b"impactlab: stopping to keep what is computed; Ctrl-C again ends at once\n"
 
 
-def stop_without_more() -> None:
-    """Make Ctrl-C end the process at once: nothing has begun, and imports swallow exceptions."""
-
-    def stop(number: int, frame: object) -> NoReturn:
-        os.write(sys.stderr.fileno(), _INTERRUPTED)
-        os._exit(130)
-
-    signal.signal(signal.SIGINT, stop)
-
-
-def stopped() -> None:
-    """Make Ctrl-C do nothing: the process is about to end by itself."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
 def stop_quietly() -> None:
     """Make Ctrl-C end the command with one line; unfinished files are removed."""
 
@@ -39,24 +24,25 @@ def stop_quietly() -> None:
     signal.signal(signal.SIGINT, stop)
 
 
-def stop_at_once() -> None:
-    """Make Ctrl-C end the command without any clean-up: that of dask may hang.
-
-    Finished batches are on disk.
-    """
+def stop_at_once(message: bytes = _INTERRUPTED) -> None:
+    """Make Ctrl-C end the process with a message and without any clean-up."""
 
     def stop(number: int, frame: object) -> NoReturn:
-        show_cursor = "\x1b[?25h\n" if sys.stderr.isatty() else ""
-        message = f"{show_cursor}impactlab: interrupted; the same command goes on from here\n"
-        os.write(sys.stderr.fileno(), message.encode())
+        os.write(sys.stderr.fileno(), message)
         for worker in active_children():
             worker.kill()
         os._exit(130)
 
+    signal.signal(signal.SIGINT, stop)
+
+
+def stop_solving() -> None:
+    """Make Ctrl-C end the command at once: the clean-up of dask may hang, and batches are kept."""
     # a process of multiprocessing's cleans up behind us: it need not tell what
     quiet = "ignore::UserWarning:multiprocessing.resource_tracker"
     os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (os.getenv("PYTHONWARNINGS"), quiet)))
-    signal.signal(signal.SIGINT, stop)
+    show_cursor = b"\x1b[?25h\n" * sys.stderr.isatty()
+    stop_at_once(show_cursor + b"impactlab: interrupted; the same command goes on from here\n")
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,16 +17,10 @@ RunsFile = Annotated[
 ]
 
 
-def new_file(help: str) -> Any:
-    """Return an option for a file to write; a folder of this name is refused before any work."""
-    return typer.Option(dir_okay=False, help=help)
-
-
-def new_folder(help: str) -> Any:
-    """Return an option for a folder to write to; a file of this name is refused."""
-    return typer.Option(file_okay=False, help=help)
-
-
+new_file: Any = partial(typer.Option, dir_okay=False)
+"""An option for a file to write; a folder of this name is refused before any work."""
+new_folder: Any = partial(typer.Option, file_okay=False)
+"""An option for a folder to write to; a file of this name is refused."""
 RESULTS = Path("results")
 WITNESS = "witness"
 """Folder of the 3-D model beside a study's results."""

@@ -36,7 +36,7 @@ def analyse(
     refinement: Annotated[
         Path | None, typer.Option(help="What `refine` solved: the same of Sobol indices, measured.")
     ] = None,
-    output: Annotated[Path | None, new_file("Default: beside the runs.")] = None,
+    output: Annotated[Path | None, new_file(help="Default: beside the runs.")] = None,
 ) -> None:
     """Convergence and sensitivity from solved runs.
 
@@ -76,7 +76,7 @@ def figures(
     stored: StoredFiles,
     output: Annotated[
         Path | None,
-        new_folder("Default: figures/ beside the first of them."),
+        new_folder(help="Default: figures/ beside the first of them."),
     ] = None,
 ) -> None:
     """Draw every figure that a study's answers, or findings, allow."""
@@ -93,11 +93,11 @@ def report(
     stored: StoredFiles,
     figures: Annotated[
         Path | None,
-        new_folder("Default: figures/ beside the first of them."),
+        new_folder(help="Default: figures/ beside the first of them."),
     ] = None,
     output: Annotated[
         Path | None,
-        new_file("Default: report.html beside the first of them."),
+        new_file(help="Default: report.html beside the first of them."),
     ] = None,
 ) -> None:
     """Write a study's report."""
@@ -111,7 +111,7 @@ def report(
 
 def index(
     results: Annotated[Path, typer.Argument(help="Folder of results.")] = RESULTS,
-    output: Annotated[Path | None, new_file("Default: index.html in it.")] = None,
+    output: Annotated[Path | None, new_file(help="Default: index.html in it.")] = None,
 ) -> None:
     """Write the index over all reports."""
     from impactlab.report.results import write_index

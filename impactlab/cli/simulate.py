@@ -34,9 +34,9 @@ def simulate(
         str, typer.Option(help="leapfrog, modal (the same from far fewer nodes) or semi_implicit.")
     ] = "leapfrog",
     duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "3 ms",
-    output: Annotated[Path | None, new_file("Keep histories and fields as netCDF.")] = None,
+    output: Annotated[Path | None, new_file(help="Keep histories and fields as netCDF.")] = None,
     plot: Annotated[
-        Path | None, new_file("Draw force, motion and strain: a PNG, SVG or PDF file.")
+        Path | None, new_file(help="Draw force, motion and strain: a PNG, SVG or PDF file.")
     ] = None,
 ) -> None:
     """Solve one impact on the paper's beam and print its responses."""

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.interrupt import stop_at_once
+from impactlab.cli.interrupt import stop_solving
 from impactlab.cli.options import RunsFile, StudyFile, chosen, given, new_file, results_file
 
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
@@ -31,7 +31,7 @@ def recommend(
             help="Which it is asked of, such as peak_force,impulse. Default: those of the study."
         ),
     ] = "",
-    output: Annotated[Path | None, new_file("Default: results/NAME/resolution.nc.")] = None,
+    output: Annotated[Path | None, new_file(help="Default: results/NAME/resolution.nc.")] = None,
     workers: Threads = _ALL,
 ) -> None:
     """Find the cheapest discretisation that is fine enough.
@@ -47,7 +47,7 @@ def recommend(
 
     declared = read_impacts(study)
     path = output or results_file(declared.name, RESOLUTION)
-    stop_at_once()
+    stop_solving()
     wishes = declared.auto or Auto()
     if tolerance:
         limit = given("--tolerance", tolerance, "1")
@@ -61,7 +61,7 @@ def recommend(
 
 def design(
     study: StudyFile,
-    output: Annotated[Path | None, new_file("Default: results/NAME/design.nc.")] = None,
+    output: Annotated[Path | None, new_file(help="Default: results/NAME/design.nc.")] = None,
 ) -> None:
     """Sample a study into its runs.
 
@@ -76,7 +76,7 @@ def design(
 
     declared = read_study(study)
     path = output or results_file(declared.name, "design.nc")
-    stop_at_once()
+    stop_solving()
     engine = Engine(workers=_ALL)
     found = steps.resolved(declared, path.parent, engine, print_recommendation)
     write_netcdf(design_of(found), path, "design")
@@ -86,7 +86,7 @@ def run(
     design_file: Annotated[
         Path, typer.Argument(metavar="STUDY", help="A study file, or its design.nc.")
     ],
-    output: Annotated[Path | None, new_file("Default: results/NAME/runs.nc.")] = None,
+    output: Annotated[Path | None, new_file(help="Default: results/NAME/runs.nc.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Threads or processes.")] = _ALL,
     processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
     scheduler: Annotated[str, typer.Option(help="Address of a running dask scheduler.")] = "",
@@ -107,7 +107,7 @@ def run(
 
     Finished batches are kept in results/NAME/shards: an interrupted study resumes there.
     """
-    stop_at_once()
+    stop_solving()
     from impactlab.files import read_netcdf
     from impactlab.report.console import print_estimate, print_recommendation, print_solved
     from impactlab.study import steps
@@ -141,7 +141,9 @@ def run(
 
 def refine(
     runs: RunsFile,
-    output: Annotated[Path | None, new_file("Default: refinement.nc, beside the runs.")] = None,
+    output: Annotated[
+        Path | None, new_file(help="Default: refinement.nc, beside the runs.")
+    ] = None,
     base_samples: Annotated[
         int | None,
         typer.Option(min=16, help="How many are solved again. Default: N/8, from 16 to 64."),
@@ -153,7 +155,7 @@ def refine(
     `impactlab analyse --refinement` estimates the numerical error of the indices from them; more
     base samples narrow the estimate.
     """
-    stop_at_once()
+    stop_solving()
     from impactlab.study import steps
     from impactlab.study.engine import Engine
 

@@ -15,7 +15,7 @@ def verify(
     study: Annotated[
         Path, typer.Argument(metavar="STUDY", help="A study file of checks, or its findings.nc.")
     ],
-    output: Annotated[Path | None, new_file("Default: results/NAME/findings.nc.")] = None,
+    output: Annotated[Path | None, new_file(help="Default: results/NAME/findings.nc.")] = None,
     exit_zero: Annotated[
         bool,
         typer.Option("--exit-zero", help="Exit with code 0 even if checks fail."),

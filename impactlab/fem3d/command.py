@@ -59,7 +59,7 @@ def witness(
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
     output: Annotated[
         Path | None,
-        new_folder("Default: results/NAME/witness, with the options given in its name."),
+        new_folder(help="Default: results/NAME/witness, with the options given in its name."),
     ] = None,
     deck: Annotated[
         str, typer.Option(help="abaqus or calculix: write its input deck, and solve nothing.")

@@ -15,7 +15,7 @@ def paper(
         list[Path],
         typer.Argument(metavar="RESULTS...", help="results/NAME of each study of the paper."),
     ],
-    output: Annotated[Path, new_folder("The folder to write to.")] = RESULTS / "paper",
+    output: Annotated[Path, new_folder(help="The folder to write to.")] = RESULTS / "paper",
 ) -> None:
     """Draw the paper's figures and test its statements.
 

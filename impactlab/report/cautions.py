@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
@@ -62,69 +60,58 @@ def beside(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
     return ""
 
 
-def notes(runs: xr.Dataset) -> list[str]:
-    """Return the texts that matter for these runs, in the order of NOTES."""
-    return [text for applies, text in NOTES if applies(runs)]
+_LAST_CONTACT = {"rebound_velocity", "restitution", "impulse", "permanent_indentation"}
 
 
-def _holds(runs: xr.Dataset, name: str, values: list[Any]) -> bool:
-    """Return whether a parameter has one of these values in some run."""
-    return name in runs.coords and bool(runs[name].isin(values).any())
-
-
-def _about(law: str) -> str:
-    """Return the flaws of a contact law and what about it is unconfirmed."""
-    about = CONTACT_LAWS[law]
-    parts = [f"Some runs use the contact law “{law}” ({about.title}).", about.flaws]
-    if "energy" in about.flaws:
-        parts.append(
-            "This comes from the law, not from the solver; the energy balance accounts for it."
+def notes(runs: xr.Dataset) -> Iterator[str]:
+    """Yield the notes on the physics that matter for these runs."""
+    used = {
+        name: set(runs[name].values.flat) if name in runs.coords else set()
+        for name in ("contact", "scheme", "points", "rule")
+    }
+    if "contact_duration" in runs:
+        yield (
+            "One impact consists of several sub-impacts: contact ends and begins again. The "
+            "contact duration is that of the first contact; the total contact time adds up all "
+            "contacts within the simulated time."
         )
-    if about.unconfirmed:
-        parts.append(f"The following is not confirmed: {about.unconfirmed}.")
-    return " ".join(filter(None, parts))
-
-
-_AT_THE_END = ("rebound_velocity", "restitution", "impulse", "permanent_indentation")
-NOTES: tuple[tuple[Callable[[xr.Dataset], bool], str], ...] = (
-    (
-        lambda runs: "contact_duration" in runs,
-        "One impact consists of several sub-impacts: contact ends and begins again. The contact "
-        "duration is that of the first contact; the total contact time adds up all contacts within "
-        "the simulated time.",
-    ),
-    (
-        lambda runs: any(name in runs for name in _AT_THE_END),
-        "Rebound velocity, restitution, impulse and permanent indentation refer to the last "
-        "contact within the simulated time and do not include a later contact.",
-    ),
-    *(
-        (partial(_holds, name="contact", values=[law]), _about(law))
-        for law in LAWS
-        if CONTACT_LAWS[law].flaws or CONTACT_LAWS[law].unconfirmed
-    ),
-    (
-        lambda runs: "peak_plastic_strain" in runs,
-        "In a perfectly plastic section the peak plastic strain (PEEQ) at mid-span does not "
-        "converge as the nodes get closer: with 3 Lobatto points it doubles with each halving of "
-        "the spacing, with 5 it still grows, and with 9 or more it grows slowly.",
-    ),
-    (
-        lambda runs: _holds(runs, "scheme", ["semi_implicit"]),
-        "The semi-implicit scheme takes time steps of half the time that a bar wave needs to cross "
-        "one spacing: with many nodes they are longer than those of leapfrog, with few they are "
-        "shorter. It converges to the same answers, with errors of about the same size for the "
-        "same nodes.",
-    ),
-    (
-        lambda runs: _holds(runs, "scheme", ["semi_implicit", "modal"]),
-        "Do not compare the peak plastic strain of a perfectly plastic beam between schemes, "
-        "because it does not converge.",
-    ),
-    (
-        lambda runs: _holds(runs, "points", [2, 3]) and _holds(runs, "rule", ["lobatto"]),
-        "Few Lobatto points change the beam itself: 2 points make it 3 times too stiff, and "
-        "with 3 points its full plastic moment equals the yield moment.",
-    ),
-)
-"""Every note: a test whether it matters for given runs, and its text."""
+    if not _LAST_CONTACT.isdisjoint(runs.variables):
+        yield (
+            "Rebound velocity, restitution, impulse and permanent indentation refer to the last "
+            "contact within the simulated time and do not include a later contact."
+        )
+    for law in LAWS:
+        about = CONTACT_LAWS[law]
+        if law in used["contact"] and (about.flaws or about.unconfirmed):
+            parts = [f"Some runs use the contact law “{law}” ({about.title}).", about.flaws]
+            if "energy" in about.flaws:
+                parts.append(
+                    "This comes from the law, not from the solver; the energy balance accounts for "
+                    "it."
+                )
+            if about.unconfirmed:
+                parts.append(f"The following is not confirmed: {about.unconfirmed}.")
+            yield " ".join(filter(None, parts))
+    if "peak_plastic_strain" in runs:
+        yield (
+            "In a perfectly plastic section the peak plastic strain (PEEQ) at mid-span does not "
+            "converge as the nodes get closer: with 3 Lobatto points it doubles with each halving "
+            "of the spacing, with 5 it still grows, and with 9 or more it grows slowly."
+        )
+    if "semi_implicit" in used["scheme"]:
+        yield (
+            "The semi-implicit scheme takes time steps of half the time that a bar wave needs to "
+            "cross one spacing: with many nodes they are longer than those of leapfrog, with few "
+            "they are shorter. It converges to the same answers, with errors of about the same "
+            "size for the same nodes."
+        )
+    if used["scheme"] & {"semi_implicit", "modal"}:
+        yield (
+            "Do not compare the peak plastic strain of a perfectly plastic beam between schemes, "
+            "because it does not converge."
+        )
+    if used["points"] & {2, 3} and "lobatto" in used["rule"]:
+        yield (
+            "Few Lobatto points change the beam itself: 2 points make it 3 times too stiff, and "
+            "with 3 points its full plastic moment equals the yield moment."
+        )

@@ -20,7 +20,7 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from impactlab.figures import labels
-from impactlab.figures.draw import CAPTIONS, listed
+from impactlab.figures.draw import listed
 from impactlab.files import identity, replaced
 
 _PROVENANCE = {
@@ -113,24 +113,6 @@ class Section:
     closed: bool = False
 
 
-@dataclass(frozen=True)
-class Picture:
-    """A numbered figure, as an image of its own, so that names inside SVGs cannot clash.
-
-    alt: what it shows, in words. uri: the whole SVG as a data URI. width: on a screen, in CSS
-    pixels. data: its numbers, thinned; None for maps.
-    """
-
-    number: int
-    name: str
-    title: str
-    caption: str
-    alt: str
-    uri: str
-    width: int
-    data: Table | None
-
-
 def write_page(
     template: str, path: Path, package: str = "impactlab.report", **context: Any
 ) -> None:
@@ -182,15 +164,23 @@ def largest(found: xr.Dataset, variable: str, text: Any = labels.percent) -> Cel
 
 def pictures(
     folder: Path, placed: Sequence[str] = (), made_from: xr.Dataset | None = None
-) -> dict[str, Picture]:
-    """Return the figures that captions.json lists by name, numbered in the order of the page.
+) -> dict[str, dict[str, Any]]:
+    """Return what templates show of the figures in captions.json, numbered in the page's order.
+
+    Each is an image of its own (`uri`), so that names inside SVGs cannot clash, with its width on a
+    screen in CSS pixels, and its numbers, thinned (`data`; None for maps).
 
     The first belongs to the answer (`leading`); placed: names that come next, in order. Raises
     FileNotFoundError, saying what to do, when captions.json or a figure is not in the folder;
     ValueError when the figures were not drawn from the dataset made_from.
     """
-    _read(folder / CAPTIONS)
-    entries = listed(folder)
+    try:
+        entries = listed(folder)
+        svgs = {name: (folder / f"{name}.svg").read_bytes() for name in entries}
+    except FileNotFoundError as error:
+        raise FileNotFoundError(
+            f"{error.filename} is missing: draw the figures again (impactlab figures)"
+        ) from None
     if any(entry.get("made_from") != identity(made_from) for entry in entries.values()):
         raise ValueError(
             f"{folder}: its figures were drawn from other results: draw them again with "
@@ -200,19 +190,19 @@ def pictures(
     names = sorted(entries, key=lambda name: order.get(name, len(order)))
     found = {}
     for number, name in enumerate(names, 1):
-        entry, svg = entries[name], _read(folder / f"{name}.svg")
+        entry, svg = entries[name], svgs[name]
         root = re.search(rb'<svg [^>]*?\bwidth="([\d.]+)pt"', svg)  # as matplotlib writes it
         numbers = folder / f"{name}.csv"
-        found[name] = Picture(
-            number,
-            name,
-            entry["title"],
-            entry["caption"],
-            f"{entry['title']}. {entry['alt']}".strip(),
-            f"data:image/svg+xml;base64,{base64.b64encode(svg).decode('ascii')}",
-            round(float(root.group(1)) * 96 / 72 * _SCREEN) if root else 0,
-            drawn_data(numbers) if numbers.exists() else None,
-        )
+        found[name] = {
+            "number": number,
+            "name": name,
+            "title": entry["title"],
+            "caption": entry["caption"],
+            "alt": f"{entry['title']}. {entry['alt']}".strip(),
+            "uri": f"data:image/svg+xml;base64,{base64.b64encode(svg).decode('ascii')}",
+            "width": round(float(root.group(1)) * 96 / 72 * _SCREEN) if root else 0,
+            "data": drawn_data(numbers) if numbers.exists() else None,
+        }
     return found
 
 
@@ -220,15 +210,6 @@ def leading(names: Iterable[str]) -> str:
     """Return the name of the figure that answers a study's question; "" without any."""
     listed = list(names)
     return next((name for name in _LEADING if name in listed), listed[0] if listed else "")
-
-
-def _read(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except FileNotFoundError:
-        raise FileNotFoundError(
-            f"{path} is missing: draw the figures again (impactlab figures)"
-        ) from None
 
 
 def drawn_data(path: Path) -> Table:

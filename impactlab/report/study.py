@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -75,7 +76,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     if warnings := list(cautions(runs, analysis)):
         title = "Before using these numbers"
         sections.insert(0, Section("cautions", title, sentences=warnings, grave=True))
-    if remarks := notes(runs):
+    if remarks := list(notes(runs)):
         title = "Notes on the model"
         sections.append(Section("notes", title, sentences=remarks, closed=True))
     ending, method = endings(runs), labels.method(str(runs.attrs.get("method", "grid")))
@@ -104,10 +105,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     A grid: convergence, results, what a wing adds, how the runs ended, inputs. A sample: ranking,
     indices, numerical uncertainty, distributions; how the runs ended, inputs, scatters.
     """
-    fixed = [table for table in [_fixed_parameters(runs)] if table.rows]
-    tables = [table for table in [_varied_parameters(runs)] if table.rows]
-    inputs = Section("runs", "What was varied", tables=tables, folded=fixed)
-    ranges = _ranges(runs, analysis)
+    inputs, ranges = _inputs(runs), _ranges(runs, analysis)
     if not is_sample(runs):
         added = wings.added("sections", runs)
         return [
@@ -131,10 +129,10 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     ]
 
 
-def _varied_parameters(runs: xr.Dataset) -> Table:
-    """Return one row per varied parameter: its values, or its distribution and group."""
+def _inputs(runs: xr.Dataset) -> Section:
+    """Return the section on the parameters: varied ones with values or distribution, fixed ones."""
     groups = dict(zip(names(runs, "varied"), names(runs, "groups"), strict=False))
-    rows: list[Row] = [
+    changed: list[Row] = [
         [
             labels.sentence(labels.parameter(name)),
             *_values(_described(runs, name)),
@@ -143,19 +141,18 @@ def _varied_parameters(runs: xr.Dataset) -> Table:
         ]
         for name in varied(runs)
     ]
-    head = ["Parameter", "Values", "Number", *["Group"] * bool(groups), "Key"]
-    return Table("Varied parameters", head, rows)
-
-
-def _fixed_parameters(runs: xr.Dataset) -> Table:
-    rows: list[Row] = []
+    fixed: list[Row] = []
     for name in [*PARAMETERS, "duration"]:
         if name in runs.coords and runs[name].ndim == 0 and name not in varied(runs):
             coordinate = _described(runs, name)
             label = labels.sentence(coordinate.attrs["long_name"])
             text = labels.values(coordinate.expand_dims("one"), [0])[0] + labels.unit(coordinate)
-            rows.append([label, text, Cell(name, "muted")])
-    return Table("Parameters that are the same in every run", ["Parameter", "Value", "Key"], rows)
+            fixed.append([label, text, Cell(name, "muted")])
+    head = ["Parameter", "Values", "Number", *["Group"] * bool(groups), "Key"]
+    tables = [Table("Varied parameters", head, changed)] if changed else []
+    head, caption = ["Parameter", "Value", "Key"], "Parameters that are the same in every run"
+    folded = [Table(caption, head, fixed)] if fixed else []
+    return Section("runs", "What was varied", tables=tables, folded=folded)
 
 
 def _described(runs: xr.Dataset, name: str) -> xr.DataArray:
@@ -246,7 +243,10 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
         if gaps < shown.size:
             levels = np.nanquantile(shown, list(quantiles.values()))
             numbers = [np.nanmin(shown), *levels, np.nanmax(shown)]
-            details = [""] * len(numbers) if quantiles else _extremes(runs, array)
+            details = [""] * len(numbers) if quantiles else ["in every run"] * 2
+            if not quantiles and array.min() < array.max():
+                ends: Any = (array.argmin(...), array.argmax(...))
+                details = [_place(runs, {dim: int(i) for dim, i in at.items()}) for at in ends]
             cells = [
                 Cell(labels.number(float(number)), "number", detail)
                 for number, detail in zip(numbers, details, strict=True)
@@ -259,19 +259,6 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
         rows.append([response, unit.symbol or "–", *cells, missing])
     head = ["Response", "Unit", "Smallest", *quantiles, "Largest", "Runs missing"]
     return Table("Range of each response", head, rows)
-
-
-def _extremes(runs: xr.Dataset, array: xr.DataArray) -> list[str]:
-    """Return the runs with the smallest and the largest value."""
-    if array.min() == array.max():
-        return ["in every run"] * 2
-    places = []
-    for flat in (int(np.nanargmin(array.values)), int(np.nanargmax(array.values))):
-        position = np.unravel_index(flat, array.shape)
-        places.append(
-            _place(runs, dict(zip(map(str, array.dims), map(int, position), strict=True)))
-        )
-    return places
 
 
 def _all_values(runs: xr.Dataset) -> list[Table]:
