@@ -83,14 +83,15 @@ def notes(runs: xr.Dataset) -> Iterator[str]:
     for law in LAWS:
         about = CONTACT_LAWS[law]
         if law in used["contact"] and (about.flaws or about.unconfirmed):
-            parts = [f"Some runs use the contact law “{law}” ({about.title}).", about.flaws]
-            if "energy" in about.flaws:
-                parts.append(
-                    "This comes from the law, not from the solver; the energy balance accounts for "
-                    "it."
-                )
-            if about.unconfirmed:
-                parts.append(f"The following is not confirmed: {about.unconfirmed}.")
+            source = (
+                "This comes from the law, not from the solver; the energy balance accounts for it."
+            )
+            parts = [
+                f"Some runs use the contact law “{law}” ({about.title}).",
+                about.flaws,
+                source * ("energy" in about.flaws),
+                f"The following is not confirmed: {about.unconfirmed}." * bool(about.unconfirmed),
+            ]
             yield " ".join(filter(None, parts))
     if "peak_plastic_strain" in runs:
         yield (
