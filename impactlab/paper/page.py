@@ -42,7 +42,7 @@ FIGURES = (
 
 
 def write_paper(folders: Sequence[Path], output: Path) -> None:
-    """Draw the figures, judge the statements, and write both to the folder `output`.
+    """Draw the figures as figure_05a and so on, judge the statements, write both to `output`.
 
     folders: runs.nc and analysis.nc of one study each, under the study's name. Raises OSError
     where a file cannot be read or written.
@@ -61,7 +61,15 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
     statements = [entry for entry in judged if not entry[0].holds]
     misprints = [entry for entry in judged if entry[0].holds]
     tally = Counter(each.verdict for _, judgements in statements for each in judgements)
-    draw_paper(stored, output / "figures")
+    drawings = []
+    for number, study, name in FIGURES:
+        figure = applicable(*stored[study]).get(name) if study in stored else None
+        if figure:
+            title = f"{number.lstrip('0')}. {figure.title}"
+            plot = partial(figure.plot, *stored[study])
+            caption = partial(_caption, study, figure, *stored[study])
+            drawings.append(Drawing(f"figure_{number}", title, plot, caption))
+    draw(drawings, output / "figures", study="paper")
     _write_tables(judged, output)
     write_page(
         "statements.html.j2",
@@ -75,22 +83,6 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
         solved=_solved(runs),
         provenance=provenance(xr.Dataset(attrs=made_now()), "page"),
     )
-
-
-def draw_paper(stored: Mapping[str, tuple[xr.Dataset, xr.Dataset]], folder: Path) -> list[Path]:
-    """Draw the figures whose studies are stored, as figure_05a and so on; see `draw`.
-
-    stored: runs and analysis of each study by its name.
-    """
-    drawings = []
-    for number, study, name in FIGURES:
-        figure = applicable(*stored[study]).get(name) if study in stored else None
-        if figure:
-            title = f"{number.lstrip('0')}. {figure.title}"
-            plot = partial(figure.plot, *stored[study])
-            caption = partial(_caption, study, figure, *stored[study])
-            drawings.append(Drawing(f"figure_{number}", title, plot, caption))
-    return draw(drawings, folder, study="paper")
 
 
 def _caption(study: str, figure: Figure, runs: xr.Dataset, analysis: xr.Dataset) -> str:

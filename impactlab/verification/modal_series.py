@@ -42,7 +42,6 @@ high frequencies, whose waves the nodes resolve worst.
 """
 NODES = (51, 101, 201, 401, 801)
 MIDDLE, FINEST = 201, 801
-ORDER, ORDER_TOLERANCE = 2.0, 0.2
 
 
 def _finding(
@@ -91,7 +90,7 @@ def _compare(where: str, runs: Mapping[int, xr.Dataset], series: ModalSolution) 
     for name, (quantity, _, _) in HISTORIES.items():
         coarse, fine = (error(name, series, runs[nodes]) for nodes in NODES[-2:])
         label, observed = f"order of convergence of {quantity}", float(np.log2(coarse / fine))
-        found.append(absolute(label, where, "1", observed, ORDER, ORDER_TOLERANCE))
+        found.append(absolute(label, where, "1", observed, 2.0, 0.2))
     return found
 
 
@@ -105,7 +104,7 @@ def histories(where: str, run: xr.Dataset, series: ModalSolution) -> list[Compar
             units,
             run[name].values,
             series.at(name, time),
-            tolerance * (MIDDLE / nodes) ** ORDER,
+            tolerance * (MIDDLE / nodes) ** 2.0,
         )
         for name, (quantity, units, tolerance) in HISTORIES.items()
     ]
@@ -134,7 +133,7 @@ def _panels(
         Curve(label, nodes, np.array([error(name, series, runs[n]) for n in NODES]))
         for name, (label, _, _) in HISTORIES.items()
     ]
-    slope = Curve("second order", nodes, errors[0].y[0] * (nodes[0] / nodes) ** ORDER, True)
+    slope = Curve("second order", nodes, errors[0].y[0] * (nodes[0] / nodes) ** 2.0, True)
     axes = ("nodes", "1"), ("error (root mean square over the largest value)", "1")
     return [*panels, Panel(title, *axes, [*errors, slope], log=True)]
 

@@ -94,10 +94,7 @@ def _yielding(contact: str) -> Impact:
     return with_beam_material(paper_impact(15.0, contact), **moduli)
 
 
-@check(
-    "Similarity and units",
-    "Buckingham, Phys. Rev. 4 (1914) 345: on physically similar systems",
-)
+@check("Similarity and units", "Buckingham, Phys. Rev. 4 (1914) 345: on physically similar systems")
 def similarity() -> Finding:
     """Compare every response, history and profile of the scaled impact with the original.
 
@@ -127,11 +124,7 @@ def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> l
     in both runs is no error.
     """
     energy = float(0.5 * run.sphere_mass * run.velocity**2)
-    yardsticks = {
-        "contact_dissipation": energy,
-        "plastic_dissipation": energy,
-        "energy_error": 1.0,
-    }
+    yardsticks = {"contact_dissipation": energy, "plastic_dissipation": energy, "energy_error": 1.0}
     responses = []
     for name, entry in RESPONSES.items():
         expected, ours = run[name].item(), scaled[name].item() / scale.factor(entry.units)

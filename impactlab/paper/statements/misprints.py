@@ -24,12 +24,7 @@ from impactlab.paper.statements.statement import (
     statement,
 )
 from impactlab.verification.solutions import bending, explicit_beam, hertz, quadrature
-from impactlab.verification.solutions.stronge import (
-    CONSTRAINT,
-    HARDNESS,
-    U_PLASTIC,
-    stronge_impact,
-)
+from impactlab.verification.solutions.stronge import CONSTRAINT, HARDNESS, U_PLASTIC, stronge_impact
 
 EQUAL = 1e-9
 """Relative difference within which two forces agree."""

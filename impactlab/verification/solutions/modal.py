@@ -79,31 +79,21 @@ def solve(
 
 
 def solve_timoshenko(
-    impact: Impact,
-    duration: float,
-    *,
-    modes: int = 100,
-    step: float | None = None,
-    compliance: float = 0.0,
+    impact: Impact, duration: float, *, modes: int = 100, step: float | None = None
 ) -> ModalSolution:
     """Solve the impact on an elastic Timoshenko beam over `duration` (s), with `modes` odd n.
 
-    step as in solve, compliance as in solve_with. Errors fall with modes^-3; in the
-    paper's case 100 leave below 1e-7 of peak force and contact duration, and 1e-5 of the largest
-    curvature. amplitudes and rates of the solution have the shape (time, 2 modes): the lower
-    spectrum, then the higher one.
+    step as in solve. Errors fall with modes^-3; in the paper's case 100 leave below 1e-7 of peak
+    force and contact duration, and 1e-5 of the largest curvature. amplitudes and rates of the
+    solution have the shape (time, 2 modes): the lower spectrum, then the higher one.
 
     Raises ValueError as solve does.
     """
-    return solve_with(timoshenko_odd_modes(impact.beam, modes), impact, duration, step, compliance)
+    return solve_with(timoshenko_odd_modes(impact.beam, modes), impact, duration, step)
 
 
 def solve_with(
-    modes: BeamModes,
-    impact: Impact,
-    duration: float,
-    step: float | None,
-    compliance: float = 0.0,
+    modes: BeamModes, impact: Impact, duration: float, step: float | None, compliance: float = 0.0
 ) -> ModalSolution:
     """Solve the impact on the beam that has these modes; the rest as in solve.
 

@@ -72,10 +72,6 @@ class StrongeImpact:
         root = brentq(lambda x: _work(x) - scaled, 1.0, limit, xtol=1e-13, rtol=1e-14)
         return self.yield_indentation * float(root)
 
-    def peak_force(self, velocity: float, mass: float) -> float:
-        """Return F_m in N at the delta_m of `mass` (kg) at `velocity` (m/s)."""
-        return self.loading_force(self.maximum_indentation(velocity, mass))
-
     def unloading_radius(self, maximum_indentation: float) -> float:
         """Return R_e in m, from R_e/R* = sqrt(F_m/F_y); R* while elastic."""
         force = self.loading_force(maximum_indentation)

@@ -73,11 +73,6 @@ def test_maximum_indentation_inverts_the_work(x):
     assert deepest == pytest.approx(x * BODIES.yield_indentation, rel=1e-12)
 
 
-def test_peak_force_is_the_force_at_the_depth_that_the_energy_reaches():
-    force = BODIES.peak_force(velocity_reaching(10.0), MASS)
-    assert force == pytest.approx(BODIES.yield_force * written_out(10.0), rel=1e-10)
-
-
 @pytest.mark.parametrize("x", [1.5, 10.0, 200.0])
 def test_restitution_is_the_rebound_of_the_sphere(x):
     velocity = velocity_reaching(x)
