@@ -6,7 +6,7 @@ import logging
 import shutil
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing import resource_tracker
@@ -62,31 +62,27 @@ class Engine:
         for name in _LOGGERS:  # errors are raised and reported by the command
             logging.getLogger(name).setLevel(logging.CRITICAL)
         logging.getLogger("asyncio").addFilter(_no_late_timeout)
-        if self.address:
-            clients = _running(self.address)
-        elif self.profile:
-            clients = _slurm(self.profile)
-        else:
-            clients = _here(self.workers, processes=self.kind == "processes")
-        with dask.config.set(_SETTINGS), clients as client:
-            yield client
+        tls = self.address.startswith("tls:")
+        if tls and not Security().get_connection_args("client")["ssl_context"]:
+            reason = "dask's settings name no certificate (distributed.comm.tls)"
+            raise OSError(f"{self.address}: {reason}")
+        # no client is dask's default: xarray would lock its files through the scheduler, which is
+        # slow and never ends after Ctrl-C
+        clients: AbstractContextManager[Client]
+        with dask.config.set(_SETTINGS):
+            if self.address:
+                clients = Client(self.address, timeout=10, set_as_default=False)
+            elif self.profile:
+                clients = _slurm(self.profile)
+            else:
+                clients = _here(self.workers, processes=self.kind == "processes")
+            with clients as client:
+                yield client
 
 
 def _no_late_timeout(record: logging.LogRecord) -> bool:
     """Return False for a timeout that dask leaves when its loop ends while a sender waits."""
     return not isinstance(record.exc_info and record.exc_info[1], TornadoTimeoutError)
-
-
-# No client is dask's default: xarray would lock its files through the scheduler, which is slow and
-# never ends after Ctrl-C.
-
-
-@contextmanager
-def _running(address: str) -> Iterator[Client]:
-    if address.startswith("tls:") and not Security().get_connection_args("client")["ssl_context"]:
-        raise OSError(f"{address}: dask's settings name no certificate (distributed.comm.tls)")
-    with Client(address, timeout=10, set_as_default=False) as client:
-        yield client
 
 
 @contextmanager

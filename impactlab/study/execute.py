@@ -8,6 +8,7 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +47,7 @@ def open_runs(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterat
         shards = Shards(shards_folder, work.output, solver.version)
         for keys in shards.recover():
             index.done[index.find(keys)[1]] = True
-        missing, repeats = index.missing(), index.size - index.distinct
+        missing, repeats = np.flatnonzero(~index.done), index.size - index.distinct
         before = index.distinct - missing.size
         equal = f" ({repeats} more are equal to one of them)" if repeats else ""
         log.info("%d runs%s, %d of them solved before", index.distinct, equal, before)
@@ -124,39 +125,44 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
             queue.update(pool.submit())
 
 
+@dataclass
 class WorkerPool:
-    """The workers of a client, and the batches that they solve."""
+    """The workers of a client, and the batches that they solve.
 
-    def __init__(self, client: Client, work: Work, batches: Batches) -> None:
-        """Count the workers with the first submission."""
-        self._client, self._work, self._batches = client, work, batches
-        self._solver = solver_of(work.design)
-        self._under_way: dict[Any, Array] = {}
-        self._threads, self._counted = 1, 0.0
+    under_way: runs by the key of their task. threads: of all workers, as counted last.
+    """
+
+    client: Client
+    work: Work
+    batches: Batches
+    under_way: dict[Any, Array] = field(default_factory=dict)
+    threads: int = 1
+    counted: float = 0.0
 
     def submit(self) -> list[Task]:
         """Submit and return new tasks, as many as keep the workers busy.
 
         Their threads are counted now and then: on a cluster they come and go.
         """
-        if time.monotonic() - self._counted >= _LOOK_AGAIN:
+        if time.monotonic() - self.counted >= _LOOK_AGAIN:
             try:
-                before, self._threads = self._threads, sum(self._client.nthreads().values())
+                before, self.threads = self.threads, sum(self.client.nthreads().values())
             except OSError as error:
                 raise ConnectionError(_GONE) from error
-            self._counted = time.monotonic()
-            if before and not self._threads:
+            self.counted = time.monotonic()
+            if before and not self.threads:
                 log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
-        workers, work, futures = max(1, self._threads), self._work, []
-        while len(self._under_way) < _AHEAD * workers:
-            runs = self._batches.take(workers)
+        workers, work, futures = max(1, self.threads), self.work, []
+        while len(self.under_way) < _AHEAD * workers:
+            runs = self.batches.take(workers)
             if not runs.size:
                 break
             cases, version = work.solver.cases(work.design, runs), work.solver.version
-            future = self._client.submit(
-                solve_batch, self._solver, cases, work.output, version, pure=False
+            solver = solver_of(work.design)
+            future = self.client.submit(
+                solve_batch, solver, cases, work.output, version, pure=False
             )
-            self._under_way[future.key] = runs
+            self.under_way[future.key] = runs
             futures.append(future)
         return futures
 
@@ -176,9 +182,9 @@ class WorkerPool:
             raise OSError(f"a dask worker failed: {error}. {_KEPT}") from error
         if isinstance(result, CancelledError | asyncio.CancelledError):  # returned, not raised
             raise ConnectionError(_GONE) from result
-        runs, (columns, seconds) = self._under_way.pop(future.key), result
+        runs, (columns, seconds) = self.under_way.pop(future.key), result
         future.release()
-        self._batches.learn(float(self._work.cost[runs].sum()), seconds)
+        self.batches.learn(float(self.work.cost[runs].sum()), seconds)
         return runs, columns
 
 

@@ -180,18 +180,12 @@ def _scale(written: str) -> Scale | None:
     return ten, metre, kilogram, second
 
 
-_PERIODS = (
-    (365.25 * 86400, "years"),
-    (86400, "days"),
-    (3600, "hours"),
-    (60, "minutes"),
-    (1, "s"),
-)
+_PERIODS = {365.25 * 86400: "years", 86400: "days", 3600: "hours", 60: "minutes", 1: "s"}
 
 
 def time(seconds: float) -> str:
     """Return a time with two digits in the largest unit that fits: 90 s is "1.5 minutes"."""
-    for size, unit in _PERIODS:
+    for size, unit in _PERIODS.items():
         if seconds >= size:
             return f"{_two_digits(seconds / size)} {unit}"
     return f"{_two_digits(1e3 * seconds)} ms"

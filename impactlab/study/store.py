@@ -190,10 +190,6 @@ class RunIndex:
         requested: Array = self._keys[runs] == keys
         return requested, runs[requested]
 
-    def missing(self) -> Array:
-        """Return the runs without an answer, ascending; the first of equal runs stands for all."""
-        return np.flatnonzero(~self.done)
-
     def left(self) -> int:
         """Count the runs of the design without an answer, equal ones each."""
         return int(np.count_nonzero(~self.done) + np.count_nonzero(~self.done[self._firsts]))

@@ -62,17 +62,17 @@ def read_text(path: Path) -> str:
     try:
         if not path.is_file():
             reason = "is not a file" if path.exists() else "there is no such file"
-            raise StudyError(Problem(str(path), "", reason))
-        with path.open("rb") as file:
-            raw = file.read(LARGEST + 1)
-        if len(raw) > LARGEST:
+        else:
+            with path.open("rb") as file:
+                raw = file.read(LARGEST + 1)
+            if len(raw) <= LARGEST:
+                return raw.decode("utf-8")
             reason = f"is larger than {LARGEST // 1024} KiB: shorten it"
-            raise StudyError(Problem(str(path), "", reason))
-        return raw.decode("utf-8")
     except OSError as error:
-        raise StudyError(Problem(str(path), "", f"cannot be read: {error.strerror}")) from None
+        reason = f"cannot be read: {error.strerror}"
     except UnicodeDecodeError:
-        raise StudyError(Problem(str(path), "", "is not text in UTF-8: save it as such")) from None
+        reason = "is not text in UTF-8: save it as such"
+    raise StudyError(Problem(str(path), "", reason))
 
 
 def read_mapping(text: str, file: str) -> dict[str, Any]:

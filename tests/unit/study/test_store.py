@@ -199,18 +199,18 @@ def keys(*numbers):
 
 def test_answers_find_the_runs_of_their_keys():
     index = RunIndex(keys(256, 1, 512, 2))
-    assert index.missing().tolist() == [0, 1, 2, 3]
+    assert np.flatnonzero(~index.done).tolist() == [0, 1, 2, 3]
     requested, runs = index.find(keys(2, 999, 256))
     assert requested.tolist() == [True, False, True]
     assert runs.tolist() == [3, 0]
     index.done[runs] = True
-    assert index.missing().tolist() == [1, 2]
+    assert np.flatnonzero(~index.done).tolist() == [1, 2]
     assert index.left() == 2
 
 
 def test_the_first_of_equal_runs_stands_for_all():
     index = RunIndex(keys(7, 3, 7, 3, 7))
-    assert index.missing().tolist() == [0, 1]
+    assert np.flatnonzero(~index.done).tolist() == [0, 1]
     assert index.left() == 5
     assert index.distinct == 2
     index.done[index.find(keys(3))[1]] = True
