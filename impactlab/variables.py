@@ -125,12 +125,10 @@ ANALYSES: dict[str, str] = {
 }
 """Names of the analyses (modules of impactlab.analysis), and what runs each one needs."""
 
-UNLIKE: dict[str, str] = {
-    "peak_plastic_strain": "with the contact in 3-D, of bending alone in the beam models",
-    "plastic_zone_length": "with the contact in 3-D, of bending alone in the beam models",
-    "plastic_dissipation": "with the contact in 3-D, of bending alone in the beam models",
-    "energy_error": "of each model's own balance",
-}
+UNLIKE: dict[str, str] = dict.fromkeys(
+    ("peak_plastic_strain", "plastic_zone_length", "plastic_dissipation"),
+    "with the contact in 3-D, of bending alone in the beam models",
+) | {"energy_error": "of each model's own balance"}
 """Responses that are not the same quantity in the 3-D model and in those of the beam, and why."""
 
 

@@ -36,15 +36,14 @@ class Parameter:
     whole: bool = False
 
 
-_HARDENING = ("isotropic_hardening_modulus", "kinematic_hardening_modulus")
-_MATERIAL = {
-    "density": ("kg m-3", "density"),
-    "youngs_modulus": ("Pa", "Young's modulus"),
-    "poissons_ratio": ("1", "Poisson's ratio"),
-    "yield_stress": ("Pa", "yield stress"),
-    _HARDENING[0]: ("Pa", "isotropic hardening modulus"),
-    _HARDENING[1]: ("Pa", "kinematic hardening modulus"),
-}
+_MATERIAL = (
+    ("density", "kg m-3", "density"),
+    ("youngs_modulus", "Pa", "Young's modulus"),
+    ("poissons_ratio", "1", "Poisson's ratio"),
+    ("yield_stress", "Pa", "yield stress"),
+    ("isotropic_hardening_modulus", "Pa", "isotropic hardening modulus"),
+    ("kinematic_hardening_modulus", "Pa", "kinematic hardening modulus"),
+)
 _ROWS = (
     ("velocity", "m s-1", "impact velocity", "impact.velocity"),
     ("gravity", "m s-2", "gravity on the sphere", "impact.gravity"),
@@ -54,8 +53,7 @@ _ROWS = (
     ("sphere_mass", "kg", "mass of the sphere", "impact.sphere.mass"),
     *(
         (f"sphere_{field}", units, f"{words} of the sphere", f"impact.sphere.material.{field}")
-        for field, (units, words) in _MATERIAL.items()
-        if field not in _HARDENING
+        for field, units, words in _MATERIAL[:4]  # a sphere does not harden
     ),
     ("beam_span", "m", "span of the beam", "impact.beam.span"),
     ("beam_width", "m", "width of the beam", "impact.beam.width"),
@@ -63,7 +61,7 @@ _ROWS = (
     ("shear_coefficient", "1", "shear coefficient of the beam", "impact.beam.shear_coefficient"),
     *(
         (f"beam_{field}", units, f"{words} of the beam", f"impact.beam.material.{field}")
-        for field, (units, words) in _MATERIAL.items()
+        for field, units, words in _MATERIAL
     ),
     ("nodes", "1", "nodes along the span", "discretisation.nodes"),
     ("points", "1", "integration points over the depth", "discretisation.points"),

@@ -88,33 +88,27 @@ class Surrogate:
 
     def _checked(self, name: str, value: Any) -> xr.DataArray:
         """Return a parameter's values as floats. Raises ValueError where it cannot take one."""
-        array = _array(name, value)
+        labelled = isinstance(value, xr.DataArray)
+        try:
+            array: Any = value.astype(float) if labelled else np.asarray(value, dtype=float)
+        except (TypeError, ValueError):
+            raise ValueError(f"{name} = {value!r}: expected numbers in SI units") from None
+        if not labelled and array.ndim > 1:
+            raise ValueError(
+                f"{name}: has {array.ndim} dimensions: give a number, a list, or a DataArray"
+            )
         entry = self.dataset.sel(parameter=name)
         low, high = float(entry["lowest"]), float(entry["highest"])
-        outside = ~((array.values >= low) & (array.values <= high))
+        found = np.asarray(array)
+        outside = ~((found >= low) & (found <= high))
         if outside.any():
-            worst = float(array.values[outside][0])
+            worst = float(found[outside][0])
             raise ValueError(
                 f"{name} = {worst!r}: outside {low!r} to {high!r} ({self.units(name)}), where the "
                 f"surrogate of study {self._study} was trained: choose a value within, or "
                 "sample a wider range"
             )
-        return array
-
-
-def _array(name: str, value: Any) -> xr.DataArray:
-    """Return a parameter's values as floats. Raises ValueError where they are not numbers."""
-    if isinstance(value, xr.DataArray):
-        return value.astype(float)
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: expected numbers in SI units") from None
-    if array.ndim > 1:
-        raise ValueError(
-            f"{name}: has {array.ndim} dimensions: give a number, a list, or a DataArray"
-        )
-    return xr.DataArray(array, dims=("point",)[: array.ndim])
+        return array if labelled else xr.DataArray(array, dims=("point",)[: array.ndim])
 
 
 def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
