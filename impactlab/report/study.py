@@ -84,6 +84,8 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         "report.html.j2",
         path,
         **described(runs),
+        heading="Answer",
+        bad=False,
         answers=answer,
         note=note,
         leading=drawn.pop(first, None),
@@ -95,7 +97,10 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         ending=ending,
         pictures=drawn,
         files=os.path.relpath(figures_folder, path.parent),
+        anchors=[(section.name, section.title) for section in sections],
         sections=sections,
+        command="run",
+        purpose="solves this study again",
     )
 
 

@@ -44,7 +44,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
     outcomes = gravest_first(unpacked(findings))
     answer, note = entries(findings)
     drawn, found = pictures(figures_folder, made_from=findings), tally(outcomes)
-    checks = []
+    bad, checks = bool(found["bad_checks"]) or not outcomes, []
     for outcome in outcomes:
         passed = [_row(entry) for entry in outcome.finding.comparisons if entry.passed]
         failed = [_row(entry) for entry in outcome.failures]
@@ -60,14 +60,19 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
         "verification.html.j2",
         path,
         **described(findings, "findings"),
+        heading="Verification failed" if bad else "Verification passed",
+        bad=bad,
         answers=answer,
         note=note,
         leading=drawn.get(OVERVIEW),
         facts=[labels.counted(found[f"{what}s"], what) for what in ("check", "comparison")],
         ending="",
-        bad=bool(found["bad_checks"]) or not outcomes,
+        files="",
+        anchors=[("summary", "All checks"), *((each.name, each.title) for each in outcomes)],
         summary=_summary(outcomes),
         checks=checks,
+        command="verify",
+        purpose="repeats these checks",
     )
 
 
