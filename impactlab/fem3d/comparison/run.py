@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import tempfile
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
@@ -134,24 +133,17 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
 
 def write_csv(found: xr.Dataset, path: Path) -> None:
     """Write one row per response and model, in SI units; whole or not at all (see whole)."""
+    table = found.to_dataframe(["response", "model"]).reset_index()
+    why = table["status"].map(lambda status: "; ".join(reasons(status)))
+    table["missing_because"] = why.where(table["value"].isna(), "")
+    table["value"] = table["value"].map("{:.9g}".format, na_action="ignore")
+    share = 100.0 * table["difference"]
+    table["difference_percent"] = share.map("{:.6g}".format, na_action="ignore")
     with (
         replaced(path, found["value"].size * len(_HEAD) * 8) as unfinished,
         unfinished.open("w", encoding="utf-8", newline="") as file,
     ):
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(_HEAD)
-        for at in np.ndindex(found["value"].shape):
-            one = found.isel(response=at[0], model=at[1])
-            value, share = one["value"].item(), 100.0 * one["difference"].item()
-            missing = np.isnan(value)
-            writer.writerow(
-                [
-                    *(one[key].item() for key in _HEAD[:3]),
-                    "" if missing else f"{value:.9g}",
-                    "" if np.isnan(share) else f"{share:.6g}",
-                    "; ".join(reasons(one["status"].item())) if missing else "",
-                ]
-            )
+        table.to_csv(file, columns=_HEAD, index=False, lineterminator="\n")
 
 
 def write_vtu(dataset: xr.Dataset, path: Path) -> None:

@@ -119,9 +119,8 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
     pause = 4.0 * mesh.patch / float(np.sqrt(steel.youngs_modulus / steel.density))
     answers, status = responses(history, impact, pause)
     answers |= plastic_responses(mesh, impact, own["largest_equivalent_plastic_strain"])
-    answers["plastic_dissipation"] = (
-        history.energies[-1].plastic_work if history.energies else np.nan
-    )
+    worked = history.energies[-1].plastic_work if history.energies else np.nan
+    answers["plastic_dissipation"] = worked
     last = history.moments[-1].time
     even = np.linspace(0.0, last, samples)
     energies = np.array(history.energies).reshape(-1, 7).T
@@ -142,7 +141,7 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
             "displacement": (("node", "axis"), system.x - mesh.nodes),
         },
         coords={
-            **{name: given[name] for name in IMPACT_PARAMETERS if name in given},
+            **{name: given[name] for name in IMPACT_PARAMETERS},
             "time": even,
             "checkpoint_time": ("checkpoint", times),
             "node_position": (("node", "axis"), mesh.nodes),

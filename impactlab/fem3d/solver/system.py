@@ -265,22 +265,10 @@ class System:
 
     def move(self, velocity_dt: float, dt: float) -> None:
         """Apply the elements' forces for velocity_dt (s), move the nodes by dt, and close gaps."""
-
-        def work(part: int) -> None:
-            integrate(
-                self.pool.share(part, len(self.x)),
-                self.assembly.starts,
-                self.assembly.slots,
-                self.forces,
-                self.inverse_mass,
-                self.pull,
-                self.x,
-                self.v,
-                velocity_dt,
-                dt,
-            )
-
-        self.pool.run(work)
+        pool, count = self.pool, len(self.x)
+        rows = (self.assembly.starts, self.assembly.slots, self.forces)
+        own = (*rows, self.inverse_mass, self.pull, self.x, self.v)
+        pool.run(lambda part: integrate(pool.share(part, count), *own, velocity_dt, dt))
         self.impulse, self.lost, self.beyond = close_gaps(
             self.mesh.pairs, self.mesh.rim, self.inverse_mass, self.x, self.v, dt, self.approach
         )
