@@ -29,8 +29,6 @@ from impactlab.simulate import simulate
 from impactlab.variables import RESPONSES, UNLIKE, attributes, reasons, status_bits
 
 _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")
-COUNTS = ("number_of_contacts",)
-"""Responses of which a relative difference tells nothing."""
 _WHOLE = 9.95
 """Difference in % from which on it is printed without a decimal."""
 _FAR = 1e-3
@@ -105,7 +103,7 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
 
     value: in SI units, as `units` (response) has them; NaN where a model gives none, and `status`
     says why. difference: relative to the 3-D FE model; NaN for responses that are UNLIKE and for
-    COUNTS.
+    the number of contacts, of which it tells nothing.
     """
     names = [name for name in RESPONSES if name in solid]
     both = [runs[[*names, "status"]] for runs in (solid.expand_dims(beam_model=[SOLID]), beams)]
@@ -116,7 +114,7 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
         difference = value / value[:, :1] - 1.0
     difference[~np.isfinite(difference)] = np.nan
     difference[:, 0] = np.nan
-    difference[[name in UNLIKE or name in COUNTS for name in names]] = np.nan
+    difference[[name in UNLIKE or name == "number_of_contacts" for name in names]] = np.nan
     return xr.Dataset(
         {
             "value": (("response", "model"), value),

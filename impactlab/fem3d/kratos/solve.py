@@ -203,10 +203,7 @@ class Run:
         self.history.stopped = f"Newton's iterations did not converge after {before:.4g} s"
 
     def _balanced(self) -> bool:
-        """Return whether forces balance although Kratos' set of touching nodes does not settle.
-
-        A node that barely touches may change sides with each iteration, and no force with it.
-        """
+        """Return whether forces balance although nodes that barely touch still change sides."""
         ratio = self.part.ProcessInfo[self.engine.variable("CONVERGENCE_RATIO")]
         return bool(ratio <= RESIDUAL_RATIO)
 

@@ -105,10 +105,8 @@ def quarter_mesh(
 
 
 def _heights(middle: float, size: float, depth: float, ratio: float, largest: float) -> Floats:
-    """Return the beam's cuts along z, ascending, of which one is its axis at -middle (m).
-
-    A last layer above the axis would be thin where little is left for it: then all are alike.
-    """
+    """Return the beam's cuts along z, ascending, of which one is its axis at -middle (m)."""
+    # Where little is left for a last layer above the axis, which would be thin, all are alike.
     fine = depth if middle - depth > _THINNEST * size else middle
     upper = graded(size, fine, middle, ratio, largest)
     last = upper[-1] - upper[-2]
@@ -155,10 +153,7 @@ def quarter_sphere(
 
 
 def _surface(lattice: Integers, lines: Floats, patch: int, height: int) -> Floats:
-    """Return points of the unit sphere for border places: even rays through a cube but the patch.
-
-    There, and smoothly less beyond, x and y are those of the lines.
-    """
+    """Return points of the unit sphere: x and y of the lines in the patch, even rays elsewhere."""
     sides = lines.size - 1
     rays = np.tan(math.pi / 4 * lattice / np.array([sides, sides, height]))
     points = rays / np.linalg.norm(rays, axis=1, keepdims=True)
@@ -178,10 +173,7 @@ def _away(i: Integers, j: Integers, patch: int, sides: int) -> Floats:
 
 
 def _cells(border: Truths, layers: int) -> tuple[Integers, Integers]:
-    """Return the elements of core and shells, and the node numbers of the lower surface.
-
-    border: which places of the core's lattice lie on its boundary, (i, j, k).
-    """
+    """Return elements and lower surface's nodes; border: that of the core's lattice (i, j, k)."""
     number = np.arange(border.size, dtype=np.int32).reshape(border.shape)
     shell = np.full((layers + 1, *border.shape), -1, dtype=np.int32)
     shell[0] = number

@@ -24,7 +24,6 @@ from impactlab.fem3d.solver.mesh import (
     NEIGHBOURS,
     SPHERE,
     Floats,
-    Integers,
     Mesh,
     nodal_masses,
 )
@@ -85,47 +84,39 @@ MOST_THREADS = 24
 """Pieces of a group: it is shared equally by 2, 3, 4, 6, 8 or 12 threads, too."""
 
 
-@dataclass(frozen=True, eq=False)
-class ForceAssembly:
-    """Rows of forces, (count, 3).
-
-    of_groups: like Group.nodes, the rows in place of the nodes. starts: (n + 1,);
-    slots[starts[i]:starts[i + 1]]: the rows of node i.
-    """
-
-    of_groups: list[Array]
-    starts: Integers
-    slots: Integers
-    count: int
-
-
 def blocks_of(group: Group, first: int, end: int) -> tuple[int, int]:
     """Return the blocks of a group's pieces from `first` to before `end`."""
     blocks = len(group.nodes)
     return blocks * first // MOST_THREADS, blocks * end // MOST_THREADS
 
 
-def force_assembly(groups: Sequence[Group], nodes: int) -> ForceAssembly:
-    """Return the rows of force for the elements of all groups, on that many nodes."""
-    of_groups, owners = [], []
-    count = 0
-    for group in groups:
-        rows = np.empty_like(group.nodes)
-        for piece in range(MOST_THREADS):
-            blocks = slice(*blocks_of(group, piece, piece + 1))
-            own, place = np.unique(group.nodes[blocks], return_inverse=True)
-            rows[blocks] = count + place.reshape(rows[blocks].shape)
-            owners.append(own)
-            count += own.size
-        spare = len(group.nodes) * W - group.elements.size
-        rows.reshape(-1, 8, W)[-1, :, W - spare :] = count  # what fills the last block adds nothing
-        owners.append(np.array([nodes]))
-        count += 1
-        of_groups.append(rows)
-    every = np.concatenate(owners)
-    starts = np.concatenate([[0], np.cumsum(np.bincount(every, minlength=nodes)[:nodes])])
-    slots = np.argsort(every, kind="stable")[: starts[-1]]
-    return ForceAssembly(of_groups, starts.astype(np.int32), slots.astype(np.int32), count)
+class ForceAssembly:
+    """Rows of forces, (count, 3), for the elements of all groups.
+
+    of_groups: like Group.nodes, the rows in place of the nodes. starts: (n + 1,);
+    slots[starts[i]:starts[i + 1]]: the rows of node i.
+    """
+
+    def __init__(self, groups: Sequence[Group], nodes: int) -> None:
+        """Assign the rows of force to elements and nodes; nodes: their number."""
+        self.of_groups, self.count, owners = [], 0, []
+        for group in groups:
+            rows = np.empty_like(group.nodes)
+            for piece in range(MOST_THREADS):
+                blocks = slice(*blocks_of(group, piece, piece + 1))
+                own, place = np.unique(group.nodes[blocks], return_inverse=True)
+                rows[blocks] = self.count + place.reshape(rows[blocks].shape)
+                owners.append(own)
+                self.count += own.size
+            spare = len(group.nodes) * W - group.elements.size
+            rows.reshape(-1, 8, W)[-1, :, W - spare :] = self.count  # fills the block, adds nothing
+            owners.append(np.array([nodes]))
+            self.count += 1
+            self.of_groups.append(rows)
+        every = np.concatenate(owners)
+        starts = np.concatenate([[0], np.cumsum(np.bincount(every, minlength=nodes)[:nodes])])
+        slots = np.argsort(every, kind="stable")[: starts[-1]]
+        self.starts, self.slots = starts.astype(np.int32), slots.astype(np.int32)
 
 
 class ThreadPool(ThreadPoolExecutor):
@@ -236,7 +227,7 @@ class System:
             make_group(mesh.elements, numbers, full, metals[body])
             for body, full, numbers in mesh.groups()
         ]
-        self.assembly = force_assembly(self.groups, len(mesh.nodes))
+        self.assembly = ForceAssembly(self.groups, len(mesh.nodes))
         self.forces = np.zeros((self.assembly.count, 3))
         self.mass = nodal_masses(mesh, impact)
         self.inverse_mass = np.repeat(1.0 / self.mass[:, None], 3, axis=1)

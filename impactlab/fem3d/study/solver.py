@@ -149,10 +149,7 @@ def _priced(
 
 @lru_cache(maxsize=4096)
 def _cost(record: bytes) -> Cost:
-    """Return elements, steps, seconds and bytes of one 3-D run; zeros where no mesh fits.
-
-    Of one that is long or large, what it takes at the least: its mesh may not fit memory.
-    """
+    """Return the cost of a 3-D run, the least one if long or large; zeros where no mesh fits."""
     case = np.frombuffer(record, dtype=SOLID_CASE)[0]
     given, size, duration = _impact_of(case), case["element_size"].item(), case["duration"].item()
     try:

@@ -10,10 +10,10 @@ from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh, brick
 from impactlab.fem3d.solver.system import (
     MOST_THREADS,
+    ForceAssembly,
     System,
     ThreadPool,
     blocks_of,
-    force_assembly,
     make_group,
 )
 from impactlab.model.impact import Beam, Impact, Material, Sphere
@@ -34,7 +34,7 @@ def two_groups():
 
 def test_every_corner_adds_to_a_row_of_its_node():
     nodes, groups = two_groups()
-    rows = force_assembly(groups, nodes)
+    rows = ForceAssembly(groups, nodes)
     owner = np.full(rows.count, -1)
     owner[rows.slots] = np.repeat(np.arange(nodes), np.diff(rows.starts))
     for group, own in zip(groups, rows.of_groups, strict=True):
@@ -49,7 +49,7 @@ def test_every_corner_adds_to_a_row_of_its_node():
 
 def test_pieces_share_no_row():
     nodes, groups = two_groups()
-    rows = force_assembly(groups, nodes)
+    rows = ForceAssembly(groups, nodes)
     pieces = [
         set(own[slice(*blocks_of(group, piece, piece + 1))].ravel().tolist())
         for group, own in zip(groups, rows.of_groups, strict=True)
