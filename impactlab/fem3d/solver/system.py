@@ -16,8 +16,8 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from impactlab.fem3d.solver.elements import FULL_ROWS, ONE_POINT_ROWS, add_forces
-from impactlab.fem3d.solver.hexahedron import SCRATCH, W
-from impactlab.fem3d.solver.jit import Array, compiled
+from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
+from impactlab.fem3d.solver.jit import Array, compiled, inlined
 from impactlab.fem3d.solver.material import POINT_ROWS, Metal
 from impactlab.fem3d.solver.mesh import (
     BEAM,
@@ -295,6 +295,11 @@ def critical_step(system: System) -> float:
     return float(2.0 / np.sqrt(largest))
 
 
+@inlined
+def _edge(x: Array, start: int, end: int) -> Vector:
+    return (x[end, 0] - x[start, 0], x[end, 1] - x[start, 1], x[end, 2] - x[start, 2])
+
+
 @compiled
 def corner_volumes(elements: Array, x: Array, volumes: Array) -> float:
     """Store triple products of the edges at each corner in volumes (e, 8), in m3; inverted: < 0.
@@ -304,20 +309,10 @@ def corner_volumes(elements: Array, x: Array, volumes: Array) -> float:
     shortest = np.inf
     for e in range(elements.shape[0]):
         for corner in range(8):
-            o = elements[e, corner]
-            a = elements[e, NEIGHBOURS[corner, 0]]
-            b = elements[e, NEIGHBOURS[corner, 1]]
-            c = elements[e, NEIGHBOURS[corner, 2]]
-            a0, a1, a2 = x[a, 0] - x[o, 0], x[a, 1] - x[o, 1], x[a, 2] - x[o, 2]
-            b0, b1, b2 = x[b, 0] - x[o, 0], x[b, 1] - x[o, 1], x[b, 2] - x[o, 2]
-            c0, c1, c2 = x[c, 0] - x[o, 0], x[c, 1] - x[o, 1], x[c, 2] - x[o, 2]
-            volumes[e, corner] = (
-                a0 * (b1 * c2 - b2 * c1) + a1 * (b2 * c0 - b0 * c2) + a2 * (b0 * c1 - b1 * c0)
-            )
-            shortest = min(
-                shortest,
-                a0 * a0 + a1 * a1 + a2 * a2,
-                b0 * b0 + b1 * b1 + b2 * b2,
-                c0 * c0 + c1 * c1 + c2 * c2,
-            )
+            start = elements[e, corner]
+            a = _edge(x, start, elements[e, NEIGHBOURS[corner, 0]])
+            b = _edge(x, start, elements[e, NEIGHBOURS[corner, 1]])
+            c = _edge(x, start, elements[e, NEIGHBOURS[corner, 2]])
+            volumes[e, corner] = dot(a, cross(b, c))
+            shortest = min(shortest, dot(a, a), dot(b, b), dot(c, c))
     return float(np.sqrt(shortest))
