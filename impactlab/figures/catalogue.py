@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from impactlab import wings
-from impactlab.figures import convergence, grids, measures, samples, single_runs
+from impactlab.figures import access, convergence, grids, measures, samples, single_runs
 from impactlab.figures.indices import (
     index_bars,
     index_convergence,
@@ -54,5 +54,6 @@ CATALOGUE = {figure.name: figure for figure in (*ANSWERS, *INDICES)}
 def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Figure]:
     """Return the figures that apply to a study, by name, in the order of the report."""
     of_wings: dict[str, Figure] = wings.added("figures", runs) or {}
-    everything = (*of_wings.values(), *ANSWERS, *samples.scatters(runs), *INDICES)
+    scatters = map(samples.scatter, access.responses(runs))
+    everything = (*of_wings.values(), *ANSWERS, *scatters, *INDICES)
     return {figure.name: figure for figure in everything if figure.applies(runs, analysis)}

@@ -137,16 +137,13 @@ def _solid(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.isel(nodes=0) if "nodes" in dataset.dims else dataset
 
 
-def _has_elements(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the grid has at least three sizes of solid elements."""
-    return _elements(runs).applies(runs, analysis) and SOLID in runs["beam_model"].values
-
-
 @record.figure(
     "Convergence in the size of the solid elements",
     "Three-dimensional model alone; elements beyond the contact keep their largest size. "
     f"{_CAPTION}",
-    _has_elements,
+    lambda runs, analysis: (
+        _elements(runs).applies(runs, analysis) and SOLID in runs["beam_model"].values
+    ),
     lambda runs, analysis: _elements(runs).sentences(_solid(runs), _solid(analysis)),
 )
 def element_size_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
@@ -173,7 +170,9 @@ def _draw(
     figure, axes = responses_grid.panels(axis.names(runs), height=44)
     for name, ax in axes.items():
         responses_grid.write_verdict(ax, analysis, f"{axis.name}_summary", name)
-        if _without_limit(analysis, axis, name):
+        flags = _verdicts(analysis, axis.name, name)
+        found = access.occurring(flags) if flags is not None else []
+        if any(verdict.flag == "not_convergent_by_design" for verdict in found):
             _draw_values(ax, runs, name, spacing, selected)
             continue
         difference = _relative_difference(runs, analysis, axis, name)
@@ -189,13 +188,6 @@ def _draw(
             ax.legend(*zip(*orders, strict=True), **_BESIDE)
         _finish(ax, spacing, difference, axis.dim)
     return selected.finish(figure, label, _DIFFERENCE)
-
-
-def _without_limit(analysis: xr.Dataset, axis: Refined, name: str) -> bool:
-    flags = _of(analysis, f"{axis.name}_verdict", name)
-    if flags is None or "flag_values" not in flags.attrs:
-        return False
-    return any(found.flag == "not_convergent_by_design" for found in access.occurring(flags))
 
 
 def _draw_values(ax: Axes, runs: xr.Dataset, name: str, spacing: Floats, selected: Plan) -> None:
@@ -216,8 +208,8 @@ def _unconverged(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[
     """Return a sentence that names the cases behind each verdict that is a warning."""
     found = []
     for name in names:
-        flags = _of(analysis, f"{axis}_verdict", name)
-        if flags is None or "flag_values" not in flags.attrs:
+        flags = _verdicts(analysis, axis, name)
+        if flags is None:
             continue
         warnings = [verdict.value for verdict in access.occurring(flags) if not verdict.sound]
         cases = np.argwhere(np.isin(flags.values, warnings))
@@ -239,9 +231,9 @@ def _enough(runs: xr.Dataset, analysis: xr.Dataset, axis: Refined) -> str:
     finest = _finest(runs, axis.dim)
     order = np.argsort(abs(np.argsort(np.argsort(runs[axis.dim].values)) - finest))
     for name in axis.names(runs):
-        flags = _of(analysis, f"{axis.name}_verdict", name)
+        flags = _verdicts(analysis, axis.name, name)
         uncertainty = _of(analysis, f"{axis.name}_uncertainty", name)
-        if flags is None or uncertainty is None or "flag_values" not in flags.attrs:
+        if flags is None or uncertainty is None:
             continue
         sound = [v.value for v in access.occurring(flags) if v.sound and v.flag != "at_round_off"]
         values = usable(runs, name)
@@ -293,6 +285,12 @@ def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray | None:
     if variable not in analysis or not known(analysis, name):
         return None
     return analysis[variable].sel(response=name, drop=True)
+
+
+def _verdicts(analysis: xr.Dataset, axis: str, name: str) -> xr.DataArray | None:
+    """Return the flags of each case, None without them."""
+    flags = _of(analysis, f"{axis}_verdict", name)
+    return None if flags is None or "flag_values" not in flags.attrs else flags
 
 
 def _trend(

@@ -86,8 +86,8 @@ def plan(
     dims = [dim for dim in design_dims(runs, runs[variable].dims) if dim not in along]
     panels = [Choice({}, "")]
     if panel is not None and panel in dims:
-        where = spread(runs.sizes[panel], _MOST)
-        panels = [Choice({panel: at}, labels.value(runs[panel], at)) for at in where]
+        places = spread(runs.sizes[panel], _MOST)
+        panels = [Choice({panel: at}, labels.value(runs[panel], at)) for at in places]
     rank = {dim: at for at, dim in enumerate(prefer)}
     left = sorted((dim for dim in dims if dim != panel), key=lambda dim: rank.get(dim, len(rank)))
     # beside 3-D runs, as no model there is refined by what refines the other
@@ -98,7 +98,13 @@ def plan(
     shown = _shown({dim: runs.sizes[dim] for dim in several}, most)
     held = {d: _held(runs[d]) for d in left if d not in shown and runs.sizes[d] > 1}
     single = {dim: 0 for dim in left if runs.sizes[dim] == 1}
-    return Plan(panels, _curves(runs, shown, single), shown, held)
+    curves = []
+    for ordinals in product(*(range(len(where)) for where in shown.values())):
+        where = {dim: shown[dim][i] for dim, i in zip(shown, ordinals, strict=True)}
+        label = ", ".join(labels.value(runs[dim], at) for dim, at in where.items())
+        colour, line = (*ordinals, *ordinals, 0, 0)[:2]
+        curves.append(Choice(where | single, label, (colour, line)))
+    return Plan(panels, curves, shown, held)
 
 
 def _shown(sizes: dict[str, int], most: int) -> dict[str, list[int]]:
@@ -115,16 +121,6 @@ def _shown(sizes: dict[str, int], most: int) -> dict[str, list[int]]:
 def spread(size: int, most: int) -> list[int]:
     """Return at most `most` positions of `size`, evenly spread, with the first and the last."""
     return [int(at) for at in np.unique(np.linspace(0, size - 1, min(size, most)).round())]
-
-
-def _curves(runs: xr.Dataset, shown: dict[str, list[int]], single: dict[str, int]) -> list[Choice]:
-    chosen = []
-    for ordinals in product(*(range(len(where)) for where in shown.values())):
-        where = {dim: shown[dim][i] for dim, i in zip(shown, ordinals, strict=True)}
-        label = ", ".join(labels.value(runs[dim], at) for dim, at in where.items())
-        colour, line = (*ordinals, *ordinals, 0, 0)[:2]
-        chosen.append(Choice(where | single, label, (colour, line)))
-    return chosen
 
 
 def _held(coordinate: xr.DataArray) -> int:

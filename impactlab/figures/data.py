@@ -7,8 +7,6 @@ map of colours has no curves: its numbers are in analysis.nc.
 
 from __future__ import annotations
 
-import csv
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
@@ -65,24 +63,6 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         for path in paths:
             path.unlink(missing_ok=True)
         return []
-    with (
-        replaced(paths[0]) as temporary,
-        temporary.open("w", encoding="utf-8", newline="") as file,
-    ):
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*_LABELS, "category", *_POINTS])
-        for one in found:
-            texts = [getattr(one, label) for label in _LABELS]
-            points = zip(*(getattr(one, axis).tolist() for axis in _POINTS), strict=True)
-            for category, point in zip(one.category, points, strict=True):
-                numbers = ["" if math.isnan(number) else f"{number:.9g}" for number in point]
-                writer.writerow([*texts, category, *numbers])
-    write_netcdf(dataset(found).assign_attrs(title=name), paths[1], "figure", dated=False)
-    return paths
-
-
-def dataset(found: list[Drawn]) -> xr.Dataset:
-    """Return the curves on `curve`, with their points one after another on `point`."""
     columns = {
         name if name != "curve" else "curve_label": ("curve", [getattr(one, name) for one in found])
         for name in _LABELS
@@ -97,7 +77,15 @@ def dataset(found: list[Drawn]) -> xr.Dataset:
         for axis, long_name in _POINTS.items()
     }
     category = ("point", [name for one in found for name in one.category])
-    return xr.Dataset({**columns, "points": counts, **points, "category": category})
+    named = {**columns, "points": counts, **points, "category": category}
+    stored = xr.Dataset(named, attrs={"title": name})
+    of_point = xr.DataArray(np.repeat(np.arange(len(found)), counts[1]), dims="point")
+    table = stored.isel(curve=of_point).rename(curve_label="curve").to_dataframe()
+    header = [*_LABELS, "category", *_POINTS]
+    with replaced(paths[0]) as temporary:
+        table[header].to_csv(temporary, index=False, float_format="%.9g", lineterminator="\n")
+    write_netcdf(stored, paths[1], "figure", dated=False)
+    return paths
 
 
 def drawn(figure: Figure) -> Iterator[Drawn]:
@@ -183,7 +171,10 @@ def alt(figure: Figure) -> str:
         panels.add(panel)
         axes = " against ".join(filter(None, (found[0].y_label, found[0].x_label)))
         name = axes if panel.startswith("panel ") else panel
-        described.append(f"{name}: {_in_words(found)}.")
+        every = len(found) <= _CURVES or any(found[0].category)
+        shown = found if every else [max(found, key=lambda curve: float(curve.y.max()))]
+        text = "; ".join(map(_curve, shown))
+        described.append(f"{name}: {text if every else f'highest of {len(found)}: {text}'}.")
     titles = {ax: ax.get_title(loc="left") or "Panel" for ax in figure.axes}
     cells = {ax: text for ax in figure.axes if (text := _cells(ax))}
     meshes = [
@@ -198,16 +189,9 @@ def alt(figure: Figure) -> str:
         if ax.texts and title not in panels and ax not in cells
     ]
     described += [f"{titles[ax]}: {text}." for ax, text in cells.items()] + meshes + remarks
-    shown = " ".join(described[:_PANELS])
+    text = " ".join(described[:_PANELS])
     more = len(described) - _PANELS
-    return f"{shown} And {labels.counted(more, 'more panel')}." if more > 0 else shown
-
-
-def _in_words(found: list[Drawn]) -> str:
-    if len(found) <= _CURVES or any(found[0].category):
-        return "; ".join(map(_curve, found))
-    highest = max(found, key=lambda curve: float(curve.y.max()))
-    return f"highest of {len(found)}: {_curve(highest)}"
+    return f"{text} And {labels.counted(more, 'more panel')}." if more > 0 else text
 
 
 def _curve(curve: Drawn) -> str:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
-from impactlab.figures.access import is_sample, physical, responses, usable
+from impactlab.figures.access import physical, responses, usable
 from impactlab.figures.curves import Plan, plan
 from impactlab.figures.labels import display
 from impactlab.model.discretisation import Discretisation
@@ -103,12 +103,6 @@ def _law_variables(runs: xr.Dataset) -> list[str]:
     return histories + [name for name in (_RESTITUTION, _DENT) if name in runs]
 
 
-def _has_laws(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether a grid has at least three contact laws and three velocities."""
-    few = [dim for dim in ("contact", "velocity") if runs.sizes.get(dim, 0) < _FEWEST]
-    return not is_sample(runs) and not few and bool(_law_variables(runs))
-
-
 def _plan_laws(runs: xr.Dataset) -> Plan:
     """Plan a curve for every law."""
     laws = runs.sizes["contact"]
@@ -128,7 +122,15 @@ def _law_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     ]
 
 
-@record.figure("Contact laws side by side", "", _has_laws, _law_sentences)
+@record.figure(
+    "Contact laws side by side",
+    "",
+    lambda runs, analysis: (
+        all(runs.sizes.get(dim, 0) >= _FEWEST for dim in ("contact", "velocity"))
+        and bool(_law_variables(runs))
+    ),
+    _law_sentences,
+)
 def contact_laws(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel of histories and one per response, with a colour per law."""
     selected, names = _plan_laws(runs), _law_variables(runs)
@@ -188,11 +190,6 @@ def _along(runs: xr.Dataset) -> str | None:
     return next(found, None)
 
 
-def _has_effects(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether a physical parameter of a grid has at least three values."""
-    return not is_sample(runs) and _along(runs) is not None and bool(responses(runs))
-
-
 def _plan_effects(runs: xr.Dataset) -> Plan:
     others = [name for name in physical(runs) if name != _along(runs)]
     return plan(runs, responses(runs)[0], along=[str(_along(runs))], prefer=others)
@@ -201,7 +198,7 @@ def _plan_effects(runs: xr.Dataset) -> Plan:
 @record.figure(
     "Effect of the varied parameters",
     "",
-    _has_effects,
+    lambda runs, analysis: _along(runs) is not None and bool(responses(runs)),
     lambda runs, analysis: (
         f"Responses against the {labels.parameter(str(_along(runs)))}; where curves coincide, the "
         "first in the legend lies on top. A jump is not joined.",
@@ -230,10 +227,10 @@ def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 def _has_shear(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     """Return whether a grid has three depths or more, each with and without shear."""
-    if is_sample(runs) or not all(name in runs for name in _SHEARED):
+    if "beam_model" not in runs.sizes or not all(name in runs for name in _SHEARED):
         return False
-    models = runs["beam_model"].values.tolist() if "beam_model" in runs.sizes else []
-    return runs.sizes.get("beam_depth", 0) >= _FEWEST and {_WITHOUT, _WITH} <= set(models)
+    models = set(runs["beam_model"].values.tolist())
+    return runs.sizes.get("beam_depth", 0) >= _FEWEST and {_WITHOUT, _WITH} <= models
 
 
 def _shear_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, ...]:

@@ -40,13 +40,13 @@ def _missing(runs: xr.Dataset, analysis: xr.Dataset) -> str:
 def index_bars(name: str, family: Family) -> Figure:
     """Return the figure of one family of measures."""
 
-    def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-        return family.given(analysis) and bool(analysed(runs, analysis))
-
-    def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-        return [*_bar_sentences(family, analysis), _missing(runs, analysis)]
-
-    @record.figure(family.title, family.meaning, applies, sentences, name)
+    @record.figure(
+        family.title,
+        family.meaning,
+        lambda runs, analysis: family.given(analysis) and bool(analysed(runs, analysis)),
+        lambda runs, analysis: (*_bar_sentences(family, analysis), _missing(runs, analysis)),
+        name,
+    )
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per response, a row per parameter, a bar per measure."""
         shown = family.measures_in(analysis)
@@ -151,10 +151,6 @@ def index_convergence(measure: Measure) -> Figure:
     """
     variable = f"{measure.name}_by_samples"
 
-    def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-        """Return whether the analysis has the index from two sizes of the sample or more."""
-        return bool(analysed(runs, analysis, variable)) and analysis.sizes[_SAMPLES] > 1
-
     def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
         what = (
             f"The {measure.words} index from the first samples alone, up to all "
@@ -166,7 +162,15 @@ def index_convergence(measure: Measure) -> Figure:
 
     title = f"{labels.sentence(measure.words)} indices against the number of samples"
 
-    @record.figure(title, "", applies, sentences, f"{measure.name}_convergence")
+    @record.figure(
+        title,
+        "",
+        lambda runs, analysis: (
+            bool(analysed(runs, analysis, variable)) and analysis.sizes[_SAMPLES] > 1
+        ),
+        sentences,
+        f"{measure.name}_convergence",
+    )
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per response, a line with its band per parameter."""
         figure, axes = responses_grid.panels(analysed(runs, analysis), height=44)

@@ -40,11 +40,10 @@ def figure(
 
     text: opens the caption. sentences: follow it, by the datasets; empty ones are left out.
     """
-
-    def caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-        return " ".join(filter(None, (text, *sentences(runs, analysis))))
-
-    def recorded(plot: Drawer) -> Figure:
-        return Figure(name or plot.__name__, title, applies, style.paper(plot), caption)
-
-    return recorded
+    return lambda plot: Figure(
+        name or plot.__name__,
+        title,
+        applies,
+        style.paper(plot),
+        lambda runs, analysis: " ".join(filter(None, (text, *sentences(runs, analysis)))),
+    )

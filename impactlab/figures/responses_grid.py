@@ -24,12 +24,10 @@ def panels(
 
     height: of a row, mm; beneath: of what stands below all rows, mm.
     """
-    figure, axes = style.panels(len(names), columns=COLUMNS, height=height)
+    titles = [labels.sentence(labels.response(name)) for name in names]
+    figure, axes = style.titled_panels(titles, columns=COLUMNS, height=height)
     figure.set_figheight(figure.get_figheight() + beneath * style.MILLIMETRE)
-    found = dict(zip(names, axes, strict=True))
-    for name, ax in found.items():
-        ax.set_title(labels.sentence(labels.response(name)), loc="left")
-    return figure, found
+    return figure, dict(zip(names, axes, strict=True))
 
 
 def shown(runs: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:

@@ -108,16 +108,8 @@ def _jumps(runs: xr.Dataset) -> list[str]:
     ]
 
 
-def scatters(runs: xr.Dataset) -> tuple[Figure, ...]:
-    """Return one scatter plot per response of the runs."""
-    return tuple(scatter(name) for name in responses(runs))
-
-
 def scatter(response: str) -> Figure:
     """Return the figure of a response against each parameter."""
-
-    def applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-        return is_sample(runs) and response in runs and bool(varied(runs))
 
     def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
         total = runs.sizes["run"]
@@ -130,7 +122,13 @@ def scatter(response: str) -> Figure:
 
     title = f"{labels.sentence(labels.response(response))} against each parameter"
 
-    @record.figure(title, "", applies, sentences, f"scatter_{response}")
+    @record.figure(
+        title,
+        "",
+        lambda runs, analysis: is_sample(runs) and response in runs and bool(varied(runs)),
+        sentences,
+        f"scatter_{response}",
+    )
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per parameter; points are a bitmap, which keeps the vector file small."""
         names = varied(runs)
@@ -247,11 +245,6 @@ def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> No
     scales.linear(ax, "xy", ticks=4)
 
 
-def _has_failures(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether runs of a sample failed."""
-    return is_sample(runs) and bool(varied(runs)) and bool(access.failed(runs).any())
-
-
 def _failure_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     failed = access.failed(runs)
     why = [f"{number} × “{text}”" for text, number in access.causes(runs, failed).items()]
@@ -264,7 +257,9 @@ def _failure_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     "Share of the runs that failed in each tenth of a parameter's draws, with the 95 % "
     "interval of a binomial share (Wilson); dashed: the share of all runs. A parameter along "
     "which the share rises tells where runs fail.",
-    _has_failures,
+    lambda runs, analysis: (
+        is_sample(runs) and bool(varied(runs)) and bool(access.failed(runs).any())
+    ),
     _failure_sentences,
 )
 def failure_shares(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
@@ -317,12 +312,6 @@ def _distances(runs: xr.Dataset) -> dict[str, float]:
     return {name: found[name] for name in ranked[:3]}
 
 
-def _some_failed(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether some runs of a sample of two parameters or more failed, but not all."""
-    several = is_sample(runs) and len(varied(runs)) > 1
-    return several and 0 < int(access.failed(runs).sum()) < runs.sizes["run"]
-
-
 def _map_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     told = [f"{labels.parameter(name)} {value:.2f}" for name, value in _distances(runs).items()]
     return [
@@ -333,7 +322,16 @@ def _map_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     ]
 
 
-@record.figure("Where runs failed", "", _some_failed, _map_sentences)
+@record.figure(
+    "Where runs failed",
+    "",
+    lambda runs, analysis: (
+        is_sample(runs)
+        and len(varied(runs)) > 1
+        and 0 < int(access.failed(runs).sum()) < runs.sizes["run"]
+    ),
+    _map_sentences,
+)
 def failure_map(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per pair of parameters."""
     pairs = list(combinations(_distances(runs), 2))

@@ -35,10 +35,6 @@ _PAPER_LIMIT = 0.2
 """The plastic strain that the paper compares with, in %."""
 
 
-def _has_force(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    return _FORCE in runs
-
-
 def _force_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
     return curves.note(runs, _FORCE), access.missing_note(runs, [_FORCE])
 
@@ -46,7 +42,7 @@ def _force_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
 @record.figure(
     "Contact force during the first contact",
     "Contact force from first touch to the end of the longest first contact.",
-    _has_force,
+    lambda runs, analysis: _FORCE in runs,
     _force_sentences,
 )
 def first_contact(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
@@ -74,7 +70,7 @@ def first_contact(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     "Contact force against time",
     "Contact force from first touch to the end of the last contact; each panel has scales of its "
     "own, and a peak after a gap is a sub-impact.",
-    _has_force,
+    lambda runs, analysis: _FORCE in runs,
     _force_sentences,
 )
 def force_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
@@ -173,15 +169,11 @@ def _until_flight(run: xr.Dataset, unit: Display) -> tuple[float, float]:
     return low - room, high + room
 
 
-def _has_loops(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    return _FORCE in runs and _INDENTATION in runs
-
-
 @record.figure(
     "Contact force against indentation",
     "Contact force against indentation while in contact; each sub-impact is a loop of its "
     "own, and the area inside is the energy dissipated in the contact.",
-    _has_loops,
+    lambda runs, analysis: _FORCE in runs and _INDENTATION in runs,
     _force_sentences,
 )
 def force_indentation(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
@@ -213,17 +205,15 @@ def _loop(run: xr.Dataset, depth: Display, force: Display) -> tuple[Floats, Floa
     return depth(run[_INDENTATION].where(touching)), force(np.where(touching, values, np.nan))
 
 
-def _several_laws(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether histories were kept of several contact laws at several velocities."""
-    kept = _has_loops(runs, analysis)
-    return kept and all(runs[_FORCE].sizes.get(dim, 0) > 1 for dim in ("contact", "velocity"))
-
-
 @record.figure(
     "Contact force against indentation under each contact law",
     "Contact force against indentation while in contact, each panel on scales of its own; the "
     "area inside a loop is the energy dissipated in the contact.",
-    _several_laws,
+    lambda runs, analysis: (
+        _FORCE in runs
+        and _INDENTATION in runs
+        and all(runs[_FORCE].sizes.get(dim, 0) > 1 for dim in ("contact", "velocity"))
+    ),
     lambda runs, analysis: (_plan_by_law(runs).note(runs), access.missing_note(runs, [_FORCE])),
 )
 def force_indentation_by_law(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
@@ -244,10 +234,6 @@ def force_indentation_by_law(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             style.remark(ax, "no finite values")
     across = labels.axis("indentation", depth.symbol)
     return selected.finish(figure, across, labels.axis("contact force", force.symbol))
-
-
-def _has_profiles(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    return _STRAIN in runs
 
 
 def _largest(runs: xr.Dataset) -> xr.DataArray:
@@ -286,7 +272,7 @@ def _strain_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str,
     "Equivalent plastic strain along the beam",
     "Equivalent plastic strain (PEEQ) along the beam at the end of the run, the largest over "
     "the depth at each place.",
-    _has_profiles,
+    lambda runs, analysis: _STRAIN in runs,
     _strain_sentences,
 )
 def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
@@ -324,7 +310,7 @@ def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     "Equivalent plastic strain (PEEQ) over the depth in the section that it is largest in, at "
     "the end of the run; a marker is an integration point; "
     "zeros have no place on the logarithmic axis.",
-    _has_profiles,
+    lambda runs, analysis: _STRAIN in runs,
     _strain_sentences,
 )
 def plastic_strain_depth(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:

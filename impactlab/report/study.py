@@ -24,7 +24,7 @@ from impactlab.figures.access import (
 )
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
-from impactlab.figures.samples import scatters
+from impactlab.figures.samples import scatter
 from impactlab.model.parameters import PARAMETERS
 from impactlab.report import sensitivity
 from impactlab.report.answer import entries
@@ -121,16 +121,16 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             inputs,
         ]
     title = "Distribution of each response"
-    scattered = [figure.name for figure in scatters(runs)]
+    scattered = [scatter(name).name for name in responses(runs)]
     file = "indices.csv" if sensitivity_variables(analysis) else ""
-    scatter = "Each response against each parameter"
+    against = "Each response against each parameter"
     return [
         *sensitivity.sections(runs, analysis, file),
         *numerical_sections(runs, analysis),
         Section("results", title, tables=[ranges], figures=["response_distributions"]),
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         inputs,
-        Section("scatter", scatter, _SCATTER, figures=scattered, closed=True),
+        Section("scatter", against, _SCATTER, figures=scattered, closed=True),
     ]
 
 

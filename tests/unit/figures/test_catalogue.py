@@ -19,7 +19,7 @@ from impactlab.fem3d.figures import FIGURES
 from impactlab.figures import style
 from impactlab.figures.catalogue import CATALOGUE, applicable
 from impactlab.figures.record import Figure
-from impactlab.figures.samples import scatters
+from impactlab.figures.samples import scatter
 from impactlab.variables import RESPONSES
 
 EXPECTED = {
@@ -130,7 +130,9 @@ def _study(request: pytest.FixtureRequest, study: str, name: str) -> tuple[xr.Da
 
 
 def _figure(name: str, runs: xr.Dataset) -> Figure:
-    return (CATALOGUE | FIGURES | {figure.name: figure for figure in scatters(runs)})[name]
+    if name.startswith("scatter_"):
+        return scatter(name.removeprefix("scatter_"))
+    return (CATALOGUE | FIGURES)[name]
 
 
 def _laid_out(figure: MplFigure) -> MplFigure:
