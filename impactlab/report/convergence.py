@@ -236,9 +236,11 @@ def _over_the_grid(found: xr.Dataset, axis: str) -> Cell:
         tally = found[f"{axis}_tally"]
         pairs = zip(tally[f"{axis}_outcome"].values, tally.values, strict=True)
         verdicts = {str(flag).replace("_", " "): int(number) for flag, number in pairs if number}
-    behaviours = _behaviours(found, axis)
-    detail = f"behaviour: {_listed(behaviours)}" if behaviours else ""
-    return Cell(_listed(verdicts) or "–", detail=detail)
+    listed, behaviours = (
+        ", ".join(f"{flag} {number}" for flag, number in counts.items())
+        for counts in (verdicts, _behaviours(found, axis))
+    )
+    return Cell(listed or "–", detail=f"behaviour: {behaviours}" if behaviours else "")
 
 
 def _behaviours(found: xr.Dataset, axis: str) -> Counter[str]:
@@ -249,10 +251,6 @@ def _behaviours(found: xr.Dataset, axis: str) -> Counter[str]:
     return Counter(
         {flag.words: int((flags == flag.value).sum()) for flag in access.occurring(flags)}
     )
-
-
-def _listed(counts: dict[str, int]) -> str:
-    return ", ".join(f"{flag} {number}" for flag, number in counts.items())
 
 
 def _spread(found: xr.Dataset, variable: str) -> Cell:

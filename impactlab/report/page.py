@@ -95,8 +95,8 @@ class Table:
 class Section:
     """A heading and its content, in this order.
 
-    name: the anchor. lead: a paragraph. sentences: a list. tables: shown in full. files: names of
-    files beside the page. figures: names of figures (those that were not drawn are left out).
+    name: the anchor. lead: a paragraph. sentences: a list. tables: shown in full. file: of all
+    indices, beside the page. figures: names of figures (those that were not drawn are left out).
     folded: tables that the reader opens. grave: it stands out as a warning. closed: the reader
     opens the whole of it.
     """
@@ -108,7 +108,7 @@ class Section:
     tables: list[Table] = field(default_factory=list)
     figures: Sequence[str] = ()
     folded: list[Table] = field(default_factory=list)
-    files: list[str] = field(default_factory=list)
+    file: str = ""
     grave: bool = False
     closed: bool = False
 

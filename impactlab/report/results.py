@@ -90,20 +90,15 @@ def write_index(results: Path, path: Path) -> None:
                 with opened(report.with_name(kind.files[0]), "runs", "findings") as stored:
                     size, failed = kind.counts(stored)
                     entry = described(stored) | {"size": size, "failed": failed}
-                picture, alt = _thumbnail(report.with_name("figures"))
-                entry |= {"study": report.parent.name, "report": address(report), "alt": alt}
-                entries.append(entry | {"thumbnail": address(picture) if picture else ""})
+                figures = report.with_name("figures")
+                drawn = listed(figures) if (figures / CAPTIONS).exists() else {}
+                name = leading(drawn)  # the figure that answers the study's question
+                entry |= {"study": report.parent.name, "report": address(report)}
+                if (figures / f"{name}.svg").exists():
+                    picture = address(figures / f"{name}.svg")
+                    entry |= {"thumbnail": picture, "alt": drawn[name]["title"]}
+                entries.append(entry)
                 break
     claims = results / "paper" / "claims.html"
     paper = address(claims) if claims.exists() else ""
     write_page("index.html.j2", path, entries=entries, paper=paper)
-
-
-def _thumbnail(figures: Path) -> tuple[Path | None, str]:
-    """Return the figure that answers the study's question, and its title."""
-    if (figures / CAPTIONS).exists():
-        entries = listed(figures)
-        name = leading(entries)
-        if (figures / f"{name}.svg").exists():
-            return figures / f"{name}.svg", str(entries[name]["title"])
-    return None, ""

@@ -6,6 +6,8 @@ overlap.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import xarray as xr
 
@@ -50,14 +52,14 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset, file: str = "") -> list[Sec
     if not analysed(runs, analysis):
         return []
     families = [family for family in RANKED if family.given(analysis)]
-    found = []
-    for family in families[:1]:
-        lead = (
-            "A rank is a range where intervals overlap; they are widened by the numerical error "
-            "where it is known."
-        )
-        ranked = [_ranks(runs, analysis, family)]
-        found.append(Section("ranking", "Ranking", lead, tables=ranked, files=[file] * bool(file)))
+    lead = (
+        "A rank is a range where intervals overlap; they are widened by the numerical error where "
+        "it is known."
+    )
+    found = [
+        Section("ranking", "Ranking", lead, tables=[_ranks(runs, analysis, family)], file=file)
+        for family in families[:1]
+    ]
     found += _of_sobol(runs, analysis)
     for family in families:
         if family is not SOBOL:
@@ -69,11 +71,10 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset, file: str = "") -> list[Sec
     return found + ([surrogate(runs, analysis)] if "surrogate_q2" in analysis else [])
 
 
-def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
-    """Return the sections on the indices, those of second order, and their convergence."""
-    found = []
+def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
+    """Yield the sections on the indices, those of second order, and their convergence."""
     if SOBOL.given(analysis):
-        section = Section(
+        yield Section(
             "sensitivity",
             "First and total order",
             "A first-order index is the share of the variance that comes from a parameter "
@@ -82,9 +83,8 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             tables=indices.tables(runs, analysis, SOBOL),
             figures=["sobol_indices"],
         )
-        found.append(section)
     if "second_order" in analysis:
-        section = Section(
+        yield Section(
             "second-order",
             "Second order",
             "A second-order index is the share of the variance that comes from two parameters "
@@ -92,9 +92,8 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             figures=["sobol_second_order"],
             folded=[indices.second_order(runs, analysis)],
         )
-        found.append(section)
     if "total_order_by_samples" in analysis:
-        section = Section(
+        yield Section(
             "index-convergence",
             "Convergence of the indices",
             "The figures show the indices from the first part of the sample alone; no run was "
@@ -102,8 +101,6 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             "its drift.",
             figures=[f"{measure.name}_convergence" for measure in SOBOL.measures],
         )
-        found.append(section)
-    return found
 
 
 def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
