@@ -19,6 +19,7 @@ StoredFiles = Annotated[
         help="Of a study: runs.nc and analysis.nc. Of a verification: findings.nc.",
     ),
 ]
+Pictures = Annotated[Path | None, new_folder(help="Default: figures/ beside the first of them.")]
 
 
 def _finding(*datasets: xr.Dataset) -> str:
@@ -74,10 +75,7 @@ def predict(
 
 def figures(
     stored: StoredFiles,
-    output: Annotated[
-        Path | None,
-        new_folder(help="Default: figures/ beside the first of them."),
-    ] = None,
+    output: Pictures = None,
 ) -> None:
     """Draw every figure that a study's answers, or findings, allow."""
     from impactlab.report.results import read_stored
@@ -91,10 +89,7 @@ def figures(
 
 def report(
     stored: StoredFiles,
-    figures: Annotated[
-        Path | None,
-        new_folder(help="Default: figures/ beside the first of them."),
-    ] = None,
+    figures: Pictures = None,
     output: Annotated[
         Path | None,
         new_file(help="Default: report.html beside the first of them."),

@@ -13,6 +13,9 @@ from impactlab.cli.interrupt import stop_solving
 from impactlab.cli.options import RunsFile, StudyFile, chosen, given, new_file, results_file
 
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
+Force = Annotated[
+    bool, typer.Option("--force", help="Also what takes a month of one core, or all memory.")
+]
 _ALL = os.cpu_count() or 1
 
 
@@ -99,9 +102,7 @@ def run(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Tell runs, time, memory and disk, and solve nothing.")
     ] = False,
-    force: Annotated[
-        bool, typer.Option("--force", help="Also what takes a month of one core, or all memory.")
-    ] = False,
+    force: Force = False,
 ) -> None:
     """Solve the runs of a study that have not been solved yet.
 
@@ -166,9 +167,7 @@ def refine(
 def go(
     study: StudyFile,
     workers: Threads = _ALL,
-    force: Annotated[
-        bool, typer.Option("--force", help="Also what takes a month of one core, or all memory.")
-    ] = False,
+    force: Force = False,
 ) -> None:
     """Do everything for one study: run, analyse, figures and report.
 
