@@ -12,10 +12,9 @@ from matplotlib.ticker import FixedFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from impactlab.fem3d.figures import differences
-from impactlab.figures import access, labels, scales, style
+from impactlab.figures import access, labels, record, scales, style
 from impactlab.figures.access import usable
 from impactlab.figures.labels import display
-from impactlab.figures.record import Figure as StudyFigure
 from impactlab.model.impact import SOLID
 
 _NAMES = (
@@ -28,24 +27,16 @@ _LEAST, _ROOM = 2.0, 2.0
 """Least half-height of a panel of differences in %; its largest, over the largest difference."""
 
 
-def _has_velocities(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether a grid has the 3-D FE model beside others, and a response to draw."""
-    return differences.differ(runs) and bool(_drawn(runs))
-
-
-def _caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """Return the caption, with the number of missing runs."""
-    return (
-        "Above: each model on its finest grid. Below: its difference from the 3-D "
-        "finite-element model, in parts of that; bars: the numerical uncertainty of both models "
-        "together, left out where nothing bounds it and cut at the panel's edge. Markers below are "
-        "drawn a little beside their velocity, not to hide each other. "
-        f"{access.missing_note(runs, _drawn(runs))}".strip()
-    )
-
-
-@style.paper
-def _plot(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+@record.figure(
+    "The beam models and the 3-D FE model",
+    "Above: each model on its finest grid. Below: its difference from the 3-D "
+    "finite-element model, in parts of that; bars: the numerical uncertainty of both models "
+    "together, left out where nothing bounds it and cut at the panel's edge. Markers below are "
+    "drawn a little beside their velocity, not to hide each other.",
+    lambda runs, analysis: differences.differ(runs) and bool(_drawn(runs)),
+    lambda runs, analysis: (access.missing_note(runs, _drawn(runs)),),
+)
+def witness(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw one column per response: values above, differences from the 3-D FE model below."""
     names = _drawn(runs)
     figure, axes = style.panels(2 * len(names), columns=len(names), height=52)
@@ -125,28 +116,23 @@ _HISTORIES = ("contact_force", "indentation")
 _LABELS = {differences.TIMOSHENKO: "contact law (Timoshenko beam)", SOLID: "3-D FE model"}
 
 
-def _has_parts(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the runs separate the effects, and have histories."""
-    return differences.separable(runs) and all(name in runs for name in _HISTORIES)
-
-
-def _parts_caption(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """Return the caption, with the findings in numbers and the number of missing runs."""
-    return (
-        "Left: force against indentation (to mid-depth) as the contact law has it and as the 3-D "
-        "solid answers, elastic and yielding. Right: by how much each effect changes the answer of "
-        "the paper's beam (Euler-Bernoulli); bars: the numerical uncertainty of all runs that it "
-        "is made of, left out where nothing bounds it. Shear and rotary inertia: Timoshenko's beam "
-        "over Euler-Bernoulli's. 3-D elasticity of the contact: the elastic solid over the elastic "
-        "Timoshenko beam under Hertz's law; what the local compliance through the depth and the "
-        "waves in the sphere do. Contact law in yielding: what yielding does to the solid over "
-        f"what it does under the contact law. {_finding(runs, analysis)} "
-        f"{access.missing_note(runs, differences.NAMES)}".strip()
-    )
-
-
-@style.paper
-def _plot_parts(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+@record.figure(
+    "Where the 3-D FE model differs from the paper's beam",
+    "Left: force against indentation (to mid-depth) as the contact law has it and as the 3-D "
+    "solid answers, elastic and yielding. Right: by how much each effect changes the answer of "
+    "the paper's beam (Euler-Bernoulli); bars: the numerical uncertainty of all runs that it "
+    "is made of, left out where nothing bounds it. Shear and rotary inertia: Timoshenko's beam "
+    "over Euler-Bernoulli's. 3-D elasticity of the contact: the elastic solid over the elastic "
+    "Timoshenko beam under Hertz's law; what the local compliance through the depth and the "
+    "waves in the sphere do. Contact law in yielding: what yielding does to the solid over "
+    "what it does under the contact law.",
+    lambda runs, analysis: differences.separable(runs) and all(name in runs for name in _HISTORIES),
+    lambda runs, analysis: (
+        _finding(runs, analysis),
+        access.missing_note(runs, differences.NAMES),
+    ),
+)
+def witness_parts(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw force against indentation on the left, the effects on the right."""
     figure, (left, right) = style.panels(2, columns=2, height=72)
     _curves(left, runs)
@@ -227,16 +213,5 @@ def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return " ".join(sentences)
 
 
-FIGURES = {
-    "witness": StudyFigure(
-        "witness", "The beam models and the 3-D FE model", _has_velocities, _plot, _caption
-    ),
-    "witness_parts": StudyFigure(
-        "witness_parts",
-        "Where the 3-D FE model differs from the paper's beam",
-        _has_parts,
-        _plot_parts,
-        _parts_caption,
-    ),
-}
+FIGURES = {figure.name: figure for figure in (witness, witness_parts)}
 """Figures of a study, by name, in the order of the report."""
