@@ -99,8 +99,7 @@ def _plot_mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
         _draw_faces(ax, polygons[shown], facecolors=colours[shown], **look)
         ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis(label, "mm"))
         ax.set_title(title, loc="left")
-        scales.linear(ax, "x")
-        scales.linear(ax, "y")
+        scales.linear(ax, "xy")
         axes.append(ax)
     above, side, top = axes
     above.autoscale_view()
@@ -161,8 +160,7 @@ def _plot_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     ax.set(xlim=(0.0, reach), ylim=(-0.75 * reach, 0.25 * reach))
     ax.set_title(FIGURES["plastic_strain"].title, loc="left")
     ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis("height", "mm"))
-    scales.linear(ax, "x")
-    scales.linear(ax, "y")
+    scales.linear(ax, "xy")
     if plastic.any():
         shown = _draw_faces(ax, polygons[plastic], edgecolors="0.75", linewidths=0.3)
         percent = 100.0 * strain[plastic]

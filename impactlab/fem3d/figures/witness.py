@@ -166,8 +166,7 @@ def _curves(ax: Axes, runs: xr.Dataset) -> None:
         style.remark(ax, "no finite values")
     ax.set_xlabel(labels.axis("indentation", depth.symbol))
     ax.set_ylabel(labels.axis("contact force", force.symbol))
-    scales.linear(ax, "x")
-    scales.linear(ax, "y")
+    scales.linear(ax, "xy")
 
 
 def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
