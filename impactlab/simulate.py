@@ -14,7 +14,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
 from impactlab.model.plausibility import ImplausibleWarning, implausibilities, numbers
-from impactlab.solver import BEAM_MODELS, SCHEMES
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.leapfrog import run_all
@@ -59,7 +59,7 @@ def simulate(
     """
     import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
 
-    grid = discretisation or Discretisation()
+    grid = (discretisation or Discretisation()).resolved([impact.beam_model])
     samples = integer("simulate", "samples", samples, 2)
     _warn(numbers(impact, grid))
     cases = case_table(impact, grid, duration=duration)
@@ -135,6 +135,8 @@ def case_table(
     lengths = {len(values) for values in varied.values()}
     if len(lengths) > 1:
         raise ValueError(f"varied: every parameter needs one value per run, got lengths {lengths}")
+    models = map(str, varied.get("beam_model", [impact.beam_model]))
+    discretisation = discretisation.resolved(models)
     try:
         columns = {name: column(values) for name, values in varied.items()}
         many = with_values(impact, discretisation, columns)
@@ -144,7 +146,7 @@ def case_table(
         cases = np.concatenate(tables)
     else:
         cases = _table(*many, duration, lengths.pop() if lengths else 1)
-    leapfrog_only = cases["beam_model"] > BEAM_MODELS.index("elastic")
+    leapfrog_only = cases["beam_model"] >= len(BENDING_MODELS)
     wrong = np.flatnonzero(leapfrog_only & (cases["scheme"] != SCHEMES.index("leapfrog")))
     if wrong.size:
         case = cases[wrong[0]]
@@ -191,7 +193,7 @@ def compile_all() -> str | None:
     """Compile the kernels of every beam model and scheme; return their folder, None without one."""
     for scheme in SCHEMES:
         grid = Discretisation(nodes=21, scheme=scheme)
-        models = BEAM_MODELS if scheme == "leapfrog" else BEAM_MODELS[:2]
+        models = BEAM_MODELS if scheme == "leapfrog" else BENDING_MODELS
         solve(case_table(paper_impact(), grid, duration=1e-6, varied={"beam_model": models}))
     return getattr(getattr(run_all, "_cache", None), "cache_path", None)
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from impactlab.model.checks import integer, one_of, positive, require
-from impactlab.solver import RULES, SCHEMES
+from impactlab.solver import BENDING_MODELS, RULES, SCHEMES
 
 _LEAST_FILTERED = 17
 """Nodes from which on the semi-implicit scheme's matrix has all its kinds of rows."""
@@ -21,7 +22,8 @@ class Discretisation:
     whole depth. rule: "lobatto" (the paper), "legendre" or "layers" (midpoints of equal layers,
     Zhang et al.). scheme: "leapfrog" (the paper: explicit, cost growing with nodes^3), "modal"
     (sine modes, the same answers from far fewer nodes; see solver/modal.py) or "semi_implicit"
-    (cost growing with nodes^2, from 17 nodes on; see solver/semi_implicit.py). courant: time step
+    (cost growing with nodes^2, from 17 nodes on; see solver/semi_implicit.py), or "auto": modal
+    where every beam model in question has it, else leapfrog. courant: time step
     over the scheme's largest, in (0, 1]: over the critical one of leapfrog; over half of the time
     in which a bar wave crosses a spacing, unless the contact allows less, of the others.
     element_size, elements_per_radius: of the "solid" model alone, which needs one of them and
@@ -50,7 +52,7 @@ class Discretisation:
         odd, words = np.equal(nodes % 2, 1), "must be odd, so that mid-span is a node"
         require(odd, "Discretisation", "nodes", nodes, words)
         one_of("Discretisation", "rule", self.rule, RULES)
-        one_of("Discretisation", "scheme", self.scheme, SCHEMES)
+        one_of("Discretisation", "scheme", self.scheme, (*SCHEMES, "auto"))
         for field in ("element_size", "elements_per_radius"):
             if getattr(self, field) is not None:
                 positive("Discretisation", field, getattr(self, field))
@@ -65,3 +67,10 @@ class Discretisation:
         courant = positive("Discretisation", "courant", self.courant)
         words = "must be in (0, 1]; above 1 the scheme is unstable or inaccurate"
         require(courant <= 1, "Discretisation", "courant", self.courant, words)
+
+    def resolved(self, beam_models: Iterable[str]) -> Discretisation:
+        """Return a copy with the scheme that `auto` stands for, for runs of these beam models."""
+        if np.any(np.not_equal(self.scheme, "auto")):
+            return self
+        bending = set(beam_models) <= set(BENDING_MODELS)
+        return replace(self, scheme="modal" if bending else "leapfrog")

@@ -54,8 +54,9 @@ Pilots = Callable[[str, tuple[float, ...], Discretisation], tuple[xr.DataArray, 
 """solve_along of one study: takes axis, levels and discretisation."""
 FLOOR = 0.1
 """Uncertainties are relative to the value, or to this share of the largest over the cases."""
-_COARSEST, _FINEST = 50, 800
-"""Elements over the span: the finer the last level, the smaller the error that remains."""
+_SPACINGS = {"leapfrog": (50, 800), "semi_implicit": (50, 800), "modal": (36, 432)}
+"""Spacings over the span, coarsest and finest, by scheme: the finer the last level, the smaller the
+error that remains."""
 _POINTS = (3, 5, 7, 9, 13, 17, 25)
 _COURANTS = (0.9, 0.45, 0.225)
 _POINT_COST = 0.05
@@ -127,7 +128,7 @@ def _evidence(
     study: Study, pilots: Pilots, tolerance: float, responses: Collection[str]
 ) -> xr.Dataset:
     own = study.discretisation
-    levels = _refinement_levels(own)
+    levels = _refinement_levels(own, study.auto is not None)
     found = xr.Dataset(_axis(pilots, "nodes", levels, own))
     asked = found["response"].isin(list(responses))
     # the fewest nodes that suffice for all requested responses for which any do
@@ -154,18 +155,19 @@ def _evidence(
     return found.assign(check_difference=difference)
 
 
-def _refinement_levels(own: Discretisation) -> Levels:
+def _refinement_levels(own: Discretisation, auto: bool) -> Levels:
     """Return the levels to try for a study of this discretisation.
 
     Spacings are halved, with one level about half-way between. The study's own spacing, half of it
-    and a quarter are levels, too, even beyond the finest: finer levels show its error.
+    and a quarter are levels, too, even beyond the finest: finer levels show its error. auto: it has
+    none of its own.
     """
-    spans = {(own.nodes - 1) * factor for factor in (1, 2, 4)}
-    at = _COARSEST
-    while at <= _FINEST:
+    given = () if auto else tuple((own.nodes - 1) * factor for factor in (1, 2, 4))
+    at, finest = _SPACINGS[own.scheme]
+    spans, most = {*given}, max(finest, *given, 0)
+    while at <= finest:
         spans |= {at, 3 * at // 4 * 2}
         at *= 2
-    most = max(_FINEST, 4 * (own.nodes - 1))
     courants = {own.courant / factor for factor in (1, 2, 4)} | {*_COURANTS}
     return {
         "nodes": tuple(sorted(each + 1 for each in spans if each <= most)),

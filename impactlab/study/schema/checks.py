@@ -10,7 +10,7 @@ import numpy as np
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
-from impactlab.solver import BEAM_MODELS, outputs
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, outputs
 from impactlab.study.errors import unknown
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
@@ -25,17 +25,15 @@ Reasons = Iterator[tuple[str, str]]
 
 _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
 """Parameters that move the places at which profiles are given."""
-_FIBRES = ("euler_bernoulli", "elastic")
-"""Beam models that have every scheme in time."""
 _TAILS = np.array([1e-3, 1 - 1e-3])
 
 
 def has_solid_runs(study: Study | StudyFile) -> bool:
     """Return True if any run is of the 3-D model."""
-    return SOLID in _values(study.sampling, "beam_model", study.impact.beam_model)
+    return SOLID in values_of(study.sampling, "beam_model", study.impact.beam_model)
 
 
-def _values(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, ...]:
+def values_of(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, ...]:
     """Return all values of a parameter that a sample cannot draw."""
     if isinstance(sampling, Grid):
         return sampling.parameters.get(name, (base,))
@@ -145,13 +143,13 @@ def _impacts(file: StudyFile) -> Reasons:
     for each in implausibilities(extremes((file.impact, grid), sampling)):
         if each.impossible:
             yield key_of(each.name, sampling), each.reason
-    models = _values(sampling, "beam_model", file.impact.beam_model)
-    others = [name for name in BEAM_MODELS if name in models and name not in _FIBRES]
-    schemes = [name for name in _values(sampling, "scheme", grid.scheme) if name != "leapfrog"]
+    models = values_of(sampling, "beam_model", file.impact.beam_model)
+    others = [name for name in BEAM_MODELS if name in models and name not in BENDING_MODELS]
+    schemes = {*values_of(sampling, "scheme", grid.scheme)} - {"leapfrog", "auto"}
     if others and schemes:
         reason = (
-            f"{schemes[0]} is for {' and '.join(_FIBRES)}, and {others[0]} has leapfrog alone: "
-            "set scheme: leapfrog, or take out the beam model"
+            f"{min(map(str, schemes))} is for {' and '.join(BENDING_MODELS)}, and {others[0]} has "
+            "leapfrog alone: set scheme: leapfrog, or take out the beam model"
         )
         yield key_of("scheme", sampling), reason
 

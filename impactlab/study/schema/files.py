@@ -15,7 +15,7 @@ from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.checks import CHECKS, has_solid_runs
+from impactlab.study.schema.checks import CHECKS, has_solid_runs, values_of
 from impactlab.study.schema.section import Heading, names, validated
 from impactlab.study.schema.study import Analysis, FunctionStudy, Study, StudyFile, Verification
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
@@ -139,6 +139,8 @@ def _study(source: Source) -> Study:
     if problems:
         raise StudyError(*problems)
     grid, auto = file.discretisation
+    models = values_of(file.sampling, "beam_model", file.impact.beam_model)
+    grid = grid.resolved(map(str, models))
     own = {"discretisation": grid, "auto": auto, "analysis": file.analysis or Analysis()}
     return Study(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 

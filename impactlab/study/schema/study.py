@@ -22,6 +22,7 @@ from pydantic import (
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.solver import SCHEMES
 from impactlab.study.quantities import duration
 from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
@@ -73,11 +74,12 @@ def _section(*path: str, **others: Any) -> type[Section]:
             optional = not deeper and _DEFAULTS[name] is None
             kind = _section(*path, key) if deeper else value_type(entry)
             keys[key] = (Annotated[kind, nothing] if optional else kind, None)
-    return create_model("_".join(path), __base__=Section, **(others | keys))
+    return create_model("_".join(path), __base__=Section, **(keys | others))
 
 
 _IMPACT = _section("impact", base=(Annotated[str, one_of("base", BASES)], None))
-_DISCRETISATION = _section("discretisation", auto=(Auto | None, None))
+_SCHEME = Annotated[str, one_of("scheme", (*SCHEMES, "auto"))]
+_DISCRETISATION = _section("discretisation", auto=(Auto | None, None), scheme=(_SCHEME, None))
 
 
 def read_impact(data: Any, info: ValidationInfo) -> Impact:
