@@ -1,4 +1,4 @@
-"""What a figure shows, as drawn: its curves and bars as files, in the axes' units, and in words.
+"""The data of a figure, as drawn: its curves and bars as files, in the axes' units, and in words.
 
 NAME.csv has a row per point; NAME.nc holds the same as CF's contiguous ragged arrays. Bars of named
 things have the name in `category`, points with error bars the ends of these in `low` and `high`. A
