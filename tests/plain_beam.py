@@ -1,10 +1,10 @@
 """The plain solver of physics.md, to compare the kernels with: the same schemes, written plainly.
 
 The whole beam, every fibre through its return mapping at every step, the contact laws with
-unloading and reloading written out, the semi-implicit scheme's filter as a dense matrix, and the
-responses read off the full histories afterwards. From impactlab come only the case, the number of
-steps and, from its independent solutions, the integration rules and the contact laws beyond the
-paper's.
+unloading and reloading written out, the semi-implicit scheme's filter and the modal scheme's sums
+over modes as dense matrices of the nodes, and the responses read off the full histories afterwards.
+From impactlab come only the case, the number of steps and, from its independent solutions, the
+integration rules and the contact laws beyond the paper's.
 SI units; z and w point downwards.
 """
 
@@ -57,6 +57,19 @@ class Bar(NamedTuple):
     dx: float
 
 
+class Matrices(NamedTuple):
+    """What a scheme does to the inner nodes in place of differences; empty where it does not.
+
+    filter: of the accelerations; curve: from deflections (m) to curvatures (1/m); pull, push: from
+    moments (N m) and from forces per length (N/m) to accelerations (m/s2).
+    """
+
+    filter: Array
+    curve: Array
+    pull: Array
+    push: Array
+
+
 class Run(NamedTuple):
     """Histories at every step, shape (steps + 1,), and the final state of the beam.
 
@@ -83,7 +96,8 @@ def _further(which):
     scope = dict(vars(contact_laws))  # so that they find each other compiled
     for name, function in vars(contact_laws).items():
         if isinstance(function, FunctionType):
-            scope[name] = numba.njit(FunctionType(function.__code__, scope, name))
+            copy = FunctionType(function.__code__, scope, name, function.__defaults__)
+            scope[name] = numba.njit(copy)
 
     def link(number, chosen, others):
         return numba.njit(lambda law, *args: chosen(*args) if law == number else others(law, *args))
@@ -168,15 +182,15 @@ def moment(bar, kappa, plastic_strain, peeq):
 
 
 @numba.njit
-def march(bar, contact, v_0, g, m_s, dt, steps, filter, histories, w, plastic_strain, peeq):
+def march(bar, contact, v_0, g, m_s, dt, steps, scheme, histories, w, plastic_strain, peeq):
     """March by central differences from first touch; fill histories, (7, steps + 1) as in Run.
 
-    filter: what the inner nodes' accelerations are multiplied by, (nodes - 2, nodes - 2), or (0, 0)
-    for leapfrog.
+    scheme: see Matrices; w (nodes,), plastic_strain and peeq (nodes, points): at rest, filled.
     """
     last = w.size - 1
     middle = last // 2
     v, M, p, a = np.zeros(w.size), np.zeros(w.size), np.zeros(w.size), np.zeros(w.size)
+    kappa = np.zeros(w.size)
     w_s, v_s, deepest, before, here = 0.0, v_0, 0.0, 0.0, 0.0
     for step in range(steps + 1):
         d = w_s - w[middle]
@@ -184,12 +198,14 @@ def march(bar, contact, v_0, g, m_s, dt, steps, filter, histories, w, plastic_st
             deepest = top_of_parabola(before, here, d)
         deepest = max(deepest, d)
         F = contact_force(contact, d, deepest)
+        if scheme.curve.size > 0:
+            kappa[1:last] = scheme.curve @ w[1:last]
+        else:
+            kappa[1:last] = (w[:-2] - 2.0 * w[1:last] + w[2:]) / bar.dx**2
         for i in range(1, last):
-            kappa = (w[i - 1] - 2.0 * w[i] + w[i + 1]) / bar.dx**2
-            M[i] = moment(bar, kappa, plastic_strain[i], peeq[i])
+            M[i] = moment(bar, kappa[i], plastic_strain[i], peeq[i])
         row = histories[:, step]
-        row[0], row[1], row[3], row[4] = F, w[middle], w_s, d
-        row[2] = (w[middle - 1] - 2.0 * w[middle] + w[middle + 1]) / bar.dx**2
+        row[0], row[1], row[2], row[3], row[4] = F, w[middle], kappa[middle], w_s, d
         row[5], row[6] = deepest, unloading(contact, deepest)[1]
         if step == steps:
             break
@@ -197,10 +213,12 @@ def march(bar, contact, v_0, g, m_s, dt, steps, filter, histories, w, plastic_st
         v_s += kick * (g - F / m_s)
         w_s += dt * v_s
         p[middle] = F / bar.dx
-        for i in range(1, last):
-            a[i] = ((M[i - 1] - 2.0 * M[i] + M[i + 1]) / bar.dx**2 + p[i]) / bar.mu
-        if filter.size > 0:
-            a[1:last] = filter @ a[1:last]
+        if scheme.pull.size > 0:
+            a[1:last] = scheme.pull @ M[1:last] + scheme.push @ p[1:last]
+        else:
+            a[1:last] = ((M[:-2] - 2.0 * M[1:last] + M[2:]) / bar.dx**2 + p[1:last]) / bar.mu
+        if scheme.filter.size > 0:
+            a[1:last] = scheme.filter @ a[1:last]
         v += kick * a
         w += dt * v
         before, here = here, d
@@ -235,14 +253,39 @@ def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:
     )
 
 
+def make_matrices(bar: Bar, grid: il.Discretisation, dt: float) -> Matrices:
+    """Return what the scheme of the grid does to the inner nodes."""
+    none = np.zeros((0, 0))
+    if grid.scheme == "semi_implicit":
+        return Matrices(make_filter(bar, grid, dt), none, none, none)
+    if grid.scheme == "modal":
+        return Matrices(none, *make_modes(bar, grid, dt))
+    return Matrices(none, none, none, none)
+
+
 def make_filter(bar: Bar, grid: il.Discretisation, dt: float) -> Array:
     """Return (I + BETA dt^2 (EI)_q/mu d^4/dx^4)^-1 between supports where w = w_xx = 0."""
-    if grid.scheme == "leapfrog":
-        return np.zeros((0, 0))
     inner = np.eye(grid.nodes - 2)
     bend = (np.eye(grid.nodes - 2, k=-1) - 2.0 * inner + np.eye(grid.nodes - 2, k=1)) / bar.dx**2
     stiffness = bar.E * (bar.area @ bar.z**2)
     return np.linalg.inv(inner + BETA * dt**2 * stiffness / bar.mu * bend @ bend)
+
+
+def make_modes(bar: Bar, grid: il.Discretisation, dt: float) -> tuple[Array, Array, Array]:
+    """Return (curve, pull, push) of the sine modes sin(k x) that are symmetric about mid-span.
+
+    A mode's inertia per length is such that a step turns its free vibration by omega dt, or by a
+    quarter of a turn if that is less.
+    """
+    number, intervals = np.arange(1, grid.nodes - 1, 2), grid.nodes - 1
+    k = number * np.pi / (bar.dx * intervals)
+    shapes = np.sin(np.outer(np.arange(1, intervals), number) * np.pi / intervals)
+    stiffness = bar.E * (bar.area @ bar.z**2) * k**4
+    turn = np.minimum(dt * np.sqrt(stiffness / bar.mu), 0.5 * np.pi)
+    inertia = stiffness * (0.5 * dt / np.sin(0.5 * turn)) ** 2
+    to_modes = np.linalg.pinv(shapes)
+    back = shapes / inertia
+    return shapes * -(k**2) @ to_modes, back * -(k**2) @ to_modes, back @ to_modes
 
 
 def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> Run:
@@ -260,7 +303,7 @@ def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> 
         impact.sphere.total_mass,
         dt,
         steps,
-        make_filter(bar, grid, dt),
+        make_matrices(bar, grid, dt),
         histories,
         w,
         plastic_strain,

@@ -6,12 +6,12 @@ each mode, and the sum over the nodes that takes the sections' moments to the mo
 any product of two modes, so the elastic beam falls apart into oscillators of the exact frequencies
 omega_p = k_p^2 sqrt((EI)_q/(rho A)) and the stiffness K_p = (EI)_q k_p^4 L/2:
 
-    q(t + dt) - 2 q(t) + q(t - dt) = -D q + D/K (F + source),  D = 2 - 2 cos(omega dt)
+    q(t + dt) - 2 q(t) + q(t - dt) = -D q + D/K (F + source),  D = 4 sin^2(omega dt/2)
 
-The contact force F and the source, the modes' share of the plastic moment M_0 = M + (EI)_q kappa,
-are constant over a step; D is exact for any force that is (Gautschi 1961). Beyond
-omega dt = pi/2, D stays at 2: such modes follow quasi-statically, which bounds the time step by
-the contact alone.
+with the contact force F and the source, the modes' share of the plastic moment
+M_0 = M + (EI)_q kappa. D is exact for forces that are constant from t - dt to t + dt (Gautschi
+1961); for others the step is of second order. Beyond omega dt = pi/2, D stays at 2: such modes
+follow quasi-statically in the mean of two steps, which bounds the time step by the contact alone.
 
 It is leapfrog with the masses K dt^2/D, so it conserves as exactly the energy
 
@@ -71,7 +71,7 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
     for p in range(n):
         k2[p] = ((2 * p + 1) * math.pi / (2 * n * grid.dx)) ** 2
         turn = grid.dt * k2[p] * math.sqrt(EI / grid.mu)
-        D[p] = 2.0 - 2.0 * math.cos(min(turn, 0.5 * math.pi))
+        D[p] = 4.0 * math.sin(0.5 * min(turn, 0.5 * math.pi)) ** 2
         push[p] = D[p] / (EI * k2[p] ** 2 * n * grid.dx)
     cosine = np.empty(4 * n)
     for i in range(4 * n):
