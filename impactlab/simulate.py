@@ -252,6 +252,7 @@ def _table(
             f"beam_model = {SOLID!r}: is no model of the kernels: use `impactlab witness`, "
             "impactlab.fem3d.solver.solve, or a study of the method grid"
         )
+    discretisation = discretisation.resolved(np.unique(impact.beam_model).tolist())
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
     values["sphere_mass"] = impact.sphere.total_mass
     for name, entry in PARAMETERS.items():

@@ -31,7 +31,7 @@ def simulate(
     points: Annotated[int, typer.Option(help="Integration points over the depth.")] = 9,
     rule: Annotated[str, typer.Option(help="lobatto, legendre or layers.")] = "lobatto",
     scheme: Annotated[
-        str, typer.Option(help="leapfrog, modal (the same from far fewer nodes) or semi_implicit.")
+        str, typer.Option(help="leapfrog, modal (the same from far fewer nodes) or auto.")
     ] = "leapfrog",
     duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "3 ms",
     output: Annotated[Path | None, new_file(help="Keep histories and fields as netCDF.")] = None,

@@ -412,8 +412,8 @@ def _has_cost(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
     "Cost against error",
     "Difference to the limit at zero spacing (Richardson's value, that of the least-squares "
     "fit, or else the finest value) against the estimated work of a run: half its nodes times "
-    "its time steps. What a step costs grows with the integration points, and is larger with "
-    "the semi-implicit scheme.",
+    "its time steps. What a step costs grows with the integration points, and depends "
+    "on the scheme.",
     _has_cost,
     _COST.sentences,
 )

@@ -38,7 +38,6 @@ _SPELLED = {
     "lobatto": "Gauss-Lobatto",
     "legendre": "Gauss-Legendre",
     "layers": "uniform layers",
-    "semi_implicit": "semi-implicit",
 }
 _METHODS = {
     "sobol": "Sobol sample",

@@ -30,7 +30,7 @@ def node_steps(cases: Any) -> Any:
 
 _RATES = (1.0, 1.0, 3.0, 4.0, 4.0)
 """Cost of a node per step over the paper's, by beam model."""
-_SCHEME_RATES = (1.0, 5.0, 1.5)
+_SCHEME_RATES = (1.0, 1.5)
 """The same by scheme in time."""
 _BESIDES = 20.0
 """Cost of a step beside its nodes, in nodes."""

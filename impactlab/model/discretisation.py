@@ -10,9 +10,6 @@ import numpy as np
 from impactlab.model.checks import integer, one_of, positive, require
 from impactlab.solver import BENDING_MODELS, RULES, SCHEMES
 
-_LEAST_FILTERED = 17
-"""Nodes from which on the semi-implicit scheme's matrix has all its kinds of rows."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Discretisation:
@@ -21,11 +18,10 @@ class Discretisation:
     nodes: odd, at least 5, so that mid-span is a node. points: at least 2, counted over the
     whole depth. rule: "lobatto" (the paper), "legendre" or "layers" (midpoints of equal layers,
     Zhang et al.). scheme: "leapfrog" (the paper: explicit, cost growing with nodes^3), "modal"
-    (sine modes, the same answers from far fewer nodes; see solver/modal.py) or "semi_implicit"
-    (cost growing with nodes^2, from 17 nodes on; see solver/semi_implicit.py), or "auto": modal
-    where every beam model in question has it, else leapfrog. courant: time step
-    over the scheme's largest, in (0, 1]: over the critical one of leapfrog; over half of the time
-    in which a bar wave crosses a spacing, unless the contact allows less, of the others.
+    (sine modes, the same answers from far fewer nodes; see solver/modal.py), or "auto": modal where
+    every beam model in question has it, else leapfrog. courant: time step over the scheme's
+    largest, in (0, 1]: over the critical one of leapfrog; over half of the time in which a bar wave
+    crosses a spacing, unless the contact allows less, of modal.
     element_size, elements_per_radius: of the "solid" model alone, which needs one of them and
     nothing else of these: the size of its elements about the contact, in m; or how many lie over
     the contact radius to expect (fem3d.solver.estimates), so that it follows the velocity.
@@ -52,7 +48,8 @@ class Discretisation:
         odd, words = np.equal(nodes % 2, 1), "must be odd, so that mid-span is a node"
         require(odd, "Discretisation", "nodes", nodes, words)
         one_of("Discretisation", "rule", self.rule, RULES)
-        one_of("Discretisation", "scheme", self.scheme, (*SCHEMES, "auto"))
+        schemes = SCHEMES if np.ndim(self.scheme) else (*SCHEMES, "auto")
+        one_of("Discretisation", "scheme", self.scheme, schemes)
         for field in ("element_size", "elements_per_radius"):
             if getattr(self, field) is not None:
                 positive("Discretisation", field, getattr(self, field))
@@ -60,10 +57,6 @@ class Discretisation:
         words = "element_size says it already: take one of them out"
         size = self.elements_per_radius
         require(not twice, "Discretisation", "elements_per_radius", size, words)
-        enough = np.greater_equal(nodes, _LEAST_FILTERED)
-        enough = enough | np.not_equal(self.scheme, "semi_implicit")
-        words = f"must be at least {_LEAST_FILTERED} with the semi_implicit scheme"
-        require(enough, "Discretisation", "nodes", nodes, words)
         courant = positive("Discretisation", "courant", self.courant)
         words = "must be in (0, 1]; above 1 the scheme is unstable or inaccurate"
         require(courant <= 1, "Discretisation", "courant", self.courant, words)

@@ -5,7 +5,7 @@ This file stays free of numba, so that names can be looked up without compiling 
 
 RULES = ("lobatto", "legendre", "layers")
 """Names of the integration rules over the depth; the index is the kernels' switch."""
-SCHEMES = ("leapfrog", "semi_implicit", "modal")
+SCHEMES = ("leapfrog", "modal")
 """Names of the schemes in time; the index is the kernels' switch."""
 BEAM_MODELS = ("euler_bernoulli", "elastic", "timoshenko", "spring_mass", "rigid")
 """Names of the models of the beam; the index is the kernels' switch."""

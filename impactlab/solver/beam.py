@@ -23,7 +23,7 @@ class Beam(NamedTuple):
     """The half beam's state.
 
     w: deflection (m) at this step and the next, in turns, (2, n + 4). u = dt w_t at half steps, du
-    its increment (of the semi-implicit scheme alone), plastic = dt^2/(rho A) (M_0)_xx, all in m,
+    its increment (of the other beam models alone), plastic = dt^2/(rho A) (M_0)_xx, all in m,
     (n + 4,).
     """
 

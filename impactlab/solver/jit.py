@@ -16,7 +16,5 @@ allocating = _COMPILER.decorator(allocates=True)
 """A record of an array does not keep it alive here, so arrays of records come from Python."""
 vectorised = _COMPILER.decorator(fastmath=True)
 """Free to reorder sums and blind to NaN: for loops over arrays."""
-ordered = _COMPILER.decorator(fastmath={"contract"})
-"""Free to fuse a product with a sum; sums keep their order."""
 linked = _COMPILER.decorator(kept=False)
 """For functions made within another, which are kept in their callers' code alone."""

@@ -3,7 +3,7 @@
 m_s w_s'' = -F + m_s g, w_s(0) = 0, w_s'(0) = v0; indentation delta = w_s - w(L/2).
 
 The paper's beam is moved in the loop itself, where that is fastest; the other models of the beam,
-and the semi-implicit scheme, each by a function of its file.
+and the modal scheme, each by functions of its file.
 """
 
 from __future__ import annotations
@@ -50,20 +50,12 @@ from impactlab.solver.modal import (
 )
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.solver.section import Section, make_section
-from impactlab.solver.semi_implicit import (
-    Filter,
-    filtered_kinetic_energy,
-    filtered_step,
-    make_filter,
-    no_filter,
-)
 from impactlab.solver.stability import discretise
 from impactlab.solver.timoshenko import Shear, make_shear, shear_energy, shear_step
 from impactlab.solver.types import (
     ELASTIC,
     LEAPFROG,
     MODAL,
-    SEMI_IMPLICIT,
     TIMOSHENKO,
     Array,
     Record,
@@ -80,7 +72,7 @@ WORST_ENERGY_ERROR = 0.05
 class State(NamedTuple):
     """What a run marches: contact pair, section and grid, and the state of the beam.
 
-    filter, modes, shear and lumped are of the models and schemes beside the paper's; empty where a
+    modes, shear and lumped are of the models and schemes beside the paper's; empty where a
     case needs none.
     """
 
@@ -89,7 +81,6 @@ class State(NamedTuple):
     grid: Grid
     beam: Beam
     plastic: PlasticState
-    filter: Filter
     modes: Modes
     shear: Shear
     lumped: Lumped
@@ -143,10 +134,7 @@ def _imbalance(
         in_beam = stored + dissipated + modal_energy(q, u, D, push, source, F)
     else:
         elastic = bending_energy(beam, M_0, section.stiffness, grid, now)
-        if state.filter.length > 0:
-            moving = filtered_kinetic_energy(beam, grid, state.filter, now, F)
-        else:
-            moving = kinetic_energy(beam, grid, now, u_mid)
+        moving = kinetic_energy(beam, grid, now, u_mid)
         in_beam = stored + dissipated + elastic + moving
     kept, lost = contact_history.energies(contact, state.pair, delta)
     return abs(falling + in_beam + kept + lost - start) / start
@@ -162,12 +150,10 @@ def _mid_curvature(w: Array, now: int, psi: Array, q: Array, bent: Array, grid: 
 
 @compiled
 def _step(beam_model: int, state: State, now: int, F: float) -> None:
-    """Move the beam of another model, or by the semi-implicit scheme, by one step."""
+    """Move the beam of another model by one step."""
     _, section, grid, beam, plastic = state[:5]
     if beam_model == TIMOSHENKO:
         shear_step(beam, state.shear, plastic, section, grid, now, F)
-    elif beam_model <= ELASTIC:
-        filtered_step(beam, plastic, section, grid, state.filter, now, F)
     else:
         lumped_step(beam, state.lumped, grid, now, F)
 
@@ -282,14 +268,12 @@ def run_all(
         case, answer = cases[r], answers[r]
         pair, section = make_pair(case), make_section(case)
         grid, steps = discretise(case, pair, section)
-        filtered = case.beam_model <= ELASTIC and case.scheme == SEMI_IMPLICIT
         state = State(
             pair,
             section,
             grid,
             make_beam(grid),
             make_plastic_state(grid, section),
-            make_filter(grid, section.stiffness) if filtered else no_filter(),
             make_modes(
                 case.nodes // 2 if case.scheme == MODAL else 0,
                 grid,

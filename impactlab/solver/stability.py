@@ -6,11 +6,9 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
     Timoshenko beam   4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) as first term
     lumped            k_c/m_s, and (k_c + k)/m_b of the spring-mass model; a thousandth of it is
                       taken, for accuracy: no wave asks for small steps here
-The semi-implicit scheme takes half of the time in which a bar wave crosses a spacing, for accuracy;
-and what the contact spring between the bare masses of node and sphere allows, for stability: the
-filter makes the node's mass larger. The modal scheme takes the same for accuracy; for stability
-D <= 2 and the contact, with the modes' masses no smaller together than the node's, must stay
-below 4/dt^2 together: half of the contact's leapfrog limit in dt^2.
+The modal scheme takes half of the time in which a bar wave crosses a spacing, for accuracy. For
+stability D (modal.py) and dt^2 times the contact's term above must not exceed 4 together; D is at
+most 2, and the modes together are no lighter at mid-span than the node: dt <= sqrt(2/contact).
 """
 
 from __future__ import annotations
@@ -24,7 +22,7 @@ from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
 from impactlab.solver.section import Section
 from impactlab.solver.timoshenko import shear_stiffness
-from impactlab.solver.types import MODAL, SEMI_IMPLICIT, SPRING_MASS, TIMOSHENKO, Record
+from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, Record
 
 _GROWTH = 1.25
 _LARGEST_SHARE = 0.01
@@ -85,8 +83,6 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
         return 2.0 / math.sqrt(omega_squared) / _LUMPED_STEPS
     contact = k_c * (1.0 / (mu * dx) + 1.0 / case.sphere_mass)
     wave = 0.5 * dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
-    if case.scheme == SEMI_IMPLICIT:
-        return min(wave, 2.0 / math.sqrt(contact))
     if case.scheme == MODAL:
         return min(wave, math.sqrt(2.0 / contact))
     if case.beam_model == TIMOSHENKO:

@@ -25,7 +25,6 @@ TIMOSHENKO = BEAM_MODELS.index("timoshenko")
 SPRING_MASS = BEAM_MODELS.index("spring_mass")
 RIGID = BEAM_MODELS.index("rigid")
 LEAPFROG = SCHEMES.index("leapfrog")
-SEMI_IMPLICIT = SCHEMES.index("semi_implicit")
 MODAL = SCHEMES.index("modal")
 
 

@@ -128,7 +128,7 @@ def time_step_study() -> Study:
     """Courant by scheme by nodes: errors of second order in the time step about each limit."""
     varied = {
         "courant": [0.2, 0.4, 0.8],
-        "scheme": ["leapfrog", "semi_implicit"],
+        "scheme": ["leapfrog", "modal"],
         "nodes": [101, 201],
     }
     design = design_of(varied, study="time_step", method="grid", histories=0, profiles=0)

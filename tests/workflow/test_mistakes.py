@@ -23,7 +23,7 @@ def test_help_and_version_by_their_usual_names(tmp_path):
     ("args", "words"),
     [
         (["simulate", "--nodes", "600"], ["nodes", "600", "odd"]),
-        (["simulate", "--scheme", "newmark"], ["scheme", "newmark", "leapfrog", "semi_implicit"]),
+        (["simulate", "--scheme", "newmark"], ["scheme", "newmark", "leapfrog", "modal"]),
         (["simulate", "--beam-model", "string"], ["--beam-model", "string", "timoshenko", "rigid"]),
         (["simulate", "--contact", "glue"], ["contact", "glue", "hertz", "stronge"]),
         (["simulate", "--velocity", "3 kg"], ["velocity", "3 kg", "m/s"]),
@@ -33,8 +33,8 @@ def test_help_and_version_by_their_usual_names(tmp_path):
         (["simulate", "--velocity", "6 km/s"], ["--velocity", "above the speed of a bar wave"]),
         (["simulate", "--velocity", "fast"], ["a velocity such as '0.99 m/s', or a number in m/s"]),
         (
-            ["simulate", "--beam-model", "rigid", "--scheme", "semi_implicit"],
-            ["ERROR: scheme = 'semi_implicit': beam_model = 'rigid' has 'leapfrog' alone"],
+            ["simulate", "--beam-model", "rigid", "--scheme", "modal"],
+            ["ERROR: scheme = 'modal': beam_model = 'rigid' has 'leapfrog' alone"],
         ),
         (["run", "studies/tabs.yaml"], ["line 8, column 1", "put spaces in the place of tabs"]),
         (["run", "studies/long.yaml"], ["long.yaml: duration = 1: ", "write '1 ms', or '1 s'"]),

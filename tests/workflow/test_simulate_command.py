@@ -20,13 +20,13 @@ def test_simulate_prints_and_keeps(tmp_path):
 
 
 def test_simulate_takes_a_scheme(tmp_path):
-    leapfrog, semi_implicit = (
+    leapfrog, modal = (
         impactlab("simulate", "--nodes", 101, "--scheme", scheme, cwd=tmp_path).stdout
-        for scheme in ("leapfrog", "semi_implicit")
+        for scheme in ("leapfrog", "modal")
     )
-    assert leapfrog != semi_implicit
+    assert leapfrog != modal
     assert "11.75 kN" in leapfrog
-    assert "11.75 kN" in semi_implicit
+    assert "11.75 kN" in modal
 
 
 def loaded(*args, cwd):

@@ -191,7 +191,6 @@ def without_limit(runs: xr.Dataset, values: xr.DataArray, axis: str, dim: str) -
 
 _STEPS = {
     "leapfrog": "the square of the spacing (leapfrog)",
-    "semi_implicit": "the spacing (semi-implicit scheme)",
     "modal": "the spacing (modal scheme)",
     "timoshenko": "the spacing (Timoshenko beam)",
 }

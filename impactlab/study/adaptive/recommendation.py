@@ -54,7 +54,7 @@ Pilots = Callable[[str, tuple[float, ...], Discretisation], tuple[xr.DataArray, 
 """solve_along of one study: takes axis, levels and discretisation."""
 FLOOR = 0.1
 """Uncertainties are relative to the value, or to this share of the largest over the cases."""
-_SPACINGS = {"leapfrog": (50, 800), "semi_implicit": (50, 800), "modal": (36, 432)}
+_SPACINGS = {"leapfrog": (50, 800), "modal": (36, 432)}
 """Spacings over the span, coarsest and finest, by scheme: the finer the last level, the smaller the
 error that remains."""
 _POINTS = (3, 5, 7, 9, 13, 17, 25)

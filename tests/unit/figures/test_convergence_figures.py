@@ -177,7 +177,7 @@ def test_time_steps_at_fixed_nodes(time_step_study: Study) -> None:
     runs, analysis = time_step_study
     runs = runs[["peak_force", "status"]]
     axes = panel(TIME.plot(runs, analysis), "Peak force")
-    courant, errors = curve(axes, "semi-implicit, 201 nodes")
+    courant, errors = curve(axes, "modal, 201 nodes")
     assert courant.tolist() == [0.2, 0.4, 0.8]
     np.testing.assert_allclose(errors, 1e-3 * courant**2)
     assert not NODES.applies(runs, analysis)

@@ -14,7 +14,7 @@ OTHER_NAMES = {
     "contact": "hertz",
     "beam_model": "elastic",
     "rule": "layers",
-    "scheme": "semi_implicit",
+    "scheme": "modal",
 }
 OTHER_COUNTS = {"nodes": 55, "points": 6}
 STATED = {"sphere_mass": 2.5, "element_size": 2e-3, "elements_per_radius": 3.0}

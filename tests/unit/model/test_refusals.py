@@ -41,7 +41,7 @@ REFUSED = {
     ("Discretisation", "nodes"): [0, 3, 4, 200, 201.5, -201, NAN, INFINITE, "201", None, True],
     ("Discretisation", "points"): [1, 0, -9, 2.5, NAN, "9", None],
     ("Discretisation", "rule"): ["simpson", "Lobatto", None, 0],
-    ("Discretisation", "scheme"): ["newmark", "semi-implicit", "Leapfrog", "", None, 0],
+    ("Discretisation", "scheme"): ["newmark", "semi_implicit", "Leapfrog", "", None, 0],
     ("Discretisation", "courant"): [0, -0.5, 1.0001, 2, NAN, INFINITE, "0.9", None],
     ("Discretisation", "element_size"): [0, -1e-3, NAN, INFINITE, "1 mm", True],
     ("Discretisation", "elements_per_radius"): [0, -2, NAN, INFINITE, "2", True],
@@ -76,20 +76,6 @@ def test_the_message_names_class_field_and_value(part, field, value):
 @pytest.mark.parametrize(("part", "field", "value"), pairs(ALLOWED))
 def test_the_edges_of_what_is_allowed(part, field, value):
     assert getattr(replace(PARTS[part], **{field: value}), field) == value
-
-
-@pytest.mark.parametrize("nodes", [5, 15])
-def test_the_semi_implicit_scheme_needs_17_nodes(nodes):
-    """The same holds if only one of the two changes, or for columns of them."""
-    message = (
-        rf"^Discretisation\.nodes = {nodes}: must be at least 17 with the semi_implicit scheme"
-    )
-    with pytest.raises(ValueError, match=message):
-        il.Discretisation(nodes=nodes, scheme="semi_implicit")
-    with pytest.raises(ValueError, match=message):
-        replace(il.Discretisation(nodes=nodes), scheme="semi_implicit")
-    assert il.Discretisation(nodes=nodes, scheme="leapfrog").nodes == nodes
-    assert il.Discretisation(nodes=17, scheme="semi_implicit").nodes == 17
 
 
 def test_every_field_is_covered():

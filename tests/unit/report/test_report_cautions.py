@@ -124,12 +124,12 @@ def test_notes_on_few_lobatto_points(discretisation_study: Study) -> None:
     assert not _said(notes(runs.sel(rule=["layers"])), words)
 
 
-def test_note_on_the_semi_implicit_scheme(velocity_study: Study) -> None:
+def test_note_on_the_modal_scheme(velocity_study: Study) -> None:
     runs, _ = velocity_study
-    words = "semi-implicit scheme"
+    words = "The modal scheme"
     assert not _said(notes(runs.assign_coords(scheme="leapfrog")), words)
-    assert _said(notes(runs.assign_coords(scheme="semi_implicit")), words)
-    varied = runs.expand_dims(scheme=["leapfrog", "semi_implicit"])
+    assert _said(notes(runs.assign_coords(scheme="modal")), words)
+    varied = runs.expand_dims(scheme=["leapfrog", "modal"])
     assert _said(notes(varied), words)
 
 

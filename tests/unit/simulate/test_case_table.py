@@ -30,8 +30,6 @@ def test_a_wrong_run_is_named_with_its_field():
     refused({"beam_depth": [0.02, np.nan]}, r"^run 1: Beam\.depth = nan: must be a finite number")
     refused({"contact": ["hertz", "hooke"]}, r"^run 1: Impact\.contact = 'hooke': must be one of")
     refused({"weight": [1.0]}, r"^run 0: unknown parameter 'weight': choose from velocity")
-    filtered = {"scheme": ["leapfrog", "semi_implicit", "semi_implicit"], "nodes": [5, 17, 15]}
-    refused(filtered, r"^run 2: Discretisation\.nodes = 15: must be at least 17 with the")
     refused({"velocity": [1.0, 2.0], "nodes": [11]}, r"one value per run.*\{1, 2\}")
 
 
@@ -40,7 +38,7 @@ RANDOM = np.random.default_rng(3)
 TOGETHER = tuple(name for name in PARAMETERS if name != ELEMENTS[1])
 """But for what contradicts another."""
 WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "rule": RULES, "scheme": SCHEMES}
-COUNTS = {"nodes": (17, 19, 1201), "points": (2, 3, 64)}
+COUNTS = {"nodes": (5, 19, 1201), "points": (2, 3, 64)}
 
 
 def any_values(name):
@@ -91,7 +89,7 @@ WRONG = {
     "contact": ["hooke", "", 0, None],
     "beam_model": ["Rigid", "spring-mass", 1],
     "rule": ["Lobatto"],
-    "scheme": ["semi-implicit", "Leapfrog", 1, None],
+    "scheme": ["semi_implicit", "Leapfrog", 1, None],
     "nodes": [3, 20, 21.5, np.nan, "21", None, True],
     "points": [1, 2.5],
     "courant": [0, 1.0001],
@@ -110,25 +108,25 @@ def test_a_refused_run_is_told_in_the_words_of_the_model(name, wrong):
     assert str(among.value) == f"run 2: {alone.value}"
 
 
-@pytest.mark.parametrize(
-    ("grid", "varied"),
-    [
-        ({"scheme": "semi_implicit"}, {"nodes": [17, 1201, 15]}),
-        ({"nodes": 15}, {"scheme": ["leapfrog", "leapfrog", "semi_implicit"]}),
-    ],
-    ids=["nodes", "scheme"],
-)
-def test_the_run_is_named_that_has_too_few_nodes_for_its_scheme(grid, varied):
-    with pytest.raises(
-        ValueError, match=r"^run 2: Discretisation\.nodes = 15: must be at least 17 with"
-    ):
-        case_table(IMPACT, il.Discretisation(**grid), duration=DURATION, varied=varied)
+def test_auto_stands_for_the_fastest_scheme_of_every_model_in_question():
+    grid = il.Discretisation(scheme="auto")
+
+    def chosen(**varied):
+        cases = case_table(IMPACT, grid, duration=DURATION, varied=varied)
+        return [SCHEMES[case.scheme] for case in cases]
+
+    assert chosen() == ["modal"]
+    assert chosen(beam_model=["elastic", "euler_bernoulli"]) == ["modal", "modal"]
+    assert chosen(beam_model=["elastic", "timoshenko"]) == ["leapfrog", "leapfrog"]
+    assert chosen(scheme=["auto", "leapfrog"]) == ["modal", "leapfrog"]
+    run = il.simulate(IMPACT, replace(grid, nodes=21), duration=1e-6)
+    assert run.scheme.item() == "modal"
 
 
 @pytest.mark.parametrize("model", ["timoshenko", "spring_mass", "rigid"])
 def test_the_run_is_named_whose_beam_has_no_such_scheme(model):
-    varied = {"beam_model": ["elastic", model], "scheme": ["semi_implicit", "semi_implicit"]}
-    words = rf"^run 1: scheme = 'semi_implicit': beam_model = '{model}'"
+    varied = {"beam_model": ["elastic", model], "scheme": ["modal", "modal"]}
+    words = rf"^run 1: scheme = 'modal': beam_model = '{model}'"
     with pytest.raises(ValueError, match=words):
         case_table(IMPACT, GRID, duration=DURATION, varied=varied)
 

@@ -68,7 +68,7 @@ def one(model="euler_bernoulli", scheme="leapfrog", law="stronge", velocity=12.0
 
 
 schemes = [(model, "leapfrog") for model in BEAM_MODELS] + [
-    (model, "semi_implicit") for model in BEAM_MODELS[:2]
+    (model, "modal") for model in BEAM_MODELS[:2]
 ]
 for model, scheme in schemes:
     note(f"{model}, {scheme}", *(one(model, scheme, law) for law in LAWS))

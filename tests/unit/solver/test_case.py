@@ -19,7 +19,7 @@ def test_fields_are_the_parameters_and_the_duration():
 
 def test_a_record_has_every_value_in_its_place(make_case):
     names = {"contact": "hertz", "beam_model": "elastic", "rule": "layers"}
-    names |= {"scheme": "semi_implicit"}
+    names |= {"scheme": "modal"}
     numbers = {
         name: 0.5 + number / 100
         for number, (name, entry) in enumerate(OF_KERNELS.items())
@@ -33,7 +33,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
         "contact": LAWS.index("hertz"),
         "beam_model": BEAM_MODELS.index("elastic"),
         "rule": RULES.index("layers"),
-        "scheme": SCHEMES.index("semi_implicit"),
+        "scheme": SCHEMES.index("modal"),
     }
     expected = values | numbers_of_names | {"duration": 0.7}
     assert {name: case[name] for name in CASE.names} == expected

@@ -209,7 +209,7 @@ def test_space_is_judged_at_each_courant(both: xr.Dataset) -> None:
     ("coords", "said"),
     [
         ({}, "shrinks with the square of the spacing (leapfrog):"),
-        ({"scheme": "semi_implicit"}, "shrinks with the spacing (semi-implicit scheme):"),
+        ({"scheme": "modal"}, "shrinks with the spacing (modal scheme):"),
         ({"beam_model": "timoshenko"}, "shrinks with the spacing (Timoshenko beam):"),
         (
             {"beam_model": ("velocity", ["elastic", "timoshenko"])},

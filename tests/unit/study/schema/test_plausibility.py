@@ -87,12 +87,12 @@ def test_the_ends_of_distributions_count(problems, sample, given):
 
 @pytest.mark.parametrize("model", ["timoshenko", "spring_mass", "rigid"])
 def test_a_scheme_that_a_model_has_not_is_refused_before_the_run(problems, read, grid, model):
-    wrong = {"impact.beam_model": model, "discretisation": {"scheme": "semi_implicit"}}
+    wrong = {"impact.beam_model": model, "discretisation": {"scheme": "modal"}}
     ((where, said),) = problems(grid(wrong))
     assert where == "discretisation.scheme"
     assert f"{model} has leapfrog alone" in said
     varied = {"sampling.parameters": {"beam_model": ["elastic", model], "velocity": [1]}}
-    ((where, _),) = problems(grid(varied | {"discretisation": {"scheme": "semi_implicit"}}))
+    ((where, _),) = problems(grid(varied | {"discretisation": {"scheme": "modal"}}))
     assert where == "discretisation.scheme"
     fixed = {"scheme": ["leapfrog"], "beam_model": [model]}
-    read(grid({"sampling.parameters": fixed, "discretisation": {"scheme": "semi_implicit"}}))
+    read(grid({"sampling.parameters": fixed, "discretisation": {"scheme": "modal"}}))
