@@ -11,11 +11,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from impactlab.solver.semi_implicit import BETA
 from matplotlib.figure import Figure
 
 import impactlab as il
 from impactlab.figures import style
-from impactlab.solver.semi_implicit import BETA
 
 COURANT, NODES = 0.9, (31, 101, 401)
 NAMES = {"modal": "modal", "leapfrog": "leapfrog", "semi_implicit": "semi-implicit"}
