@@ -1,10 +1,10 @@
 """The plain solver of physics.md, to compare the kernels with: the same schemes, written plainly.
 
 The whole beam, every fibre through its return mapping at every step, the contact laws with
-unloading and reloading written out, the semi-implicit scheme's filter and the modal scheme's sums
-over modes as dense matrices of the nodes, and the responses read off the full histories afterwards.
-From impactlab come only the case, the number of steps and, from its independent solutions, the
-integration rules and the contact laws beyond the paper's.
+unloading and reloading written out, the modal scheme's sums over modes as dense matrices of the
+nodes, and the responses read off the full histories afterwards. From impactlab come only the case,
+the number of steps and, from its independent solutions, the integration rules and the contact laws
+beyond the paper's.
 SI units; z and w point downwards.
 """
 
@@ -28,7 +28,6 @@ FURTHER = ("stronge_original", "jackson_green", "mjg", "thornton", "kogut_etsion
 LAWS = {name: number for number, name in enumerate(("hertz", "stronge", *FURTHER))}
 TH = 1.1
 PLASTIC_ZONE = 1e-5
-BETA = 0.5
 
 
 class Contact(NamedTuple):
@@ -58,13 +57,12 @@ class Bar(NamedTuple):
 
 
 class Matrices(NamedTuple):
-    """What a scheme does to the inner nodes in place of differences; empty where it does not.
+    """What the modal scheme does to the inner nodes in place of differences; empty for leapfrog.
 
-    filter: of the accelerations; curve: from deflections (m) to curvatures (1/m); pull, push: from
+    curve: from deflections (m) to curvatures (1/m); pull, push: from
     moments (N m) and from forces per length (N/m) to accelerations (m/s2).
     """
 
-    filter: Array
     curve: Array
     pull: Array
     push: Array
@@ -217,8 +215,6 @@ def march(bar, contact, v_0, g, m_s, dt, steps, scheme, histories, w, plastic_st
             a[1:last] = scheme.pull @ M[1:last] + scheme.push @ p[1:last]
         else:
             a[1:last] = ((M[:-2] - 2.0 * M[1:last] + M[2:]) / bar.dx**2 + p[1:last]) / bar.mu
-        if scheme.filter.size > 0:
-            a[1:last] = scheme.filter @ a[1:last]
         v += kick * a
         w += dt * v
         before, here = here, d
@@ -255,24 +251,13 @@ def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:
 
 def make_matrices(bar: Bar, grid: il.Discretisation, dt: float) -> Matrices:
     """Return what the scheme of the grid does to the inner nodes."""
-    none = np.zeros((0, 0))
-    if grid.scheme == "semi_implicit":
-        return Matrices(make_filter(bar, grid, dt), none, none, none)
     if grid.scheme == "modal":
-        return Matrices(none, *make_modes(bar, grid, dt))
-    return Matrices(none, none, none, none)
+        return make_modes(bar, grid, dt)
+    return Matrices(*np.zeros((3, 0, 0)))
 
 
-def make_filter(bar: Bar, grid: il.Discretisation, dt: float) -> Array:
-    """Return (I + BETA dt^2 (EI)_q/mu d^4/dx^4)^-1 between supports where w = w_xx = 0."""
-    inner = np.eye(grid.nodes - 2)
-    bend = (np.eye(grid.nodes - 2, k=-1) - 2.0 * inner + np.eye(grid.nodes - 2, k=1)) / bar.dx**2
-    stiffness = bar.E * (bar.area @ bar.z**2)
-    return np.linalg.inv(inner + BETA * dt**2 * stiffness / bar.mu * bend @ bend)
-
-
-def make_modes(bar: Bar, grid: il.Discretisation, dt: float) -> tuple[Array, Array, Array]:
-    """Return (curve, pull, push) of the sine modes sin(k x) that are symmetric about mid-span.
+def make_modes(bar: Bar, grid: il.Discretisation, dt: float) -> Matrices:
+    """Return those of the sine modes sin(k x) that are symmetric about mid-span.
 
     A mode's inertia per length is such that a step turns its free vibration by omega dt, or by a
     quarter of a turn if that is less.
@@ -285,7 +270,7 @@ def make_modes(bar: Bar, grid: il.Discretisation, dt: float) -> tuple[Array, Arr
     inertia = stiffness * (0.5 * dt / np.sin(0.5 * turn)) ** 2
     to_modes = np.linalg.pinv(shapes)
     back = shapes / inertia
-    return shapes * -(k**2) @ to_modes, back * -(k**2) @ to_modes, back @ to_modes
+    return Matrices(shapes * -(k**2) @ to_modes, back * -(k**2) @ to_modes, back @ to_modes)
 
 
 def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> Run:

@@ -1,0 +1,224 @@
+"""The modal scheme: its step against closed forms, its list of sections, and its stability."""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab.simulate import simulate, simulate_many
+from impactlab.solver.beam import make_grid
+from impactlab.solver.contact.history import make_pair
+from impactlab.solver.fibre_plasticity import make_plastic_state, plastic_energy
+from impactlab.solver.modal import (
+    bend_sections,
+    deflect,
+    make_modes,
+    modal_energy,
+    mode_curvature,
+    move_modes,
+)
+from impactlab.solver.section import FAR, make_section
+from impactlab.solver.stability import discretise, largest_time_step, stiffest_contact
+from impactlab.variables import STATUS_FLAGS
+from impactlab.verification.cases import elastic
+from impactlab.verification.modal_series import error
+from impactlab.verification.schemes import drawn
+from impactlab.verification.solutions.modal import solve
+
+MU, EI, SPAN, FORCE = 13.0, 2e4, 0.8, 700.0
+JIT_ONLY = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes minutes without")
+
+
+def modes_of(n, dt):
+    """Modes of an elastic beam with n spacings in its half, and its grid."""
+    grid = make_grid(n, 0.5 * SPAN / n, dt, MU, EI)
+    return make_modes(n, grid, EI, FAR), grid
+
+
+def move(modes, F):
+    q, u, k2, D, push, source, _, seen, _, slack = modes
+    return move_modes(q, u, D, push, source, k2, seen, slack, F)
+
+
+def energy_of(modes, F):
+    q, u, _, D, push, source = modes[:6]
+    return modal_energy(q, u, D, push, source, F)
+
+
+@pytest.mark.parametrize("turn", [1e-4, 0.1, 1.5])
+def test_a_step_is_exact_under_a_constant_force(turn):
+    """From rest q = F/K (1 - cos omega t) in every mode, none of which turns beyond pi/2."""
+    n = 7
+    k = np.arange(1, 2 * n, 2) * np.pi / SPAN
+    omega, K = k**2 * np.sqrt(EI / MU), 0.5 * EI * k**4 * SPAN
+    dt = turn / omega[-1]
+    modes, grid = modes_of(n, dt)
+    modes.u[:] = -0.5 * modes.push * FORCE  # q(-dt) = q(dt)
+    energies = []
+    for step in range(1, 400):
+        w = move(modes, FORCE)
+        expected = FORCE / K * (1 - np.cos(step * omega * dt))
+        assert modes.q == pytest.approx(expected, rel=0, abs=1e-9 * FORCE / K[0])
+        assert (modes.q - expected) * K == pytest.approx(np.zeros(n), abs=1e-8 * FORCE)
+        assert w == pytest.approx(expected.sum(), abs=1e-9 * FORCE / K[0])
+        energies.append(energy_of(modes, FORCE) - FORCE * (modes.q - modes.u).sum())
+    start = -(modes.push * FORCE**2 / 8).sum()  # of the half steps beside the rest
+    assert energies == pytest.approx([start] * len(energies), rel=0, abs=1e-12 * FORCE**2 / K[0])
+    deflection = np.zeros((2, n + 4))
+    deflect(modes, deflection, 1, grid.mid)
+    from_support = np.linspace(0, SPAN / 2, n + 1)[1:]
+    expected = np.sin(np.outer(from_support, k)) @ (
+        (-1.0) ** np.arange(n) * FORCE / K * (1 - np.cos((step - 1) * omega * dt))
+    )
+    assert deflection[1, 2 : n + 2] == pytest.approx(expected, rel=1e-8)
+
+
+def test_modes_far_beyond_the_time_step_follow_the_static_limit():
+    """In the mean of two steps: F/K, together F L^3/(48 EI) and, at mid-span, F L/(4 EI)."""
+    modes, grid = modes_of(400, 1.0)
+    np.testing.assert_allclose(modes.D, 2.0, rtol=1e-15)
+    w, kappa = [], []
+    for _ in range(20):
+        w.append(move(modes, FORCE))
+        kappa.append(mode_curvature(modes.q, modes.bent, grid.mid))
+    means = 0.5 * (np.array([w, kappa])[:, 2:] + np.array([w, kappa])[:, :-2])
+    assert means[0] == pytest.approx(FORCE * SPAN**3 / (48 * EI), rel=1e-9)
+    assert means[1] == pytest.approx(-FORCE * SPAN / (4 * EI), rel=1e-3)
+
+
+@pytest.mark.parametrize("n", [1, 2, 9])
+def test_moments_come_to_the_modes_as_the_modes_bend(n):
+    """The sum over the sections is exact: M_0 = EI kappa makes the source K q."""
+    modes, grid = modes_of(n, 1e-5)
+    modes.q[:] = 1e-3 * np.cos(np.arange(n))
+    lengths = np.full(n, 2 * grid.dx)
+    lengths[-1] = grid.dx
+    kappa = np.array([mode_curvature(modes.q, modes.bent, i) for i in range(2, grid.mid + 1)])
+    source = modes.bent[2 : grid.mid + 1].T @ (lengths * EI * kappa)
+    assert source == pytest.approx(modes.D / modes.push * modes.q, rel=1e-9)
+
+
+YIELDING = {"velocity": 30.0, "beam_depth": 0.01, "nodes": 41, "points": 6, "scheme": "modal"}
+HARDENING = {name: 2e9 for name in ("beam_isotropic_hardening_modulus",)}
+HARDENING["beam_kinematic_hardening_modulus"] = 3e9
+
+
+def yielding_beam(make_case, **values):
+    """The modes, sections' state, section and grid of a beam at rest."""
+    case = make_case(duration=1e-3, **YIELDING, **values)
+    section = make_section(case)
+    grid, _ = discretise(case, make_pair(case), section)
+    modes = make_modes(case.nodes // 2, grid, section.stiffness, section.yield_curvature)
+    return modes, make_plastic_state(grid, section), section, grid
+
+
+@pytest.mark.parametrize("hardening", [{}, HARDENING], ids=["perfectly plastic", "hardening"])
+def test_sections_left_alone_change_no_bit(make_case, hardening):
+    """Against a beam all of whose sections are looked at in every step; struck from both sides."""
+    step = np.arange(900.0)
+    blow = 30e3 * (np.exp(-((step / 80 - 1) ** 2)) - np.exp(-((step / 80 - 5) ** 2)))
+    beams = []
+    for everywhere in (False, True):
+        modes, plastic, section, grid = yielding_beam(make_case, **hardening)
+        near, slack, left_alone, w = modes.near, modes.slack, [], []
+        if everywhere:
+            near[:], slack[0] = [grid.mid - 1, *range(2, grid.mid + 1)], FAR
+        for step in range(blow.size):
+            if near[0] > 0 or slack[1] >= slack[0]:
+                bend_sections(modes, plastic, section, grid)
+            w.append(move(modes, blow[step]))
+            left_alone.append(grid.mid - 1 - near[0])
+        state = modes.q, modes.source, plastic.plastic_strain, plastic.peeq, plastic.M_0
+        beams.append([np.array(w), *state])
+        yielded = plastic.peeq[2 : grid.mid + 1, 0]
+        assert 3 < np.count_nonzero(yielded) < grid.mid - 3
+        assert (yielded > 1.1 * np.abs(plastic.plastic_strain[2 : grid.mid + 1, 0])).any()
+        assert np.mean(left_alone) == 0 if everywhere else np.mean(left_alone) > 3
+    for one, other in zip(*beams, strict=True):
+        assert one.tobytes() == other.tobytes()
+
+
+def test_any_bending_however_sudden_is_found(make_case):
+    modes, plastic, section, grid = yielding_beam(make_case)
+    for mode, size in ((0, 0.9), (3, 0.9), (1, 5.0), (0, -7.0)):
+        modes.q[mode] = size * section.yield_curvature / modes.k2[mode]
+        modes.slack[1] = (modes.k2 * np.abs(modes.q - modes.seen)).sum()
+        bend_sections(modes, plastic, section, grid)
+        for i in range(2, grid.mid + 1):
+            kappa = mode_curvature(modes.q, modes.bent, i)
+            close = 1e-12 * abs(kappa)
+            assert plastic.kappa_min[i] - close <= kappa <= plastic.kappa_max[i] + close
+    assert plastic_energy(plastic, section, grid)[1] > 0
+
+
+LIGHT = {"contact": "hertz", "sphere_mass": 1e-3, "velocity": 30.0}
+LIGHT |= {"beam_depth": 0.002, "beam_width": 0.001}
+
+
+@pytest.mark.parametrize("values", [{}, LIGHT], ids=["wave", "contact"])
+@pytest.mark.parametrize("nodes", [5, 17, 61])
+def test_a_step_with_any_sections_yielding_is_stable(make_case, values, nodes):
+    """At the largest time step all eigenvalues of the step lie on the unit circle.
+
+    The contact is a spring; sections keep some or none of their stiffness.
+    """
+    case = make_case(scheme="modal", nodes=nodes, **values)
+    pair, section, dx = make_pair(case), make_section(case), case.beam_span / (nodes - 1)
+    dt, k_c = largest_time_step(case, pair, section.stiffness, dx), stiffest_contact(case, pair)
+    wave = 0.5 * dx * np.sqrt(case.beam_density / case.beam_youngs_modulus)
+    assert (dt < 0.99 * wave) == bool(values)
+    mu = case.beam_density * case.beam_width * case.beam_depth
+    grid, random = make_grid(nodes // 2, dx, dt, mu, section.stiffness), np.random.default_rng(1)
+    modes = make_modes(nodes // 2, grid, section.stiffness, section.yield_curvature)
+    bent, lengths = modes.bent[2 : grid.mid + 1], np.full(nodes // 2, 2 * dx)
+    lengths[-1] = dx
+    for share in (0.0, 0.3, 1.0):
+        kept = np.where(random.random(nodes // 2) < share, 0.0, 1.0) * section.stiffness
+        stiffness = np.zeros((nodes // 2 + 1, nodes // 2 + 1))
+        stiffness[:-1, :-1] = bent.T @ (bent * (kept * lengths)[:, np.newaxis])
+        touch = np.append(np.ones(nodes // 2), -1.0)
+        stiffness += k_c * np.outer(touch, touch)
+        root = np.sqrt(np.append(modes.push, dt**2 / case.sphere_mass))
+        squares = np.linalg.eigvalsh(root[:, np.newaxis] * stiffness * root)
+        assert squares.min() > -1e-9
+        assert squares.max() < 4 * (1 - 1e-9)
+
+
+@JIT_ONLY
+@pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
+def test_random_cases_stay_in_balance_at_the_largest_time_step():
+    varied = drawn(60, seed=4)
+    varied["nodes"] = np.random.default_rng(5).choice([5, 11, 31, 101], 60)
+    varied["courant"] = np.full(60, 1.0)
+    grid = il.Discretisation(scheme="modal")
+    runs = simulate_many(il.paper_impact(), grid, duration=4e-3, varied=varied)
+    assert not (runs.status.values & STATUS_FLAGS["diverged"][0]).any()
+    assert np.nanmax(runs.energy_error.where(runs.nodes > 20)) < 1e-2
+    assert runs.energy_error.max() < 0.1
+
+
+@JIT_ONLY
+def test_order_of_convergence_in_an_elastic_impact():
+    """Third order in dx of force and deflection, first of the curvature under the point load.
+
+    The second order of dt, which goes with dx, weighs less here.
+    """
+    impact = elastic(il.paper_impact(0.99))
+    series = solve(impact, 2e-3)
+    coarse, fine = (
+        simulate(
+            impact,
+            il.Discretisation(nodes=nodes, points=3, scheme="modal"),
+            duration=2e-3,
+            samples=401,
+        )
+        for nodes in (11, 41)
+    )
+    orders = {
+        name: np.log2(error(name, series, coarse) / error(name, series, fine)) / 2
+        for name in ("contact_force", "midspan_deflection", "midspan_curvature")
+    }
+    assert list(orders.values()) == pytest.approx([3.0, 3.0, 1.0], abs=0.25), orders
+    assert error("contact_force", series, fine) < 2e-4
