@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from impactlab.cli.options import RESULTS, RunsFile, assigned, given, new_file, new_folder
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 StoredFiles = Annotated[
     list[Path],
@@ -20,13 +17,6 @@ StoredFiles = Annotated[
     ),
 ]
 Pictures = Annotated[Path | None, new_folder(help="Default: figures/ beside the first of them.")]
-
-
-def _finding(*datasets: xr.Dataset) -> str:
-    """Return the main finding of stored results, in a sentence."""
-    from impactlab.report.answer import answers
-
-    return next(iter(answers(*datasets)), "There is no answer in these runs.")
 
 
 def analyse(
@@ -44,10 +34,11 @@ def analyse(
     Of a sample also, beside the output: every index with its interval (indices.csv, indices.nc),
     and surrogate.nc for `impactlab predict`.
     """
+    from impactlab.report.answer import answers
     from impactlab.study.steps import analyse_runs
 
     path = output or runs.with_name("analysis.nc")
-    print(f"{path}: {_finding(*analyse_runs(runs, path, resolution, refinement))}")
+    print(f"{path}: {answers(*analyse_runs(runs, path, resolution, refinement))[0]}")
 
 
 def predict(
@@ -73,35 +64,33 @@ def predict(
     print_predictions(model.predict(**numbers))
 
 
-def figures(
-    stored: StoredFiles,
-    output: Pictures = None,
-) -> None:
+def figures(stored: StoredFiles, output: Pictures = None) -> None:
     """Draw every figure that a study's answers, or findings, allow."""
+    from impactlab.report.answer import answers
     from impactlab.report.results import read_stored
 
     kind, datasets = read_stored(stored)
     folder = output or stored[0].with_name("figures")
     drawn = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder))
     figures = "1 figure" if drawn == 1 else f"{drawn} figures"
-    print(f"{folder}: {figures}. {_finding(*datasets)}")
+    print(f"{folder}: {figures}. {answers(*datasets)[0]}")
 
 
 def report(
     stored: StoredFiles,
     figures: Pictures = None,
     output: Annotated[
-        Path | None,
-        new_file(help="Default: report.html beside the first of them."),
+        Path | None, new_file(help="Default: report.html beside the first of them.")
     ] = None,
 ) -> None:
     """Write a study's report."""
+    from impactlab.report.answer import answers
     from impactlab.report.results import read_stored
 
     kind, datasets = read_stored(stored)
     path = output or stored[0].with_name("report.html")
     kind.write(*datasets, figures or stored[0].with_name("figures"), path)
-    print(f"{path}: {_finding(*datasets)}")
+    print(f"{path}: {answers(*datasets)[0]}")
 
 
 def index(

@@ -176,9 +176,9 @@ def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
     Words of study files are spelt as in papers; contact laws have their titles.
     """
     if coordinate.dtype.kind in "if":
-        shown = display(coordinate)(coordinate.values)
+        shown = np.ravel(display(coordinate)(coordinate.values))
         return [number(float(shown[at])) for at in where]
-    words = [str(coordinate.values[at]) for at in where]
+    words = [str(coordinate.values.flat[at]) for at in where]
     if coordinate.name == "contact":
         return [CONTACT_LAWS[word].title for word in words]
     if coordinate.name == "beam_model":
@@ -213,8 +213,6 @@ def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:
 def fixed(runs: xr.Dataset) -> str:
     """Return a sentence on the parameters, numerics included, that are the same in all runs."""
     listed = [
-        setting(xr.DataArray(runs[name].values.reshape(1), name=name, attrs=runs[name].attrs), [0])
-        for name in _FIXED
-        if name in runs.coords and runs[name].size == 1
+        setting(runs[name], [0]) for name in _FIXED if name in runs.coords and runs[name].size == 1
     ]
     return f"In all runs: {'; '.join(listed)}." if listed else ""

@@ -47,7 +47,8 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     runs, analysis: the stored runs.nc and analysis.nc; or findings.nc alone.
     """
     lines, _ = entries(runs, analysis)
-    return ["; ".join(": ".join(entry) for entry in line) + "." for line in lines]
+    told = ["; ".join(": ".join(entry) for entry in line) + "." for line in lines]
+    return told or ["There is no answer in these runs."]
 
 
 def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[list[Entry]], str]:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
-from functools import partial
+from dataclasses import replace
 from itertools import product
 from typing import NamedTuple
 
@@ -17,6 +16,7 @@ from impactlab.figures.access import usable
 from impactlab.figures.measures import analysed
 from impactlab.model.parameters import ELEMENTS
 from impactlab.report.page import Cell, Row, Section, Table, largest
+from impactlab.types import Floats
 
 _ORDERS = (
     "The observed order, the grid convergence index (GCI) and the asymptotic ratio come from the "
@@ -42,8 +42,6 @@ _AXES = {
     "points": ("Convergence in integration points over the depth", _RULES),
 }
 """Caption and explanation of each axis, in the order space, time, depth."""
-
-
 ORDERED = {"nodes": "nodes", "courant": "time_step"} | dict.fromkeys(ELEMENTS, "element_size")
 """Refined axes: the prefix of their variables in the analysis."""
 REFINED = ORDERED | {"points": "points"}
@@ -155,21 +153,22 @@ def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     for axis, (caption, explanation) in _AXES.items():
         if f"{axis}_summary" not in analysis:
             continue
-        columns = _columns(analysis, axis)
+        cells: dict[str, Cell] = {}
         rows: list[Row] = []
         for name in analysed(runs, analysis):
             found = analysis.sel(response=name)
             verdict = at_finest(found, needs.runs if needs else runs, axis)
             kind = "" if verdict and verdict.sound else "warning"
+            cells = _cells(found, axis)
             rows.append(
                 [
                     labels.sentence(labels.response(name)),
                     Cell(verdict.words if verdict else "not judged", kind),
                     _over_the_grid(found, axis),
-                    *(cell(found) for cell in columns.values()),
+                    *cells.values(),
                 ]
             )
-        head = ["Response", "Verdict on the finest grid", "Verdicts over the grid", *columns]
+        head = ["Response", "Verdict on the finest grid", "Verdicts over the grid", *cells]
         remarks = [explanation, *_remarks(analysis, axis)]
         meanings: dict[str, str] = {}
         for kind in ("behaviour", "summary", "verdict"):
@@ -208,25 +207,26 @@ def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:
     return remarks
 
 
-def _columns(analysis: xr.Dataset, axis: str) -> dict[str, Callable[[xr.Dataset], Cell]]:
-    """Return heads, and functions from the analysis of one response to its cell."""
+def _cells(found: xr.Dataset, axis: str) -> dict[str, Cell]:
+    """Return the numbers of one response, by the head of their column."""
+    uncertainty = largest(found, f"{axis}_uncertainty")
     if axis != "points":
+        ratio = _spread(found, f"{axis}_asymptotic_ratio").text
+        detail = "" if ratio == "–" else f"asymptotic ratio {ratio}"
         return {
-            "Observed order": partial(_spread, variable=f"{axis}_observed_order"),
-            "Largest GCI": partial(_gci, axis=axis),
-            "Order of the fit": partial(_spread, variable=f"{axis}_fit_order"),
-            "Uncertainty by the fit": partial(largest, variable=f"{axis}_fit_uncertainty"),
-            "Numerical uncertainty": partial(largest, variable=f"{axis}_uncertainty"),
+            "Observed order": _spread(found, f"{axis}_observed_order"),
+            "Largest GCI": replace(largest(found, f"{axis}_gci"), detail=detail),
+            "Order of the fit": _spread(found, f"{axis}_fit_order"),
+            "Uncertainty by the fit": largest(found, f"{axis}_fit_uncertainty"),
+            "Numerical uncertainty": uncertainty,
         }
-    needed: dict[str, Callable[[xr.Dataset], Cell]] = {"Points needed for 1 %": _needed}
-    if "rule" in analysis["points_needed"].dims:
-        rules = labels.values(analysis["rule"], range(analysis.sizes["rule"]))
-        needed = {
-            f"Points needed for 1 %, {rule}": partial(_needed, rule=at)
-            for at, rule in enumerate(rules)
-        }
-    head = "Numerical uncertainty with the most points"
-    return needed | {head: partial(largest, variable="points_uncertainty")}
+    head, needed = "Points needed for 1 %", found["points_needed"]
+    cells = {head: needed}
+    if "rule" in needed.dims:
+        rules = labels.values(needed["rule"], range(needed.sizes["rule"]))
+        cells = {f"{head}, {rule}": needed.isel(rule=at) for at, rule in enumerate(rules)}
+    uncertain = {"Numerical uncertainty with the most points": uncertainty}
+    return {head: _needed(each.values) for head, each in cells.items()} | uncertain
 
 
 def _over_the_grid(found: xr.Dataset, axis: str) -> Cell:
@@ -263,16 +263,8 @@ def _spread(found: xr.Dataset, variable: str) -> Cell:
     return Cell(low if low == high else f"{low} to {high}", "number")
 
 
-def _gci(found: xr.Dataset, axis: str) -> Cell:
-    """Return the largest index, with the range of asymptotic ratios where there is one."""
-    ratio = _spread(found, f"{axis}_asymptotic_ratio").text
-    detail = "" if ratio == "–" else f"asymptotic ratio {ratio}"
-    return Cell(largest(found, f"{axis}_gci").text, "number", detail)
-
-
-def _needed(found: xr.Dataset, rule: int | None = None) -> Cell:
+def _needed(needed: Floats) -> Cell:
     """Return the range over the grid; say where not even the second most points stay within 1 %."""
-    needed = found["points_needed"].isel({} if rule is None else {"rule": rule}).values
     if np.isnan(needed).all():
         return Cell("none below the largest", "warning")
     text = f"{np.nanmin(needed):.0f}"

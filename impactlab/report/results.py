@@ -10,15 +10,10 @@ from urllib.parse import quote
 
 import xarray as xr
 
-from impactlab.figures import labels
-from impactlab.figures.access import count
 from impactlab.figures.draw import CAPTIONS, draw_all, draw_findings, listed
 from impactlab.files import check_source, opened, read_netcdf
-from impactlab.report.cautions import endings
+from impactlab.report import study, verification
 from impactlab.report.page import described, leading, write_page
-from impactlab.report.study import write_report
-from impactlab.report.verification import tally, write_verification
-from impactlab.verification.stored import unpacked
 
 
 @dataclass(frozen=True)
@@ -36,23 +31,10 @@ class Kind:
     counts: Callable[[xr.Dataset], tuple[str, str]]
 
 
-def _runs(runs: xr.Dataset) -> tuple[str, str]:
-    method = labels.method(str(runs.attrs.get("method", "grid")))
-    return f"{labels.counted(count(runs), 'run')} ({method})", endings(runs)
-
-
-def _findings(findings: xr.Dataset) -> tuple[str, str]:
-    found = tally(unpacked(findings))
-    size = [labels.counted(found[f"{what}s"], what) for what in ("check", "comparison")]
-    if found["checks"] and not found["bad_checks"]:
-        return ", ".join(size), ""
-    bad = labels.counted(found["bad_checks"], "check")
-    failed = labels.counted(found["failed"], "comparison")
-    return ", ".join(size), f"{bad} and {failed} failed"
-
-
-RUNS = Kind(("runs.nc", "analysis.nc"), draw_all, write_report, _runs)
-FINDINGS = Kind(("findings.nc",), draw_findings, write_verification, _findings)
+RUNS = Kind(("runs.nc", "analysis.nc"), draw_all, study.write_report, study.counts)
+FINDINGS = Kind(
+    ("findings.nc",), draw_findings, verification.write_verification, verification.counts
+)
 
 
 def read_stored(paths: Sequence[Path]) -> tuple[Kind, list[xr.Dataset]]:

@@ -57,6 +57,12 @@ _SCATTER = (
 )
 
 
+def counts(runs: xr.Dataset) -> tuple[str, str]:
+    """Return how many runs there are, of which method, and how many failed ("": none)."""
+    method = labels.method(str(runs.attrs.get("method", "grid")))
+    return f"{labels.counted(count(runs), 'run')} ({method})", endings(runs)
+
+
 def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, path: Path) -> None:
     """Write the report of a study from its stored datasets and figures.
 
@@ -79,7 +85,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     if remarks := list(notes(runs)):
         title = "Notes on the model"
         sections.append(Section("notes", title, sentences=remarks, closed=True))
-    ending, method = endings(runs), labels.method(str(runs.attrs.get("method", "grid")))
+    size, ending = counts(runs)
     write_page(
         "report.html.j2",
         path,
@@ -90,14 +96,13 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         note=note,
         leading=drawn.pop(first, None),
         facts=[
-            f"{labels.counted(count(runs), 'run')} ({method})" + ", none failed" * (not ending),
+            size + ", none failed" * (not ending),
             labels.counted(len(varied(runs)), "varied parameter"),
             labels.counted(total, "figure"),
         ],
         ending=ending,
         pictures=drawn,
         files=os.path.relpath(figures_folder, path.parent),
-        anchors=[(section.name, section.title) for section in sections],
         sections=sections,
         command="run",
         purpose="solves this study again",
@@ -151,7 +156,7 @@ def _inputs(runs: xr.Dataset) -> Section:
         if name in runs.coords and runs[name].ndim == 0 and name not in varied(runs):
             coordinate = _described(runs, name)
             label = labels.sentence(coordinate.attrs["long_name"])
-            text = labels.values(coordinate.expand_dims("one"), [0])[0] + labels.unit(coordinate)
+            text = labels.values(coordinate, [0])[0] + labels.unit(coordinate)
             fixed.append([label, text, Cell(name, "muted")])
     head = ["Parameter", "Values", "Number", *["Group"] * bool(groups), "Key"]
     tables = [Table("Varied parameters", head, changed)] if changed else []
@@ -231,7 +236,8 @@ def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
     """Return the run's number in a sample and its varied parameters, in words."""
     named = [f"run {where['run']}"] if "run" in where else []
     for name in varied(runs):
-        named.append(labels.setting(runs[name], [where[str(dim)] for dim in runs[name].dims]))
+        if runs[name].ndim:
+            named.append(labels.setting(runs[name], [where[str(runs[name].dims[0])]]))
     return ", ".join(named) or "the only run"
 
 

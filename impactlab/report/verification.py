@@ -12,7 +12,7 @@ from impactlab.figures import labels
 from impactlab.figures.draw import OVERVIEW
 from impactlab.figures.labels import Display, display
 from impactlab.report.answer import entries
-from impactlab.report.page import Cell, Row, Table, described, pictures, write_page
+from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
 from impactlab.verification.finding import Comparison, Outcome, gravest_first
 from impactlab.verification.stored import unpacked
 
@@ -26,14 +26,17 @@ _PERCENT = 1e-4
 """Smallest relative tolerance that is given in per cent."""
 
 
-def tally(outcomes: Sequence[Outcome]) -> dict[str, int]:
-    """Count checks and comparisons, and those that did not pass."""
-    return {
-        "checks": len(outcomes),
-        "bad_checks": sum(outcome.verdict != "passed" for outcome in outcomes),
-        "comparisons": sum(len(outcome.finding.comparisons) for outcome in outcomes),
-        "failed": sum(len(outcome.failures) for outcome in outcomes),
-    }
+def counts(findings: xr.Dataset) -> tuple[str, str]:
+    """Return how many checks and comparisons there are, and how many failed ("": none)."""
+    outcomes = unpacked(findings)
+    bad = [outcome for outcome in outcomes if outcome.verdict != "passed"]
+    total = sum(len(outcome.finding.comparisons) for outcome in outcomes)
+    failed = sum(len(outcome.failures) for outcome in bad)
+    size = f"{labels.counted(len(outcomes), 'check')}, {labels.counted(total, 'comparison')}"
+    if outcomes and not bad:
+        return size, ""
+    doubts = labels.counted(len(bad), "check"), labels.counted(failed, "comparison")
+    return size, f"{' and '.join(doubts)} failed"
 
 
 def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -> None:
@@ -43,37 +46,46 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
     """
     outcomes = gravest_first(unpacked(findings))
     answer, note = entries(findings)
-    drawn, found = pictures(figures_folder, made_from=findings), tally(outcomes)
-    bad, checks = bool(found["bad_checks"]) or not outcomes, []
-    for outcome in outcomes:
-        passed = [_row(entry) for entry in outcome.finding.comparisons if entry.passed]
-        failed = [_row(entry) for entry in outcome.failures]
-        check = {
-            "outcome": outcome,
-            "failed": Table(f"Failed: {outcome.title}", _HEAD, failed),
-            "passed": Table(f"Passed: {outcome.title}", _HEAD, passed),
-            "short": len(passed) <= _SHORT,
-            "picture": drawn.get(outcome.name),
-        }
-        checks.append(check)
+    size, failed = counts(findings)
+    drawn = pictures(figures_folder, made_from=findings)
+    summary = Section("summary", "All checks", tables=[_summary(outcomes)])
     write_page(
-        "verification.html.j2",
+        "report.html.j2",
         path,
         **described(findings, "findings"),
-        heading="Verification failed" if bad else "Verification passed",
-        bad=bad,
+        heading="Verification failed" if failed else "Verification passed",
+        bad=bool(failed),
         answers=answer,
         note=note,
-        leading=drawn.get(OVERVIEW),
-        facts=[labels.counted(found[f"{what}s"], what) for what in ("check", "comparison")],
-        ending="",
+        leading=drawn.pop(OVERVIEW, None),
+        facts=[size],
+        ending=failed,
+        pictures=drawn,
         files="",
-        anchors=[("summary", "All checks"), *((each.name, each.title) for each in outcomes)],
-        summary=_summary(outcomes),
-        checks=checks,
+        sections=[summary, *map(_section, outcomes)],
         command="verify",
         purpose="repeats these checks",
     )
+
+
+def _section(outcome: Outcome) -> Section:
+    """Return the section on one check: a failed one stands out, with its failures open."""
+    lead = f"Independent values: {outcome.source}. Check {outcome.name}, {outcome.seconds:.1f} s."
+    title, notes, shown, folded = outcome.title, list[str](), list[Table](), list[Table]()
+    if outcome.reason:
+        notes = [f"An error ended this check, which compared nothing: {outcome.reason}"]
+    elif not outcome.finding.comparisons:
+        notes = ["This check compared nothing."]
+    if failed := [_row(entry) for entry in outcome.failures]:
+        shown.append(Table(f"Failed: {title}", _HEAD, failed))
+    if passed := [_row(entry) for entry in outcome.finding.comparisons if entry.passed]:
+        number = labels.counted(len(passed), "comparison")
+        table = Table(f"Passed: {title} ({number})", _HEAD, passed)
+        (shown if len(passed) <= _SHORT else folded).append(table)
+    bad = outcome.verdict != "passed"
+    title += f": {outcome.verdict}" * bad
+    figures = [outcome.name]
+    return Section(outcome.name, title, lead, notes, shown, figures, folded, grave=bad)
 
 
 def _summary(outcomes: Sequence[Outcome]) -> Table:

@@ -30,6 +30,15 @@ def test_varied_and_fixed_parameters_with_units(report: Any, material_study: Stu
     assert "beam_yield_stress" not in names
 
 
+def test_a_varied_parameter_may_have_one_value_left(
+    report: Any, velocity_study: Study, failing: Any
+) -> None:
+    runs, analysis = velocity_study
+    page = report(failing(runs.isel(velocity=1), {"contact": 0}), analysis)
+    assert _row(page, "Varied parameters", "Impact velocity")[1:3] == ["0.99 m/s", "1"]
+    assert page.tables["Runs without an answer"][1][0] == "contact law = Hertz"
+
+
 def test_a_long_grid_is_given_by_its_range(report: Any, material_study: Study) -> None:
     runs, analysis = material_study
     long = runs.isel(beam_yield_stress=np.tile([3, 1, 2, 0], 5))

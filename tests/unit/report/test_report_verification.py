@@ -54,7 +54,7 @@ def test_no_check_at_all_is_no_success(told: Any) -> None:
 def test_rows_tell_both_values_the_difference_and_the_tolerance(
     told: Any, findings: xr.Dataset
 ) -> None:
-    head, *rows = told(findings).tables["Passed: A good check"]
+    head, *rows = told(findings).tables["Passed: A good check (3 comparisons)"]
     assert head == [
         "Quantity",
         "Case",
@@ -75,7 +75,7 @@ def test_failed_rows_are_open_and_passed_ones_folded(told: Any, findings: xr.Dat
     opened = found.source.index("<details>")
     closed = found.source.index("</details>")
     folded = found.source[opened:closed]
-    assert "15 comparisons that passed" in folded
+    assert "Passed: A bad check (15 comparisons)" in folded
     assert "FAILED" not in folded
     rows = found.tables["Failed: A bad check"][1:]
     assert [row[1] for row in rows] == ["diverged", "far off", "slightly off"]
