@@ -139,10 +139,8 @@ _TO_LIMIT = 2.0
 def _check_refinement(runs: xr.Dataset, refinement: xr.Dataset) -> None:
     """Raise ValueError unless the used grid of the refinement gives what the runs give."""
     there = usable(refinement).sel(grid=USED)
-    here = usable(runs).reindex(response=there["response"], run=there["run"])
-    if not np.allclose(
-        here.transpose(*there.dims), there, rtol=ROUND_OFF, atol=0.0, equal_nan=True
-    ):
+    here = usable(runs).reindex_like(there).transpose(*there.dims)
+    if not np.allclose(here, there, rtol=ROUND_OFF, atol=0.0, equal_nan=True):
         raise ValueError(
             "the refinement was made from other runs: make it again (impactlab refine "
             f"results/{runs.attrs.get('study', 'NAME')}/runs.nc)"
@@ -224,10 +222,7 @@ def _of_response(
 
 
 def _safety(change: Mapping[str, Floats], spacings: Mapping[str, float]) -> Floats:
-    """Return the safety factor on the part beyond the finer grid, (factor,).
-
-    change: from the used grid, (factor,), by grid.
-    """
+    """Return safety factors beyond the finer grid; both they and the changes are (factor,)."""
     if COARSER not in change:
         return np.full_like(change[FINER], SAFETY_DOUBTFUL)
     steps = [spacings[grid] for grid in (FINER, USED, COARSER)]

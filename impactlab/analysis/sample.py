@@ -92,9 +92,6 @@ class Sample:
         return np.random.default_rng(np.random.SeedSequence(self.number("seed"), spawn_key=key))
 
     def half_width(self, replicates: Floats) -> Floats:
-        """Return half-widths of intervals from bootstrap replicates (resamples, ...).
-
-        NaN where a replicate is: a resample without variance has no index.
-        """
+        """Return half-widths of intervals from replicates (resamples, ...), NaN where one is."""
         quantile = float(scipy.stats.norm.ppf(0.5 + self.confidence / 2))
         return np.asarray(quantile * replicates.std(axis=0, ddof=1))

@@ -72,8 +72,6 @@ def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Datas
 
 
 Result = tuple[Columns, float]
-Task = Future[Result]
-
 _AHEAD = 3
 """Batches per worker under way or waiting: the graph does not grow with the study."""
 _LOOK_AGAIN = 1.0
@@ -139,7 +137,7 @@ class WorkerPool:
     threads: int = 1
     counted: float = 0.0
 
-    def submit(self) -> list[Task]:
+    def submit(self) -> list[Future[Result]]:
         """Submit and return new tasks, as many as keep the workers busy.
 
         Their threads are counted now and then: on a cluster they come and go.
@@ -157,11 +155,9 @@ class WorkerPool:
             runs = self.batches.take(workers)
             if not runs.size:
                 break
-            cases, version = work.solver.cases(work.design, runs), work.solver.version
-            solver = solver_of(work.design)
-            future = self.client.submit(
-                solve_batch, solver, cases, work.output, version, pure=False
-            )
+            cases, solver = work.solver.cases(work.design, runs), solver_of(work.design)
+            task = solve_batch, solver, cases, work.output, work.solver.version
+            future = self.client.submit(*task, pure=False)
             self.under_way[future.key] = runs
             futures.append(future)
         return futures

@@ -77,7 +77,7 @@ def whole(value: object) -> int:
     try:
         result = si(value, "1")
     except ValueError:
-        raise ValueError("expected a whole number such as 201") from None
+        result = math.nan
     if not result.is_integer() or abs(result) > 2**53:
         raise ValueError("expected a whole number such as 201")
     return int(result)
@@ -146,7 +146,7 @@ def _registry() -> UnitRegistry[Decimal]:
     return UnitRegistry(non_int_type=Decimal)
 
 
-Scale = tuple[int, int, int, int]
+Scale = tuple[int, ...]
 """A unit as the powers of 10, metre, kilogram and second."""
 UNITS: dict[str, Scale] = {
     "m": (0, 1, 0, 0),
@@ -170,14 +170,12 @@ UNITS: dict[str, Scale] = {
 
 def _scale(written: str) -> Scale | None:
     """Return the scale of a product of units; None where UNITS lacks one of them."""
-    ten = metre = kilogram = second = 0
+    total: Scale = (0, 0, 0, 0)
     for name, power in _factors(written):
         if name not in UNITS:
             return None
-        one = UNITS[name]
-        ten, metre = ten + power * one[0], metre + power * one[1]
-        kilogram, second = kilogram + power * one[2], second + power * one[3]
-    return ten, metre, kilogram, second
+        total = tuple(one + power * each for one, each in zip(total, UNITS[name], strict=True))
+    return total
 
 
 _PERIODS = {365.25 * 86400: "years", 86400: "days", 3600: "hours", 60: "minutes", 1: "s"}
@@ -192,10 +190,7 @@ def time(seconds: float) -> str:
 
 
 def engineering(value: float, units: str, digits: int = 4) -> str:
-    """Return a quantity with an SI prefix: "97.52 µs"; a pure number as it is.
-
-    units: SI, in UDUNITS spelling.
-    """
+    """Return a quantity in SI units (UDUNITS) with a prefix: "97.52 µs"; a pure number as it is."""
     rounded, power = float(f"{value:.{digits}g}"), 0
     if rounded and units in _PREFIXED:
         power = min(max(math.floor(math.log10(abs(rounded)) / 3), -3), 5)

@@ -44,10 +44,7 @@ def price(study: AnyStudy, folder: Path, workers: int) -> Estimate:
 
 
 def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
-    """Write to `path` (resolution.nc), and return, what pilot runs say of the discretisation.
-
-    wishes: see recommendation.recommend.
-    """
+    """Write to `path` (resolution.nc), and return, the dataset of recommendation.recommend."""
     from impactlab.study.adaptive import recommendation
 
     found = recommendation.recommend(study, path.with_name(TRIALS), engine, wishes)
@@ -228,10 +225,7 @@ def analyse_runs(
 
 
 def check(verification: Verification) -> xr.Dataset:
-    """Make every check, one after the other, and return findings.nc (verification.stored).
-
-    A check that ends in an error is kept as such, and the others are still made.
-    """
+    """Make every check, also after one that ends in an error; return findings.nc."""
     from impactlab.solver.jit import SOURCES_HASH
     from impactlab.study.progress import items_done
     from impactlab.variables import provenance

@@ -147,9 +147,8 @@ _WITHOUT_LIMIT = {
 
 
 def _is_solid(runs: xr.Dataset) -> xr.DataArray:
-    return (
-        runs.coords["beam_model"] == SOLID if "beam_model" in runs.coords else xr.DataArray(False)
-    )
+    found: xr.DataArray = runs.coords.get("beam_model", xr.DataArray("")) == SOLID
+    return found
 
 
 def _does_not_harden(runs: xr.Dataset) -> xr.DataArray:

@@ -76,11 +76,9 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
     values, replicates = reduced(fine, WIDTH, drawn)
     change = np.abs(values - reduced(coarse, 2 * WIDTH, drawn[:COARSE])[0])
     found = apart_from_dummy("delta", values, sample.half_width(replicates) + SAFETY * change)
-    spread = sample.half_width(
-        np.array([first_orders(inputs[at], outputs[at], coarse) for at in drawn])
-    )
+    again = np.array([first_orders(inputs[at], outputs[at], coarse) for at in drawn])
     first = first_orders(inputs, outputs, coarse)
-    return found | apart_from_dummy("delta_first_order", first, spread)
+    return found | apart_from_dummy("delta_first_order", first, sample.half_width(again))
 
 
 def deltas(inputs: Floats, outputs: Floats, starts: Starts, places: Floats, width: float) -> Floats:

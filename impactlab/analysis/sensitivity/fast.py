@@ -68,10 +68,7 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
 
 
 def _orders(curve: Floats, harmonics: int) -> tuple[float, float]:
-    """Return first and total order from one curve, whose parameter has SALib's frequency.
-
-    NaN where it does not vary, as half of a curve may.
-    """
+    """Return first and total order from a curve at SALib's frequency; NaN where it is constant."""
     if np.ptp(curve) == 0:
         return math.nan, math.nan
     frequency = math.floor((curve.size - 1) / (2 * harmonics))

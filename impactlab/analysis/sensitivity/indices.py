@@ -45,15 +45,25 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         for name, index in method.indices.items()
         if index.dims != PAIR or sample.number("second_order")
     }
-    coordinates = _coordinates(values, sample, wanted)
+    factors, of_responses = list(sample.factors), values["response"].coords.items()
+    what = "group of varied parameters" if sample.groups else "varied parameter"
+    coordinates: dict[str, Any] = {
+        str(name): each.variable for name, each in of_responses if each.ndim
+    }
+    coordinates["parameter"] = ("parameter", factors, {"long_name": what})
+    dims = {index.dims for index in wanted.values()}
+    if PAIR in dims:
+        coordinates[PAIR[1]] = (PAIR[1], factors, {"long_name": f"the other {what}"})
+    if BY_SAMPLES in dims:
+        attrs = {"long_name": "base samples used, the first of the sample", "units": "1"}
+        coordinates[BY_SAMPLES[0]] = (BY_SAMPLES[0], sobol.base_samples(sample), attrs)
     variables = _variables(rows, wanted, sample, coordinates)
     worst = [max(entry, default=SensitivityVerdict.USABLE) for entry in verdicts]
     codes = xr.DataArray([int(judgement) for judgement in worst], dims="response")
     supplied = {"long_name": "share of runs whose value a surrogate supplied", "units": "1"}
+    judged = flagged(codes, SensitivityVerdict, "verdict on the sensitivity indices")
     variables |= {
-        "sensitivity_verdict": flagged(
-            codes, SensitivityVerdict, "verdict on the sensitivity indices"
-        ),
+        "sensitivity_verdict": judged,
         "sensitivity_remarks": verdict.remarks(verdicts),
         "imputed_share": ("response", list(shares), supplied),
     }
@@ -82,7 +92,7 @@ def _variables(
     rows: Sequence[Mapping[str, Floats]],
     wanted: Mapping[str, Index],
     sample: Sample,
-    coordinates: Mapping[str, tuple[Any, ...]],
+    coordinates: Mapping[str, Any],
 ) -> dict[str, Any]:
     """Return indices and half-widths from one mapping per response; an empty one is NaN."""
     settings = {"confidence": sample.confidence, "resamples": sample.resamples}
@@ -98,26 +108,6 @@ def _variables(
             stacked = np.array([row[key] if row else gap for row in rows], float)
             variables[key] = (("response", *index.dims), stacked, own)
     return variables
-
-
-def _coordinates(
-    values: xr.DataArray, sample: Sample, wanted: Mapping[str, Index]
-) -> dict[str, tuple[Any, ...]]:
-    factors = list(sample.factors)
-    what = "group of varied parameters" if sample.groups else "varied parameter"
-    coordinates: dict[str, tuple[Any, ...]] = {
-        str(name): ("response", array.values, array.attrs)
-        for name, array in values.coords.items()
-        if array.dims == ("response",)
-    }
-    coordinates["parameter"] = ("parameter", factors, {"long_name": what})
-    dims = {index.dims for index in wanted.values()}
-    if PAIR in dims:
-        coordinates[PAIR[1]] = (PAIR[1], factors, {"long_name": f"the other {what}"})
-    if BY_SAMPLES in dims:
-        attrs = {"long_name": "base samples used, the first of the sample", "units": "1"}
-        coordinates[BY_SAMPLES[0]] = (BY_SAMPLES[0], sobol.base_samples(sample), attrs)
-    return coordinates
 
 
 MOST_IMPUTED = 0.2

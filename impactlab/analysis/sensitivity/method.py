@@ -55,10 +55,7 @@ class SensitivityMethod:
 
 
 def dummy_column(sample: Sample) -> Floats:
-    """Return values of a parameter that the model never saw, (runs,): its indices are noise.
-
-    A Latin hypercube in one dimension, in the open interval (0, 1).
-    """
+    """Return a Latin hypercube in (0, 1), (runs,): unseen by the model, its indices are noise."""
     runs = len(sample.inputs)
     return (sample.rng("dummy").permutation(runs) + 0.5) / runs
 
@@ -78,11 +75,8 @@ _CELLS = 2_000_000
 
 
 def counts(rows: int, resamples: int, rng: np.random.Generator) -> Iterator[Floats]:
-    """Yield how often each row is drawn: (some resamples, rows), of `resamples` in all.
-
-    The draws do not depend on how many are held at a time.
-    """
-    chunk = max(1, _CELLS // rows)
+    """Yield how often each row is drawn: (some resamples, rows), of `resamples` in all."""
+    chunk = max(1, _CELLS // rows)  # the draws do not depend on it
     for start in range(0, resamples, chunk):
         number = min(chunk, resamples - start)
         drawn = rng.integers(rows, size=(number, rows)) + rows * np.arange(number)[:, None]

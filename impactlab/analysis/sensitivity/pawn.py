@@ -67,9 +67,8 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
         for row in tally
     ]
     margins = sample.half_width(np.array(medians))
-    return apart_from_dummy("pawn", np.array(found["median"]), margins) | {
-        "pawn_maximum": found["maximum"][:-1]
-    }
+    indices = apart_from_dummy("pawn", np.array(found["median"]), margins)
+    return indices | {"pawn_maximum": found["maximum"][:-1]}
 
 
 def slides(column: Floats) -> npt.NDArray[np.bool_]:

@@ -152,10 +152,9 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         at = (degrees[:, np.newaxis] == found["chaos"].degrees).all(axis=-1).argmax(axis=0)
         found["coefficient"] = np.zeros(len(degrees))
         found["coefficient"][at] = found["chaos"].coefficients
+    of_responses = values["response"].coords.items()
     coordinates: dict[str, Any] = {
-        str(name): array.variable
-        for name, array in values.coords.items()
-        if array.dims == ("response",)
+        str(name): each.variable for name, each in of_responses if each.ndim
     }
     for name, entries, words in (
         ("held_out", runs["run"].values[divided.tests], "number of a run held out"),

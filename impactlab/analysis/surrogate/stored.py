@@ -58,9 +58,8 @@ class Surrogate:
             array.drop_vars(self.parameters, errors="ignore") for array in xr.broadcast(*arrays)
         ]
         pairs = zip(self._distributions, columns, strict=True)
-        unit = np.column_stack(
-            [cumulative(drawn, column.values.ravel()) for drawn, column in pairs]
-        )
+        places = [cumulative(drawn, column.values.ravel()) for drawn, column in pairs]
+        unit = np.column_stack(places)
         degrees, coefficients = self.dataset["degree"].values, self.dataset["coefficient"].values
         batches = [unit[start : start + _AT_ONCE] for start in range(0, len(unit) or 1, _AT_ONCE)]
         found = np.hstack([coefficients @ basis(batch, degrees) for batch in batches])

@@ -43,7 +43,6 @@ from impactlab.types import Floats
 from impactlab.variables import described, provenance
 
 AXES = ("nodes", "points", "courant")
-Cases = Mapping[str, Sequence[Value]]
 _ALL = 4
 """Most numbers of which all corners are taken."""
 _TAIL = 0.005
@@ -271,7 +270,7 @@ def apply_recommendation(study: Study, found: xr.Dataset) -> Study:
 
 def solve_along(
     study: Study,
-    cases: Cases,
+    cases: Mapping[str, Sequence[Value]],
     folder: Path,
     engine: Engine,
     axis: str,
@@ -300,10 +299,8 @@ def solve_along(
     }
     runs = execute(described(xr.Dataset(coords=scalars | varied, attrs=attrs)), folder, engine)
     values = usable(runs).transpose("response", "case", axis)
-    without = without_limit(runs, values, axis, axis)
-    labels = [name for name in values.coords if name not in values.dims]
-    others = [name for name in labels if values[name].dims != ("response",)]
-    return values.drop_vars(others), without.drop_vars(others, errors="ignore")
+    others = set(values.coords) - {*values.dims, "response_units", "response_long_name"}
+    return values.drop_vars(others), without_limit(runs, values, axis, axis)
 
 
 def corner_cases(study: Study) -> dict[str, list[Value]]:

@@ -128,10 +128,7 @@ class Morris(Grouped):
         return self
 
     def draws(self) -> Floats:
-        """Draw the trajectories one after the other: a start, and one step per parameter or group.
-
-        They are levels, 0 and 1 included.
-        """
+        """Draw trajectories of levels, 0 and 1 included: a start, and one step per factor."""
         chosen = self.optimal_trajectories or None
         return self.by_salib(
             "morris", self.trajectories, num_levels=self.levels, optimal_trajectories=chosen
@@ -163,10 +160,7 @@ class Fast(Sample):
         return self
 
     def draws(self) -> Floats:
-        """Draw the curves one after the other, that of the dummy last.
-
-        The dummy has a curve, on which the others have their low frequencies, but no column.
-        """
+        """Draw the curves one after the other, last that of the dummy, which has no column."""
         return self.by_salib("fast_sampler", self.samples, "dummy", M=self.harmonics)[:, :-1]
 
 
@@ -182,8 +176,5 @@ class Latin(Sample):
         return self.samples
 
     def draws(self) -> Floats:
-        """Draw one value in each of equal strata of every parameter.
-
-        They do not depend on the method: changing it needs no new run.
-        """
+        """Draw one value in each of equal strata of every parameter, whatever the method."""
         return self.by_salib("latin", self.samples)

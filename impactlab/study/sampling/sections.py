@@ -54,8 +54,7 @@ class Sampling(Section):
     @property
     def varied(self) -> Mapping[str, Any]:
         """Entries of the parameters that differ between runs: no sampler sees the others."""
-        entries = self.parameters.items()
-        return {name: each for name, each in entries if not isinstance(each, Fixed)}
+        return {name: each for name, each in self.parameters.items() if not isinstance(each, Fixed)}
 
     @property
     def fixed(self) -> dict[str, Value]:
@@ -135,17 +134,14 @@ class Sample(Sampling):
         """Draw in the unit cube, on (run, varied parameter), in the order of SALib's runs."""
 
     def by_salib(self, sampler: str, number: int, *others: str, **options: Any) -> Floats:
-        """Draw with a module of SALib.sample; others: names of parameters beside the varied ones.
-
-        It is loaded late: that takes a second, with its pandas.
-        """
+        """Draw with a module of SALib.sample; others: names of parameters beside the varied ones."""
         names = [*self.varied, *others]
         problem: dict[str, Any] = {"num_vars": len(names), "names": names}
         problem["bounds"] = [[0.0, 1.0]] * len(names)
         if self.group_of:
             problem["groups"] = list(self.group_of.values())
         generator = np.random.default_rng(self.seed)  # SALib ignores some seeds of 0
-        draw = import_module(f"SALib.sample.{sampler}").sample
+        draw = import_module(f"SALib.sample.{sampler}").sample  # late: with pandas, a second
         found: Floats = draw(problem, number, seed=generator, **options)
         return found
 
@@ -201,8 +197,7 @@ class Grouped(Sample):
         seen: set[str] = set()
         for group, members in self.groups.items():
             if group in self.parameters:
-                reason = "is the name of a parameter: choose another name"
-                raise at_key(f"groups.{group}", reason)
+                raise at_key(f"groups.{group}", "is the name of a parameter: choose another name")
             for at, member in enumerate(members):
                 if member in self.fixed:
                     reason = "is fixed, so it belongs to no group: take it out"

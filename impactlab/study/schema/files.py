@@ -30,17 +30,17 @@ def read_any(path: str | Path) -> Study | FunctionStudy | Verification:
     is not YAML, or holds no mapping.
     """
     source = read_source(path)
-    study: Study | FunctionStudy | Verification = _READERS[_kind(source)](source)
-    return study
+    kind = _kind(source)
+    return _verification(source) if kind == "checks" else _READERS[kind](source)
 
 
 def read_study(path: str | Path) -> Study | FunctionStudy:
     """Read a study of runs. Raises StudyError as `read_any`, and for a file of checks."""
     source = read_source(path)
-    if _kind(source) == "checks":
+    kind = _kind(source)
+    if kind == "checks":
         raise _wrong_kind(source, "lists checks and has no runs", "verify")
-    study: Study | FunctionStudy = _READERS[_kind(source)](source)
-    return study
+    return _READERS[kind](source)
 
 
 def read_impacts(path: str | Path) -> Study:
@@ -53,14 +53,10 @@ def read_impacts(path: str | Path) -> Study:
 
 
 def study_of_text(name: str, text: str) -> Study | FunctionStudy:
-    """Read a study of runs from the text of a file NAME.yaml, as datasets keep both.
-
-    Raises StudyError as `read_any`.
-    """
+    """Read a study of runs from the text of NAME.yaml, as datasets keep both; see `read_any`."""
     path = Path(f"{name}.yaml")
     source = Source(name, path, text, read_mapping(text, str(path)))
-    study: Study | FunctionStudy = _READERS[_kind(source)](source)
-    return study
+    return _READERS[_kind(source)](source)
 
 
 def read_verification(path: str | Path) -> Verification:
@@ -177,9 +173,8 @@ def _verification(source: Source) -> Verification:
     return Verification(name=source.name, path=source.path, text=source.text, **values)
 
 
-_READERS: dict[str, Callable[[Source], Any]] = {
-    "checks": _verification,
+_READERS: dict[str, Callable[[Source], Study | FunctionStudy]] = {
     "function": _function_study,
     "": _study,
 }
-"""Readers of files, by the key that tells their kind."""
+"""Readers of studies of runs, by the key that tells their kind."""

@@ -17,14 +17,7 @@ from pydantic import (
 
 from impactlab.model.distributions import ARGUMENTS, quantile
 from impactlab.model.parameters import Parameter
-from impactlab.study.schema.section import (
-    Number,
-    Section,
-    Whole,
-    one_of,
-    quantity,
-    requires,
-)
+from impactlab.study.schema.section import Number, Section, Whole, one_of, quantity, requires
 from impactlab.study.validity import check_alone
 from impactlab.types import Floats
 
@@ -49,13 +42,9 @@ class Distribution(Section):
     @classmethod
     def _above_low(cls, high: float, info: ValidationInfo) -> float:
         low = info.data.get("low", -math.inf)
-        if high == low:
-            raise ValueError(
-                f"must be above low ({low!r}); "
-                "for a single value write {distribution: fixed, value: ...}"
-            )
-        if high < low:
-            raise ValueError(f"must be above low ({low!r})")
+        if high <= low:
+            fixed = "; for a single value write {distribution: fixed, value: ...}" * (high == low)
+            raise ValueError(f"must be above low ({low!r}){fixed}")
         return high
 
     @field_validator("mode", check_fields=False)
@@ -71,11 +60,8 @@ class Distribution(Section):
         """Refuse an interval so far out in the tail that the quantiles lose their digits."""
         given = self.arguments()
         if given["distribution"] == "truncated_normal":
-            near, far = (
-                (given[key] - given["mean"]) / given["standard_deviation"]
-                for key in ("low", "high")
-            )
-            if near > 8 or far < -8:
+            mean, deviation = given["mean"], given["standard_deviation"]
+            if (given["low"] - mean) / deviation > 8 or (given["high"] - mean) / deviation < -8:
                 raise ValueError(
                     "low to high lies more than 8 standard deviations from the mean: "
                     "move them closer"

@@ -29,15 +29,7 @@ from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.parameters import value_type
-from impactlab.study.schema.section import (
-    Heading,
-    Number,
-    Section,
-    Whole,
-    at_key,
-    names,
-    one_of,
-)
+from impactlab.study.schema.section import Heading, Number, Section, Whole, at_key, names, one_of
 from impactlab.study.validity import Base, refusal
 from impactlab.variables import ANALYSES, RESPONSES
 
@@ -94,13 +86,9 @@ def read_impact(data: Any, info: ValidationInfo) -> Impact:
 
 
 def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation, Auto | None]:
-    """Read a discretisation, defaults included, and how to find it, if at all.
-
-    Raises ValueError naming the keys at fault.
-    """
-    section: Any = _DISCRETISATION.model_validate(
-        {"auto": {}} if data == "auto" else data, context=info.context
-    )
+    """Read a discretisation, and how to find it, if at all. Raises ValueError naming the keys."""
+    given = {"auto": {}} if data == "auto" else data
+    section: Any = _DISCRETISATION.model_validate(given, context=info.context)
     given = _given_values(section, "discretisation")
     for name in given.keys() & {"nodes", "points", "courant"} if section.auto else ():
         raise at_key(name, "cannot be given beside auto, which finds it: take out one of the two")

@@ -13,12 +13,7 @@ from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
-from impactlab.simulate import (
-    answer_variables,
-    case_table,
-    profile_coordinates,
-    solve,
-)
+from impactlab.simulate import answer_variables, case_table, profile_coordinates, solve
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.netcdf import Array
 from impactlab.study.solvers import Solver, flattened, run_shape
@@ -38,10 +33,7 @@ def columns(design: xr.Dataset) -> tuple[str, ...]:
 
 
 def cases(design: xr.Dataset, runs: Array) -> Array:
-    """Return the kernels' case table of these runs.
-
-    Raises ValueError naming the run when the model refuses a value.
-    """
+    """Return the kernels' case table of these runs. Raises ValueError naming one it refuses."""
     varied = {name: flattened(design, name, runs) for name in listed(design, "varied")}
     duration = design["duration"].item()
     return case_table(*base(design), duration=duration, varied=varied, first_run=int(runs[0]))
