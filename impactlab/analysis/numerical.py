@@ -226,9 +226,7 @@ def _safety(change: Mapping[str, Floats], spacings: Mapping[str, float]) -> Floa
     if COARSER not in change:
         return np.full_like(change[FINER], SAFETY_DOUBTFUL)
     steps = [spacings[grid] for grid in (FINER, USED, COARSER)]
-    triples = [
-        estimate(three, steps)
-        for three in zip(change[FINER], change[USED], change[COARSER], strict=True)
-    ]
+    changes = zip(change[FINER], change[USED], change[COARSER], strict=True)
+    triples = [estimate(three, steps) for three in changes]
     falling = [triple.credible and triple.order >= 1.0 for triple in triples]
     return np.where(falling, SAFETY_CREDIBLE, SAFETY_DOUBTFUL)

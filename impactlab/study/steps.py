@@ -80,17 +80,18 @@ def resolved_before(study: AnyStudy, folder: Path) -> AnyStudy | None:
 
 
 def _kept(study: Study, file: Path) -> xr.Dataset | None:
-    """Return what was found before for this very study, if anything."""
+    """Return what was found before for this very study, by these kernels, if anything."""
     if not file.exists():
         return None
-    from impactlab.study.adaptive.recommendation import matches_study
+    from impactlab.solver.jit import SOURCES_HASH
 
     try:
         found = read_netcdf(file, "resolution")
     except ValueError as error:
         log.warning("%s; the pilot runs are solved again", error)
         return None
-    return found if matches_study(found, study) else None
+    made_for = found.attrs.get("study_sha256"), found.attrs.get("kernels_sha256")
+    return found if made_for == (study.sha256, SOURCES_HASH) else None
 
 
 def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = None) -> None:

@@ -143,11 +143,8 @@ def _size(keys: Array, columns: Columns) -> int:
 def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
     """Return keys and columns of several batches or shards as those of one."""
     keys, columns = zip(*parts, strict=True)
-    names = columns[0]
-    return (
-        np.concatenate(keys),
-        {name: np.concatenate([each[name] for each in columns]) for name in names},
-    )
+    together = {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
+    return np.concatenate(keys), together
 
 
 def sound_runs(path: Path, *names: str) -> tuple[Array, Columns] | None:

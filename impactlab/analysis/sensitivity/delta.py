@@ -119,9 +119,8 @@ def _density(outputs: Floats, starts: Starts, places: Floats, relative: float) -
     width = relative * np.sqrt(squares) * (0.75 * sizes) ** -0.2
     each = np.repeat(np.where(width > 0, width, np.nan), sizes)
     kernels = np.exp(-0.5 * ((places[:, None] - outputs) / each) ** 2)
-    return np.asarray(
-        np.add.reduceat(kernels, starts, axis=1) / (np.sqrt(2 * np.pi) * width * sizes)
-    )
+    sums = np.add.reduceat(kernels, starts, axis=1)
+    return np.asarray(sums / (np.sqrt(2 * np.pi) * width * sizes))
 
 
 METHOD = SensitivityMethod("delta", _INDICES, Sample.ungrouped, _estimate)

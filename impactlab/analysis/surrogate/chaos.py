@@ -156,12 +156,8 @@ def _order(columns: Floats, values: Floats) -> list[int]:
     with warnings.catch_warnings():
         # Of terms that the runs cannot distinguish it rightly drops one.
         warnings.simplefilter("ignore", ConvergenceWarning)
-        _, active, _ = lars_path_gram(
-            correlation,
-            centred @ centred.T,
-            n_samples=1,
-            max_iter=min(_MOST_TERMS, len(values) // 4),
-        )
+        gram, most = centred @ centred.T, min(_MOST_TERMS, len(values) // 4)
+        _, active, _ = lars_path_gram(correlation, gram, n_samples=1, max_iter=most)
     return [0, *(int(term) + 1 for term in active)]
 
 

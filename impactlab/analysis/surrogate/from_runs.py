@@ -66,10 +66,8 @@ class Divided:
         shuffled = sample.rng("surrogate held out").permutation(blocks)
         held_out = np.isin(block, shuffled[: max(1, round(_SHARE * blocks))])
         tests = sample.rng("surrogate tests").permutation(np.flatnonzero(held_out))[:_MOST_TESTS]
-        columns = [
-            cumulative(runs[name].attrs, column)
-            for name, column in zip(sample.parameters, sample.inputs.T, strict=True)
-        ]
+        pairs = zip(sample.parameters, sample.inputs.T, strict=True)
+        columns = [cumulative(runs[name].attrs, column) for name, column in pairs]
         return cls(sample, np.column_stack(columns), block, held_out, np.sort(tests))
 
 

@@ -211,10 +211,8 @@ def _grid_options(found: xr.Dataset, study: Study, tolerance: float) -> dict[str
     price = np.array([_cost(study, *level) for level in levels.tolist()])
     price /= _cost(study, own.nodes, own.points, own.courant)
     order = np.argsort(price, kind="stable")
-    columns = {
-        axis: xr.DataArray(column, dims="candidate")
-        for axis, column in zip(AXES, levels[order].T, strict=True)
-    }
+    sorted_levels = zip(AXES, levels[order].T, strict=True)
+    columns = {axis: xr.DataArray(column, dims="candidate") for axis, column in sorted_levels}
     parts = [_worst(found, axis).sel({axis: columns[axis]}).drop_vars(axis) for axis in AXES]
     worst = (parts[0] + parts[1] + parts[2]).transpose("response", "candidate")
     return {f"candidate_{axis}": column for axis, column in columns.items()} | {
@@ -235,21 +233,14 @@ def _cost(study: Study, nodes: float, points: float, courant: float) -> float:
     return steps * (1.0 + _POINT_COST * points)
 
 
-def matches_study(found: xr.Dataset, study: Study) -> bool:
-    """Return True if a recommendation was made for this very study, by these kernels."""
-    same = found.attrs.get("study_sha256") == study.sha256
-    return same and found.attrs.get("kernels_sha256") == SOURCES_HASH
-
-
 def apply_recommendation(study: Study, found: xr.Dataset) -> Study:
-    """Return the study with its recommended discretisation (see `recommend`).
+    """Return a study that is `auto` with its recommended discretisation (see `recommend`).
 
     Raises StudyError where no discretisation meets the tolerance for a requested response, naming
-    the nearest; ValueError where the study's discretisation is not `auto`.
+    the nearest.
     """
     auto = study.auto
-    if auto is None:
-        raise ValueError(f"{study.path}: its discretisation is given, so there is none to find")
+    assert auto is not None
     least = found["candidate_uncertainty"].min("candidate")
     missed = []
     for name in found["response"].values[(found["asked"] & ~found["reached"]).values]:

@@ -81,9 +81,8 @@ class Grid(Sampling):
             or_range = "" if parameter.choices else ranged
             raise ValueError(f"expected a list such as [1, 2, 3]{or_range}")
         if twice := [value for value, count in Counter(values).items() if count > 1]:
-            raise ValueError(
-                f"holds {twice[0]!r} (in SI units) more than once: list each value once"
-            )
+            once = "more than once: list each value once"
+            raise ValueError(f"holds {twice[0]!r} (in SI units) {once}")
         return tuple(values)
 
     @property

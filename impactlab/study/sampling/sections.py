@@ -134,7 +134,7 @@ class Sample(Sampling):
         """Draw in the unit cube, on (run, varied parameter), in the order of SALib's runs."""
 
     def by_salib(self, sampler: str, number: int, *others: str, **options: Any) -> Floats:
-        """Draw with a module of SALib.sample; others: names of parameters beside the varied ones."""
+        """Draw with a module of SALib.sample; others: names of parameters that are not varied."""
         names = [*self.varied, *others]
         problem: dict[str, Any] = {"num_vars": len(names), "names": names}
         problem["bounds"] = [[0.0, 1.0]] * len(names)

@@ -87,8 +87,8 @@ def read_impact(data: Any, info: ValidationInfo) -> Impact:
 
 def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation, Auto | None]:
     """Read a discretisation, and how to find it, if at all. Raises ValueError naming the keys."""
-    given = {"auto": {}} if data == "auto" else data
-    section: Any = _DISCRETISATION.model_validate(given, context=info.context)
+    data = {"auto": {}} if data == "auto" else data
+    section: Any = _DISCRETISATION.model_validate(data, context=info.context)
     given = _given_values(section, "discretisation")
     for name in given.keys() & {"nodes", "points", "courant"} if section.auto else ():
         raise at_key(name, "cannot be given beside auto, which finds it: take out one of the two")

@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from impactlab.files import write_netcdf
+from impactlab.study import RESOLUTION
 from impactlab.study.adaptive import recommendation
 from impactlab.study.adaptive.recommendation import (
     apply_recommendation,
-    matches_study,
     recommend,
     recommended_grid,
 )
@@ -17,6 +18,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.errors import StudyError
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import read_study
+from impactlab.study.steps import resolved_before
 from impactlab.study.store import holder
 from impactlab.verification.solutions import modal
 
@@ -104,8 +106,9 @@ def test_auto_becomes_what_was_recommended(study, tmp_path):
         design(declared)
     trials = recommend(declared, tmp_path / "trials", Engine(workers=2))
     resolved = apply_recommendation(declared, trials)
-    assert matches_study(trials, declared)
-    assert not matches_study(trials, replace(declared, text="another"))
+    write_netcdf(trials, tmp_path / RESOLUTION, "resolution")
+    assert resolved_before(declared, tmp_path) == resolved
+    assert resolved_before(replace(declared, text="another"), tmp_path) is None
     assert resolved.discretisation == recommended_grid(trials, declared.discretisation)
     assert resolved.discretisation.rule == "legendre"
     runs = design(resolved)
