@@ -150,10 +150,7 @@ def read_profile(path: Path) -> Profile:
 
 
 def slurm_cluster(profile: Profile) -> SLURMCluster:
-    """Return the cluster, its scheduler in this process, no job submitted yet.
-
-    Raises OSError where dask-jobqueue or Slurm is missing.
-    """
+    """Return the cluster, no job submitted yet. Raises OSError without dask-jobqueue or Slurm."""
     try:
         from dask_jobqueue.slurm import SLURMCluster
     except ImportError:

@@ -59,10 +59,7 @@ def si(value: object, units: str) -> float:
 
 
 def duration(value: object) -> float:
-    """Return a simulated time in s; a bare number too long for an impact has to state its unit.
-
-    Raises ValueError as `si`.
-    """
+    """Return a simulated time in s. Raises ValueError as `si`, and for a long one without unit."""
     seconds = si(value, "s")
     if seconds >= _LONG and str(value).strip()[-1].isdigit():
         raise ValueError(

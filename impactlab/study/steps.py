@@ -34,10 +34,7 @@ Tell = Callable[[xr.Dataset], None]
 
 
 def price(study: AnyStudy, folder: Path, workers: int) -> Estimate:
-    """Return the cost of a study whose results go to `folder`, on so many workers.
-
-    Raises StudyError where a run that the price rests on is impossible.
-    """
+    """Return the cost of a study with results in `folder`. Raises StudyError as `estimate`."""
     from impactlab.study.estimate import estimate
 
     return estimate(resolved_before(study, folder) or study, folder, workers)

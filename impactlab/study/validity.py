@@ -66,13 +66,10 @@ def refused_corner(base: Base, extremes: Mapping[str, Iterable[Value]]) -> Refus
 
 
 def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal | None:
-    """Return the first run that the model refuses; columns hold one value per run.
-
-    Single runs are tried only when a corner of the box around them is refused.
-    """
+    """Return the first run that the model refuses; columns hold one value per run."""
     box = {name: sorted({min(values), max(values)}) for name, values in columns.items()}
     if refused_corner(base, box) is None:
-        return None
+        return None  # no run in the box is refused
     runs = zip(*columns.values(), strict=True)
     found = (refusal(base, dict(zip(columns, run, strict=True))) for run in runs)
     return next((each for each in found if each), None)

@@ -73,10 +73,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 def _answer(
     response: str, outputs: Floats, sample: Sample, method: SensitivityMethod
 ) -> tuple[list[SensitivityVerdict], float, dict[str, Floats]]:
-    """Return verdicts, share of the runs that a surrogate supplied, and indices if any.
-
-    outputs: (runs,), NaN where a run failed.
-    """
+    """Return verdicts, share of runs that a surrogate supplied, and indices; outputs: (runs,)."""
     complete = imputed(outputs, sample, response)
     if complete is None:
         return [SensitivityVerdict.TOO_FEW_RUNS], 0.0, {}

@@ -27,10 +27,7 @@ _JUDGED = ("first_order", "total_order", "delta", "pawn", "regression", "rank_re
 
 
 class SensitivityVerdict(Verdict):
-    """Verdicts on the indices of a response; where several hold, the worst counts.
-
-    From CONSTANT on, nothing is estimated.
-    """
+    """Verdicts on the indices of a response; the worst counts. From CONSTANT on, there are none."""
 
     USABLE = 0, True, "every run answered and the response varies"
     JUMPS = 1, False, "the response takes ten values or fewer: its indices are those of jumps"

@@ -60,10 +60,7 @@ def refine_cases(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr
 
 
 def base_samples(whole: int) -> int:
-    """Return the number of base samples that are solved again, out of those of a sample.
-
-    The half-width of the changes falls with the square root of the number.
-    """
+    """Return how many base samples are solved again: half-widths fall with their square root."""
     return min(whole, max(FEWEST, min(MOST, whole // SHARE)))
 
 

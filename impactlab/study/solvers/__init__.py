@@ -55,10 +55,7 @@ class Solver:
     values: Callable[[Array, OutputSpec], int]
     """Return how many numbers are kept of each case."""
     solve: Callable[[Array, OutputSpec], Columns]
-    """Return the answers by name, one row per case, `status` among them.
-
-    They are the same bits in any batch.
-    """
+    """Return the answers by name, with `status`, one row per case: the same bits in any batch."""
     labelled: Callable[[xr.Dataset, Mapping[str, Any]], xr.Dataset]
     """Return the answers in the design's order, under its labels and with provenance.
 
