@@ -94,8 +94,10 @@ def _compare(where: str, runs: Mapping[int, xr.Dataset], series: ModalSolution) 
     return found
 
 
-def histories(where: str, run: xr.Dataset, series: ModalSolution) -> list[Comparison]:
-    """Compare the histories of a run; tolerances are those for its number of nodes."""
+def histories(
+    where: str, run: xr.Dataset, series: ModalSolution, like: int = 0
+) -> list[Comparison]:
+    """Compare the histories of a run; tolerances are for its number of nodes, or for `like`."""
     nodes, time = run.nodes.item(), run.time.values
     return [
         curve(
@@ -104,7 +106,7 @@ def histories(where: str, run: xr.Dataset, series: ModalSolution) -> list[Compar
             units,
             run[name].values,
             series.at(name, time),
-            tolerance * (MIDDLE / nodes) ** 2.0,
+            tolerance * (MIDDLE / (like or nodes)) ** 2.0,
         )
         for name, (quantity, units, tolerance) in HISTORIES.items()
     ]
