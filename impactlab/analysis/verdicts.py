@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 import xarray as xr
@@ -64,7 +64,6 @@ def verdict_variables(
     """
     rest = [dim for dim in codes.dims if dim != "response"]
     tally = xr.concat([(codes == member).sum(rest) for member in kind], f"{axis}_outcome")
-    attrs: dict[str, Any] = {"long_name": f"grid points with each verdict on {words}", "units": "1"}
     return {
         f"{axis}_verdict": flagged(codes, kind, f"verdict on {words}"),
         f"{axis}_summary": flagged(
@@ -72,5 +71,5 @@ def verdict_variables(
         ),
         f"{axis}_tally": tally.assign_coords({f"{axis}_outcome": names(kind)})
         .transpose("response", f"{axis}_outcome")
-        .assign_attrs(attrs),
+        .assign_attrs(long_name=f"grid points with each verdict on {words}", units="1"),
     }

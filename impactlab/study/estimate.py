@@ -80,10 +80,7 @@ class Estimate:
         return max(self.seconds / workers, self.largest)
 
     def exceeded(self) -> list[Problem]:
-        """Return one problem per limit that the study exceeds, at the key that drives it.
-
-        The limits are a month of one core, this machine's memory, and the free disk.
-        """
+        """Return one problem per limit that the study exceeds, at the key that drives it."""
         exceeded = []
         if self.seconds > MOST_TIME:
             needed = f"needs about {time(self.seconds)} of one core for {self.runs:,} runs"
@@ -118,6 +115,7 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
         kept, held, working = parameters + 2, parameters + 2, 0.0
         slow = large = "sampling"
     else:
+        # as of the 3-D model: see model.cost
         model: Any = SimpleNamespace(table=case_table, work=work, memory=memory)
         if has_solid_runs(study):
             model = resolve_name(wings.SOLID["cases"])
@@ -195,10 +193,7 @@ def _cost_sample(study: Study) -> dict[str, Array]:
 
 
 def _cases(study: Study, model: Any, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
-    """Return the table of cases of these runs. Raises StudyError where one is impossible.
-
-    model: has the functions table, work and memory (see model.cost) for the study's runs.
-    """
+    """Return the table of cases of these runs. Raises StudyError where one is impossible."""
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
     try:
         cases: Array = model.table(*base, duration=study.duration, varied=columns)

@@ -33,15 +33,12 @@ from impactlab.study.store import (
 )
 
 _CHUNK = 10_000
-"""Runs whose cases are in memory together."""
+"""Runs whose cases are in memory together: a table of all would fill it."""
 
 
 @dataclass(frozen=True)
 class Work:
-    """The runs of a design: the key of each, shape (runs,), and its cost in the solver's unit.
-
-    Cases are made as they are needed: a table of all would fill the memory.
-    """
+    """The runs of a design: the key of each, shape (runs,), and its cost in the solver's unit."""
 
     design: xr.Dataset
     solver: Solver
@@ -151,7 +148,7 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
     times = [each.st_mtime for each in file_stats(shard_files(shards.folder))]
     return Status(
         runs=index.size,
-        done=index.size - index.left(),
+        done=int(np.count_nonzero(index.spread(index.done))),
         failed=int(np.count_nonzero(index.spread(bits) & failures)),
         age=time.time() - max(times) if times else None,
         size=sum(each.st_size for each in file_stats(shards_folder.rglob("*"))),

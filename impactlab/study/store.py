@@ -54,10 +54,7 @@ class OutputSpec:
 
 
 def run_keys(cases: Array, output: OutputSpec, version: str) -> Array:
-    """Return one key per case, shape (cases,), 16 bytes: equal keys mean equal answers.
-
-    version: of the solver. Cases are compared by their bytes.
-    """
+    """Return one key of 16 bytes per case, shape (cases,); cases are compared by their bytes."""
     given = hashlib.sha256(f"{version} {output} {cases.dtype.descr}".encode()).digest()
     rows, size = memoryview(cases.tobytes()), cases.dtype.itemsize
     digests = [
@@ -186,10 +183,6 @@ class RunIndex:
         runs = self._order[np.minimum(places, self._keys.size - 1)]
         requested: Array = self._keys[runs] == keys
         return requested, runs[requested]
-
-    def left(self) -> int:
-        """Count the runs of the design without an answer, equal ones each."""
-        return int(np.count_nonzero(~self.done) + np.count_nonzero(~self.done[self._firsts]))
 
     def spread(self, values: Array) -> Array:
         """Copy the row of the first of equal runs to the others, in place; shape (runs, ...)."""

@@ -138,14 +138,11 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
 
 
 def _of_first(size: int, outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    """Return the indices on the first base samples; none where these do not vary.
-
-    Those of second order have intervals on the whole sample alone.
-    """
+    """Return the indices on the first base samples; none where these do not vary."""
     start, factors = outputs[: size * step(sample)], len(sample.factors)
     if still(start, varying(start, sample)):
         return {}
-    parts = Outputs.of(start, sample)
+    parts = Outputs.of(start, sample)  # pairs have intervals on the whole sample alone
     statistics = parts.statistics(interactions=start.size == outputs.size)
     spread = half_widths(statistics, lambda means: estimates(means, factors), sample, response)
     found = points(parts) | spread

@@ -146,9 +146,5 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
 
 
 def load_surrogate(path: str | Path) -> Surrogate:
-    """Load the surrogates of a study from its surrogate.nc.
-
-    Raises OSError, naming a file that cannot be read, and ValueError where it holds no
-    surrogate, or was changed.
-    """
+    """Load a study's surrogate.nc. Raises OSError or ValueError naming a file that holds none."""
     return Surrogate(read_netcdf(Path(path), "surrogate"))

@@ -169,10 +169,7 @@ S = TypeVar("S", bound=Section)
 def validated(
     kind: type[S], data: Any, file: str, parameters: Mapping[str, Parameter] = PARAMETERS
 ) -> S:
-    """Return the content of a file as a section of this kind.
-
-    parameters: those that a study can vary. Raises StudyError with every problem of the file.
-    """
+    """Return the content of a file as a section. Raises StudyError with every problem of it."""
     keys: dict[int, tuple[str, ...]] = {}
     try:
         return kind.model_validate(data, context={"keys": keys, "parameters": parameters})

@@ -76,10 +76,7 @@ def read_text(path: Path) -> str:
 
 
 def read_mapping(text: str, file: str) -> dict[str, Any]:
-    """Return the mapping in a YAML text; a key that occurs twice is refused.
-
-    file: named in errors. Raises StudyError when the text is not YAML, or not a mapping.
-    """
+    """Return the mapping in a YAML text. Raises StudyError, naming the file, unless it is one."""
     try:
         yaml = YAML(typ="safe", pure=True)
         yaml.Constructor = Constructor

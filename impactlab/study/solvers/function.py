@@ -44,8 +44,7 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """Return `value` and `status` on the design's dimensions."""
     dims, shape = run_shape(design)
     title = FUNCTIONS[str(design.attrs["function"])].title
-    value = answers[VALUE].reshape(shape)
-    status = answers["status"].reshape(shape)
+    value, status = (answers[name].reshape(shape) for name in (VALUE, "status"))
     attrs = {"long_name": f"value of the {title}", "units": "1"}
     dataset = design.assign({VALUE: (dims, value, attrs), "status": (dims, status)})
     return described(dataset.assign_attrs(provenance()))

@@ -205,16 +205,15 @@ def test_answers_find_the_runs_of_their_keys():
     assert runs.tolist() == [3, 0]
     index.done[runs] = True
     assert np.flatnonzero(~index.done).tolist() == [1, 2]
-    assert index.left() == 2
 
 
 def test_the_first_of_equal_runs_stands_for_all():
     index = RunIndex(keys(7, 3, 7, 3, 7))
     assert np.flatnonzero(~index.done).tolist() == [0, 1]
-    assert index.left() == 5
+    assert not index.spread(index.done.copy()).any()
     assert index.distinct == 2
     index.done[index.find(keys(3))[1]] = True
-    assert index.left() == 3
+    assert index.spread(index.done.copy()).tolist() == [False, True, False, True, False]
     values = np.array([[7.0, 70.0], [3.0, 30.0], [0, 0], [0, 0], [0, 0]])
     assert index.spread(values)[:, 1].tolist() == [70.0, 30.0, 70.0, 30.0, 70.0]
 
