@@ -96,3 +96,13 @@ def test_a_scheme_that_a_model_has_not_is_refused_before_the_run(problems, read,
     assert where == "discretisation.scheme"
     fixed = {"scheme": ["leapfrog"], "beam_model": [model]}
     read(grid({"sampling.parameters": fixed, "discretisation": {"scheme": "modal"}}))
+
+
+def test_auto_stands_for_the_fastest_scheme_of_every_beam_model_of_the_study(read, grid):
+    def scheme(*models):
+        varied = {"sampling.parameters": {"beam_model": [*models], "velocity": [1]}}
+        study = read(grid(varied | {"discretisation": {"scheme": "auto", "nodes": 21}}))
+        return study.discretisation.scheme
+
+    assert scheme("elastic", "euler_bernoulli") == "modal"
+    assert scheme("elastic", "timoshenko") == "leapfrog"
