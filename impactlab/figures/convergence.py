@@ -99,6 +99,7 @@ class Refined:
 
 _NODES = Refined("nodes", "nodes", ("velocity", "points"))
 _TIME_STEP = Refined("time_step", "courant", ("scheme", "nodes", "velocity"))
+_POINTS = Refined("points", "points", ("rule", "velocity"), most=6)
 _COST = Refined("nodes", "nodes", ("scheme", "courant", "velocity"), most=6)
 
 
@@ -179,8 +180,7 @@ def _draw(
         orders = []
         for curve, errors in _above_round_off(difference, selected):
             curves.add(ax, spacing, errors, curve)
-            where = selected.held | curve.where
-            order, uncertainty, text = _trend(analysis, axis, name, where)
+            order, uncertainty, text = _trend(analysis, axis, name, selected.held | curve.where)
             if np.isfinite(order):
                 orders.append((ax.lines[-1], text))
             _draw_trend(ax, spacing, errors, order, uncertainty)
@@ -315,8 +315,8 @@ def _draw_trend(
     ax: Axes, spacing: Floats, errors: Floats, order: float, uncertainty: float
 ) -> None:
     """Draw the order through the errors of the three finest values, and the bar of the finest."""
-    near, colour = np.argsort(spacing)[:_FEWEST], ax.lines[-1].get_color()
-    marker = ax.lines[-1].get_marker()
+    near, line = np.argsort(spacing)[:_FEWEST], ax.lines[-1]
+    colour, marker = line.get_color(), line.get_marker()
     scale = np.log(errors[near]) - order * np.log(spacing[near])
     if np.isfinite(scale).any():
         ends = np.array([spacing.min(), spacing.max()])
@@ -353,33 +353,18 @@ def _scale_spacing(ax: Axes, spacing: Floats) -> None:
     ax.set_xlim(0.85 * spacing.min(), 1.18 * spacing.max())
 
 
-def _points_names(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    """Return the responses whose errors in points the analysis has."""
-    given = analysed(runs, analysis, "points_error")
-    return [name for name in given if "points" in runs[name].dims]
-
-
-def _plan_points(runs: xr.Dataset, analysis: xr.Dataset) -> Plan:
-    first = _points_names(runs, analysis)[0]
-    return plan(runs, first, along=["points"], prefer=["rule", "velocity"])
-
-
 @record.figure(
     "Convergence in integration points",
     "Difference to the value with the most integration points over the depth (which is left "
     "out, being its own reference), relative to it. A verdict "
     "is the worst over the whole grid, also over what is not drawn.",
-    lambda runs, analysis: bool(_points_names(runs, analysis)),
-    lambda runs, analysis: (
-        _unconverged(runs, analysis, "points", _points_names(runs, analysis)),
-        _plan_points(runs, analysis).note(runs),
-        access.missing_note(runs, _points_names(runs, analysis)),
-    ),
+    lambda runs, analysis: "points" in runs.dims and bool(analysed(runs, analysis, "points_error")),
+    lambda runs, analysis: _POINTS.sentences(runs, analysis)[1:],  # there is no limit to judge by
 )
 def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response, a curve per rule (and velocity)."""
-    selected, points = _plan_points(runs, analysis), analysis["points"].values
-    figure, axes = responses_grid.panels(_points_names(runs, analysis), height=40)
+    selected, points = _POINTS.plan(runs), analysis["points"].values
+    figure, axes = responses_grid.panels(_POINTS.names(runs), height=40)
     for name, ax in axes.items():
         responses_grid.write_verdict(ax, analysis, "points_summary", name)
         error = abs(analysis["points_error"].sel(response=name)).transpose("points", ...)
@@ -402,19 +387,17 @@ def _draw_tolerance(ax: Axes) -> None:
     ax.axhline(_TOLERANCE, label=f"_guide: tolerance {_TOLERANCE}", linestyle="--", **style.GUIDE)
 
 
-def _has_cost(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether the nodes are refined and all runs are of beams whose cost is known."""
-    refined = _COST.applies(runs, analysis) and all(name in runs.coords for name in _INPUTS)
-    return refined and set(np.ravel(runs["beam_model"].values).tolist()) <= set(BEAM_MODELS)
-
-
 @record.figure(
     "Cost against error",
     "Difference to the limit at zero spacing (Richardson's value, that of the least-squares "
     "fit, or else the finest value) against the estimated work of a run: half its nodes times "
     "its time steps. What a step costs grows with the integration points, and depends "
     "on the scheme.",
-    _has_cost,
+    lambda runs, analysis: (
+        _COST.applies(runs, analysis)
+        and all(name in runs.coords for name in _INPUTS)
+        and bool(runs["beam_model"].isin(BEAM_MODELS).all())  # the cost of others is not known
+    ),
     _COST.sentences,
 )
 def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
@@ -444,7 +427,5 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 def _coded(parameter: xr.DataArray) -> xr.DataArray:
     """Return words as the integers that the kernels switch by."""
     words = {"beam_model": BEAM_MODELS, "scheme": SCHEMES}.get(str(parameter.name))
-    if words is None:
-        return parameter.reset_coords(drop=True)
-    codes = np.array([words.index(str(word)) for word in np.ravel(parameter.values)])
-    return xr.DataArray(codes.reshape(parameter.shape), dims=parameter.dims)
+    plain = parameter.reset_coords(drop=True)
+    return xr.apply_ufunc(np.vectorize(words.index), plain) if words else plain

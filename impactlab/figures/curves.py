@@ -17,9 +17,6 @@ from impactlab.figures.access import design_dims, usable
 from impactlab.model.impact import SOLID
 from impactlab.types import Floats
 
-Line = Callable[[xr.Dataset], tuple[Floats, Floats]]
-"""From one run's dataset (no design dimensions) to the x and y of its curve."""
-
 _LARGE, _SMALL = ("nodes", "points", "elements_per_radius"), ("courant", "element_size")
 _JUMP, _FEW_STEPS = 5.0, 4
 _MOST = 6
@@ -94,8 +91,14 @@ def plan(
     finest = (
         {*_LARGE, *_SMALL} - {*prefer} if SOLID in np.ravel(runs.get("beam_model", "")) else set()
     )
-    several = (dim for dim in left if runs.sizes[dim] > 1 and dim not in finest)
-    shown = _shown({dim: runs.sizes[dim] for dim in several}, most)
+    several = [dim for dim in left if runs.sizes[dim] > 1 and dim not in finest]
+    shown: dict[str, list[int]] = {}
+    # the first of at most two dimensions leaves room for two values of the second
+    room = min(most, max(most // 2, 2)) if len(several) > 1 else most
+    for dim in several[:2]:
+        if room > 1:
+            shown[dim] = spread(runs.sizes[dim], room)
+        room = most // len(shown.get(dim, [0]))
     held = {d: _held(runs[d]) for d in left if d not in shown and runs.sizes[d] > 1}
     single = {dim: 0 for dim in left if runs.sizes[dim] == 1}
     curves = []
@@ -105,17 +108,6 @@ def plan(
         colour, line = (*ordinals, *ordinals, 0, 0)[:2]
         curves.append(Choice(where | single, label, (colour, line)))
     return Plan(panels, curves, shown, held)
-
-
-def _shown(sizes: dict[str, int], most: int) -> dict[str, list[int]]:
-    """Return positions on at most two dimensions; the first leaves room for two of the second."""
-    shown: dict[str, list[int]] = {}
-    room = min(most, max(most // 2, 2)) if len(sizes) > 1 else most
-    for dim, size in list(sizes.items())[:2]:
-        if min(size, room) > 1:
-            shown[dim] = spread(size, room)
-        room = most // len(shown.get(dim, [0]))
-    return shown
 
 
 def spread(size: int, most: int) -> list[int]:
@@ -140,13 +132,12 @@ def look(curve: Choice, *, markers: bool = False) -> dict[str, Any]:
     """
     colour, line = curve.place
     line_style = line + colour // len(style.COLOURS)  # one further each time round
-    found = {
+    return {
         "color": style.COLOURS[colour % len(style.COLOURS)],
         "linestyle": style.LINES[line_style % len(style.LINES)],
         "zorder": 3.0 - 0.01 * colour - 0.001 * line,
+        "marker": style.MARKERS[line_style % len(style.MARKERS)] if markers else "",
     }
-    marker = {"marker": style.MARKERS[line_style % len(style.MARKERS)]} if markers else {}
-    return found | marker
 
 
 def add(ax: Axes, x: Floats, y: Floats, curve: Choice, *, markers: bool = True) -> bool:
@@ -186,12 +177,18 @@ def chosen(runs: xr.Dataset, variable: str) -> Plan:
 
 
 def draw(
-    runs: xr.Dataset, variable: str, line: Line, x: str, y: str, *, markers: bool = False
+    runs: xr.Dataset,
+    variable: str,
+    line: Callable[[xr.Dataset], tuple[Floats, Floats]],
+    x: str,
+    y: str,
+    *,
+    markers: bool = False,
 ) -> tuple[Figure, list[Axes], Plan]:
     """Draw each chosen run that has finite values, still without a legend; the others leave a gap.
 
-    variable: runs without finite values of it have no curve. x, y: labels of the axes, x below each
-    column, y at the left of each row.
+    variable: runs without finite values of it have no curve. line: the x and y of a curve, from the
+    dataset of its run. x, y: labels of the axes, x below each column, y at the left of each row.
     """
     selected = chosen(runs, variable)
     valid = runs.assign({variable: usable(runs, variable)})
@@ -202,8 +199,7 @@ def draw(
         for curve in selected.curves:
             run = valid.isel(selected.runs(panel, curve))
             if np.isfinite(run[variable]).any():
-                look_of = look(curve, markers=markers)
-                ax.plot(*line(run), label=curve.label or "_only", **look_of)
+                ax.plot(*line(run), label=curve.label or "_only", **look(curve, markers=markers))
         if not ax.lines:
             style.remark(ax, "no finite values")
         ax.label_outer(remove_inner_ticks=False)

@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from impactlab.figures import data, findings, style
+from impactlab.figures import data, findings, record, style
 from impactlab.figures.catalogue import applicable
 from impactlab.files import identity, replaced
 from impactlab.verification.finding import gravest_first
@@ -39,12 +39,23 @@ class Drawing(NamedTuple):
 
 def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]:
     """Draw each figure of the catalogue that applies to a study of runs; see `draw`."""
-    pair = runs, analysis
-    drawings = [
-        Drawing(name, figure.title, partial(figure.plot, *pair), partial(figure.caption, *pair))
-        for name, figure in applicable(*pair).items()
-    ]
-    return draw(drawings, folder, study=str(runs.attrs.get("study")), made_from=analysis)
+    found, study = applicable(runs, analysis).values(), str(runs.attrs.get("study"))
+    return draw_figures(found, (runs, analysis), folder, study, made_from=analysis)
+
+
+def draw_figures(
+    figures: Iterable[record.Figure],
+    pair: tuple[xr.Dataset, xr.Dataset],
+    folder: Path,
+    study: str,
+    made_from: xr.Dataset | None = None,
+) -> list[Path]:
+    """Draw each of the figures of two datasets; see `draw`."""
+    drawings = (
+        Drawing(each.name, each.title, partial(each.plot, *pair), partial(each.caption, *pair))
+        for each in figures
+    )
+    return draw(drawings, folder, study, made_from)
 
 
 def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
@@ -66,7 +77,7 @@ def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
             partial(findings.curves_caption, outcome),
         )
         for outcome in outcomes
-        if findings.has_curves(outcome)
+        if any(panel.curves for panel in outcome.finding.panels)
     ]
     return draw(drawings, folder, study=str(stored.attrs.get("study")), made_from=stored)
 

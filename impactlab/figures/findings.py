@@ -115,11 +115,6 @@ def _ratios(outcome: Outcome) -> Floats:
     return np.array([entry.ratio for entry in outcome.finding.comparisons], dtype=float)
 
 
-def has_curves(outcome: Outcome) -> bool:
-    """Return whether the check gave curves."""
-    return any(panel.curves for panel in outcome.finding.panels)
-
-
 def curves_caption(outcome: Outcome) -> str:
     """Return the caption, which tells the two kinds of curves apart."""
     return (

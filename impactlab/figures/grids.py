@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -14,7 +15,7 @@ from impactlab.figures.access import physical, responses, usable
 from impactlab.figures.curves import Plan, plan
 from impactlab.figures.labels import display
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.types import Floats
 from impactlab.variables import MARKS
@@ -36,13 +37,17 @@ _velocity_plan = partial(plan, along=["velocity"], prefer=["contact"])
 _plan_shear = partial(plan, variable=_PEAK, along=["beam_depth", "beam_model"])
 
 
-def _on_velocities(name: str, runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether a response is on a grid of at least three velocities."""
-    return name in runs and runs[name].sizes.get("velocity", 0) >= _FEWEST
-
-
-def _velocity_sentences(name: str, runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
-    return _velocity_plan(runs, name).note(runs), access.missing_note(runs, [name])
+def _velocity_figure(name: str, title: str, text: str) -> Callable[[record.Drawer], record.Figure]:
+    """Make the record of a figure of a response on a grid of at least three velocities."""
+    return record.figure(
+        title,
+        text,
+        lambda runs, analysis: name in runs and runs[name].sizes.get("velocity", 0) >= _FEWEST,
+        lambda runs, analysis: (
+            _velocity_plan(runs, name).note(runs),
+            access.missing_note(runs, [name]),
+        ),
+    )
 
 
 def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, Axes, Plan]:
@@ -60,12 +65,11 @@ def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, 
     return figure, ax, selected
 
 
-@record.figure(
+@_velocity_figure(
+    _DURATION,
     "Contact duration against velocity",
     "Duration of the first contact (a later sub-impact does not count) against the impact "
     "velocity. Grey: the slope of Hertz's elastic impact on a half-space. A jump is not joined.",
-    partial(_on_velocities, _DURATION),
-    partial(_velocity_sentences, _DURATION),
 )
 def contact_duration(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw on logarithmic axes, as durations follow powers of the velocity, with a guide."""
@@ -80,12 +84,11 @@ def contact_duration(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     return selected.finish(figure)
 
 
-@record.figure(
+@_velocity_figure(
+    _RESTITUTION,
     "Restitution against velocity",
     "Coefficient of restitution, the sphere's rebound velocity over its impact velocity, "
     "against the impact velocity.",
-    partial(_on_velocities, _RESTITUTION),
-    partial(_velocity_sentences, _RESTITUTION),
 )
 def restitution_velocity(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw with an axis that holds zero and one."""
@@ -225,27 +228,22 @@ def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     return selected.finish(figure, label)
 
 
-def _has_shear(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether a grid has three depths or more, each with and without shear."""
-    if "beam_model" not in runs.sizes or not all(name in runs for name in _SHEARED):
-        return False
-    models = set(runs["beam_model"].values.tolist())
-    return runs.sizes.get("beam_depth", 0) >= _FEWEST and {_WITHOUT, _WITH} <= models
-
-
-def _shear_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, ...]:
-    found = (_shear_finding(runs, name) for name in _SHEARED)
-    return *found, _plan_shear(runs).note(runs), access.missing_note(runs, _SHEARED)
-
-
 @record.figure(
     "When shear matters",
     "Relative change by shear and rotary inertia: a Timoshenko beam over an Euler-Bernoulli "
     "one, minus one. Below, the same changes against how much shear and "
     "rotary inertia slow the wave that turns by π during the contact, which goes with depth "
     "over contact duration: if it decided alone, the curves would coincide.",
-    _has_shear,
-    _shear_sentences,
+    lambda runs, analysis: (
+        runs.sizes.get("beam_depth", 0) >= _FEWEST
+        and {_WITHOUT, _WITH} <= set(runs.get("beam_model", xr.DataArray()).values.ravel())
+        and all(name in runs for name in _SHEARED)
+    ),
+    lambda runs, analysis: (
+        *(_shear_finding(runs, name) for name in _SHEARED),
+        _plan_shear(runs).note(runs),
+        access.missing_note(runs, _SHEARED),
+    ),
 )
 def shear(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a column per response: against depth over span above, against the share below."""
@@ -272,19 +270,17 @@ def _shear_curve(
     run = runs.isel(where)
     values, durations = usable(run, name), usable(run, _DURATION).sel(beam_model=_WITHOUT)
     change = values.sel(beam_model=_WITH) / values.sel(beam_model=_WITHOUT) - 1.0
-    plain = run.sel(beam_model=_WITHOUT)
-    beams = [_beam(plain.isel(beam_depth=at)) for at in range(run.sizes["beam_depth"])]
+    beams = []
+    for at in range(run.sizes["beam_depth"]):
+        one = run.isel(beam_depth=at)
+        given = {name: float(one[name]) for name in _BEAM if name in one.coords}
+        beams.append(with_values(paper_impact(), Discretisation(), given)[0].beam)
     share = [
         100.0 * impact_share(beam, duration) if duration > 0 else np.nan
         for beam, duration in zip(beams, durations.values.tolist(), strict=True)
     ]
     slenderness = np.array([beam.depth / beam.span for beam in beams])
     return slenderness, np.array(share), 100 * change.values
-
-
-def _beam(run: xr.Dataset) -> Beam:
-    values = {name: float(run[name]) for name in _BEAM if name in run.coords}
-    return with_values(paper_impact(), Discretisation(), values)[0].beam
 
 
 def _scale_changes(ax: Axes) -> None:

@@ -48,16 +48,28 @@ def index_bars(name: str, family: Family) -> Figure:
         name,
     )
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
-        """Draw a panel per response, a row per parameter, a bar per measure."""
+        """Draw a panel per response, a row per parameter (largest first), a bar per measure."""
         shown = family.measures_in(analysis)
-        analysis = _largest_first(analysis, family)
+        ranking, given = measures.ranking(family).name, [measure.name for measure in shown]
+        ranked = abs(analysis[ranking if ranking in given else given[-1]])
+        largest = ranked.max([dim for dim in ranked.dims if dim != "parameter"]).fillna(-1.0)
+        analysis = analysis.isel(parameter=np.argsort(-largest.values, kind="stable"))
         listed = parameters(analysis)
         height = 10 + max(5.2, 2.4 * len(shown)) * len(listed)
         figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
         for at, (response, ax) in enumerate(axes.items()):
             _bars(ax, analysis, family, response)
-            _undefined(ax, analysis, response, shown[0].name)
-            _rows(ax, listed, named=at % responses_grid.COLUMNS == 0)
+            if np.isfinite(analysis[shown[0].name].sel(response=response)).any():
+                responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
+            else:
+                verdict = access.verdict(analysis, _VERDICT, response)
+                words = verdict.words if verdict else "no reason is given"
+                style.remark(ax, f"undefined:\n{words}")
+            ax.set_yticks(range(len(listed)))
+            ax.yaxis.set_major_formatter(FixedFormatter(list(map(labels.parameter, listed))))
+            ax.tick_params(axis="y", length=0, labelleft=at % responses_grid.COLUMNS == 0)
+            ax.grid(visible=False, axis="y")
+            ax.set_ylim(len(listed) - 0.5, -0.5)
             low, high = ax.get_xlim()
             ax.set_xlim(min(low, 0.0), max(high, 1.0 if family.shares else 0.0))
             scales.linear(ax, "x")
@@ -91,15 +103,6 @@ def _bar_sentences(family: Family, analysis: xr.Dataset) -> list[str]:
     ]
 
 
-def _largest_first(analysis: xr.Dataset, family: Family) -> xr.Dataset:
-    """Return the analysis with its parameters sorted by the measure that ranks them."""
-    given = [measure.name for measure in family.measures_in(analysis)]
-    name = measures.ranking(family).name
-    index = abs(analysis[name if name in given else given[-1]])
-    largest = index.max([dim for dim in index.dims if dim != "parameter"]).fillna(-1.0)
-    return analysis.isel(parameter=np.argsort(-largest.values, kind="stable"))
-
-
 def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
     """Draw a bar per measure, pale within the noise; pairs of measures are dark and light."""
     shown = family.measures_in(analysis)
@@ -124,24 +127,6 @@ def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None
             dashes = (0, (3, 1.5))
             ax.vlines(ends, len(rows) - 0.5, -0.5, color=colour, linestyle=dashes, linewidth=0.9)
     ax.axvline(0.0, color="0.15", linewidth=0.6)
-
-
-def _undefined(ax: Axes, analysis: xr.Dataset, response: str, measure: str) -> None:
-    """Say in the panel why a response has no indices, or that they need care."""
-    if bool(np.isfinite(analysis[measure].sel(response=response)).any()):
-        responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
-        return
-    found = access.verdict(analysis, _VERDICT, response)
-    style.remark(ax, f"undefined:\n{found.words if found else 'no reason is given'}")
-
-
-def _rows(ax: Axes, names: list[str], *, named: bool) -> None:
-    """List the parameters from top to bottom."""
-    ax.set_yticks(range(len(names)))
-    ax.yaxis.set_major_formatter(FixedFormatter([labels.parameter(name) for name in names]))
-    ax.tick_params(axis="y", length=0, labelleft=named)
-    ax.grid(visible=False, axis="y")
-    ax.set_ylim(len(names) - 0.5, -0.5)
 
 
 def index_convergence(measure: Measure) -> Figure:
@@ -248,7 +233,6 @@ def _significant_pairs(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, NDAr
 
 
 def _without_pairs(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """Return a caption's sentence on the responses that are left out."""
     left = len(analysed(runs, analysis)) - len(_significant_pairs(runs, analysis))
     words = f"{labels.counted(left, 'response')} without an index that differs from zero"
     return f"Left out: {words}." if left else ""

@@ -44,13 +44,18 @@ def plot(run: xr.Dataset) -> Figure:
         beam.invert_yaxis()
     for axes in (force, loop):
         axes.set(xlim=(0.0, None), ylim=(0.0, None))
-    figure.suptitle(_title(run), x=0.01, ha="left", fontsize=9)
+    case = f"Sphere of {_quantity(run['sphere_radius'])} radius at {_quantity(run['velocity'])}"
+    words = {"contact_duration": "first contact", "restitution": "restitution"}
+    answers = [f"{text} {_quantity(run[name])}" for name, text in words.items() if run[name] >= 0]
+    title = ": ".join(filter(None, (case, ", ".join(answers))))
+    figure.suptitle(title, x=0.01, ha="left", fontsize=9)
     return figure
 
 
 def _draw(axes: Axes, run: xr.Dataset, across: str, names: list[str], text: str) -> None:
     """Draw variables over another one, in the units of papers; contact ends where force does."""
-    x, y = display(run[across]), display(max((run[name] for name in names), key=_largest))
+    largest = max(names, key=lambda name: float(np.abs(run[name]).max()))
+    x, y = display(run[across]), display(run[largest])
     for name, color in zip(names, style.COLOURS, strict=False):
         axes.plot(x(run[across]), y(run[name]), color=color, label=_MOTION.get(name))
     words = str(run[across].attrs["long_name"]).partition(" (")[0]
@@ -58,18 +63,6 @@ def _draw(axes: Axes, run: xr.Dataset, across: str, names: list[str], text: str)
     axes.set_ylabel(labels.axis(text, y.symbol))
     scales.linear(axes, "xy")
     axes.margins(x=0.0)
-
-
-def _title(run: xr.Dataset) -> str:
-    """Return the case and its main answers in one line."""
-    case = f"Sphere of {_quantity(run['sphere_radius'])} radius at {_quantity(run['velocity'])}"
-    words = {"contact_duration": "first contact", "restitution": "restitution"}
-    answers = [f"{text} {_quantity(run[name])}" for name, text in words.items() if run[name] >= 0]
-    return ": ".join(filter(None, (case, ", ".join(answers))))
-
-
-def _largest(array: xr.DataArray) -> float:
-    return float(np.abs(array).max())
 
 
 def _quantity(scalar: xr.DataArray) -> str:

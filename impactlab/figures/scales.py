@@ -14,7 +14,7 @@ from impactlab.figures import labels
 from impactlab.types import Floats
 
 Which = Literal["x", "y"]
-WIDE = 30.0
+_WIDE = 30.0
 """Ratio of the largest to the smallest value from which on an axis is logarithmic."""
 _PLAIN = FuncFormatter(lambda value, _: labels.number(value))
 _POWERS = FuncFormatter(lambda value, _: labels.number(value, plain=(1.0, 10.5)))
@@ -32,9 +32,10 @@ class _OneNotation(FuncFormatter):
 
 
 def fit(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
-    """Make the axis logarithmic for positive values over more than a factor WIDE, else linear."""
-    finite = _finite(values)
-    if finite.size and finite.min() > 0 and finite.max() / finite.min() > WIDE:
+    """Make the axis logarithmic for positive values over more than a factor of 30, else linear."""
+    array = np.asarray(values, dtype=float)
+    finite = array[np.isfinite(array)]
+    if finite.size and finite.min() > 0 and finite.max() / finite.min() > _WIDE:
         logarithmic(axes, which, finite, ticks)
     else:
         linear(axes, which, ticks)
@@ -50,7 +51,8 @@ def linear(axes: Axes, which: Which | Literal["xy"], ticks: int = 5) -> None:
 
 def logarithmic(axes: Axes, which: Which, values: ArrayLike, ticks: int = 5) -> None:
     """Make the axis logarithmic, with ticks at powers of ten or, over short ranges, between."""
-    shown = _finite(positive(values))
+    shown = positive(values)
+    shown = shown[np.isfinite(shown)]
     ratio = float(shown.max() / shown.min()) if shown.size else 10.0
     if ratio < 3:
         digits: tuple[float, ...] = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
@@ -93,8 +95,3 @@ def apart(values: ArrayLike) -> list[float]:
         if not kept or np.log(kept[-1] / value) >= least:
             kept.append(value)
     return kept
-
-
-def _finite(values: ArrayLike) -> Floats:
-    flat: Floats = np.ravel(np.asarray(values, dtype=float))
-    return np.compress(np.isfinite(flat), flat)

@@ -113,18 +113,15 @@ def _panel_per_run(
     return figure, [(ax, *place) for ax, place in zip(axes, places, strict=True)]
 
 
-def _has_displacements(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    """Return whether histories were kept, of no more contact laws than panels fit side by side."""
-    kept = all(name in runs for name in _DISPLACEMENTS)
-    return kept and len(curves.chosen(runs, "sphere_displacement").panels) <= _WIDE
-
-
 @record.figure(
     "Displacements against time",
     "Displacement of the sphere since first touch, deflection of the beam at mid-span, and "
     "their difference, the indentation (below zero: the two are apart); downwards is positive. "
     "The sphere's flight after its last contact is cut off where it would hide the rest.",
-    _has_displacements,
+    lambda runs, analysis: (
+        all(name in runs for name in _DISPLACEMENTS)
+        and len(curves.chosen(runs, "sphere_displacement").panels) <= _WIDE
+    ),
     lambda runs, analysis: (
         curves.note(runs, "sphere_displacement"),
         access.missing_note(runs, list(_DISPLACEMENTS)),

@@ -110,35 +110,30 @@ def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
     """Add one legend of all labelled artists above the panels; the figure grows to hold it.
 
     order: labels in the order wanted; without it, that in which they are drawn. Guides labelled
-    "_guide: WORDS" come last. A label that is a
-    line in one panel and markers in another is both in the legend.
+    "_guide: WORDS" come last. A label that is a line in one panel and markers in another is both
+    in the legend.
     """
-    found: dict[str, Any] = {}
-    guides: dict[str, Any] = {}
+    found: dict[str, dict[str, Any]] = {}
+    guides: dict[str, dict[str, Any]] = {}
     for axes in figure.axes:
         for line in axes.lines:
-            if str(line.get_label()).startswith("_guide: "):
-                guides.setdefault(str(line.get_label()).removeprefix("_guide: "), line)
+            start, _, words = str(line.get_label()).partition("_guide: ")
+            if words and not start:
+                guides.setdefault(words, {"line": line})
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            if label not in found:
-                found[label] = (handle,)
-            elif len(found[label]) == 1 and _is_marker(handle) != _is_marker(found[label][0]):
-                found[label] += (handle,)
+            alone = isinstance(handle, Line2D) and handle.get_linestyle() in ("", "None")
+            found.setdefault(label, {}).setdefault("markers" if alone else "line", handle)
     if len(found) + len(guides) < 2 and not title:
         return
     found = {label: found[label] for label in order if label in found} or found
-    found |= {label: (line,) for label, line in guides.items()}
+    found |= guides
     columns = _columns(figure.get_figwidth() / MILLIMETRE, list(found))
     rows = math.ceil(len(found) / columns) + bool(title)
     figure.set_figheight(figure.get_figheight() + (rows * 4.2 + 1.0) * MILLIMETRE)
+    handles: Any = [tuple(kinds.values()) for kinds in found.values()]
     figure.legend(
-        found.values(), found.keys(), loc="outside upper center", ncols=columns, title=title or None
+        handles, list(found), loc="outside upper center", ncols=columns, title=title or None
     )
-
-
-def _is_marker(artist: Any) -> bool:
-    """Return whether an artist is a line drawn as markers alone."""
-    return isinstance(artist, Line2D) and artist.get_linestyle() in ("", "None")
 
 
 def panel_legends(figure: Figure) -> None:

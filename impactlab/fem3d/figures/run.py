@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +15,11 @@ from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
 from impactlab.fem3d.solver.mesh import BEAM
-from impactlab.figures import labels, scales, style
-from impactlab.figures.draw import Drawing, draw
+from impactlab.figures import labels, record, scales, style
+from impactlab.figures.draw import draw_figures
 from impactlab.figures.labels import display
 from impactlab.solver.contact import CONTACT_LAWS
-
-Floats = NDArray[np.float64]
+from impactlab.types import Floats
 
 _FACES = np.array(
     [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
@@ -62,20 +58,19 @@ _ENLARGED = 3.0
 """Sides of the enlarged views over half the side of the matched patch."""
 
 
-def _mesh_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
-    """Return the caption: number and size of elements, and the views."""
+def _mesh_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
     size, patch = 1e3 * float(solid["element_size"]), 1e3 * float(solid["patch"])
     return (
         f"The quarter model: {int(solid['number_of_elements']):,} hexahedra, "
         f"{labels.number(size)} mm about the contact. Above, the plane of symmetry along the beam; "
         "below, the same about the contact, and the beam's top face. Within "
         f"{labels.number(patch)} mm (framed) the nodes of sphere and beam lie above each other; "
-        "the elements of the darker colour are fully integrated, the others have one point."
+        "the elements of the darker colour are fully integrated, the others have one point.",
     )
 
 
-@style.paper
-def _plot_mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
+@record.figure("Mesh of the 3-D FE model", "", lambda solid, beams: True, _mesh_sentences)
+def mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     """Draw the side view above, and the contact from the side and from above below it."""
     figure = Figure(figsize=(style.DOUBLE * style.MILLIMETRE, 125 * style.MILLIMETRE))
     figure.set_layout_engine("constrained")
@@ -127,8 +122,7 @@ _REACH = 1.6
 """Sides of the view over half the side of the matched patch, or the plastic zone below it."""
 
 
-def _strain_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
-    """Return the caption: the extent of the plastic zone, and what does not converge."""
+def _strain_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
     polygons, elements = faces(solid, 1)
     plastic = solid[_STRAIN].values[elements] >= THRESHOLD
     reach = (
@@ -140,12 +134,12 @@ def _strain_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
     return (
         "Equivalent plastic strain (PEEQ) of the elements in the plane of symmetry along the beam, "
         "means over each, at the end of the run; grey: below "
-        f"{labels.number(100 * THRESHOLD)} %. {reach}The largest strain grows with finer elements."
+        f"{labels.number(100 * THRESHOLD)} %. {reach}The largest strain grows with finer elements.",
     )
 
 
-@style.paper
-def _plot_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
+@record.figure("Plastic strain about the contact", "", lambda solid, beams: True, _strain_sentences)
+def plastic_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     """Draw the elements coloured by strain, the sphere above the beam."""
     figure = Figure(figsize=(style.SINGLE * style.MILLIMETRE, 68 * style.MILLIMETRE))
     figure.set_layout_engine("constrained")
@@ -158,7 +152,7 @@ def _plot_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     extent = min(float(extent), 0.5e3 * float(solid["beam_depth"]))
     reach = _REACH * max(1e3 * float(solid["patch"]), extent)
     ax.set(xlim=(0.0, reach), ylim=(-0.75 * reach, 0.25 * reach))
-    ax.set_title(FIGURES["plastic_strain"].title, loc="left")
+    ax.set_title(plastic_strain.title, loc="left")
     ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis("height", "mm"))
     scales.linear(ax, "xy")
     if plastic.any():
@@ -178,8 +172,7 @@ _PANELS = {
 }
 
 
-def _histories_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
-    """Return the caption: the quantities, and their meaning in each model."""
+def _histories_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
     velocity = labels.number(float(solid["velocity"]))
     size = labels.number(1e3 * float(solid["element_size"]))
     law = CONTACT_LAWS[str(beams["contact"].item())].title
@@ -187,12 +180,14 @@ def _histories_caption(solid: xr.Dataset, beams: xr.Dataset) -> str:
         f"Contact force, deflection of the beam's axis at mid-span and indentation (approach of "
         f"the sphere's centre of mass and that axis) at {velocity} m/s: of the 3-D FE model with "
         f"elements of {size} mm about the contact, and of beam models with the contact law "
-        f"{law}. Downwards is positive."
+        f"{law}. Downwards is positive.",
     )
 
 
-@style.paper
-def _plot_histories(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
+@record.figure(
+    "The 3-D FE model beside the beam models", "", lambda solid, beams: True, _histories_sentences
+)
+def histories(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     """Draw one panel per quantity, one curve per model; the 3-D curve is black, at the bottom."""
     figure, axes = style.panels(len(_PANELS), columns=len(_PANELS), height=55)
     for ax, (name, label) in zip(axes, _PANELS.items(), strict=True):
@@ -220,34 +215,10 @@ def _plot_histories(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     return figure
 
 
-@dataclass(frozen=True)
-class RunFigure:
-    """A figure of one 3-D run; `plot` and `caption` take the datasets of `draw_witness`."""
-
-    title: str
-    plot: Callable[[xr.Dataset, xr.Dataset], Figure]
-    caption: Callable[[xr.Dataset, xr.Dataset], str]
-
-
-FIGURES = {
-    "mesh": RunFigure("Mesh of the 3-D FE model", _plot_mesh, _mesh_caption),
-    "plastic_strain": RunFigure("Plastic strain about the contact", _plot_strain, _strain_caption),
-    "histories": RunFigure(
-        "The 3-D FE model beside the beam models", _plot_histories, _histories_caption
-    ),
-}
-"""Figures by name, which is also the name of the file."""
-
-
 def draw_witness(solid: xr.Dataset, beams: xr.Dataset, folder: Path, study: str) -> list[Path]:
     """Draw each figure of a 3-D run into `folder`, see figures.draw.draw.
 
     solid: a dataset of fem3d.solver. beams: the answers of the beam models to the same impact, on
     `beam_model`.
     """
-    pair = solid, beams
-    drawings = [
-        Drawing(name, figure.title, partial(figure.plot, *pair), partial(figure.caption, *pair))
-        for name, figure in FIGURES.items()
-    ]
-    return draw(drawings, folder, study)
+    return draw_figures((mesh, plastic_strain, histories), (solid, beams), folder, study)

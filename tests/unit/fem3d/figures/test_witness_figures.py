@@ -7,7 +7,7 @@ import pytest
 from made_solid import DEPTH_OF_STRAIN, beam_models, solid
 from matplotlib.collections import PolyCollection
 
-from impactlab.fem3d.figures.run import FIGURES, draw_witness, faces
+from impactlab.fem3d.figures.run import draw_witness, faces, histories, mesh, plastic_strain
 from impactlab.figures.data import alt
 
 
@@ -30,42 +30,40 @@ def test_faces_fill_the_planes_of_beam_and_sphere():
 
 
 def test_the_mesh_is_seen_whole_and_at_the_contact():
-    figure = FIGURES["mesh"].plot(solid(), beam_models())
+    figure = mesh.plot(solid(), beam_models())
     above, side, top = figure.axes
     assert above.get_xlim()[1] > 390.0
     assert side.get_xlim() == (0.0, 18.0)  # three times the matched patch
     assert len(above.collections[0].get_paths()) == len(faces(solid(), 1)[0])
     assert len(top.collections[0].get_paths()) < len(faces(solid(), 2)[0]) + 1
     assert "beam" in [text.get_text() for text in figure.legends[0].get_texts()]
-    assert "10,134 hexahedra, 2 mm about the contact" in FIGURES["mesh"].caption(
-        solid(), beam_models()
-    )
+    assert "10,134 hexahedra, 2 mm about the contact" in mesh.caption(solid(), beam_models())
 
 
 def test_plastic_elements_have_their_strain_in_per_cent():
     given = solid()
-    ax = FIGURES["plastic_strain"].plot(given, beam_models()).axes[0]
+    ax = plastic_strain.plot(given, beam_models()).axes[0]
     still, plastic = (cells for cells in ax.collections if type(cells) is PolyCollection)
     _, elements = faces(given, 1)
     strain = given["equivalent_plastic_strain"].values[elements]
     assert plastic.get_array().tolist() == (100.0 * strain[strain >= 1e-5]).tolist()
     assert len(still.get_paths()) == int((strain < 1e-5).sum())
     reach = max(patch.vertices[:, 0].max() for patch in plastic.get_paths())
-    said = FIGURES["plastic_strain"].caption(given, beam_models())
+    said = plastic_strain.caption(given, beam_models())
     assert f"reaches {reach:g} mm from mid-span" in said
     assert reach < 1e3 * DEPTH_OF_STRAIN + 2.0
 
 
 def test_a_run_without_plastic_strain_says_so():
     elastic = solid().assign(equivalent_plastic_strain=0.0 * solid()["equivalent_plastic_strain"])
-    figure = FIGURES["plastic_strain"].plot(elastic, beam_models())
+    figure = plastic_strain.plot(elastic, beam_models())
     assert [text.get_text() for text in figure.axes[0].texts] == ["no plastic strain"]
-    assert "There is none." in FIGURES["plastic_strain"].caption(elastic, beam_models())
+    assert "There is none." in plastic_strain.caption(elastic, beam_models())
 
 
 def test_histories_are_the_stored_values_in_the_axes_units():
     given, others = solid(), beam_models()
-    figure = FIGURES["histories"].plot(given, others)
+    figure = histories.plot(given, others)
     force, deflection, _ = figure.axes
     assert force.get_ylabel() == "Contact force (kN)"
     assert deflection.get_ylabel() == "Deflection at mid-span (µm)"
@@ -91,7 +89,7 @@ def test_every_figure_lands_with_caption_and_alternative_text(tmp_path):
 
 
 def test_alternative_texts_count_cells_and_place_the_largest_strain():
-    said = alt(FIGURES["plastic_strain"].plot(solid(), beam_models()))
+    said = alt(plastic_strain.plot(solid(), beam_models()))
     assert "coloured cell" in said
     assert "the largest value at 1, −1" in said
-    assert "Top of the beam: " in alt(FIGURES["mesh"].plot(solid(), beam_models()))
+    assert "Top of the beam: " in alt(mesh.plot(solid(), beam_models()))
