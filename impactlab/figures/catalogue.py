@@ -5,13 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from impactlab import wings
-from impactlab.figures import access, convergence, grids, measures, samples, single_runs
-from impactlab.figures.indices import (
-    index_bars,
-    index_convergence,
-    morris_plane,
-    sobol_second_order,
-)
+from impactlab.figures import access, convergence, grids, indices, measures, samples, single_runs
 from impactlab.figures.record import Figure
 
 ANSWERS = (
@@ -35,14 +29,14 @@ ANSWERS = (
     samples.response_distributions,
 )
 INDICES = (
-    index_bars("sobol_indices", measures.SOBOL),
-    sobol_second_order,
-    *(index_convergence(measure) for measure in measures.SOBOL.measures),
-    morris_plane,
-    index_bars("delta_indices", measures.DELTA),
-    index_bars("pawn_indices", measures.PAWN),
-    index_bars("regression_indices", measures.REGRESSION),
-    index_bars("surrogate_indices", measures.SURROGATE),
+    indices.index_bars("sobol_indices", measures.SOBOL),
+    indices.sobol_second_order,
+    *map(indices.index_convergence, measures.SOBOL.measures),
+    indices.morris_plane,
+    indices.index_bars("delta_indices", measures.DELTA),
+    indices.index_bars("pawn_indices", measures.PAWN),
+    indices.index_bars("regression_indices", measures.REGRESSION),
+    indices.index_bars("surrogate_indices", measures.SURROGATE),
     samples.surrogate_validation,
     samples.failure_shares,
     samples.failure_map,

@@ -186,7 +186,15 @@ def _draw(
             _draw_trend(ax, spacing, errors, order, uncertainty)
         if orders:
             ax.legend(*zip(*orders, strict=True), **_BESIDE)
-        _finish(ax, spacing, difference, axis.dim)
+        if not ax.lines:
+            enough = bool((difference.count(axis.dim) > 1).any())
+            responses_grid.empty(ax, "same on every grid" if enough else "too few values")
+            continue
+        ends = np.array([spacing.min(), spacing.max()])
+        guide = 1.6 * np.nanmax(scales.drawn(ax, "y")) * (ends / ends[1]) ** 2  # above the curves
+        ax.plot(ends, guide, label="_guide: second order", linestyle="-", **style.GUIDE)
+        scales.logarithmic(ax, "y", scales.drawn(ax, "y"))
+        _scale_spacing(ax, spacing)
     return selected.finish(figure, label, _DIFFERENCE)
 
 
@@ -332,20 +340,6 @@ def _draw_trend(
         ax.plot(at, uncertainty, color=colour, linestyle="", label="_bar", **look)
 
 
-def _finish(ax: Axes, spacing: Floats, difference: xr.DataArray, dim: str) -> None:
-    """Make the axes logarithmic, and draw a guide of second order above the curves."""
-    if not ax.lines:
-        enough = bool((difference.count(dim) > 1).any())
-        responses_grid.empty(ax, "same on every grid" if enough else "too few values")
-        return
-    shown = scales.drawn(ax, "y")
-    ends = np.array([spacing.min(), spacing.max()])
-    guide = 1.6 * np.nanmax(shown) * (ends / ends[1]) ** 2
-    ax.plot(ends, guide, label="_guide: second order", linestyle="-", **style.GUIDE)
-    scales.logarithmic(ax, "y", [*shown, *guide])
-    _scale_spacing(ax, spacing)
-
-
 def _scale_spacing(ax: Axes, spacing: Floats) -> None:
     scales.logarithmic(ax, "x", spacing)
     if spacing.size <= 5:
@@ -403,8 +397,11 @@ def _draw_tolerance(ax: Axes) -> None:
 def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response, a curve for each of a few other settings."""
     selected = _COST.plan(runs)
-    inputs = xr.broadcast(*(_coded(runs[name]) for name in _INPUTS))
-    steps = node_steps({name: field.values for name, field in zip(_INPUTS, inputs, strict=True)})
+    given = {name: runs[name].reset_coords(drop=True) for name in _INPUTS}
+    for name, words in {"beam_model": BEAM_MODELS, "scheme": SCHEMES}.items():
+        given[name] = xr.apply_ufunc(np.vectorize(words.index), given[name])
+    inputs = xr.broadcast(*given.values())
+    steps = node_steps({name: field.values for name, field in zip(given, inputs, strict=True)})
     work = xr.DataArray(steps, dims=inputs[0].dims)
     figure, axes = responses_grid.panels(_COST.names(runs), height=40)
     for name, ax in axes.items():
@@ -422,10 +419,3 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         ax.set_xlim(decades[0], decades[-1])
         _draw_tolerance(ax)
     return selected.finish(figure, "Work (node-steps)", _DIFFERENCE)
-
-
-def _coded(parameter: xr.DataArray) -> xr.DataArray:
-    """Return words as the integers that the kernels switch by."""
-    words = {"beam_model": BEAM_MODELS, "scheme": SCHEMES}.get(str(parameter.name))
-    plain = parameter.reset_coords(drop=True)
-    return xr.apply_ufunc(np.vectorize(words.index), plain) if words else plain

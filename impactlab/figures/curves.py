@@ -219,6 +219,5 @@ def note(runs: xr.Dataset, variable: str) -> str:
         for curve in selected.curves
         if bool(absent.isel(selected.runs(panel, curve)))
     ]
-    return (
-        f"{selected.note(runs)} {f'No curve for {labels.listing(gaps)}.' if gaps else ''}".strip()
-    )
+    without = f" No curve for {labels.listing(gaps)}." if gaps else ""
+    return f"{selected.note(runs)}{without}".strip()

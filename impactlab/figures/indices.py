@@ -191,15 +191,21 @@ def _lines(ax: Axes, analysis: xr.Dataset, variable: str, response: str) -> None
         style.remark(ax, "no finite values")
 
 
+def _pair_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
+    left = len(analysed(runs, analysis)) - len(_significant_pairs(runs, analysis))
+    words = f"{labels.counted(left, 'response')} without an index that differs from zero"
+    return (
+        f"Grey, without a number: zero lies within the {access.confidence(analysis)} interval.",
+        f"Left out: {words}." if left else "",
+        _missing(runs, analysis),
+    )
+
+
 @record.figure(
     "Sobol indices of second order",
     "Share of the variance that two parameters bring together; columns are numbered as the rows.",
     lambda runs, analysis: bool(_significant_pairs(runs, analysis)),
-    lambda runs, analysis: (
-        f"Grey, without a number: zero lies within the {access.confidence(analysis)} interval.",
-        _without_pairs(runs, analysis),
-        _missing(runs, analysis),
-    ),
+    _pair_sentences,
 )
 def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, a cell per pair, all on one colour scale."""
@@ -230,12 +236,6 @@ def _significant_pairs(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, NDAr
         for name in analysed(runs, analysis, _PAIRS, interval)
     }
     return {name: where for name, where in found.items() if where.any()}
-
-
-def _without_pairs(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    left = len(analysed(runs, analysis)) - len(_significant_pairs(runs, analysis))
-    words = f"{labels.counted(left, 'response')} without an index that differs from zero"
-    return f"Left out: {words}." if left else ""
 
 
 def pairs(index: xr.DataArray) -> Floats:

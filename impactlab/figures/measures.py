@@ -166,20 +166,17 @@ def parameters(analysis: xr.Dataset) -> list[str]:
 
 def index(analysis: xr.Dataset, measure: str, response: str) -> Index:
     """Return one measure of one response."""
-    values = analysis[measure].sel(response=response).values
+
+    def beside(kind: str, gap: float) -> Floats:
+        nothing = xr.full_like(analysis[measure], np.nan)
+        found = analysis.get(f"{measure}_{kind}", nothing).sel(response=response)
+        return np.asarray(np.nan_to_num(found.values, nan=gap))
+
     dummy = (f"dummy_{measure}", f"dummy_{measure}_interval")
     ends = [analysis[name].sel(response=response).item() for name in dummy if name in analysis]
     return Index(
-        values,
-        _beside(analysis, f"{measure}_interval", response, values, gap=np.inf),
-        _beside(analysis, f"{measure}_numerical", response, values, gap=0.0),
+        analysis[measure].sel(response=response).values,
+        beside("interval", gap=np.inf),
+        beside("numerical", gap=0.0),
         float(sum(np.nan_to_num(abs(end)) for end in ends)),
     )
-
-
-def _beside(
-    analysis: xr.Dataset, name: str, response: str, values: Floats, *, gap: float
-) -> Floats:
-    if name not in analysis:
-        return np.full_like(values, gap)
-    return np.asarray(np.nan_to_num(analysis[name].sel(response=response).values, nan=gap))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import combinations
 from typing import Any
 
@@ -131,18 +132,25 @@ def scatter(response: str) -> Figure:
     )
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per parameter; points are a bitmap, which keeps the vector file small."""
-        names = varied(runs)
-        figure, axes = style.panels(len(names), columns=3, height=42, sharey=True)
         values, label = responses_grid.shown(runs, response)
-        for ax, name in zip(axes, names, strict=True):
-            unit = display(runs[name])
-            _scatter(ax, unit(runs[name].values), values.values)
-            ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
-        figure.supylabel(label)
-        style.legend(figure)
-        return figure
+        return _along_parameters(runs, label, 42, lambda ax, x: _scatter(ax, x, values.values))
 
     return plot
+
+
+def _along_parameters(
+    runs: xr.Dataset, label: str, height: float, draw: Callable[[Axes, Floats], None]
+) -> Drawing:
+    """Draw a panel per parameter, over its values in display units, (runs,)."""
+    names = varied(runs)
+    figure, axes = style.panels(len(names), columns=3, height=height, sharey=True)
+    for ax, name in zip(axes, names, strict=True):
+        unit = display(runs[name])
+        draw(ax, unit(runs[name].values))
+        ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
+    figure.supylabel(label)
+    style.legend(figure)
+    return figure
 
 
 def _scatter(ax: Axes, x: Floats, y: Floats) -> None:
@@ -264,15 +272,8 @@ def _failure_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 )
 def failure_shares(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per parameter."""
-    names, failed = varied(runs), access.failed(runs).values
-    figure, axes = style.panels(len(names), columns=3, height=36, sharey=True)
-    for ax, name in zip(axes, names, strict=True):
-        unit = display(runs[name])
-        _shares(ax, unit(runs[name].values), failed)
-        ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
-    figure.supylabel("Failed runs (%)")
-    style.legend(figure)
-    return figure
+    failed = access.failed(runs).values
+    return _along_parameters(runs, "Failed runs (%)", 36, lambda ax, x: _shares(ax, x, failed))
 
 
 def _shares(ax: Axes, x: Floats, failed: NDArray[np.bool_]) -> None:

@@ -9,12 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from impactlab.figures.access import known, responses, usable
+from impactlab.figures.access import known, usable
 from impactlab.model.impact import SOLID
+from impactlab.types import Floats
 
-Array = NDArray[np.float64]
 AXES = {"nodes": np.argmax, "element_size": np.argmin, "elements_per_radius": np.argmax}
 """Refinements, and the function that finds the finest grid on each."""
 _FEWEST = 3
@@ -26,8 +25,8 @@ class Side(NamedTuple):
     Where nothing bounds the error, the half-width is infinite.
     """
 
-    value: Array
-    uncertainty: Array
+    value: Floats
+    uncertainty: Floats
 
 
 def differ(runs: xr.Dataset) -> bool:
@@ -42,11 +41,6 @@ def models(runs: xr.Dataset) -> list[str]:
     """Return the 3-D FE model first, then the others in the study's order."""
     listed = [str(name) for name in runs["beam_model"].values]
     return [SOLID, *(name for name in listed if name != SOLID)]
-
-
-def compared_responses(runs: xr.Dataset) -> list[str]:
-    """Return the responses, without the check of the numerics."""
-    return [name for name in responses(runs) if name != "energy_error"]
 
 
 def finest(runs: xr.Dataset) -> dict[str, int]:

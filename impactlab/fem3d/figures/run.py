@@ -72,8 +72,8 @@ def _mesh_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
 @record.figure("Mesh of the 3-D FE model", "", lambda solid, beams: True, _mesh_sentences)
 def mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     """Draw the side view above, and the contact from the side and from above below it."""
-    figure = Figure(figsize=(style.DOUBLE * style.MILLIMETRE, 125 * style.MILLIMETRE))
-    figure.set_layout_engine("constrained")
+    size = style.DOUBLE * style.MILLIMETRE, 125 * style.MILLIMETRE
+    figure = Figure(figsize=size, layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.5])
     patch = 1e3 * float(solid["patch"])
     thin, reach = min(0.15, 0.15e3 * float(solid["element_size"])), _ENLARGED * patch
@@ -141,9 +141,7 @@ def _strain_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
 @record.figure("Plastic strain about the contact", "", lambda solid, beams: True, _strain_sentences)
 def plastic_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     """Draw the elements coloured by strain, the sphere above the beam."""
-    figure = Figure(figsize=(style.SINGLE * style.MILLIMETRE, 68 * style.MILLIMETRE))
-    figure.set_layout_engine("constrained")
-    ax = figure.add_subplot()
+    figure, (ax,) = style.panels(1, columns=1, height=68)
     polygons, elements = faces(solid, 1)
     strain = solid[_STRAIN].values[elements]
     plastic = strain >= THRESHOLD
@@ -207,10 +205,8 @@ def histories(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
         scales.linear(ax, "x", ticks=4)
         scales.linear(ax, "y")
         ax.set_xlim(0.0, float(times[-1]))
-        ax.set(
-            xlabel=labels.axis("time since first touch", time.symbol),
-            ylabel=labels.axis(label, unit.symbol),
-        )
+        ax.set_xlabel(labels.axis("time since first touch", time.symbol))
+        ax.set_ylabel(labels.axis(label, unit.symbol))
     style.legend(figure)
     return figure
 

@@ -59,7 +59,7 @@ def witness(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def _drawn(runs: xr.Dataset) -> list[str]:
-    return [name for name in _NAMES if name in differences.compared_responses(runs)][:_MOST]
+    return [name for name in _NAMES if name in access.responses(runs)][:_MOST]
 
 
 def _look(at: int) -> dict[str, Any]:

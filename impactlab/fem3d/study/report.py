@@ -7,7 +7,7 @@ import xarray as xr
 
 from impactlab.fem3d.figures import differences
 from impactlab.figures import labels
-from impactlab.figures.access import usable
+from impactlab.figures.access import responses, usable
 from impactlab.figures.labels import Display, display
 from impactlab.report.page import Cell, Section, Table
 from impactlab.variables import UNLIKE
@@ -28,7 +28,8 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the sections of a study with 3-D runs beside others, else none."""
     found = []
     if differences.differ(runs):
-        tables = [_table(runs, analysis, name) for name in differences.compared_responses(runs)]
+        names = [name for name in responses(runs) if name != "energy_error"]
+        tables = [_table(runs, analysis, name) for name in names]
         title = "Model by model"
         found.append(Section("witness", title, _LEAD, tables=tables, figures=["witness"]))
     if differences.separable(runs):
