@@ -131,19 +131,14 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
         held = kept if until else max(1, history, profile)
         working = workers * float(model.memory(np.append(cases, end)).max())
         slow, large = _drivers(study, model, end, runs)
-        ends = extremes((study.impact, study.discretisation), study.sampling)
-        doubted = [
-            Problem(file, key_of(each.name, study.sampling), each.reason)
-            for each in implausibilities(ends)
-        ]
+        found = implausibilities(extremes((study.impact, study.discretisation), study.sampling))
+        doubted = [Problem(file, key_of(each.name, study.sampling), each.reason) for each in found]
+    answers = _IN_MEMORY * _NUMBER * runs * float(held + parameters)
     return Estimate(
         file=file,
         runs=runs,
         seconds=max(float(sampled.mean()) * runs, largest),
-        memory=_PROGRAM
-        + _IN_MEMORY * _NUMBER * runs * float(held + parameters)
-        + runs * _PER_RUN
-        + working,
+        memory=_PROGRAM + answers + runs * _PER_RUN + working,
         disk=_ON_DISK * _NUMBER * runs * float(kept),
         free=float(disk_usage(there).free + own),
         largest=largest,

@@ -124,15 +124,13 @@ def _fit(
 
 
 def _free_order(f: Floats, h: Floats, weights: Floats) -> float:
-    """Return the power of least weighted residual, looked for around the best of a few dozen.
-
-    The curve is (h^p - 1)/p: with a constant the same as h^p, and ln h at p = 0.
-    """
+    """Return the power of least weighted residual, looked for around the best of a few dozen."""
     logarithm, values = np.log(h), f - weights @ f
 
     def misfits(orders: npt.ArrayLike) -> Floats:
         """Return the weighted squared residuals at the best f0 and a for each order, (orders,)."""
         p = np.atleast_1d(orders)[:, None]
+        # (h^p - 1)/p: with a constant the same as h^p, and ln h at p = 0
         curves = np.where(p, np.expm1(p * logarithm) / np.where(p, p, 1.0), logarithm)
         curves = curves - (curves @ weights)[:, None]
         slopes = (curves * values) @ weights / (curves**2 @ weights)

@@ -140,10 +140,7 @@ def fit(unit: Floats, values: Floats, seed: int) -> Chaos:
 
 
 def _order(columns: Floats, values: Floats) -> list[int]:
-    """Return the terms in the order of least angle regression, the constant first.
-
-    values: of mean zero.
-    """
+    """Return the terms in the order of least angle regression; values: of mean zero."""
     # scikit-learn is a large dependency for one function, but its treatment of dependent terms and
     # round-off decides which terms are picked: another one would change stored results.
     from sklearn.exceptions import ConvergenceWarning

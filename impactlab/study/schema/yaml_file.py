@@ -153,10 +153,7 @@ class Constructor(SafeConstructor):
 
 
 def _measure(node: Node, path: Key, known: dict[int, tuple[int, int]]) -> tuple[int, int]:
-    """Return (nodes, levels) of an expanded node; each is visited, and its kind checked, once.
-
-    known: those of the nodes visited before, by their id. Raises RefusedError for too many.
-    """
+    """Return (nodes, levels) of an expanded node; known: of those visited before, by their id."""
     if id(node) not in known:
         if len(path) > _DEEPEST:  # ends at a node that holds itself, too
             raise RefusedError(path, "nests too deeply")
