@@ -164,11 +164,7 @@ def refine(
     steps.refine(runs, path, Engine("threads", workers), base_samples)
 
 
-def go(
-    study: StudyFile,
-    workers: Threads = _ALL,
-    force: Force = False,
-) -> None:
+def go(study: StudyFile, workers: Threads = _ALL, force: Force = False) -> None:
     """Do everything for one study: run, analyse, figures and report.
 
     Of a verification: verify, figures and report. Runs that are solved are not solved again.

@@ -99,9 +99,7 @@ def clean(
                 path.unlink()
 
 
-def new(
-    folder: Annotated[Path, typer.Argument(help="Made by this command, or empty.")],
-) -> None:
+def new(folder: Annotated[Path, typer.Argument(help="Made by this command, or empty.")]) -> None:
     """Make a project: workflow, profiles and two studies."""
     from importlib.metadata import version
     from shutil import copy, copytree, which

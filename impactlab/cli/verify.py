@@ -17,8 +17,7 @@ def verify(
     ],
     output: Annotated[Path | None, new_file(help="Default: results/NAME/findings.nc.")] = None,
     exit_zero: Annotated[
-        bool,
-        typer.Option("--exit-zero", help="Exit with code 0 even if checks fail."),
+        bool, typer.Option("--exit-zero", help="Exit with code 0 even if checks fail.")
     ] = False,
 ) -> None:
     """Compare the solver with independent solutions.

@@ -116,10 +116,7 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
         undefined = not np.isfinite(index.values).any()
         none = "no index is defined" if undefined else "no parameter stands out from the noise"
         found.append(
-            (
-                f"{subject} ({verdict.words})" if verdict else subject,
-                ", ".join(listed) or none,
-            )
+            (f"{subject} ({verdict.words})" if verdict else subject, ", ".join(listed) or none)
         )
     return found
 
@@ -190,11 +187,20 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
 
 def _convergence(analysis: xr.Dataset, needs: Needs) -> list[Entry]:
     """Return one entry per grid that keeps responses within tolerance, and those without any."""
-    runs, found = needs.runs, []
-    for need, names in _grouped(needs.grids):
+    groups: dict[tuple[int, ...], list[str]] = defaultdict(list)
+    for name, need in needs.grids.items():
+        groups[need].append(name)
+    while len(groups) > LINES - 1:  # the two smallest groups share a grid that is fine enough
+        one, other = sorted(groups, key=lambda need: len(groups[need]))[:2]
+        both = groups.pop(one) + groups.pop(other)
+        groups[tuple(map(min, one, other))] += both
+    found = []
+    for need, names in sorted(groups.items(), key=lambda item: -len(item[1])):
         told = [uncertainty(max(float(needs.errors[name][need]) for name in names))]
         for axis in (ORDERED[dim] for dim in needs.axes if dim in ORDERED):
-            orders = finest(analysis[f"{axis}_observed_order"], runs).sel(response=names).values
+            orders = (
+                finest(analysis[f"{axis}_observed_order"], needs.runs).sel(response=names).values
+            )
             if np.isfinite(orders).any():
                 order = labels.span(orders[np.isfinite(orders)], 2)
                 told.append(f"observed order {order} in the {axis.replace('_', ' ')}")
@@ -208,15 +214,3 @@ def _convergence(analysis: xr.Dataset, needs: Needs) -> list[Entry]:
         told += needs.doubts(analysis, name)
         beyond.append(f"{labels.response(name)} ({', '.join(told)})")
     return found + ([("On no grid of this study", labels.listing(beyond))] if beyond else [])
-
-
-def _grouped(needs: dict[str, tuple[int, ...]]) -> list[tuple[tuple[int, ...], list[str]]]:
-    """Return grids and the responses that each is fine enough for, the most responses first."""
-    groups: dict[tuple[int, ...], list[str]] = defaultdict(list)
-    for name, need in needs.items():
-        groups[need].append(name)
-    while len(groups) > LINES - 1:  # the two smallest groups share a grid that is fine enough
-        one, other = sorted(groups, key=lambda need: len(groups[need]))[:2]
-        both = groups.pop(one) + groups.pop(other)
-        groups[tuple(map(min, one, other))] += both
-    return sorted(groups.items(), key=lambda item: -len(item[1]))

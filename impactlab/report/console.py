@@ -31,9 +31,15 @@ def print_responses(run: Any) -> None:
 
     run: a dataset of `simulate`, or what `solve` returns of one run.
     """
-    rows = [
-        (name, _amount(name, run[name].item()), RESPONSES[name].long_name) for name in RESPONSES
-    ]
+    rows = []
+    for name, entry in RESPONSES.items():
+        value, text = run[name].item(), "missing"
+        if not math.isnan(value):
+            strain = "plastic_strain" in name
+            text = (
+                f"{float(f'{100 * value:.4g}'):,g} %" if strain else engineering(value, entry.units)
+            )
+        rows.append((name, text, entry.long_name))
     _print_table(("response", Column("value", justify="right"), "meaning"), rows)
     console, status = Console(), run["status"].item()
     for flag, (bit, words) in FAILURES.items():
@@ -43,15 +49,6 @@ def print_responses(run: Any) -> None:
             console.print(missing if without else f"Missing: {words}.", markup=False)
     for note in (*reasons(status, MARKS), *reasons(run["remarks"].item(), WARNINGS)):
         console.print(f"note: {note}", markup=False)
-
-
-def _amount(name: str, value: float) -> str:
-    """Return a response's value with its unit, a plastic strain in %."""
-    if math.isnan(value):
-        return "missing"
-    if "plastic_strain" in name:
-        return f"{float(f'{100 * value:.4g}'):,g} %"
-    return engineering(value, RESPONSES[name].units)
 
 
 def print_predictions(predicted: Any) -> None:
@@ -95,14 +92,10 @@ def print_solved(path: Path) -> None:
 
 def print_estimate(cost: Estimate, workers: int) -> None:
     """Print what a study costs, and the limits that it exceeds."""
-
-    def units(name: str) -> str:
-        return PARAMETERS[name].units if name in PARAMETERS else "1"
-
-    at = ", ".join(
-        f"{name} = {value if isinstance(value, str) else engineering(value, units(name))}"
-        for name, value in cost.largest_run.items()
-    )
+    at = []
+    for name, value in cost.largest_run.items():
+        units = PARAMETERS[name].units if name in PARAMETERS else "1"
+        at.append(f"{name} = {value if isinstance(value, str) else engineering(value, units)}")
     lines = {
         "runs": f"{cost.runs:,}",
         "cost": f"about {time(cost.seconds)} of one core, most of it by {cost.slow}",
@@ -110,7 +103,7 @@ def print_estimate(cost: Estimate, workers: int) -> None:
         "memory": f"about {decimal(round(cost.memory))}",
         "disk": f"about {decimal(round(cost.disk))} of the "
         f"{decimal(round(cost.free))} that it may use",
-        "largest run": f"about {time(cost.largest)}" + f" ({at})" * bool(at),
+        "largest run": f"about {time(cost.largest)}" + f" ({', '.join(at)})" * bool(at),
     }
     if cost.auto:
         lines["discretisation"] = (

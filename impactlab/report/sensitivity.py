@@ -43,11 +43,10 @@ _FIGURES = {
 """Anchor and figure of the families other than Sobol's."""
 
 
-def sections(runs: xr.Dataset, analysis: xr.Dataset, file: str = "") -> list[Section]:
+def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the sections that the analysis has data for.
 
-    They are: ranking, indices, second order, convergence, other methods, surrogate. file: name of
-    the file of all indices beside the page, "" for none.
+    They are: ranking, indices, second order, convergence, other methods, surrogate.
     """
     if not analysed(runs, analysis):
         return []
@@ -56,11 +55,10 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset, file: str = "") -> list[Sec
         "A rank is a range where intervals overlap; they are widened by the numerical error where "
         "it is known."
     )
-    found = [
-        Section("ranking", "Ranking", lead, tables=[_ranks(runs, analysis, family)], file=file)
-        for family in families[:1]
-    ]
-    found += _of_sobol(runs, analysis)
+    found = list(_of_sobol(runs, analysis))
+    if families:
+        ranks = [_ranks(runs, analysis, families[0])]
+        found.insert(0, Section("ranking", "Ranking", lead, tables=ranks, file="indices.csv"))
     for family in families:
         if family is not SOBOL:
             name, figure = _FIGURES[family.title]

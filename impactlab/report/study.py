@@ -11,17 +11,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab import wings
-from impactlab.analysis.sensitivity.indices import sensitivity_variables
 from impactlab.figures import access, labels
-from impactlab.figures.access import (
-    count,
-    design_dims,
-    is_sample,
-    names,
-    responses,
-    usable,
-    varied,
-)
+from impactlab.figures.access import count, design_dims, is_sample, names, responses, usable, varied
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatter
@@ -31,15 +22,7 @@ from impactlab.report.answer import entries
 from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
 from impactlab.report.indices import numerical_sections
-from impactlab.report.page import (
-    Cell,
-    Row,
-    Section,
-    Table,
-    described,
-    pictures,
-    write_page,
-)
+from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
 from impactlab.variables import attributes
 
 _GRID_VALUES = 12
@@ -127,10 +110,9 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         ]
     title = "Distribution of each response"
     scattered = [scatter(name).name for name in responses(runs)]
-    file = "indices.csv" if sensitivity_variables(analysis) else ""
     against = "Each response against each parameter"
     return [
-        *sensitivity.sections(runs, analysis, file),
+        *sensitivity.sections(runs, analysis),
         *numerical_sections(runs, analysis),
         Section("results", title, tables=[ranges], figures=["response_distributions"]),
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),

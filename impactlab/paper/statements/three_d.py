@@ -100,10 +100,10 @@ def _judge_ratio(
     *,
     response: str,
     limit: float,
-    comparatives: tuple[str, str],
+    words: tuple[str, str],
     stated: bool,
 ) -> Judgement:
-    """Judge |beam/3-D − 1| ± U ≤ limit; stated: by the paper, for its own case."""
+    """Judge |beam/3-D − 1| ± U ≤ limit; words: for less and more; stated: by the paper."""
     runs, elements = _refined_runs(data)
     runs = runs.isel({elements: 0})
     ours = _bounded(finest_grid(runs, response, velocity=velocity, beam_model=model))
@@ -115,8 +115,7 @@ def _judge_ratio(
     least, most = abs(gap.value) - gap.uncertainty, abs(gap.value) + gap.uncertainty
     if least <= limit < most:
         return Judgement(case, numbers, Verdict.UNKNOWN, _UNDECIDED.format(100 * limit))
-    comparative = comparatives[0] if gap.value < 0 else comparatives[1]
-    why = f"The beam's is {100 * abs(gap.value):.1f} % {comparative}."
+    why = f"The beam's is {100 * abs(gap.value):.1f} % {words[0 if gap.value < 0 else 1]}."
     literal = stated and (velocity, model) == (VELOCITY, BEAM)
     return judged(case, numbers, most <= limit, why, literal=literal)
 
@@ -124,11 +123,7 @@ def _judge_ratio(
 force_of_witness = Statement(
     "force_of_witness",
     partial(
-        _judge_ratio,
-        response="peak_force",
-        limit=0.024,
-        comparatives=("smaller", "larger"),
-        stated=True,
+        _judge_ratio, response="peak_force", limit=0.024, words=("smaller", "larger"), stated=True
     ),
     text="The peak force lies within 2.4 % of that of a 3-D finite-element model.",
     test=(
@@ -145,7 +140,7 @@ duration_of_witness = Statement(
         _judge_ratio,
         response="contact_duration",
         limit=0.05,
-        comparatives=("shorter", "longer"),
+        words=("shorter", "longer"),
         stated=False,
     ),
     text="The contact duration against the velocity agrees with a 3-D finite-element model.",
