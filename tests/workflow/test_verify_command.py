@@ -54,7 +54,8 @@ def test_a_failing_check_is_told_everywhere(folder, check, words, monkeypatch, c
     assert here("report", findings) == 0
     page = Path("results/checks/report.html").read_text()
     assert "Verification failed" in page
-    assert '<a href="#bad">A bad check</a>' in page
+    verdict = "failed" if check is fails else "error"
+    assert f'<a href="#bad">A bad check: {verdict}</a>' in page
     assert here("verify", "studies/checks.yaml", "--exit-zero") == 0
     assert words in capsys.readouterr().err
     assert here("verify", findings) == 1
