@@ -72,7 +72,7 @@ def usable(runs: xr.Dataset, name: str) -> xr.DataArray:
     """Return a variable of the runs, NaN where the run's status says that it does not hold."""
     if "status" not in runs:
         return runs[name]
-    return runs[name].where((runs["status"] & status_bits([name])) == 0)
+    return runs[name].where((runs["status"] & status_bits([name])) == 0).rename(name)
 
 
 def absent(array: xr.DataArray) -> xr.DataArray:

@@ -52,9 +52,8 @@ def overview_caption(outcomes: Sequence[Outcome]) -> str:
 @style.paper
 def plot_overview(outcomes: Sequence[Outcome]) -> Figure:
     """Draw a row per check, the first on top; failed comparisons have a shape of their own."""
-    size = (style.DOUBLE * style.MILLIMETRE, (18.0 + _ROW * len(outcomes)) * style.MILLIMETRE)
-    figure = Figure(figsize=size, layout="constrained")
-    axes = figure.subplots()
+    figure, (axes,) = style.panels(1, columns=1, height=18.0 + _ROW * len(outcomes))
+    figure.set_figwidth(style.DOUBLE * style.MILLIMETRE)
     for row, outcome in enumerate(outcomes):
         _draw_row(axes, row, outcome)
     axes.axvline(1.0, label="_limit", **style.GUIDE)

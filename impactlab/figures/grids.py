@@ -53,7 +53,7 @@ def _velocity_figure(name: str, title: str, text: str) -> Callable[[record.Drawe
 def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, Axes, Plan]:
     """Draw a curve per contact law, or per value of what else is varied."""
     selected, valid = _velocity_plan(runs, name), usable(runs, name)
-    unit, speed = display(valid.rename(name)), runs["velocity"].values
+    unit, speed = display(valid), runs["velocity"].values
     figure, (ax,) = style.panels(1, columns=1, height=62)
     for curve in selected.curves:
         y = unit(valid.isel(selected.held | curve.where))

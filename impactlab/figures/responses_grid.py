@@ -32,7 +32,7 @@ def panels(
 
 def shown(runs: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
     """Return a response's usable values in display units, with its name and unit for a label."""
-    values = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
+    values = usable(runs, name)
     unit = display(values)
     return values * unit.scale, labels.axis(labels.response(name), unit.symbol)
 

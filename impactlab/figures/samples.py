@@ -226,7 +226,7 @@ def surrogate_validation(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
 
 
 def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
-    answers = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
+    answers = usable(runs, name)
     unit = display(answers)
     ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
     found = analysis["surrogate_held_out"].sel(response=name)

@@ -69,7 +69,7 @@ def _look(at: int) -> dict[str, Any]:
 
 
 def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
-    unit = display(usable(runs, name).rename(name).assign_attrs(runs[name].attrs))
+    unit = display(usable(runs, name))
     for at, model in enumerate(differences.models(runs)):
         values = unit(differences.side(runs, analysis, name, model).value)
         if np.isfinite(values).any():

@@ -42,8 +42,7 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
 def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     """Return one row per velocity and one column per model, the 3-D FE model first."""
     models = differences.models(runs)
-    values = usable(runs, name).rename(name).assign_attrs(runs[name].attrs)
-    unit = display(values)
+    unit = display(usable(runs, name))
     sides = [differences.side(runs, analysis, name, model) for model in models]
     rows = []
     for at, speed in enumerate(runs["velocity"].values):
