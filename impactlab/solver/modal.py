@@ -13,6 +13,12 @@ M_0 = M + (EI)_q kappa. D is exact for forces that are constant from t - dt to t
 1961); for others the step is of second order. Beyond omega dt = pi/2, D stays at 2: such modes
 follow quasi-statically in the mean of two steps, which bounds the time step by the contact alone.
 
+The modes left out follow F statically. They bend mid-span by rest F, -rest = L/(4 (EI)_q) less the
+sum of k_p^2/K_p, and in return its M_0 moves it by rest dx M_0, so that energy is conserved for any
+rest. Without them the curvature at mid-span, and so when it yields, would be of first order in dx.
+What M_0 moves comes a step late, so (EI)_q dx rest^2 k_c is kept below 1/4, k_c the contact's
+stiffness: on few nodes rest is less.
+
 It is leapfrog with the masses K dt^2/D, so it conserves as exactly the energy
 
     sum of u_before u_after K/(2 D) + K q^2/2 - source q, u = dt dq/dt at half steps
@@ -33,7 +39,7 @@ import numpy as np
 from impactlab.solver.beam import Grid
 from impactlab.solver.fibre_plasticity import PlasticState
 from impactlab.solver.jit import allocating, compiled, vectorised
-from impactlab.solver.section import Section, bend
+from impactlab.solver.section import FAR, Section, bend
 from impactlab.solver.types import Array
 
 _STEPS_UNSEEN = 8.0
@@ -47,8 +53,9 @@ class Modes(NamedTuple):
     (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n,). bent:
     curvature of node i per amplitude, (n + 4, n), 1/m2; nodes as in beam.py. seen: q when all
     sections were last looked at, (n,). near: the number of sections that could yield before the
-    next such look, then which they are, (n + 1,). slack: what the curvature of any other may have
-    changed by until that look, and can have changed by now (1/m), (2,).
+    next such look, then which they are, mid-span always, (n + 1,). slack: what the curvature of any
+    other may have changed by until that look, and can have changed by now (1/m), (2,). rest:
+    curvature at mid-span per force of all further modes, negative, 1/(N m).
     """
 
     q: Array
@@ -61,26 +68,31 @@ class Modes(NamedTuple):
     seen: Array
     near: Array
     slack: Array
+    rest: float
 
 
 @allocating
-def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
-    """Return the n modes of a half beam of n spacings, at rest."""
+def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float, k_c: float) -> Modes:
+    """Return the n modes of a half beam of n spacings, at rest; k_c: of the contact (N/m)."""
     k2, D, push = np.empty(n), np.empty(n), np.empty(n)
+    rest = 0.5 * n * grid.dx / EI
     bent = np.zeros((grid.mid + 3, n))
     for p in range(n):
         k2[p] = ((2 * p + 1) * math.pi / (2 * n * grid.dx)) ** 2
         turn = grid.dt * k2[p] * math.sqrt(EI / grid.mu)
         D[p] = 4.0 * math.sin(0.5 * min(turn, 0.5 * math.pi)) ** 2
         push[p] = D[p] / (EI * k2[p] ** 2 * n * grid.dx)
+        rest -= 1.0 / (EI * k2[p] * n * grid.dx)
     cosine = np.empty(4 * n)
     for i in range(4 * n):
         cosine[i] = math.cos(0.5 * math.pi * i / n)
     for i in range(n):
         for p in range(n):
             bent[grid.mid - i, p] = -k2[p] * cosine[(2 * p + 1) * i % (4 * n)]
-    slack = np.zeros(2)
+    near, slack = np.zeros(n + 1, dtype=np.int64), np.zeros(2)
     slack[0] = yield_curvature
+    if n > 0 and yield_curvature < FAR:
+        near[0], near[1] = 1, grid.mid
     return Modes(
         np.zeros(n),
         np.zeros(n),
@@ -90,8 +102,9 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
         np.zeros(n),
         bent,
         np.zeros(n),
-        np.zeros(n + 1, dtype=np.int64),
+        near,
         slack,
+        -min(rest, 0.5 / math.sqrt(EI * grid.dx * k_c)),
     )
 
 
@@ -147,7 +160,7 @@ def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
     for i in range(2, mid + 1):
         kappa = mode_curvature(modes.q, modes.bent, i)
         left = min(plastic.kappa_max[i] - kappa, kappa - plastic.kappa_min[i])
-        if left <= _STEPS_UNSEEN * pace:
+        if i == mid or left <= _STEPS_UNSEEN * pace:
             near += 1
             modes.near[near] = i
         else:
@@ -156,13 +169,17 @@ def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
 
 
 @compiled
-def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: Grid) -> None:
-    """Bend the sections that yield, and bring their moments to the modes."""
+def bend_sections(
+    modes: Modes, plastic: PlasticState, section: Section, grid: Grid, F: float
+) -> None:
+    """Bend the sections that yield, and bring their moments to the modes; F (N)."""
     if modes.slack[1] >= modes.slack[0]:
         _look_at_all(modes, plastic, grid.mid)
     for k in range(1, modes.near[0] + 1):
         i = modes.near[k]
         kappa = mode_curvature(modes.q, modes.bent, i)
+        if i == grid.mid:
+            kappa += modes.rest * F
         if kappa > plastic.kappa_max[i] or kappa < plastic.kappa_min[i]:
             M_0, plastic.kappa_min[i], plastic.kappa_max[i] = bend(
                 section, kappa, plastic.plastic_strain, plastic.peeq, i
@@ -188,8 +205,8 @@ def modal_energy(q: Array, u: Array, D: Array, push: Array, source: Array, F: fl
 
 @compiled
 def deflect(modes: Modes, w: Array, now: int, mid: int) -> None:
-    """Set the nodes' deflections w[now] (m) at the beginning of the last step."""
-    for i in range(2, mid + 1):
+    """Set the other nodes' deflections w[now] (m) at the beginning of the last step."""
+    for i in range(2, mid):
         w[now, i] = 0.0
         for p in range(modes.q.size):
             w[now, i] -= modes.bent[i, p] / modes.k2[p] * (modes.q[p] - modes.u[p])
