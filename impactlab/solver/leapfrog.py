@@ -42,6 +42,7 @@ from impactlab.solver.lumped import Lumped, lumped_energy, lumped_step, make_lum
 from impactlab.solver.modal import (
     Modes,
     bend_sections,
+    could_yield,
     deflect,
     make_modes,
     modal_energy,
@@ -170,10 +171,11 @@ def _move_modes(
     seen: Array,
     slack: Array,
     near: Array,
+    rest: float,
     F: float,
 ) -> float:
     """Move the modes and return the deflection at mid-span (m); a sixth faster apart from march."""
-    if near[0] > 0 or slack[1] >= slack[0]:
+    if near[0] > 0 or could_yield(slack, rest, F):
         bend_sections(state.modes, state.plastic, state.section, state.grid, F)
     return move_modes(q, v, D, push, source, k2, seen, slack, F)
 
@@ -239,7 +241,7 @@ def march(
                 yielded = min(yielded, max(outermost - 1, 2))
             strike(w, now, u, F, grid)
         elif q.size > 0:
-            moved = _move_modes(state, q, v, D, push, source, k2, seen, slack, near, F)
+            moved = _move_modes(state, q, v, D, push, source, k2, seen, slack, near, rest, F)
             w[1 - now, mid] = moved + rest * grid.dx * M_0[mid]
             u[mid] = w[1 - now, mid] - w_mid
         else:

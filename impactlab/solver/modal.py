@@ -39,7 +39,7 @@ import numpy as np
 from impactlab.solver.beam import Grid
 from impactlab.solver.fibre_plasticity import PlasticState
 from impactlab.solver.jit import allocating, compiled, vectorised
-from impactlab.solver.section import FAR, Section, bend
+from impactlab.solver.section import Section, bend
 from impactlab.solver.types import Array
 
 _STEPS_UNSEEN = 8.0
@@ -53,9 +53,9 @@ class Modes(NamedTuple):
     (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n,). bent:
     curvature of node i per amplitude, (n + 4, n), 1/m2; nodes as in beam.py. seen: q when all
     sections were last looked at, (n,). near: the number of sections that could yield before the
-    next such look, then which they are, mid-span always, (n + 1,). slack: what the curvature of any
-    other may have changed by until that look, and can have changed by now (1/m), (2,). rest:
-    curvature at mid-span per force of all further modes, negative, 1/(N m).
+    next such look, then which they are, (n + 1,). slack, (3,): what the curvature of any other may
+    change by until that look, and can have changed by through the modes (1/m); F at the last one
+    (N). rest: curvature at mid-span per force of all further modes, negative, 1/(N m).
     """
 
     q: Array
@@ -89,10 +89,8 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float, k_c: float
     for i in range(n):
         for p in range(n):
             bent[grid.mid - i, p] = -k2[p] * cosine[(2 * p + 1) * i % (4 * n)]
-    near, slack = np.zeros(n + 1, dtype=np.int64), np.zeros(2)
+    slack = np.zeros(3)
     slack[0] = yield_curvature
-    if n > 0 and yield_curvature < FAR:
-        near[0], near[1] = 1, grid.mid
     return Modes(
         np.zeros(n),
         np.zeros(n),
@@ -102,7 +100,7 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float, k_c: float
         np.zeros(n),
         bent,
         np.zeros(n),
-        near,
+        np.zeros(n + 1, dtype=np.int64),
         slack,
         -min(rest, 0.5 / math.sqrt(EI * grid.dx * k_c)),
     )
@@ -150,17 +148,26 @@ def move_modes(
 
 
 @compiled
-def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
+def could_yield(slack: Array, rest: float, F: float) -> bool:
+    """Return whether a section that is not near can have come to its elastic limit."""
+    return bool(slack[1] + abs(rest * (F - slack[2])) >= slack[0])
+
+
+@compiled
+def _look_at_all(modes: Modes, plastic: PlasticState, mid: int, F: float) -> None:
     """Find the sections that could yield in the next steps, and how long that holds."""
-    near, pace = 0, 0.0
+    near, pace = 0, abs(modes.rest * (F - modes.slack[2]))
+    modes.slack[2] = F
     for p in range(modes.q.size):
         modes.seen[p] = modes.q[p]
         pace += modes.k2[p] * abs(modes.u[p])
     modes.slack[0] = plastic.kappa_max[mid] - plastic.kappa_min[mid]
     for i in range(2, mid + 1):
         kappa = mode_curvature(modes.q, modes.bent, i)
+        if i == mid:
+            kappa += modes.rest * F
         left = min(plastic.kappa_max[i] - kappa, kappa - plastic.kappa_min[i])
-        if i == mid or left <= _STEPS_UNSEEN * pace:
+        if left <= _STEPS_UNSEEN * pace:
             near += 1
             modes.near[near] = i
         else:
@@ -173,8 +180,8 @@ def bend_sections(
     modes: Modes, plastic: PlasticState, section: Section, grid: Grid, F: float
 ) -> None:
     """Bend the sections that yield, and bring their moments to the modes; F (N)."""
-    if modes.slack[1] >= modes.slack[0]:
-        _look_at_all(modes, plastic, grid.mid)
+    if could_yield(modes.slack, modes.rest, F):
+        _look_at_all(modes, plastic, grid.mid, F)
     for k in range(1, modes.near[0] + 1):
         i = modes.near[k]
         kappa = mode_curvature(modes.q, modes.bent, i)
