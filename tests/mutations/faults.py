@@ -137,4 +137,34 @@ FAULTS = (
         "end = t - dt * gap / (gap - gap_before)",
         "end = t",
     ),
+    Fault(
+        "modal: fast modes exact, too",
+        "modal.py",
+        "min(turn, 0.5 * math.pi)",
+        "min(turn, math.pi)",
+    ),
+    Fault(
+        "modal: sections that come near their limit late",
+        "modal.py",
+        ">= slack[0])",
+        ">= 3.0 * slack[0])",
+    ),
+    Fault(
+        "modal: mid-span's section counted twice",
+        "modal.py",
+        "grid.dx if i == grid.mid else 2.0 * grid.dx",
+        "2.0 * grid.dx",
+    ),
+    Fault(
+        "modal: energy without the plastic moments",
+        "modal.py",
+        "(0.5 * stiffness * q_now - source[p])",
+        "(0.5 * stiffness * q_now)",
+    ),
+    Fault(
+        "modal: no deflection from the modes left out",
+        "leapfrog.py",
+        "moved + rest * grid.dx * M_0[mid]",
+        "moved",
+    ),
 )
