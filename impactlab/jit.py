@@ -252,7 +252,7 @@ def precompile(kernel: Any, program: str) -> None:
             if any(_read(path) for path in cache.folder.glob(cache.files.format("*"))):
                 return
             discard(cache.folder)
-            print("impactlab: compiling kernels, once, about 10 s", file=sys.stderr, flush=True)
+            print("impactlab: compiling kernels, once, about 15 s", file=sys.stderr, flush=True)
             done = subprocess.run(
                 [sys.executable, "-c", program],
                 env=os.environ | {_COMPILES: cache.name, "PYTHONPATH": paths},
