@@ -59,16 +59,13 @@ class Bar(NamedTuple):
 class Matrices(NamedTuple):
     """What the modal scheme does to the inner nodes in place of differences; empty for leapfrog.
 
-    curve: from deflections (m) to curvatures (1/m); pull, push: from moments (N m) and from forces
-    per length (N/m) to accelerations (m/s2). rest: mid-span's curvature per force of the modes left
-    out, 1/(N m); EI (N m2).
+    curve: from deflections (m) to curvatures (1/m); pull, push: from
+    moments (N m) and from forces per length (N/m) to accelerations (m/s2).
     """
 
     curve: Array
     pull: Array
     push: Array
-    rest: float
-    EI: float
 
 
 class Run(NamedTuple):
@@ -192,10 +189,9 @@ def march(bar, contact, v_0, g, m_s, dt, steps, scheme, histories, w, plastic_st
     middle = last // 2
     v, M, p, a = np.zeros(w.size), np.zeros(w.size), np.zeros(w.size), np.zeros(w.size)
     kappa = np.zeros(w.size)
-    w_s, v_s, deepest, before, here, sunk = 0.0, v_0, 0.0, 0.0, 0.0, 0.0
+    w_s, v_s, deepest, before, here = 0.0, v_0, 0.0, 0.0, 0.0
     for step in range(steps + 1):
-        w_mid = w[middle] + sunk
-        d = w_s - w_mid
+        d = w_s - w[middle]
         if here == deepest and before <= here and d < here:
             deepest = top_of_parabola(before, here, d)
         deepest = max(deepest, d)
@@ -204,17 +200,13 @@ def march(bar, contact, v_0, g, m_s, dt, steps, scheme, histories, w, plastic_st
             kappa[1:last] = scheme.curve @ w[1:last]
         else:
             kappa[1:last] = (w[:-2] - 2.0 * w[1:last] + w[2:]) / bar.dx**2
-        kappa[middle] += scheme.rest * F
         for i in range(1, last):
             M[i] = moment(bar, kappa[i], plastic_strain[i], peeq[i])
         row = histories[:, step]
-        row[0], row[1], row[2], row[3], row[4] = F, w_mid, kappa[middle], w_s, d
+        row[0], row[1], row[2], row[3], row[4] = F, w[middle], kappa[middle], w_s, d
         row[5], row[6] = deepest, unloading(contact, deepest)[1]
         if step == steps:
-            w[middle] = w_mid
             break
-        sunk = scheme.rest * bar.dx * (M[middle] + scheme.EI * kappa[middle])
-        M[middle] += scheme.EI * scheme.rest * F
         kick = 0.5 * dt if step == 0 else dt
         v_s += kick * (g - F / m_s)
         w_s += dt * v_s
@@ -257,14 +249,14 @@ def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:
     )
 
 
-def make_matrices(bar: Bar, grid: il.Discretisation, dt: float, k_c: float) -> Matrices:
+def make_matrices(bar: Bar, grid: il.Discretisation, dt: float) -> Matrices:
     """Return what the scheme of the grid does to the inner nodes."""
     if grid.scheme == "modal":
-        return make_modes(bar, grid, dt, k_c)
-    return Matrices(*np.zeros((3, 0, 0)), 0.0, 0.0)
+        return make_modes(bar, grid, dt)
+    return Matrices(*np.zeros((3, 0, 0)))
 
 
-def make_modes(bar: Bar, grid: il.Discretisation, dt: float, k_c: float) -> Matrices:
+def make_modes(bar: Bar, grid: il.Discretisation, dt: float) -> Matrices:
     """Return those of the sine modes sin(k x) that are symmetric about mid-span.
 
     A mode's inertia per length is such that a step turns its free vibration by omega dt, or by a
@@ -273,20 +265,16 @@ def make_modes(bar: Bar, grid: il.Discretisation, dt: float, k_c: float) -> Matr
     number, intervals = np.arange(1, grid.nodes - 1, 2), grid.nodes - 1
     k = number * np.pi / (bar.dx * intervals)
     shapes = np.sin(np.outer(np.arange(1, intervals), number) * np.pi / intervals)
-    EI = bar.E * (bar.area @ bar.z**2)
-    stiffness = EI * k**4
+    stiffness = bar.E * (bar.area @ bar.z**2) * k**4
     turn = np.minimum(dt * np.sqrt(stiffness / bar.mu), 0.5 * np.pi)
     inertia = stiffness * (0.5 * dt / np.sin(0.5 * turn)) ** 2
     to_modes = np.linalg.pinv(shapes)
     back = shapes / inertia
-    pull, span = back * -(k**2) @ to_modes, bar.dx * intervals
-    rest = (2.0 / span * (k**-2.0).sum() - 0.25 * span) / EI
-    rest = -min(-rest, np.sqrt(0.25 / (k_c * EI * bar.dx)))
-    return Matrices(shapes * -(k**2) @ to_modes, pull, back @ to_modes, rest, EI)
+    return Matrices(shapes * -(k**2) @ to_modes, back * -(k**2) @ to_modes, back @ to_modes)
 
 
-def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int, k_c: float) -> Run:
-    """Solve over `steps` steps of dt seconds; k_c: the stiffest contact (N/m)."""
+def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> Run:
+    """Solve over `steps` steps of dt seconds."""
     histories = np.zeros((7, steps + 1))
     bar = make_bar(impact, grid)
     w = np.zeros(grid.nodes)
@@ -300,7 +288,7 @@ def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int, k_c
         impact.sphere.total_mass,
         dt,
         steps,
-        make_matrices(bar, grid, dt, k_c),
+        make_matrices(bar, grid, dt),
         histories,
         w,
         plastic_strain,

@@ -13,12 +13,6 @@ M_0 = M + (EI)_q kappa. D is exact for forces that are constant from t - dt to t
 1961); for others the step is of second order. Beyond omega dt = pi/2, D stays at 2: such modes
 follow quasi-statically in the mean of two steps, which bounds the time step by the contact alone.
 
-The modes left out follow F statically. They bend mid-span by rest F, -rest = L/(4 (EI)_q) less the
-sum of k_p^2/K_p, and in return its M_0 moves it by rest dx M_0, so that energy is conserved for any
-rest. Without them the curvature at mid-span, and so when it yields, would be of first order in dx.
-What M_0 moves comes a step late, so (EI)_q dx rest^2 k_c is kept below 1/4, k_c the contact's
-stiffness: on few nodes rest is less.
-
 It is leapfrog with the masses K dt^2/D, so it conserves as exactly the energy
 
     sum of u_before u_after K/(2 D) + K q^2/2 - source q, u = dt dq/dt at half steps
@@ -53,9 +47,8 @@ class Modes(NamedTuple):
     (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n,). bent:
     curvature of node i per amplitude, (n + 4, n), 1/m2; nodes as in beam.py. seen: q when all
     sections were last looked at, (n,). near: the number of sections that could yield before the
-    next such look, then which they are, (n + 1,). slack, (3,): what the curvature of any other may
-    change by until that look, and can have changed by through the modes (1/m); F at the last one
-    (N). rest: curvature at mid-span per force of all further modes, negative, 1/(N m).
+    next such look, then which they are, (n + 1,). slack: what the curvature of any other may have
+    changed by until that look, and can have changed by now (1/m), (2,).
     """
 
     q: Array
@@ -68,28 +61,25 @@ class Modes(NamedTuple):
     seen: Array
     near: Array
     slack: Array
-    rest: float
 
 
 @allocating
-def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float, k_c: float) -> Modes:
-    """Return the n modes of a half beam of n spacings, at rest; k_c: of the contact (N/m)."""
+def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
+    """Return the n modes of a half beam of n spacings, at rest."""
     k2, D, push = np.empty(n), np.empty(n), np.empty(n)
-    rest = 0.5 * n * grid.dx / EI
     bent = np.zeros((grid.mid + 3, n))
     for p in range(n):
         k2[p] = ((2 * p + 1) * math.pi / (2 * n * grid.dx)) ** 2
         turn = grid.dt * k2[p] * math.sqrt(EI / grid.mu)
         D[p] = 4.0 * math.sin(0.5 * min(turn, 0.5 * math.pi)) ** 2
         push[p] = D[p] / (EI * k2[p] ** 2 * n * grid.dx)
-        rest -= 1.0 / (EI * k2[p] * n * grid.dx)
     cosine = np.empty(4 * n)
     for i in range(4 * n):
         cosine[i] = math.cos(0.5 * math.pi * i / n)
     for i in range(n):
         for p in range(n):
             bent[grid.mid - i, p] = -k2[p] * cosine[(2 * p + 1) * i % (4 * n)]
-    slack = np.zeros(3)
+    slack = np.zeros(2)
     slack[0] = yield_curvature
     return Modes(
         np.zeros(n),
@@ -102,7 +92,6 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float, k_c: float
         np.zeros(n),
         np.zeros(n + 1, dtype=np.int64),
         slack,
-        -min(rest, 0.5 / math.sqrt(EI * grid.dx * k_c)),
     )
 
 
@@ -148,24 +137,15 @@ def move_modes(
 
 
 @compiled
-def could_yield(slack: Array, rest: float, F: float) -> bool:
-    """Return whether a section that is not near can have come to its elastic limit."""
-    return bool(slack[1] + abs(rest * (F - slack[2])) >= slack[0])
-
-
-@compiled
-def _look_at_all(modes: Modes, plastic: PlasticState, mid: int, F: float) -> None:
+def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
     """Find the sections that could yield in the next steps, and how long that holds."""
-    near, pace = 0, abs(modes.rest * (F - modes.slack[2]))
-    modes.slack[2] = F
+    near, pace = 0, 0.0
     for p in range(modes.q.size):
         modes.seen[p] = modes.q[p]
         pace += modes.k2[p] * abs(modes.u[p])
     modes.slack[0] = plastic.kappa_max[mid] - plastic.kappa_min[mid]
     for i in range(2, mid + 1):
         kappa = mode_curvature(modes.q, modes.bent, i)
-        if i == mid:
-            kappa += modes.rest * F
         left = min(plastic.kappa_max[i] - kappa, kappa - plastic.kappa_min[i])
         if left <= _STEPS_UNSEEN * pace:
             near += 1
@@ -176,17 +156,13 @@ def _look_at_all(modes: Modes, plastic: PlasticState, mid: int, F: float) -> Non
 
 
 @compiled
-def bend_sections(
-    modes: Modes, plastic: PlasticState, section: Section, grid: Grid, F: float
-) -> None:
-    """Bend the sections that yield, and bring their moments to the modes; F (N)."""
-    if could_yield(modes.slack, modes.rest, F):
-        _look_at_all(modes, plastic, grid.mid, F)
+def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: Grid) -> None:
+    """Bend the sections that yield, and bring their moments to the modes."""
+    if modes.slack[1] >= modes.slack[0]:
+        _look_at_all(modes, plastic, grid.mid)
     for k in range(1, modes.near[0] + 1):
         i = modes.near[k]
         kappa = mode_curvature(modes.q, modes.bent, i)
-        if i == grid.mid:
-            kappa += modes.rest * F
         if kappa > plastic.kappa_max[i] or kappa < plastic.kappa_min[i]:
             M_0, plastic.kappa_min[i], plastic.kappa_max[i] = bend(
                 section, kappa, plastic.plastic_strain, plastic.peeq, i
@@ -212,8 +188,8 @@ def modal_energy(q: Array, u: Array, D: Array, push: Array, source: Array, F: fl
 
 @compiled
 def deflect(modes: Modes, w: Array, now: int, mid: int) -> None:
-    """Set the other nodes' deflections w[now] (m) at the beginning of the last step."""
-    for i in range(2, mid):
+    """Set the nodes' deflections w[now] (m) at the beginning of the last step."""
+    for i in range(2, mid + 1):
         w[now, i] = 0.0
         for p in range(modes.q.size):
             w[now, i] -= modes.bent[i, p] / modes.k2[p] * (modes.q[p] - modes.u[p])

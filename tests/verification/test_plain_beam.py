@@ -25,7 +25,7 @@ from impactlab.solver import RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.section import make_section
-from impactlab.solver.stability import discretise, stiffest_contact
+from impactlab.solver.stability import discretise
 from impactlab.variables import FLAGS, HISTORIES, STATUS_FLAGS
 
 from .. import plain_beam
@@ -60,7 +60,7 @@ VALUES = st.fixed_dictionaries(
 HALVES = {"leapfrog": (2, 30), "modal": (2, 12)}
 """Least and most spacings in the half beam."""
 MOST_STEPS = {"leapfrog": 8000, "modal": 4000}
-EXAMPLES = {"leapfrog": 400, "modal": 320}
+EXAMPLES = {"leapfrog": 400, "modal": 200}
 FIXED = settings(
     derandomize=True,
     database=None,
@@ -78,12 +78,11 @@ class Case(NamedTuple):
     duration: float
     dt: float
     steps: int
-    k_c: float
 
     def plain(self, shake: float = 0.0) -> plain_beam.Run:
         """Solve with the plain solver, the velocity changed by the share `shake`."""
         impact = replace(self.impact, velocity=self.impact.velocity * (1.0 + shake))
-        return plain_beam.solve(impact, self.grid, self.dt, self.steps, self.k_c)
+        return plain_beam.solve(impact, self.grid, self.dt, self.steps)
 
     def kernels(self) -> xr.Dataset:
         """Solve with the kernels, one sample per step."""
@@ -97,8 +96,7 @@ def make_case(values: dict[str, Any], steps: int) -> Case:
     pair, section = make_pair(case), make_section(case)
     case.duration = steps * discretise(case, pair, section)[0].dt
     cut, steps = discretise(case, pair, section)
-    k_c = stiffest_contact(case, pair)
-    return Case(impact, grid, float(case.duration), cut.dt, steps, k_c)
+    return Case(impact, grid, float(case.duration), cut.dt, steps)
 
 
 def difference(one: np.ndarray, other: np.ndarray, least: float = 0.0) -> float:
@@ -188,7 +186,7 @@ def test_same_answers_as_the_plain_solver(scheme):
     ],
     ids=["sub-impacts", "hardening"],
 )
-@pytest.mark.parametrize(("scheme", "steps"), [("leapfrog", 8000), ("modal", 3000)])
+@pytest.mark.parametrize(("scheme", "steps"), [("leapfrog", 8000), ("modal", 4000)])
 def test_larger_beams(values, happens, scheme, steps):
     case = make_case(values | {"scheme": scheme}, steps)
     run, dataset = case.plain(), case.kernels()

@@ -13,7 +13,6 @@ from impactlab.solver.contact.history import make_pair
 from impactlab.solver.fibre_plasticity import make_plastic_state, plastic_energy
 from impactlab.solver.modal import (
     bend_sections,
-    could_yield,
     deflect,
     make_modes,
     modal_energy,
@@ -35,11 +34,11 @@ JIT_ONLY = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes minu
 def modes_of(n, dt):
     """Modes of an elastic beam with n spacings in its half, and its grid."""
     grid = make_grid(n, 0.5 * SPAN / n, dt, MU, EI)
-    return make_modes(n, grid, EI, FAR, 1.0), grid
+    return make_modes(n, grid, EI, FAR), grid
 
 
 def move(modes, F):
-    q, u, k2, D, push, source, _, seen, _, slack, _ = modes
+    q, u, k2, D, push, source, _, seen, _, slack = modes
     return move_modes(q, u, D, push, source, k2, seen, slack, F)
 
 
@@ -73,20 +72,20 @@ def test_a_step_is_exact_under_a_constant_force(turn):
     expected = np.sin(np.outer(from_support, k)) @ (
         (-1.0) ** np.arange(n) * FORCE / K * (1 - np.cos((step - 1) * omega * dt))
     )
-    assert deflection[1, 2 : n + 1] == pytest.approx(expected[:-1], rel=1e-8)
+    assert deflection[1, 2 : n + 2] == pytest.approx(expected, rel=1e-8)
 
 
 def test_modes_far_beyond_the_time_step_follow_the_static_limit():
     """In the mean of two steps: F/K, together F L^3/(48 EI) and, at mid-span, F L/(4 EI)."""
-    modes, grid = modes_of(40, 1.0)
+    modes, grid = modes_of(400, 1.0)
     np.testing.assert_allclose(modes.D, 2.0, rtol=1e-15)
     w, kappa = [], []
     for _ in range(20):
         w.append(move(modes, FORCE))
-        kappa.append(mode_curvature(modes.q, modes.bent, grid.mid) + modes.rest * FORCE)
+        kappa.append(mode_curvature(modes.q, modes.bent, grid.mid))
     means = 0.5 * (np.array([w, kappa])[:, 2:] + np.array([w, kappa])[:, :-2])
-    assert means[0] == pytest.approx(FORCE * SPAN**3 / (48 * EI), rel=1e-5)
-    assert means[1] == pytest.approx(-FORCE * SPAN / (4 * EI), rel=1e-9)
+    assert means[0] == pytest.approx(FORCE * SPAN**3 / (48 * EI), rel=1e-9)
+    assert means[1] == pytest.approx(-FORCE * SPAN / (4 * EI), rel=1e-3)
 
 
 @pytest.mark.parametrize("n", [1, 2, 9])
@@ -111,7 +110,7 @@ def yielding_beam(make_case, **values):
     case = make_case(duration=1e-3, **YIELDING, **values)
     section = make_section(case)
     grid, _ = discretise(case, make_pair(case), section)
-    modes = make_modes(case.nodes // 2, grid, section.stiffness, section.yield_curvature, 1e8)
+    modes = make_modes(case.nodes // 2, grid, section.stiffness, section.yield_curvature)
     return modes, make_plastic_state(grid, section), section, grid
 
 
@@ -127,8 +126,8 @@ def test_sections_left_alone_change_no_bit(make_case, hardening):
         if everywhere:
             near[:], slack[0] = [grid.mid - 1, *range(2, grid.mid + 1)], FAR
         for step in range(blow.size):
-            if near[0] > 0 or could_yield(slack, modes.rest, blow[step]):
-                bend_sections(modes, plastic, section, grid, blow[step])
+            if near[0] > 0 or slack[1] >= slack[0]:
+                bend_sections(modes, plastic, section, grid)
             w.append(move(modes, blow[step]))
             left_alone.append(grid.mid - 1 - near[0])
         state = modes.q, modes.source, plastic.plastic_strain, plastic.peeq, plastic.M_0
@@ -146,7 +145,7 @@ def test_any_bending_however_sudden_is_found(make_case):
     for mode, size in ((0, 0.9), (3, 0.9), (1, 5.0), (0, -7.0)):
         modes.q[mode] = size * section.yield_curvature / modes.k2[mode]
         modes.slack[1] = (modes.k2 * np.abs(modes.q - modes.seen)).sum()
-        bend_sections(modes, plastic, section, grid, 0.0)
+        bend_sections(modes, plastic, section, grid)
         for i in range(2, grid.mid + 1):
             kappa = mode_curvature(modes.q, modes.bent, i)
             close = 1e-12 * abs(kappa)
@@ -172,7 +171,7 @@ def test_a_step_with_any_sections_yielding_is_stable(make_case, values, nodes):
     assert (dt < 0.99 * wave) == bool(values)
     mu = case.beam_density * case.beam_width * case.beam_depth
     grid, random = make_grid(nodes // 2, dx, dt, mu, section.stiffness), np.random.default_rng(1)
-    modes = make_modes(nodes // 2, grid, section.stiffness, section.yield_curvature, k_c)
+    modes = make_modes(nodes // 2, grid, section.stiffness, section.yield_curvature)
     bent, lengths = modes.bent[2 : grid.mid + 1], np.full(nodes // 2, 2 * dx)
     lengths[-1] = dx
     for share in (0.0, 0.3, 1.0):
@@ -202,7 +201,10 @@ def test_random_cases_stay_in_balance_at_the_largest_time_step():
 
 @JIT_ONLY
 def test_order_of_convergence_in_an_elastic_impact():
-    """Third order in dx; the second order of dt, which goes with dx, weighs less here."""
+    """Third order in dx of force and deflection, first of the curvature under the point load.
+
+    The second order of dt, which goes with dx, weighs less here.
+    """
     impact = elastic(il.paper_impact(0.99))
     series = solve(impact, 2e-3)
     coarse, fine = (
@@ -218,5 +220,5 @@ def test_order_of_convergence_in_an_elastic_impact():
         name: np.log2(error(name, series, coarse) / error(name, series, fine)) / 2
         for name in ("contact_force", "midspan_deflection", "midspan_curvature")
     }
-    assert list(orders.values()) == pytest.approx([3.0] * 3, abs=0.4), orders
+    assert list(orders.values()) == pytest.approx([3.0, 3.0, 1.0], abs=0.25), orders
     assert error("contact_force", series, fine) < 2e-4
