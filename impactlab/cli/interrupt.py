@@ -25,10 +25,12 @@ def stop_quietly() -> None:
 
 
 def stop_at_once(message: bytes = _INTERRUPTED) -> None:
-    """Make Ctrl-C end the process with a message and without any clean-up."""
+    """Make Ctrl-C end the process with a message, its last, and without any clean-up."""
 
     def stop(number: int, frame: object) -> NoReturn:
-        os.write(sys.stderr.fileno(), message)
+        screen = os.dup(sys.stderr.fileno())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())  # a bar draws on in a thread
+        os.write(screen, message)
         for worker in active_children():
             worker.kill()
         os._exit(130)

@@ -192,4 +192,4 @@ def removable_files(folder: Path, designs: Collection[xr.Dataset] | None) -> dic
                     found[path] = "holds no run of the study"
     if designs is not None and not designs:
         found = dict.fromkeys(found, "its study does not exist")
-    return dict(sorted(found.items()))
+    return {path: why for path, why in sorted(found.items()) if path.is_file()}

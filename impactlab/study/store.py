@@ -128,8 +128,8 @@ class Shards:
 
 
 def shard_files(folder: Path) -> list[Path]:
-    """Return the shards in a folder, sound or not; of nothing else that lies there."""
-    return sorted(path for path in folder.glob("[0-9a-f]" * 32 + ".nc") if path.is_file())
+    """Return what has a shard's name in a folder, sound or not; of nothing else that lies there."""
+    return sorted(folder.glob("[0-9a-f]" * 32 + ".nc"))
 
 
 def _size(keys: Array, columns: Columns) -> int:

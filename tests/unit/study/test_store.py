@@ -96,7 +96,12 @@ def empty(path, other):
     path.write_bytes(b"")
 
 
-@pytest.mark.parametrize("damage", [truncated, flipped, swapped, foreign, empty])
+def folder(path, other):
+    path.unlink()
+    path.mkdir()
+
+
+@pytest.mark.parametrize("damage", [truncated, flipped, swapped, foreign, empty, folder])
 def test_damaged_shards_are_named_and_set_aside(shards, damage, caplog):
     keys, _, other = written(shards, cases(0.5))
     _, _, path = written(shards, cases(1.0))
@@ -307,7 +312,6 @@ def test_what_people_left_among_shards_stays_as_it_is(shards, caplog):
     (path.parent / ".notes").write_text("mine")
     (path.parent / ".cache").mkdir()
     (path.parent / "folder.nc").mkdir()
-    (path.parent / f"{32 * 'a'}.nc").mkdir()
     (path.parent / "copy.nc").write_bytes(path.read_bytes())
     before = sorted(path.parent.iterdir())
     assert [found.size for found in shards.recover()] == [2]
