@@ -1,4 +1,6 @@
+from .analysis.analyse import analyse as analyse
 from .analysis.surrogate import load_surrogate as load_surrogate
+from .api import Study as Study
 from .model.discretisation import Discretisation as Discretisation
 from .model.impact import Beam as Beam
 from .model.impact import Impact as Impact
@@ -7,3 +9,17 @@ from .model.impact import Sphere as Sphere
 from .model.impact import paper_impact as paper_impact
 from .simulate import simulate as simulate
 from .simulate import simulate_many as simulate_many
+from .study.errors import StudyError as StudyError
+from .study.schema.written import Delta as Delta
+from .study.schema.written import Fast as Fast
+from .study.schema.written import Grid as Grid
+from .study.schema.written import Lognormal as Lognormal
+from .study.schema.written import LogUniform as LogUniform
+from .study.schema.written import Morris as Morris
+from .study.schema.written import Normal as Normal
+from .study.schema.written import Pawn as Pawn
+from .study.schema.written import Regression as Regression
+from .study.schema.written import Sobol as Sobol
+from .study.schema.written import Triangular as Triangular
+from .study.schema.written import TruncatedNormal as TruncatedNormal
+from .study.schema.written import Uniform as Uniform

@@ -28,17 +28,9 @@ WITNESS = "witness"
 
 def results_file(study: str, name: str) -> Path:
     """results/STUDY/NAME. Raises ValueError where a study's name or a link leads elsewhere."""
-    from impactlab.study.schema.yaml_file import check_name
+    from impactlab.study.steps import results_folder
 
-    check_name(study, f"study {study!r}")
-    folder = RESULTS / study
-    for place in (folder, *(folder.iterdir() if folder.is_dir() else ())):
-        if place.is_symlink() and not place.resolve().is_relative_to(RESULTS.resolve()):
-            raise ValueError(
-                f"{place}: is a link to {place.resolve()}, outside {RESULTS}/: take it out, or say "
-                "with --output where the results are to go"
-            )
-    return folder / name
+    return results_folder(study, RESULTS) / name
 
 
 def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
@@ -54,7 +46,7 @@ def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
 
 def given(option: str, text: str, units: str) -> float:
     """Return an option's quantity in SI; "s" is a duration. Raises ValueError naming the option."""
-    from impactlab.study.quantities import duration, si
+    from impactlab.model.quantities import duration, si
 
     try:
         return duration(text) if units == "s" else si(text, units)

@@ -113,30 +113,23 @@ def run(
     from impactlab.report.console import print_estimate, print_recommendation, print_solved
     from impactlab.study import steps
     from impactlab.study.engine import Engine, read_profile
-    from impactlab.study.errors import StudyError
-    from impactlab.study.sampling.design import design, study_of_design
+    from impactlab.study.sampling.design import study_of_design
     from impactlab.study.schema.files import read_study
 
     stored = read_netcdf(design_file, "design") if design_file.suffix == ".nc" else None
     study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
     path = output or results_file(study.name, "runs.nc")
-    cost = steps.price(study, path.parent, workers)
-    for problem in cost.implausible:
-        logging.getLogger("impactlab").warning("%s", problem)
     if dry_run:
+        cost = steps.price(study, path.parent, workers)
+        for problem in cost.implausible:
+            logging.getLogger("impactlab").warning("%s", problem)
         print_estimate(cost, workers)
         return
-    if (exceeded := cost.exceeded()) and not force:
-        raise StudyError(*exceeded)
     profile = read_profile(cluster) if cluster else None
     engine = Engine(
         "processes" if processes else "threads", workers, scheduler, profile, batch_seconds
     )
-    if stored is not None:
-        steps.solve(stored, path, engine)
-    else:
-        study = steps.resolved(study, path.parent, engine, print_recommendation)
-        steps.solve(design(study), path, engine, file=design_file)
+    steps.run(study, path, engine, drawn=stored, force=force, tell=print_recommendation)
     print_solved(path)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from impactlab.model.checks import integer, one_of, positive, require
+from impactlab.model.quantities import fields_in_si
 from impactlab.solver import BENDING_MODELS, RULES, SCHEMES
 
 
@@ -41,6 +42,7 @@ class Discretisation:
     elements_per_radius: float | None = None
 
     def __post_init__(self) -> None:
+        fields_in_si(self, courant="1", element_size="m", elements_per_radius="1")
         for field, least in (("nodes", 5), ("points", 2)):  # 21.0, as YAML may give it, is 21
             value = integer("Discretisation", field, getattr(self, field), least)
             object.__setattr__(self, field, value)

@@ -1,4 +1,8 @@
-"""One impact: who strikes what, how fast, under which contact law; and the source paper's case."""
+"""One impact: who strikes what, how fast, under which contact law; and the source paper's case.
+
+Quantities are numbers in SI units, strings with a unit ("27.8 mm") or quantities of pint; fields
+hold SI numbers.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from impactlab.model.checks import instance, number, one_of, positive, require
+from impactlab.model.quantities import Quantity, fields_in_si
 from impactlab.solver import BEAM_MODELS
 from impactlab.solver.contact import LAWS
 
@@ -35,9 +40,12 @@ class Material:
     kinematic_hardening_modulus: float = 0.0
 
     def __post_init__(self) -> None:
+        moduli = dict.fromkeys(("isotropic_hardening_modulus", "kinematic_hardening_modulus"), "Pa")
+        fields_in_si(self, density="kg m-3", youngs_modulus="Pa", yield_stress="Pa", **moduli)
+        fields_in_si(self, poissons_ratio="1")
         for field in ("density", "youngs_modulus", "yield_stress"):
             positive("Material", field, getattr(self, field))
-        for field in ("isotropic_hardening_modulus", "kinematic_hardening_modulus"):
+        for field in moduli:
             modulus = number("Material", field, getattr(self, field))
             require(modulus >= 0, "Material", field, modulus, "must not be negative")
         ratio = number("Material", "poissons_ratio", self.poissons_ratio)
@@ -66,6 +74,7 @@ class Sphere:
 
     def __post_init__(self) -> None:
         instance("Sphere", "material", self.material, Material)
+        fields_in_si(self, radius="m", mass="kg")
         positive("Sphere", "radius", self.radius)
         if self.mass is not None:
             positive("Sphere", "mass", self.mass)
@@ -99,6 +108,7 @@ class Beam:
 
     def __post_init__(self) -> None:
         instance("Beam", "material", self.material, Material)
+        fields_in_si(self, span="m", width="m", depth="m", shear_coefficient="1")
         for field in ("span", "width", "depth"):
             positive("Beam", field, getattr(self, field))
         below = f"must be below the span ({self.span!r} m)"
@@ -142,6 +152,7 @@ class Impact:
     def __post_init__(self) -> None:
         instance("Impact", "sphere", self.sphere, Sphere)
         instance("Impact", "beam", self.beam, Beam)
+        fields_in_si(self, velocity="m s-1", gravity="m s-2")
         positive("Impact", "velocity", self.velocity)
         gravity = number("Impact", "gravity", self.gravity)
         require(gravity >= 0, "Impact", "gravity", gravity, "must not be negative")
@@ -149,7 +160,7 @@ class Impact:
         one_of("Impact", "beam_model", self.beam_model, MODELS)
 
 
-def paper_impact(velocity: float = 0.99, contact: str = "stronge") -> Impact:
+def paper_impact(velocity: Quantity = 0.99, contact: str = "stronge") -> Impact:
     """Return the impact of the paper's Tables 2 and 3: Gr 15 sphere, Q345 beam; velocity in m/s.
 
     Masses follow from density and volume: the sphere's 1.4009 kg agrees with the printed 1.4 kg,

@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Column, Table
 
 from impactlab.model.parameters import PARAMETERS
-from impactlab.study.quantities import engineering, time
+from impactlab.model.quantities import engineering, time
 from impactlab.variables import FAILED, FAILURES, FLAGS, MARKS, RESPONSES, WARNINGS, reasons
 
 if TYPE_CHECKING:

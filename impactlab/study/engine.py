@@ -43,10 +43,10 @@ _SETTINGS = {
 class Engine:
     """The place where batches are solved.
 
-    That is a running dask scheduler where an address is given, Slurm jobs where a profile is, else
-    threads or processes of this machine. Schedulers and dashboards that are started here listen on
-    the loopback alone, except the scheduler of Slurm jobs, which listens on the profile's
-    interface. dask's own configuration applies, TLS included.
+    That is a client of one's own where it is given, a running dask scheduler where an address is,
+    Slurm jobs where a profile is, else threads or processes of this machine. Schedulers and
+    dashboards that are started here listen on the loopback alone, except the scheduler of Slurm
+    jobs, which listens on the profile's interface. dask's own configuration applies, TLS included.
     """
 
     kind: Literal["threads", "processes"] = "threads"
@@ -55,10 +55,20 @@ class Engine:
     profile: Profile | None = None
     batch_seconds: float = 1.0
     """Duration of a task, roughly."""
+    own: Client | None = None
+    """A client that somebody else has made, and closes."""
 
     @contextmanager
     def client(self) -> Iterator[Client]:
-        """Give a dask client as a context. Raises OSError when no scheduler answers."""
+        """Give a dask client as a context. Raises OSError when no scheduler answers.
+
+        Raises ValueError for an asynchronous client of one's own.
+        """
+        if self.own is not None:
+            if self.own.asynchronous:
+                raise ValueError("client: is asynchronous: give Client(..., asynchronous=False)")
+            yield self.own
+            return
         for name in _LOGGERS:  # errors are raised and reported by the command
             logging.getLogger(name).setLevel(logging.CRITICAL)
         logging.getLogger("asyncio").addFilter(_no_late_timeout)

@@ -19,10 +19,10 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
 from impactlab.model.plausibility import implausibilities
+from impactlab.model.quantities import amount, time
 from impactlab.simulate import case_table
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.netcdf import Array
-from impactlab.study.quantities import amount, time
 from impactlab.study.runs import file_stats
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol

@@ -1,7 +1,8 @@
-"""Progress bars on the terminal's error stream, silent where there is no terminal."""
+"""Progress bars on the terminal's error stream or in a notebook, silent elsewhere."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -16,6 +17,17 @@ from rich.progress import (
 )
 
 
+def _console() -> Console:
+    """Return where bars are drawn: in notebooks as text, for which no widgets are needed."""
+    notebook = Console().is_jupyter
+    return Console(
+        file=sys.stdout if notebook else sys.stderr,
+        force_jupyter=False,
+        force_terminal=notebook or None,
+        width=100 if notebook else None,
+    )
+
+
 @contextmanager
 def items_done(total: int, done: int, what: str) -> Iterator[Callable[[int, int], None]]:
     """Show a bar of `total` items, `done` of them before: their number, speed and failures.
@@ -23,7 +35,7 @@ def items_done(total: int, done: int, what: str) -> Iterator[Callable[[int, int]
     what: the name of the items. The function that it gives counts so many more done, and those of
     them that failed.
     """
-    console, failed, fresh = Console(stderr=True), 0, 0
+    console, failed, fresh = _console(), 0, 0
     columns = (
         TextColumn(what),
         BarColumn(),
@@ -49,7 +61,7 @@ def items_done(total: int, done: int, what: str) -> Iterator[Callable[[int, int]
 @contextmanager
 def share_done(what: str) -> Iterator[Callable[[float], None]]:
     """Show a bar for one long run; the function that it gives takes the share done, 0 to 1."""
-    console = Console(stderr=True)
+    console = _console()
     columns = (TextColumn(what), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task(what, total=1.0)

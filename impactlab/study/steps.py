@@ -17,7 +17,9 @@ import xarray as xr
 
 from impactlab.files import check_source, opened, read_netcdf, replaced, write_netcdf
 from impactlab.study import REFINEMENT, RESOLUTION, SHARDS, TRIALS
+from impactlab.study.errors import StudyError
 from impactlab.study.schema.study import Auto, FunctionStudy, Study, Verification
+from impactlab.study.schema.yaml_file import check_name
 
 if TYPE_CHECKING:
     from impactlab.study.engine import Engine
@@ -30,7 +32,20 @@ log = logging.getLogger(__name__)
 _STUDY = "study"
 """File in a folder of shards that names the study file."""
 AnyStudy = Study | FunctionStudy
-Tell = Callable[[xr.Dataset], None]
+Tell = Callable[[xr.Dataset], object]
+
+
+def results_folder(study: str, results: Path) -> Path:
+    """Return results/STUDY. Raises ValueError where a study's name or a link leads elsewhere."""
+    check_name(study, f"study {study!r}")
+    folder = results / study
+    for place in (folder, *(folder.iterdir() if folder.is_dir() else ())):
+        if place.is_symlink() and not place.resolve().is_relative_to(results.resolve()):
+            raise ValueError(
+                f"{place}: is a link to {place.resolve()}, outside {results}/: take it out, or say "
+                "with --output where the results are to go"
+            )
+    return folder
 
 
 def price(study: AnyStudy, folder: Path, workers: int) -> Estimate:
@@ -89,6 +104,40 @@ def _kept(study: Study, file: Path) -> xr.Dataset | None:
         return None
     made_for = found.attrs.get("study_sha256"), found.attrs.get("kernels_sha256")
     return found if made_for == (study.sha256, SOURCES_HASH) else None
+
+
+def run(
+    study: AnyStudy,
+    path: Path,
+    engine: Engine,
+    *,
+    drawn: xr.Dataset | None = None,
+    force: bool = False,
+    tell: Tell = lambda found: None,
+) -> None:
+    """Price a study, resolve its discretisation, draw and solve its runs; write them to `path`.
+
+    drawn: its design, where it is drawn already. force: whatever it costs. tell: of `resolved`.
+
+    Raises StudyError where a limit is exceeded, and as `resolved` and `solve`.
+    """
+    from impactlab.study.sampling.design import design
+
+    cost = price(study, path.parent, engine.workers)
+    for problem in cost.implausible:
+        log.warning("%s", problem)
+    if (exceeded := cost.exceeded()) and not force:
+        raise StudyError(*exceeded)
+    if drawn is None:
+        drawn = design(resolved(study, path.parent, engine, tell))
+        file = study.path
+        if not file.is_file():  # made in Python: `clean` finds its text there
+            file = path.with_name(f"{study.name}.yaml")
+            with replaced(file) as unfinished:
+                unfinished.write_text(study.text, encoding="utf-8")
+        solve(drawn, path, engine, file)
+    else:
+        solve(drawn, path, engine)
 
 
 def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = None) -> None:

@@ -10,11 +10,11 @@ from command_line import SMALL, called, here
 from command_line import done as impactlab
 
 from impactlab.files import write_netcdf
+from impactlab.model.quantities import si
 from impactlab.report.answer import answers
 from impactlab.study import steps
 from impactlab.study.adaptive import extending, recommendation
 from impactlab.study.engine import Engine
-from impactlab.study.quantities import si
 from impactlab.study.store import holder
 
 GROWING = """

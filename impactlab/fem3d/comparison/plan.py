@@ -16,8 +16,8 @@ from impactlab.model.checks import positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import Value, flatten, with_values
+from impactlab.model.quantities import amount, time
 from impactlab.simulate import case_table, solve
-from impactlab.study.quantities import amount, time
 from impactlab.study.schema.study import Study
 
 MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")

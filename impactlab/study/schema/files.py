@@ -37,25 +37,31 @@ def read_any(path: str | Path) -> Study | FunctionStudy | Verification:
 def read_study(path: str | Path) -> Study | FunctionStudy:
     """Read a study of runs. Raises StudyError as `read_any`, and for a file of checks."""
     source = read_source(path)
-    kind = _kind(source)
-    if kind == "checks":
-        raise _wrong_kind(source, "lists checks and has no runs", "verify")
-    return _READERS[kind](source)
+    return study_of_text(source.name, source.text, source.path)
 
 
 def read_impacts(path: str | Path) -> Study:
     """Read a study of impacts. Raises StudyError as `read_study`, and for a test function."""
-    study = read_study(path)
+    return of_impacts(read_study(path))
+
+
+def of_impacts(study: Study | FunctionStudy) -> Study:
+    """Return a study of impacts. Raises StudyError for one of a function."""
     if isinstance(study, FunctionStudy):
         reason = "is a study of a function, which has no discretisation: use a study of impacts"
-        raise StudyError(Problem(str(path), "function", reason, study.function))
+        raise StudyError(Problem(str(study.path), "function", reason, study.function))
     return study
 
 
-def study_of_text(name: str, text: str) -> Study | FunctionStudy:
-    """Read a study of runs from the text of NAME.yaml, as datasets keep both; see `read_any`."""
-    path = Path(f"{name}.yaml")
+def study_of_text(name: str, text: str, path: Path | None = None) -> Study | FunctionStudy:
+    """Read a study of runs from the text of NAME.yaml, as datasets keep both; see `read_any`.
+
+    path: the one that errors name.
+    """
+    path = path or Path(f"{name}.yaml")
     source = Source(name, path, text, read_mapping(text, str(path)))
+    if _kind(source) == "checks":
+        raise _wrong_kind(source, "lists checks and has no runs", "verify")
     return _READERS[_kind(source)](source)
 
 

@@ -23,8 +23,8 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from impactlab.model.parameters import PARAMETERS, Parameter
+from impactlab.model.quantities import si, whole
 from impactlab.study.errors import Problem, StudyError, dotted, unknown
-from impactlab.study.quantities import si, whole
 
 
 class Section(BaseModel):

@@ -22,8 +22,8 @@ from pydantic import (
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.model.quantities import duration
 from impactlab.solver import SCHEMES
-from impactlab.study.quantities import duration
 from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol

@@ -39,12 +39,17 @@ class Source:
 def read_source(path: str | Path) -> Source:
     """Read a study file. Raises StudyError, naming it; also unless its name is that of a folder."""
     path = Path(path)
+    check_path(path)
+    text = read_text(path)
+    return Source(path.stem, path, text, read_mapping(text, str(path)))
+
+
+def check_path(path: Path) -> None:
+    """Raise StudyError unless the path can be that of a study file."""
     if path.suffix != ".yaml":
         reason = "the name of a study file must end in .yaml: rename it"
         raise StudyError(Problem(str(path), "", reason))
     check_name(path.stem, str(path))
-    text = read_text(path)
-    return Source(path.stem, path, text, read_mapping(text, str(path)))
 
 
 def check_name(name: str, file: str) -> None:

@@ -6,10 +6,14 @@ import math
 import re
 from decimal import Decimal
 from functools import cache
-from typing import TYPE_CHECKING
+from numbers import Real
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
+
+Quantity = Any
+"""A number in SI units, a string with a unit ("27.8 mm"), or a quantity of pint."""
 
 KINDS: dict[str, tuple[str, str]] = {
     "m": ("a length", "27.8 mm"),
@@ -35,7 +39,7 @@ _SUPERSCRIPTS = str.maketrans("⁻¹²³", "-123")
 
 
 def si(value: object, units: str) -> float:
-    """Return a number or a string such as "27.8 mm" as a finite float in `units`.
+    """Return a number, a string such as "27.8 mm" or a pint quantity as a finite float in `units`.
 
     units: SI, in UDUNITS spelling ("kg m-3"), as in the tables of parameters and variables.
     Plain numbers are taken as SI. Strings are converted in decimal arithmetic, so that
@@ -44,9 +48,10 @@ def si(value: object, units: str) -> float:
 
     Raises ValueError when the value is no number, not finite, or of another dimension.
     """
+    value = as_text(value)
     if isinstance(value, str):
         result = _parsed(value.strip(), units)
-    elif isinstance(value, int | float) and not isinstance(value, bool):
+    elif isinstance(value, int | float | Real) and type(value) is not bool:
         try:
             result = float(value)
         except OverflowError:
@@ -56,6 +61,40 @@ def si(value: object, units: str) -> float:
     if not math.isfinite(result):
         raise ValueError(f"must be finite; {expected(units)}")
     return result
+
+
+def as_text(value: Any) -> Any:
+    """Return a quantity of pint as text with its unit, an array as a list; all else as it is."""
+    if not (hasattr(value, "m") and hasattr(value, "u")):
+        return value
+    if hasattr(value.m, "__len__"):
+        return [as_text(each) for each in value]
+    unit = f"{value.u:~C}"
+    return f"{float(value.m)!r} {unit}" if unit else float(value.m)
+
+
+def in_si(name: str, value: Any, units: str) -> Any:
+    """Return a string or a pint quantity as a float in `units`; anything else as it is.
+
+    Raises ValueError as `si`, naming it.
+    """
+    if not isinstance(given := as_text(value), str):
+        return given
+    try:
+        return si(given, units)
+    except ValueError as error:
+        raise ValueError(f"{name} = {given!r}: {error}") from None
+
+
+def fields_in_si(owner: Any, **units: str) -> None:
+    """Replace strings and pint quantities in fields of a frozen dataclass by floats in `units`.
+
+    Raises ValueError naming the field.
+    """
+    for field, unit in units.items():
+        if not isinstance(value := getattr(owner, field), float):
+            name = f"{type(owner).__name__}.{field}"
+            object.__setattr__(owner, field, in_si(name, value, unit))
 
 
 def duration(value: object) -> float:

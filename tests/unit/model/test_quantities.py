@@ -10,9 +10,9 @@ from time import perf_counter
 
 import pytest
 
+from impactlab.model import quantities
 from impactlab.model.parameters import PARAMETERS
-from impactlab.study import quantities
-from impactlab.study.quantities import KINDS, UNITS, amount, duration, engineering, si, time, whole
+from impactlab.model.quantities import KINDS, UNITS, amount, duration, engineering, si, time, whole
 from impactlab.variables import VARIABLES
 
 
@@ -70,7 +70,7 @@ def test_known_units_are_what_pint_says(target):
 def test_units_of_most_studies_do_without_pint():
     code = """
 import sys
-from impactlab.study.quantities import KINDS, si
+from impactlab.model.quantities import KINDS, si
 for units, (_, example) in KINDS.items():
     si(example, units)
 assert "pint" not in sys.modules

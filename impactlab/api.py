@@ -1,0 +1,267 @@
+"""A study as an object: the functions behind the commands, for Python and notebooks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from html import escape
+from os import cpu_count
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+
+from impactlab.files import identity, opened, read_netcdf, replaced
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.model.quantities import Quantity
+from impactlab.study import REFINEMENT, RESOLUTION, steps
+from impactlab.study.sampling.sections import Sample
+from impactlab.study.schema import files, yaml_file
+from impactlab.study.schema.written import _Sampling, text_of
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+    from impactlab.study.engine import Engine
+    from impactlab.study.estimate import Estimate
+    from impactlab.study.runs import Status
+
+_CORES = cpu_count() or 1
+
+
+class Study:
+    """A study of many impacts: sampled, solved, analysed, drawn and reported.
+
+    The arguments are the keys of a study file (docs/studies.md), and are read by the same reader:
+    `Study(...)`, `Study.from_yaml(...)` and the command line run the same code on the same text.
+    Quantities are numbers in SI units, strings with a unit or quantities of pint.
+
+    title: one line. impact: the one that all runs start from. sampling: which parameters vary, and
+    how (Grid, Sobol, ...). duration: simulated time. discretisation: a Discretisation, or "auto",
+    which pilot runs find. responses, analyses: names; by default all. store, analysis: mappings as
+    in a file. function: the name of a test function in place of the solver. name: of the folder of
+    results; by default the title in small letters and digits. results: the folder of all results.
+
+    Runs, analysis, figures and report go to `folder`, by default results/NAME of the working
+    folder, and are found there again by whoever runs the same study: Python or the command line.
+
+    Raises StudyError, a ValueError, with every problem by key and value.
+
+    >>> study = Study(
+    ...     title="Depth", impact=il.paper_impact(velocity="2 m/s"), duration="1 ms",
+    ...     sampling=il.Grid(parameters={"beam_depth": ["26 mm", "29 mm"]}))
+    >>> study
+    <impactlab.Study depth: 2 runs, results/depth>
+    title: Depth
+    impact: {base: paper, velocity: 2.0}
+    duration: 1 ms
+    sampling:
+      method: grid
+      parameters:
+        beam_depth: [26 mm, 29 mm]
+    """
+
+    def __init__(
+        self,
+        *,
+        title: str,
+        sampling: _Sampling | Mapping[str, Any],
+        impact: Impact | Mapping[str, Any] | None = None,
+        duration: Quantity = None,
+        discretisation: Discretisation | Mapping[str, Any] | str | None = None,
+        responses: Sequence[str] | str | None = None,
+        analyses: Sequence[str] | str | None = None,
+        store: Mapping[str, Any] | None = None,
+        analysis: Mapping[str, Any] | None = None,
+        description: str | None = None,
+        function: str | None = None,
+        name: str | None = None,
+        results: str | Path = "results",
+    ) -> None:
+        """Read the arguments as a study file is read."""
+        keys = {
+            "title": title,
+            "description": description,
+            "function": function,
+            "impact": impact,
+            "discretisation": discretisation,
+            "duration": duration,
+            "sampling": sampling,
+            "responses": responses,
+            "analyses": analyses,
+            "store": store,
+            "analysis": analysis,
+        }
+        self._set(files.study_of_text(_name(title, name), text_of(keys), Path("Study")), results)
+
+    def _set(self, declared: steps.AnyStudy, results: str | Path) -> None:
+        self.declared = declared
+        """The study as read: impact, discretisation, sampling and the others in SI units."""
+        self.folder = steps.results_folder(declared.name, Path(results))
+        """The folder of the results."""
+
+    @classmethod
+    def from_yaml(cls, path: str | Path, *, results: str | Path = "results") -> Study:
+        """Read a study file. Raises StudyError with every problem: file, key, value, what to do."""
+        return cls._of(files.read_study(path), results)
+
+    @classmethod
+    def _of(cls, declared: steps.AnyStudy, results: str | Path = "results") -> Study:
+        study = cls.__new__(cls)
+        study._set(declared, results)
+        return study
+
+    def to_yaml(self, path: str | Path) -> None:
+        """Write the study file, which `from_yaml` and every command read.
+
+        Its name becomes that of the study.
+        """
+        path = Path(path)
+        yaml_file.check_path(path)
+        with replaced(path) as unfinished:
+            unfinished.write_text(self.declared.text, encoding="utf-8")
+
+    @property
+    def name(self) -> str:
+        """Name of the study, and of its folder."""
+        return self.declared.name
+
+    @property
+    def title(self) -> str:
+        """Title, which heads the report."""
+        return self.declared.title
+
+    def design(self) -> xr.Dataset:
+        """Return the coordinates of all runs, in SI units.
+
+        Raises StudyError where a drawn run is impossible, or the discretisation still to be found.
+        """
+        from impactlab.study.sampling.design import design
+
+        return design(steps.resolved_before(self.declared, self.folder) or self.declared)
+
+    def estimate(self, *, workers: int = _CORES) -> Estimate:
+        """Return what the runs cost: seconds, memory and disk, within a factor of about 3."""
+        return steps.price(self.declared, self.folder, workers)
+
+    def status(self) -> Status | None:
+        """Return the progress: runs solved, failed and left; None before `auto` is resolved."""
+        return steps.status(self.declared, self.folder)
+
+    def recommend(self, *, workers: int = _CORES) -> xr.Dataset:
+        """Find the cheapest discretisation that meets the tolerance; return the evidence.
+
+        Raises StudyError for a study of a function.
+        """
+        declared = files.of_impacts(self.declared)
+        return steps.recommend(declared, self.folder / RESOLUTION, _engine(workers))
+
+    def run(
+        self,
+        *,
+        workers: int = _CORES,
+        processes: bool = False,
+        client: Client | None = None,
+        force: bool = False,
+    ) -> xr.Dataset:
+        """Solve the runs that are not solved yet; return all of them, in memory.
+
+        They are kept in `folder`: shards/ while they are solved, so that an interrupted study
+        resumes where it stopped, then runs.nc.
+
+        workers: threads, or processes of this machine. client: a dask client of your own in their
+        place; it is not closed. force: also what takes a month of one core, or all memory.
+
+        Raises StudyError where that is exceeded, ValueError where the model refuses a run, OSError
+        where a disk is full or workers fail, BlockingIOError where another process is at work here.
+        """
+        path = self.folder / "runs.nc"
+        steps.run(self.declared, path, _engine(workers, processes, client), force=force)
+        return read_netcdf(path, "runs")
+
+    def refine(self, *, workers: int = _CORES, base_samples: int | None = None) -> xr.Dataset:
+        """Solve the first runs of a Sobol sample again on finer grids; return them.
+
+        `report` then tells noise from numerical error. base_samples: how many; see the command.
+        """
+        path = self.folder / f"{REFINEMENT}.nc"
+        steps.refine(self._runs(), path, _engine(workers), base_samples)
+        return read_netcdf(path, "refinement")
+
+    def analyse(self) -> xr.Dataset:
+        """Return convergence and sensitivity as `il.analyse`, and keep them in `folder`.
+
+        With the numerical uncertainty that pilot runs of `auto`, or `refine`, have found.
+        """
+        return self._analyse()[1]
+
+    def figures(self) -> list[Path]:
+        """Draw the figures of the report into folder/figures; return their files."""
+        from impactlab.report.results import RUNS
+
+        return RUNS.draw(*self._analyse(), self.folder / "figures")
+
+    def report(self, path: str | Path | None = None) -> Path:
+        """Analyse, draw, and write the report, one file; return it (default: folder/report.html).
+
+        Raises ValueError where nothing is solved yet.
+        """
+        from impactlab.report.results import RUNS
+
+        path = self.folder / "report.html" if path is None else Path(path)
+        both, figures = self._analyse(), self.folder / "figures"
+        RUNS.draw(*both, figures)
+        RUNS.write(*both, figures, path)
+        return path
+
+    def _runs(self) -> Path:
+        path = self.folder / "runs.nc"
+        if not path.exists():
+            raise ValueError(f"{path}: there are no runs yet: call run() first")
+        with opened(path, "runs") as runs:
+            made_for = runs.attrs.get("study_sha256")
+        if made_for != self.declared.sha256:
+            raise ValueError(
+                f"{path}: holds runs of another study, or of an earlier text: call run()"
+            )
+        return path
+
+    def _analyse(self) -> tuple[xr.Dataset, xr.Dataset]:
+        runs = self._runs()
+        known: dict[str, Path] = {}
+        found = self.folder / RESOLUTION
+        if getattr(self.declared, "auto", None) and isinstance(self.declared.sampling, Sample):
+            known = {"resolution": found} if found.exists() else {}
+        refined = self.folder / f"{REFINEMENT}.nc"
+        if refined.exists():
+            with opened(refined, "refinement") as made, opened(runs, "runs") as solved:
+                if identity(solved) in made.attrs["made_from"].split():
+                    known["refinement"] = refined
+        return steps.analyse_runs(runs, self.folder / "analysis.nc", **known)
+
+    def __repr__(self) -> str:
+        """Return name, size and folder, and the text of the study file."""
+        return f"<{self._head()}>\n{self.declared.text.rstrip()}"
+
+    def _repr_html_(self) -> str:
+        """Return the same for notebooks, the text folded."""
+        text = f"<pre>{escape(self.declared.text)}</pre>"
+        head = f"<b>{escape(self.title)}</b><br><code>{escape(self._head())}</code>"
+        return f"{head}<details><summary>study file</summary>{text}</details>"
+
+    def _head(self) -> str:
+        return f"impactlab.Study {self.name}: {self.declared.size}, {self.folder}"
+
+
+def _engine(workers: int, processes: bool = False, client: Client | None = None) -> Engine:
+    from impactlab.study.engine import Engine
+
+    return Engine("processes" if processes else "threads", workers, own=client)
+
+
+def _name(title: Any, name: str | None) -> str:
+    """Return the name of a study. Raises StudyError where it cannot be that of a folder."""
+    letters = (letter if letter.isascii() and letter.isalnum() else " " for letter in str(title))
+    found = name or "_".join("".join(letters).lower().split())[:60] or "study"
+    yaml_file.check_name(found, f"Study: name = {found!r}")
+    return found

@@ -1,0 +1,230 @@
+"""Sections of a study as Python objects, and the text of the study file that they stand for.
+
+They hold what a study file holds, and nothing is checked before the whole study is: the reader of
+files judges both.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
+
+import numpy as np
+from ruamel.yaml import YAML
+
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact, paper_impact
+from impactlab.model.parameters import PARAMETERS, flatten
+from impactlab.model.quantities import Quantity, as_text
+
+Values = Mapping[str, Any]
+
+
+class _Section:
+    _key: ClassVar[str]
+
+    def written(self) -> dict[str, Any]:
+        """Return the section as a study file has it, defaults left out."""
+        snake = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(self).__name__).lower()
+        given = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        last = {key: given.pop(key) for key in ("parameters",) if key in given}
+        given = {self._key: snake} | given | last
+        return {key: plain(each) for key, each in given.items() if each is not None}
+
+
+class _Distribution(_Section):
+    _key = "distribution"
+
+
+@dataclass(frozen=True)
+class Uniform(_Distribution):
+    """Equal probability from `low` to `high`.
+
+    >>> Uniform("26 mm", "29 mm")
+    Uniform(low='26 mm', high='29 mm')
+    """
+
+    low: Quantity
+    high: Quantity
+
+
+@dataclass(frozen=True)
+class LogUniform(_Distribution):
+    """Equal probability of the logarithm, from `low` above zero to `high`."""
+
+    low: Quantity
+    high: Quantity
+
+
+@dataclass(frozen=True)
+class Normal(_Distribution):
+    """A normal distribution; for bounded parameters TruncatedNormal is safer."""
+
+    mean: Quantity
+    standard_deviation: Quantity
+
+
+@dataclass(frozen=True)
+class TruncatedNormal(_Distribution):
+    """A normal distribution, of this mean and deviation, that is cut at `low` and `high`."""
+
+    mean: Quantity
+    standard_deviation: Quantity
+    low: Quantity
+    high: Quantity
+
+
+@dataclass(frozen=True)
+class Lognormal(_Distribution):
+    """A normal distribution of the logarithm; with a geometric deviation of 1.1, about ± 10 %."""
+
+    median: Quantity
+    geometric_standard_deviation: float
+
+
+@dataclass(frozen=True)
+class Triangular(_Distribution):
+    """A density that rises from `low` to `mode` and falls to `high`."""
+
+    low: Quantity
+    mode: Quantity
+    high: Quantity
+
+
+class _Sampling(_Section):
+    _key = "method"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grid(_Sampling):
+    """Every combination of the listed values is a run.
+
+    parameters: name (see `il.parameters`) -> its values.
+
+    >>> grid = Grid(parameters={"velocity": ["50 cm/s", 1, 2], "contact": ["hertz", "stronge"]})
+    """
+
+    parameters: Mapping[str, Sequence[Quantity]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Sample(_Sampling):
+    parameters: Values
+    seed: int | None = None
+
+    def written(self) -> dict[str, Any]:
+        """Return the section; a single value of a parameter is the same in all runs."""
+        found = super().written()
+        found["parameters"] = {
+            name: given if isinstance(given, dict) else {"distribution": "fixed", "value": given}
+            for name, given in found["parameters"].items()
+        }
+        return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sobol(_Sample):
+    """Saltelli's sample for Sobol indices of first, second and total order.
+
+    base_samples: N, a power of two; N (D + 2) runs of D parameters, N (2 D + 2) with indices of
+    second order (the default). parameters: name -> its distribution, or one fixed value. seed:
+    equal seeds give equal runs. groups: name -> parameters that get one index together. until:
+    `{"interval": 0.05, "runs": 100_000}` doubles the sample until the intervals of its indices are
+    as narrow.
+
+    >>> depth, stress = Uniform("26 mm", "29 mm"), Normal("345 MPa", "20 MPa")
+    >>> sample = Sobol(
+    ...     base_samples=1024, seed=1,
+    ...     parameters={"beam_depth": depth, "beam_yield_stress": stress})
+    """
+
+    base_samples: int
+    second_order: bool | None = None
+    groups: Mapping[str, Sequence[str]] | None = None
+    until: Values | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Morris(_Sample):
+    """Trajectories for elementary effects: trajectories times (D + 1) runs.
+
+    levels: of the grid, even. optimal_trajectories: how many of them, far apart, are kept.
+    """
+
+    trajectories: int
+    levels: int | None = None
+    optimal_trajectories: int | None = None
+    groups: Mapping[str, Sequence[str]] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fast(_Sample):
+    """Search curves of extended FAST: samples times (D + 1) runs."""
+
+    samples: int
+    harmonics: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Delta(_Sample):
+    """A Latin hypercube for Borgonovo's delta; `samples` runs."""
+
+    samples: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pawn(_Sample):
+    """A Latin hypercube for PAWN indices; `samples` runs."""
+
+    samples: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Regression(_Sample):
+    """A Latin hypercube for regression coefficients; `samples` runs."""
+
+    samples: int
+
+
+def plain(value: Any) -> Any:
+    """Return a value as a study file can hold it: numbers, text, lists and mappings."""
+    if isinstance(value, _Section):
+        return value.written()
+    if isinstance(value, Impact):
+        return _changes((value, Discretisation()), "impact", base="paper")
+    if isinstance(value, Discretisation):
+        return _changes((paper_impact(), value), "discretisation")
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {key: plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple | set):
+        return [plain(each) for each in value]
+    return as_text(value)
+
+
+def _changes(own: tuple[Impact, Discretisation], root: str, **others: Any) -> dict[str, Any]:
+    """Return what differs from the default as a section of a study file."""
+    base = flatten(paper_impact(), Discretisation())
+    found: dict[str, Any] = {} | others
+    for name, value in flatten(*own).items():
+        path = PARAMETERS[name].path
+        if path[0] == root and base.get(name) != value:
+            node = found
+            for step in path[1:-1]:
+                node = node.setdefault(step, {})
+            node[path[-1]] = value
+    return found
+
+
+def text_of(sections: Values) -> str:
+    """Return the text of a study file with these sections."""
+    yaml: Any = YAML(typ="safe", pure=True)
+    text = io.StringIO()
+    yaml.default_flow_style, yaml.sort_base_mapping_type_on_output = None, False
+    yaml.width, yaml.allow_unicode = 96, True
+    yaml.dump({key: plain(each) for key, each in sections.items() if each is not None}, text)
+    return text.getvalue()

@@ -1,0 +1,191 @@
+"""A study from Python: the same text, reader, store, checks and errors as the command line."""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pint
+import pytest
+import xarray as xr
+from ruamel.yaml import YAML
+
+import impactlab as il
+from impactlab.files import read_netcdf
+from impactlab.study import steps
+from impactlab.study.schema.files import read_study
+
+UNITS = pint.UnitRegistry()
+ROOT = Path(__file__).parents[2]
+STUDIES = [
+    path
+    for path in sorted((ROOT / "studies").glob("*.yaml"))
+    if "\nchecks:" not in path.read_text()
+]
+GRID = il.Discretisation(nodes=21, points=3)
+SAMPLE = il.Sobol(
+    base_samples=16,
+    seed=1,
+    parameters={
+        "beam_depth": il.Uniform("26 mm", "29 mm"),
+        "beam_yield_stress": il.Normal("345 MPa", "20 MPa"),
+    },
+)
+
+
+def small(**others):
+    """A study of milliseconds."""
+    given = {"title": "Depth", "impact": il.paper_impact(velocity="2 m/s"), "duration": "1 ms"}
+    return il.Study(**given | {"discretisation": GRID, "sampling": SAMPLE} | others)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_study_from_sample_to_report(folder):
+    """The code of the documentation, on a small grid."""
+    study = small(responses=["peak_force", "contact_duration"])
+    runs = study.run(workers=2)
+    assert runs.sizes == {"run": 96}
+    assert np.isfinite(runs.peak_force).all()
+    indices = il.analyse(runs)
+    assert {"total_order", "sensitivity_verdict"} <= set(indices)
+    study.report("report.html")
+    assert "Depth" in (folder / "report.html").read_text()
+    study.to_yaml("studies/depth.yaml")
+    again = il.Study.from_yaml("studies/depth.yaml")
+    assert again.declared == replace(study.declared, path=again.declared.path)
+    assert repr(again) == repr(study)
+    assert study.status().done == 96
+
+
+def test_nothing_is_solved_twice_here_or_by_the_command(folder, monkeypatch):
+    study = small()
+    first = study.run(workers=1)
+    study.to_yaml("studies/depth.yaml")
+    monkeypatch.setattr("impactlab.study.execute.solved", None)  # which solves
+    again = il.Study.from_yaml("studies/depth.yaml").run(workers=1)
+    xr.testing.assert_identical(again.drop_attrs(), first.drop_attrs())
+    from impactlab.cli import main
+
+    monkeypatch.setattr(sys, "argv", ["impactlab", "run", "studies/depth.yaml", "--workers", "1"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert not ended.value.code
+    again = read_netcdf(folder / "results/depth/runs.nc", "runs")
+    xr.testing.assert_identical(again.drop_attrs(), first.drop_attrs())
+
+
+def test_the_tidying_command_keeps_the_runs_of_a_study_without_a_file(folder):
+    small().run(workers=1)
+    (folder / "studies").mkdir()
+    small().to_yaml("studies/other.yaml")
+    with steps.removable(Path("studies"), Path("results")) as found:
+        assert found == {}
+
+
+@pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
+def test_shipped_studies_are_the_same_from_python(path, folder):
+    """The mapping in the file, given as arguments, and the file written from them."""
+    keys = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
+    from_file = il.Study.from_yaml(path).declared
+    study = il.Study(**keys, name=path.stem)
+    same = {"path": from_file.path, "text": from_file.text}
+    assert replace(study.declared, **same) == from_file
+    study.to_yaml(path.name)
+    again = read_study(path.name)
+    assert again == replace(study.declared, path=Path(path.name))
+    il.Study.from_yaml(path).to_yaml(folder / path.name)
+    assert (folder / path.name).read_bytes() == path.read_bytes()
+
+
+FAR = il.paper_impact()
+IMPACTS = [
+    replace(FAR, velocity=3.3, contact="hertz", gravity=0.0),
+    replace(FAR, sphere=replace(FAR.sphere, mass=1.4), beam_model="timoshenko"),
+    replace(FAR, beam=replace(FAR.beam, depth=0.1 + 0.2 - 0.27, shear_coefficient=0.8)),
+    replace(
+        FAR,
+        beam=replace(
+            FAR.beam, material=replace(FAR.beam.material, kinematic_hardening_modulus=1e9)
+        ),
+    ),
+]
+
+
+@pytest.mark.parametrize("impact", IMPACTS)
+def test_an_impact_is_the_same_to_the_last_bit_in_the_file(impact):
+    grid = il.Discretisation(nodes=31, rule="layers", courant=0.1 + 0.2)
+    study = small(impact=impact, discretisation=grid)
+    assert study.declared.impact == impact
+    assert study.declared.discretisation == grid
+
+
+@pytest.mark.parametrize(
+    ("made", "value"),
+    [
+        (lambda: il.paper_impact("72 km/h").velocity, 20.0),
+        (lambda: il.paper_impact(7200 * UNITS.m / UNITS.hour).velocity, 2.0),
+        (lambda: il.Discretisation(courant="90 %").courant, 0.9),
+        (lambda: replace(FAR.sphere, radius="3.5 cm").radius, 0.035),
+        (lambda: replace(FAR.beam, depth=27.8 * UNITS.mm).depth, 0.0278),
+        (lambda: replace(FAR.beam.material, density="7.8 g/cm3").density, 7800.0),
+        (lambda: replace(FAR.beam.material, yield_stress="345 MPa").yield_stress, 345e6),
+        (lambda: small(duration=2 * UNITS.ms).declared.duration, 2e-3),
+        (
+            lambda: (
+                small(sampling=il.Grid(parameters={"velocity": [1, 2] * UNITS.km / UNITS.hour}))
+                .design()
+                .velocity[0]
+                .item()
+            ),
+            1 / 3.6,
+        ),
+    ],
+)
+def test_quantities_are_numbers_texts_or_pint(made, value):
+    assert made() == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (lambda: il.paper_impact("5 kg"), "Impact.velocity = '5 kg': 'kg' has the wrong dimension"),
+        (lambda: il.paper_impact(5 * UNITS.kg), "Impact.velocity = '5.0 kg': 'kg' has the wrong"),
+        (lambda: small(duration="1 kg"), "Study: duration = '1 kg': 'kg' has the wrong dimension"),
+        (lambda: small(duration=None), "Study: duration: is required"),
+        (lambda: small(sampling=None), "Study: sampling: is required"),
+        (lambda: small(responses=["force"]), "Study: responses.0 = 'force': unknown response; did"),
+        (lambda: small(impact={"base": "paper", "speed": 1}), "Study: impact.speed = 1: unknown"),
+        (lambda: small(name="../up"), "Study: name = '../up': its name becomes"),
+        (
+            lambda: small(sampling=replace(SAMPLE, base_samples=100)),
+            "Study: sampling.base_samples = 100: must be a power of two, such as 64 or 128",
+        ),
+        (
+            lambda: small(sampling=il.Grid(parameters={"beam_depht": [1]})),
+            "Study: sampling.parameters.beam_depht = [1]: unknown key; did you mean 'beam_depth'",
+        ),
+        (lambda: il.Study.from_yaml("nowhere.yaml"), "nowhere.yaml: there is no such file"),
+        (lambda: small().to_yaml("depth.txt"), "depth.txt: the name of a study file must end"),
+        (
+            lambda: small(name="unsolved").report(),
+            "results/unsolved/runs.nc: there are no runs yet",
+        ),
+    ],
+)
+def test_mistakes_name_key_and_value(made, said, folder):
+    with pytest.raises(ValueError, match=rf"^{re.escape(said)}"):
+        made()
+
+
+def test_runs_of_another_text_are_not_taken_for_these(folder):
+    small(responses=["peak_force"]).run(workers=1)
+    with pytest.raises(ValueError, match="holds runs of another study"):
+        small(responses=["impulse"]).analyse()
