@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
 from impactlab.model.plausibility import ImplausibleWarning, implausibilities, numbers
+from impactlab.model.quantities import Quantity, as_text, in_si
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
@@ -45,20 +46,27 @@ def simulate(
     impact: Impact,
     discretisation: Discretisation | None = None,
     *,
-    duration: float,
+    duration: Quantity,
     samples: int = 2001,
 ) -> xr.Dataset:
     """Solve one impact.
 
-    duration: simulated time in s. samples: length of `time`, equally spaced from 0 to the
-    duration. Returns a Dataset with the histories on `time`, the strains on `x` and `z`, every
-    response of impactlab.variables.RESPONSES as a scalar, `status` and `remarks`; a response that
-    the run could not give is NaN, and `status` says why. `remarks` says what to know of the others.
+    duration: simulated time, in s or with a unit. samples: length of `time`, equally
+    spaced from 0 to the duration. Returns a Dataset with the histories on `time`, the strains on
+    `x` and `z`, every response of impactlab.variables.RESPONSES as a scalar, `status` and
+    `remarks`; a response that the run could not give is NaN, and `status` says why. `remarks` says
+    what to know of the others.
 
     Raises ValueError when duration or samples is not valid; warns of implausible values.
+
+    >>> grid = il.Discretisation(nodes=41)
+    >>> run = il.simulate(il.paper_impact("2 m/s"), grid, duration="0.5 ms")
+    >>> f"{run.peak_force.item() / 1e3:.0f} kN, {run.contact_force.sizes['time']} times"
+    '23 kN, 2001 times'
     """
     import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
 
+    duration = in_si("simulate.duration", duration, "s")
     grid = (discretisation or Discretisation()).resolved([impact.beam_model])
     samples = integer("simulate", "samples", samples, 2)
     _warn(numbers(impact, grid))
@@ -78,33 +86,88 @@ def simulate_many(
     impact: Impact,
     discretisation: Discretisation | None = None,
     *,
-    duration: float,
-    varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]],
+    duration: Quantity,
+    varied: Mapping[str, Sequence[Quantity] | np.ndarray[Any, Any]],
+    combine: Literal["paired", "product"] = "paired",
 ) -> xr.Dataset:
     """Solve many impacts for their responses, on one thread.
 
-    varied: parameter name (see impactlab.model.parameters.PARAMETERS) -> one value per run, all of
-    the same length. Returns a Dataset of every response, `status` and `remarks` on `run`, the
-    varied parameters as coordinates.
+    varied: parameter name (see impactlab.model.parameters.PARAMETERS) -> its values. combine:
+    "paired" takes the first value of every list for the first run, and so on, so all lists are of
+    one length; "product" solves every combination. Returns a Dataset of every response, `status`
+    and `remarks`, on `run` for pairs and on a dimension per parameter for a product; parameters
+    and the duration, varied or fixed, are coordinates.
 
     Raises ValueError for an unknown parameter, one that is no list, unequal lengths, or a value
     that the model refuses, naming the run. Warns of implausible values.
+
+    >>> many = il.simulate_many(
+    ...     il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms",
+    ...     varied={"velocity": ["1 m/s", "2 m/s"], "contact": ["hertz", "stronge", "mjg"]},
+    ...     combine="product")
+    >>> dict(many.peak_force.sizes)
+    {'velocity': 2, 'contact': 3}
     """
     import xarray as xr
 
     grid = discretisation or Discretisation()
-    cases = case_table(impact, grid, duration=duration, varied=varied)
-    _warn(
-        numbers(impact, grid)
-        | {name: (min(values), max(values)) for name, values in varied.items() if len(values)}
-    )
-    labels = {name: ("run", np.asarray(values)) for name, values in varied.items()}
+    seconds = in_si("simulate.duration", duration, "s")
+    lists = {name: _in_si(name, values) for name, values in varied.items()}
+    dims, shape, columns = _combined(lists, combine)
+    cases = case_table(impact, grid, duration=seconds, varied=columns)
+    ends = {name: (min(values), max(values)) for name, values in lists.items() if len(values)}
+    _warn(numbers(impact, grid) | ends)
+    answers = {name: values.reshape(shape) for name, values in solve(cases).items()}
+    fixed = flatten(impact, grid.resolved(map(str, lists.get("beam_model", [impact.beam_model]))))
+    if not {"sphere_radius", "sphere_density"} & lists.keys():
+        fixed["sphere_mass"] = impact.sphere.total_mass
+    paired = combine == "paired"
+    labels = {name: ("run" if paired else name, np.asarray(each)) for name, each in lists.items()}
+    numbered = {"run": np.arange(cases.size)} if paired else {}
     dataset = xr.Dataset(
-        answer_variables(solve(cases), tuple(RESPONSES), ("run",)),
-        coords=labels | {"run": np.arange(cases.size), "duration": duration},
+        answer_variables(answers, tuple(RESPONSES), dims),
+        coords=numbered | fixed | {"duration": seconds} | labels,
         attrs=provenance(),
     )
     return described(dataset)
+
+
+def _combined(
+    lists: dict[str, Any], combine: str
+) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, Any]]:
+    """Return dimensions and shape of the runs, and one value per run of each parameter.
+
+    Raises ValueError for an unknown way, or pairs of unequal lengths.
+    """
+    if combine not in ("paired", "product"):
+        raise ValueError(f"combine = {combine!r}: must be 'paired' or 'product'")
+    lengths = tuple(np.size(values) for values in lists.values())
+    if combine == "paired":
+        if len(set(lengths)) > 1:
+            given = zip(lists, lengths, strict=True)
+            raise ValueError(
+                "varied: every parameter needs one value per run, got lengths "
+                f"{', '.join(f'{size} of {name}' for name, size in given)}: give lists of the same "
+                "length, or combine='product' for every combination"
+            )
+        return ("run",), (max(lengths, default=1),), lists
+    if any(np.ndim(values) != 1 for values in lists.values()):
+        return tuple(lists), lengths, lists  # which are refused by name
+    places = np.indices(lengths).reshape(len(lengths), -1)
+    columns = zip(lists.items(), places, strict=True)
+    return (
+        tuple(lists),
+        lengths,
+        {name: [each[at] for at in where] for (name, each), where in columns},
+    )
+
+
+def _in_si(name: str, values: Any) -> Any:
+    """Return the values of a parameter, those with a unit in SI units."""
+    values = as_text(values)
+    if name not in PARAMETERS or PARAMETERS[name].choices or not isinstance(values, list | tuple):
+        return values
+    return [in_si(name, value, PARAMETERS[name].units) for value in values]
 
 
 def _warn(ends: dict[str, Any]) -> None:

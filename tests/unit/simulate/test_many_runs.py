@@ -97,3 +97,40 @@ def test_the_solid_model_is_solved_elsewhere():
     varied = {"beam_model": ["elastic", "solid"]}
     with pytest.raises(ValueError, match=r"'solid': .*`impactlab witness`"):
         il.simulate_many(IMPACT, GRID, duration=1e-4, varied=varied)
+
+
+def test_a_product_is_the_pairs_of_every_combination():
+    speeds, laws = ["1 m/s", 2.0], ["hertz", "stronge", "mjg"]
+    grid = il.simulate_many(
+        IMPACT,
+        GRID,
+        duration="2 ms",
+        varied={"velocity": speeds, "contact": laws},
+        combine="product",
+    )
+    assert dict(grid.sizes) == {"velocity": 2, "contact": 3}
+    assert grid.velocity.values.tolist() == [1.0, 2.0]
+    pairs = {"velocity": [1.0, 1.0, 1.0, 2.0, 2.0, 2.0], "contact": [*laws, *laws]}
+    many = il.simulate_many(IMPACT, GRID, duration=DURATION, varied=pairs)
+    for name in grid.data_vars:
+        assert grid[name].values.tobytes() == many[name].values.tobytes()
+
+
+@pytest.mark.parametrize("combine", ["paired", "product"])
+def test_the_fixed_parameters_stand_beside_the_varied(combine):
+    varied = {"velocity": [1.0, 2.0]}
+    many = il.simulate_many(IMPACT, GRID, duration=DURATION, varied=varied, combine=combine)
+    one = il.simulate(IMPACT, GRID, duration=DURATION)
+    fixed = {name for name, each in one.coords.items() if not each.dims} - {"velocity"}
+    assert {name for name, each in many.coords.items() if not each.dims} == fixed
+    assert all(many[name].item() == one[name].item() for name in fixed)
+
+
+def test_lists_of_unequal_length_are_refused_with_the_way_out():
+    varied = {"velocity": [1.0, 2.0], "nodes": [21]}
+    with pytest.raises(
+        ValueError, match=r"lengths 2 of velocity, 1 of nodes: .* combine='product'"
+    ):
+        il.simulate_many(IMPACT, GRID, duration=DURATION, varied=varied)
+    with pytest.raises(ValueError, match=r"^combine = 'zip': must be"):
+        il.simulate_many(IMPACT, GRID, duration=DURATION, varied=varied, combine="zip")

@@ -127,7 +127,7 @@ def test_answers_do_not_depend_on_the_samples(run):
         assert coarse[name].values == pytest.approx(run[name].values[::5], rel=1e-9, abs=1e-15)
 
 
-@pytest.mark.parametrize("duration", [0.0, -1e-3, np.nan, np.inf, None, "1 ms"])
+@pytest.mark.parametrize("duration", [0.0, -1e-3, np.nan, np.inf, None, "1 m"])
 def test_a_wrong_duration_is_refused(duration):
     with pytest.raises(ValueError, match=r"^simulate\.duration = "):
         il.simulate(IMPACT, GRID, duration=duration)
