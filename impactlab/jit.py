@@ -248,11 +248,10 @@ def precompile(kernel: Any, program: str) -> None:
     here = str(Path(__file__).resolve().parents[1])  # the same package, wherever it was found
     paths = os.pathsep.join(filter(None, [here, os.environ.get("PYTHONPATH")]))
     try:
-        with FileLock(cache.folder / "lock"):
+        with FileLock(cache.folder / f"{cache.name}.lock"):
             if any(_read(path) for path in cache.folder.glob(cache.files.format("*"))):
                 return
-            discard(cache.folder)
-            print("impactlab: compiling kernels, once, about 15 s", file=sys.stderr, flush=True)
+            print("impactlab: compiling kernels, once, about 10 s", file=sys.stderr, flush=True)
             done = subprocess.run(
                 [sys.executable, "-c", program],
                 env=os.environ | {_COMPILES: cache.name, "PYTHONPATH": paths},

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -11,14 +14,15 @@ import numpy as np
 from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import SOLID, Impact, paper_impact
+from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
 from impactlab.model.plausibility import ImplausibleWarning, implausibilities, numbers
 from impactlab.model.quantities import Quantity, as_text, in_si
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
-from impactlab.solver.leapfrog import run_all
+from impactlab.solver.jit import FOLDER
+from impactlab.solver.leapfrog import kernel_of
 from impactlab.solver.outputs import blank
 from impactlab.solver.section import rule_points
 from impactlab.solver.types import CASE
@@ -38,7 +42,8 @@ if TYPE_CHECKING:
 _COMPILE = """
 import impactlab as il
 from impactlab.simulate import case_table, solve
-solve(case_table(il.paper_impact(), il.Discretisation(nodes=5), duration=1e-6))
+grid, varied = il.Discretisation(nodes=5, scheme={scheme!r}), {{"beam_model": [{model!r}]}}
+solve(case_table(il.paper_impact(), grid, duration=1e-6, varied=varied))
 """
 
 
@@ -239,9 +244,14 @@ def solve(
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
     deflection = np.full((runs, half), np.nan)
     strains = np.full((2, runs, half, fibres), np.nan)
-    precompile(run_all, _COMPILE)
     contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
-    run_all(cases, responses, contacts, events, histories, deflection, strains[0], strains[1])
+    arrays = (responses, contacts, events, histories, deflection, *strains)
+    kinds = np.stack([cases["beam_model"], cases["scheme"]])
+    starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
+    for start, end in itertools.pairwise((*starts, runs)):
+        model, scheme = kinds[:, start]
+        compile_kernels([BEAM_MODELS[model]], [SCHEMES[scheme]])
+        kernel_of(model, scheme)(cases[start:end], *(array[start:end] for array in arrays))
     columns = {name: responses[name].copy() for name in responses.dtype.names or ()}
     if samples:
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
@@ -252,13 +262,24 @@ def solve(
     return columns
 
 
-def compile_all() -> str | None:
-    """Compile the kernels of every beam model and scheme; return their folder, None without one."""
-    for scheme in SCHEMES:
-        grid = Discretisation(nodes=21, scheme=scheme)
-        models = BEAM_MODELS if scheme == "leapfrog" else BENDING_MODELS
-        solve(case_table(paper_impact(), grid, duration=1e-6, varied={"beam_model": models}))
-    return getattr(getattr(run_all, "_cache", None), "cache_path", None)
+def compile_kernels(
+    beam_models: Iterable[str] = BEAM_MODELS, schemes: Iterable[str] = SCHEMES
+) -> Path | None:
+    """Compile the kernels of these models and schemes side by side, unless they are compiled.
+
+    Returns the folder of the compiled kernels, None where they cannot be kept.
+    """
+    programs = {}
+    for model, scheme in itertools.product(beam_models, schemes):
+        if model in BENDING_MODELS or (model in BEAM_MODELS and scheme == "leapfrog"):
+            kernel = kernel_of(BEAM_MODELS.index(model), SCHEMES.index(scheme))
+            programs[kernel] = _COMPILE.format(model=model, scheme=scheme)
+    if len(programs) == 1:
+        precompile(*programs.popitem())
+    else:
+        with ThreadPoolExecutor() as pool:
+            list(pool.map(precompile, programs, programs.values()))
+    return FOLDER
 
 
 def answer_variables(

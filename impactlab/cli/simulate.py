@@ -109,8 +109,8 @@ def compile_kernels(
     For images of containers, and for clusters before their jobs begin: without it, the first
     impact compiles. NUMBA_CACHE_DIR names another folder.
     """
-    from impactlab.simulate import compile_all
+    from impactlab.simulate import compile_kernels
 
-    for compiles in (compile_all, *[resolve_name(wings.COMPILE)] * fem3d):
+    for compiles in (compile_kernels, *[resolve_name(wings.COMPILE)] * fem3d):
         folder = compiles()
         print(f"Compiled kernels: {folder}" if folder else "Compiled kernels cannot be kept.")

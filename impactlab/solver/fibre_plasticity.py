@@ -61,9 +61,9 @@ def make_plastic_state(grid: Grid, section: Section) -> PlasticState:
 
 
 @compiled
-def curvature(w: Array, now: int, psi: Array, grid: Grid, i: Index) -> float:
+def curvature(w: Array, now: int, psi: Array | None, grid: Grid, i: Index) -> float:
     """Return kappa in 1/m: w_xx, or psi_x of a beam with its own rotation (timoshenko.py)."""
-    if psi.size > 0:
+    if psi is not None:
         return (psi[i] - psi[i - ONE]) / grid.dx
     return (w[now, i - ONE] - 2.0 * w[now, i] + w[now, i + ONE]) * grid.per_dx2
 
@@ -83,7 +83,7 @@ def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: Grid) -
 def follow_tangents(
     w: Array,
     now: int,
-    psi: Array,
+    psi: Array | None,
     plastic: Array,
     M_0: Array,
     on_tangent: Array,
@@ -110,7 +110,12 @@ def follow_tangents(
 
 @compiled
 def leave_tangents(
-    beam: Beam, now: int, psi: Array, plastic_state: PlasticState, section: Section, grid: Grid
+    beam: Beam,
+    now: int,
+    psi: Array | None,
+    plastic_state: PlasticState,
+    section: Section,
+    grid: Grid,
 ) -> None:
     """Bend the sections that follow_tangents has left."""
     k = np.uint64(1)
@@ -138,7 +143,7 @@ def leave_tangents(
 def begin_tangents(
     beam: Beam,
     now: int,
-    psi: Array,
+    psi: Array | None,
     outside: float,
     plastic_state: PlasticState,
     section: Section,

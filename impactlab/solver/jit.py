@@ -10,11 +10,16 @@ _COMPILER = Compiler(Path(__file__).parent)
 SOURCES_HASH = _COMPILER.sources_hash
 """Hash of the kernels that this process runs: the same hash, the same numbers."""
 
+FOLDER = _COMPILER.folder
+"""Where the compiled kernels are kept; None where they cannot be."""
+
 compiled = _COMPILER.decorator()
 """It can neither make arrays nor free any: what a kernel works on belongs to its caller."""
 allocating = _COMPILER.decorator(allocates=True)
 """A record of an array does not keep it alive here, so arrays of records come from Python."""
 vectorised = _COMPILER.decorator(fastmath=True)
 """Free to reorder sums and blind to NaN: for loops over arrays."""
+inlined = _COMPILER.decorator(inline=True)
+"""Part of its callers: a State handed on at every step takes longer than the step."""
 linked = _COMPILER.decorator(kept=False)
 """For functions made within another, which are kept in their callers' code alone."""

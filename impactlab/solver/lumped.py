@@ -11,8 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import Beam, Grid, mirror
-from impactlab.solver.jit import allocating, compiled
+from impactlab.solver.beam import Grid, mirror
+from impactlab.solver.euler_bernoulli import MODEL as EULER_BERNOULLI
+from impactlab.solver.euler_bernoulli import deflected
+from impactlab.solver.jit import allocating, compiled, inlined
+from impactlab.solver.section import Section
+from impactlab.solver.state import Model, State
 from impactlab.solver.types import RIGID, Array, Record
 
 
@@ -35,8 +39,8 @@ def mid_span(case: Record, EI: float) -> tuple[float, float]:
 
 
 @allocating
-def make_lumped(case: Record, EI: float, grid: Grid) -> Lumped:
-    """Return the model of a case's beam; EI: the section's (N m2).
+def _make(case: Record, section: Section, grid: Grid) -> Lumped:
+    """Return the model of a case's beam.
 
     The static shape is that of finite differences: curvature linear in the distance.
     """
@@ -49,27 +53,31 @@ def make_lumped(case: Record, EI: float, grid: Grid) -> Lumped:
         drop[i - 1] = 2.0 * drop[i] - drop[i + 1] + (i - 1.0) / (mid - 1.0)
     for i in range(1, mid + 1):
         shape[i] = 1.0 - drop[i] / drop[1]
-    mass, stiffness = mid_span(case, EI)
+    mass, stiffness = mid_span(case, section.stiffness)
     return Lumped(mass, stiffness, shape)
 
 
-@compiled
-def lumped_step(beam: Beam, lumped: Lumped, grid: Grid, now: int, F: float) -> None:
-    """Move the beam by one step under the contact force F (N)."""
-    mid = grid.mid
+@inlined
+def _step(state: State, now: int, F: float) -> None:
+    beam, lumped, mid = state.beam, state.own, state.grid.mid
     if lumped.mass > 0.0:
-        beam.du[mid] = grid.dt**2 / lumped.mass * (F - lumped.stiffness * beam.w[now, mid])
+        pull = F - lumped.stiffness * beam.w[now, mid]
+        beam.du[mid] = state.grid.dt**2 / lumped.mass * pull
     beam.u[mid] += beam.du[mid]
     w_mid = beam.w[now, mid] + beam.u[mid]
     for i in range(2, mid + 1):
         beam.w[1 - now, i] = lumped.shape[i] * w_mid
     beam.w[1 - now, mid] = w_mid
-    mirror(beam.w, now, grid)
+    mirror(beam.w, now, state.grid)
 
 
 @compiled
-def lumped_energy(beam: Beam, lumped: Lumped, grid: Grid, now: int) -> float:
-    """Return kinetic (see beam.py) and elastic energy in J, after a step, at its beginning."""
-    u, w = beam.u[grid.mid], beam.w[now, grid.mid]
-    moving = lumped.mass * u * (u - beam.du[grid.mid]) / grid.dt**2
+def _energy(state: State, now: int, F: float, u_mid: float) -> float:
+    """Return kinetic (see beam.py) and elastic energy."""
+    beam, lumped, mid = state.beam, state.own, state.grid.mid
+    u, w = beam.u[mid], beam.w[now, mid]
+    moving = lumped.mass * u * (u - beam.du[mid]) / state.grid.dt**2
     return 0.5 * (moving + lumped.stiffness * w * w)
+
+
+MODEL = Model(_make, _step, EULER_BERNOULLI.curvature, _energy, deflected)

@@ -31,17 +31,18 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import Grid
-from impactlab.solver.fibre_plasticity import PlasticState
-from impactlab.solver.jit import allocating, compiled, vectorised
+from impactlab.solver.fibre_plasticity import PlasticState, plastic_energy
+from impactlab.solver.jit import allocating, compiled, inlined, vectorised
 from impactlab.solver.section import Section, bend
-from impactlab.solver.types import Array
+from impactlab.solver.state import Model, State
+from impactlab.solver.types import Array, Record
 
 _STEPS_UNSEEN = 8.0
 """Steps, at the present pace, for which sections far from yielding are left alone."""
 
 
 class Modes(NamedTuple):
-    """The modes of a run, n of them; n = 0 for a run of another scheme.
+    """The modes of a run, n of them.
 
     q: amplitude (m). u: dt dq/dt half a step before (m). k2: k_p^2 (1/m2). D: see above. push: D/K
     (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n,). bent:
@@ -193,3 +194,38 @@ def deflect(modes: Modes, w: Array, now: int, mid: int) -> None:
         w[now, i] = 0.0
         for p in range(modes.q.size):
             w[now, i] -= modes.bent[i, p] / modes.k2[p] * (modes.q[p] - modes.u[p])
+
+
+@allocating
+def _make(case: Record, section: Section, grid: Grid) -> Modes:
+    return make_modes(case.nodes // 2, grid, section.stiffness, section.yield_curvature)
+
+
+@inlined
+def _step(state: State, now: int, F: float) -> None:
+    q, u, k2, D, push, source, _, seen, near, slack = state.own
+    w, mid = state.beam.w, state.grid.mid
+    if near[0] > 0 or slack[1] >= slack[0]:
+        bend_sections(state.own, state.plastic, state.section, state.grid)
+    w[1 - now, mid] = move_modes(q, u, D, push, source, k2, seen, slack, F)
+    state.beam.u[mid] = w[1 - now, mid] - w[now, mid]
+
+
+@compiled
+def _curvature(state: State, now: int) -> float:
+    return mode_curvature(state.own.q, state.own.bent, state.grid.mid)
+
+
+@compiled
+def _energy(state: State, now: int, F: float, u_mid: float) -> float:
+    stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
+    q, u, _, D, push, source = state.own[:6]
+    return stored + dissipated + modal_energy(q, u, D, push, source, F)
+
+
+@compiled
+def _deflect(state: State, now: int) -> None:
+    deflect(state.own, state.beam.w, now, state.grid.mid)
+
+
+MODEL = Model(_make, _step, _curvature, _energy, _deflect)

@@ -13,19 +13,23 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import Beam, Grid, mirror
+from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.fibre_plasticity import (
     PlasticState,
     begin_tangents,
+    curvature,
     follow_tangents,
     leave_tangents,
+    plastic_energy,
 )
-from impactlab.solver.jit import allocating, compiled, vectorised
+from impactlab.solver.jit import allocating, compiled, inlined, vectorised
 from impactlab.solver.section import Section
+from impactlab.solver.state import Model, State
 from impactlab.solver.types import ONE, Array, Record
 
 
 class Shear(NamedTuple):
-    """The state of a Timoshenko beam besides Beam; all arrays (n + 4,), or empty for other models.
+    """The state of a Timoshenko beam besides Beam; all arrays (n + 4,).
 
     stiffness = k G A (N); inertia = rho I (kg m). psi: rotation, spin = dt psi_t its increment,
     d_spin the last change of that (rad), Q (N): half-way from node i to i + 1 at index i. M (N m):
@@ -49,9 +53,9 @@ def shear_stiffness(case: Record) -> float:
 
 
 @allocating
-def make_shear(case: Record, size: int) -> Shear:
-    """Return the state at rest; size: n + 4, or 0."""
-    area = case.beam_width * case.beam_depth
+def _make(case: Record, section: Section, grid: Grid) -> Shear:
+    """Return the state at rest."""
+    area, size = case.beam_width * case.beam_depth, grid.mid + 3
     return Shear(
         shear_stiffness(case),
         case.beam_density * area * case.beam_depth**2 / 12.0,
@@ -63,34 +67,25 @@ def make_shear(case: Record, size: int) -> Shear:
     )
 
 
-@compiled
-def shear_step(
-    beam: Beam,
-    shear: Shear,
-    plastic_state: PlasticState,
-    section: Section,
-    grid: Grid,
-    now: int,
-    F: float,
-) -> None:
-    """Move the beam by one step under the contact force F (N)."""
+@inlined
+def _step(state: State, now: int, F: float) -> None:
+    beam, plastic, section, grid, shear = (
+        state.beam,
+        state.plastic,
+        state.section,
+        state.grid,
+        state.own,
+    )
     psi, Q, mid = shear.psi, shear.Q, grid.mid
-    if plastic_state.on_tangent[0] > 0 and follow_tangents(
-        beam.w,
-        now,
-        psi,
-        beam.plastic,
-        plastic_state.M_0,
-        plastic_state.on_tangent,
-        plastic_state.tangent,
-        grid,
+    if plastic.on_tangent[0] > 0 and follow_tangents(
+        beam.w, now, psi, beam.plastic, plastic.M_0, plastic.on_tangent, plastic.tangent, grid
     ):
-        leave_tangents(beam, now, psi, plastic_state, section, grid)
+        leave_tangents(beam, now, psi, plastic, section, grid)
     EI, per_dx = section.stiffness, 1.0 / grid.dx
-    outside = _moments(shear, plastic_state, EI, per_dx, mid)
+    outside = _moments(shear, plastic, EI, per_dx, mid)
     if outside > 0.0:
-        begin_tangents(beam, now, psi, outside, plastic_state, section, grid, beam.du, beam.du[:0])
-        _moments(shear, plastic_state, EI, per_dx, mid)
+        begin_tangents(beam, now, psi, outside, plastic, section, grid, beam.du, beam.du[:0])
+        _moments(shear, plastic, EI, per_dx, mid)
     _rotate(beam.w, now, shear, grid.dt**2 / shear.inertia, per_dx, mid)
     psi[mid], Q[mid] = -psi[mid - 1], -Q[mid - 1]
     _shift(beam.w, now, beam.u, beam.du, Q, grid.push, F, mid)
@@ -139,7 +134,7 @@ def _shift(
 
 
 @vectorised
-def shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) -> float:
+def _shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) -> float:
     """Return the beam's energy in J after a step, at its beginning, without plastic strains'.
 
     Kinetic as in beam.py, of deflection and rotation; elastic of bending (see there) and shear.
@@ -156,3 +151,19 @@ def shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) ->
         sheared += shear.Q[i] * shear.Q[i]
     moving = (grid.mu * moved + shear.inertia * turned) / grid.dt**2
     return grid.dx * (moving + bent / EI + sheared / shear.stiffness)
+
+
+@compiled
+def _curvature(state: State, now: int) -> float:
+    return curvature(state.beam.w, now, state.own.psi, state.grid, np.uint64(state.grid.mid))
+
+
+@compiled
+def _energy(state: State, now: int, F: float, u_mid: float) -> float:
+    stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
+    EI = state.section.stiffness
+    elastic = _shear_energy(state.beam, state.own, state.plastic.M_0, EI, state.grid)
+    return stored + dissipated + elastic
+
+
+MODEL = Model(_make, _step, _curvature, _energy, deflected)

@@ -24,7 +24,6 @@ ELASTIC = BEAM_MODELS.index("elastic")
 TIMOSHENKO = BEAM_MODELS.index("timoshenko")
 SPRING_MASS = BEAM_MODELS.index("spring_mass")
 RIGID = BEAM_MODELS.index("rigid")
-LEAPFROG = SCHEMES.index("leapfrog")
 MODAL = SCHEMES.index("modal")
 
 

@@ -102,9 +102,8 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
     Raises OSError when no scheduler answers, or when its workers fail.
     """
     solver = work.solver
-    first = solver.cases(work.design, missing[:1])
-    solver.solve(first[:0], OutputSpec(work.output.samples, profiles=False))  # compile only once
-    values = solver.values(first, work.output)
+    solver.prepare(work.design)
+    values = solver.values(solver.cases(work.design, missing[:1]), work.output)
     batches = Batches(missing, work.cost, values, engine.batch_seconds)
     with engine.client() as client:
         pool = WorkerPool(client, work, batches)

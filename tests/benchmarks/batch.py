@@ -1,6 +1,6 @@
 """The cost of a batch of runs beside its kernels, and the gain of a second thread: `make bench`.
 
-The kernels alone, `run_all` over a case table that is already there, run right before each timed
+The kernels alone, over a case table that is already there, run right before each timed
 batch, and the ratios of these pairs are reported: what else the machine does then weighs on both.
 Costs are compared in processor time. Throughput is compared in wall time, and only an idle machine
 tells it: `cores`, processor over wall time of the batch, says how many it gave.
@@ -22,7 +22,9 @@ from rich.table import Table
 
 import impactlab as il
 from impactlab.simulate import case_table
-from impactlab.solver.leapfrog import run_all
+from impactlab.solver.contact.history import CONTACT
+from impactlab.solver.event_tracker import EVENTS
+from impactlab.solver.leapfrog import kernel_of
 from impactlab.solver.outputs import blank
 from impactlab.study.execute import solve_batch
 from impactlab.study.solvers import impact
@@ -58,7 +60,9 @@ def kernels(duration: float) -> Callable[[], object]:
     answers = blank(RUNS)
     nothing = np.zeros((RUNS, 0)), np.zeros((RUNS, 0, 0)), np.zeros((RUNS, 0, 0))
     samples = np.zeros((RUNS, 5, 0))
-    return lambda: run_all(cases, answers, samples, *nothing)
+    records = np.zeros(RUNS, CONTACT), np.zeros(RUNS, EVENTS)
+    kernel = kernel_of(cases[0].beam_model, cases[0].scheme)
+    return lambda: kernel(cases, answers, *records, samples, *nothing)
 
 
 def library(duration: float) -> Callable[[], object]:

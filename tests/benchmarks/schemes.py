@@ -29,7 +29,7 @@ from rich.table import Table
 
 import impactlab as il
 from impactlab.figures import style
-from impactlab.simulate import case_table, compile_all, solve
+from impactlab.simulate import case_table, compile_kernels, solve
 from impactlab.verification.cases import elastic
 from impactlab.verification.solutions import hertz, modal
 
@@ -211,7 +211,7 @@ def main() -> int:
     parser.add_argument("--output", type=Path, default=ROOT / "results" / "benchmark_schemes.csv")
     parser.add_argument("--figure", type=Path, default=ROOT / "docs" / "schemes.png")
     options = parser.parse_args()
-    compile_all()
+    compile_kernels()
     each = {velocity: of_velocity(velocity, options.rounds) for velocity in VELOCITIES}
     found = pd.concat({velocity: rows for velocity, (rows, _) in each.items()}, names=["velocity"])
     doubts = {velocity: doubt for velocity, (_, doubt) in each.items()}

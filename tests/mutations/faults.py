@@ -145,7 +145,7 @@ FAULTS = (
     ),
     Fault(
         "modal: sections that come near their limit late",
-        "leapfrog.py",
+        "modal.py",
         "near[0] > 0 or slack[1] >= slack[0]:",
         "near[0] > 0 or slack[1] >= 3.0 * slack[0]:",
     ),

@@ -232,5 +232,13 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
 
 
 SOLVER = Solver(
-    VERSION, columns, impact.SOLVER.failures, cases, work, impact.values, solve, labelled
+    version=VERSION,
+    columns=columns,
+    failures=impact.SOLVER.failures,
+    cases=cases,
+    cost=work,
+    values=impact.values,
+    solve=solve,
+    prepare=impact.prepare,
+    labelled=labelled,
 )

@@ -56,6 +56,8 @@ class Solver:
     """Return how many numbers are kept of each case."""
     solve: Callable[[Array, OutputSpec], Columns]
     """Return the answers by name, with `status`, one row per case: the same bits in any batch."""
+    prepare: Callable[[xr.Dataset], object]
+    """Compile what the runs of a design need, before threads ask for it at once."""
     labelled: Callable[[xr.Dataset, Mapping[str, Any]], xr.Dataset]
     """Return the answers in the design's order, under its labels and with provenance.
 

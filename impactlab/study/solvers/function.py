@@ -58,5 +58,6 @@ SOLVER = Solver(
     cost=lambda cases: np.full(cases.size, 100.0),
     values=lambda cases, output: 2,
     solve=solve,
+    prepare=lambda design: None,
     labelled=labelled,
 )

@@ -13,7 +13,13 @@ from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
-from impactlab.simulate import answer_variables, case_table, profile_coordinates, solve
+from impactlab.simulate import (
+    answer_variables,
+    case_table,
+    compile_kernels,
+    profile_coordinates,
+    solve,
+)
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.netcdf import Array
 from impactlab.study.solvers import Solver, flattened, run_shape
@@ -71,6 +77,13 @@ def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
     return with_values(paper_impact(), Discretisation(), fixed)
 
 
+def prepare(design: xr.Dataset) -> None:
+    """Compile the kernels of a design's beam models and schemes."""
+    given, grid = base(design)
+    models = np.unique(design.get("beam_model", given.beam_model)).tolist()
+    compile_kernels(models, np.unique(design.get("scheme", grid.scheme)).tolist())
+
+
 SOLVER = Solver(
     version=SOURCES_HASH,
     columns=columns,
@@ -79,5 +92,6 @@ SOLVER = Solver(
     cost=lambda cases: work(cases) + _OF_ANY_RUN,  # in node-steps of the paper's beam
     values=values,
     solve=lambda cases, form: solve(cases, samples=form.samples, profiles=form.profiles),
+    prepare=prepare,
     labelled=labelled,
 )

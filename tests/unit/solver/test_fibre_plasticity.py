@@ -18,7 +18,6 @@ from impactlab.solver.section import bend, make_section
 N = 12
 GRID = make_grid(N, 0.02, 1e-6, 13.0, 2e4)
 MID = GRID.mid
-NONE = np.zeros(0)
 INNER = slice(2, MID + 1)
 
 
@@ -62,19 +61,19 @@ def step(beam, plastic_state, section, now):
     if follow_tangents(
         beam.w,
         now,
-        NONE,
+        None,
         beam.plastic,
         plastic_state.M_0,
         plastic_state.on_tangent,
         plastic_state.tangent,
         GRID,
     ):
-        leave_tangents(beam, now, NONE, plastic_state, section, GRID)
+        leave_tangents(beam, now, None, plastic_state, section, GRID)
     intervals = (plastic_state.kappa_min, plastic_state.kappa_max)
     outside = move(beam.w, now, beam.u, beam.plastic, *intervals, 2, GRID)
     if outside:
         begin_tangents(
-            beam, now, NONE, outside, plastic_state, section, GRID, beam.u, beam.w[1 - now]
+            beam, now, None, outside, plastic_state, section, GRID, beam.u, beam.w[1 - now]
         )
     return outside
 

@@ -1,0 +1,83 @@
+"""The paper's beam while it moves: the differences of beam.py with sections that yield.
+
+Ahead of the wave nothing moves, and between the wave's front and the first section that has
+yielded the beam is elastic: such nodes take a shorter loop.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from impactlab.solver.beam import (
+    Grid,
+    bending_energy,
+    kinetic_energy,
+    move,
+    move_virgin,
+    reach,
+    strike,
+)
+from impactlab.solver.fibre_plasticity import (
+    begin_tangents,
+    curvature,
+    follow_tangents,
+    leave_tangents,
+    plastic_energy,
+)
+from impactlab.solver.jit import allocating, compiled, inlined
+from impactlab.solver.section import Section
+from impactlab.solver.state import Model, State
+from impactlab.solver.types import Array, Record
+
+
+@allocating
+def _make(case: Record, section: Section, grid: Grid) -> Array:
+    """Return the first node that the wave has reached, and that from which on some have yielded."""
+    front = np.empty(2, dtype=np.int64)
+    front[0], front[1] = grid.mid, grid.mid + 1
+    return front
+
+
+@inlined
+def _step(state: State, now: int, F: float) -> None:
+    beam, plastic, section, grid, front = (
+        state.beam,
+        state.plastic,
+        state.section,
+        state.grid,
+        state.own,
+    )
+    w, u = beam.w, beam.u
+    if plastic.on_tangent[0] > 0 and follow_tangents(
+        w, now, None, beam.plastic, plastic.M_0, plastic.on_tangent, plastic.tangent, grid
+    ):
+        leave_tangents(beam, now, None, plastic, section, grid)
+    outside = move_virgin(w, now, u, front[0], front[1], grid, section.yield_curvature)
+    outside += move(w, now, u, beam.plastic, plastic.kappa_min, plastic.kappa_max, front[1], grid)
+    if outside > 0.0:
+        outermost = begin_tangents(beam, now, None, outside, plastic, section, grid, u, w[1 - now])
+        front[1] = min(front[1], max(outermost - 1, 2))
+    strike(w, now, u, F, grid)
+    front[0] = reach(w, 1 - now, front[0])
+
+
+@compiled
+def _curvature(state: State, now: int) -> float:
+    return curvature(state.beam.w, now, None, state.grid, np.uint64(state.grid.mid))
+
+
+@compiled
+def _energy(state: State, now: int, F: float, u_mid: float) -> float:
+    stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
+    EI = state.section.stiffness
+    elastic = bending_energy(state.beam, state.plastic.M_0, EI, state.grid, now)
+    moving = kinetic_energy(state.beam, state.grid, now, u_mid)
+    return stored + dissipated + elastic + moving
+
+
+@compiled
+def deflected(state: State, now: int) -> None:
+    """Leave the deflections as they are: the step has set them all."""
+
+
+MODEL = Model(_make, _step, _curvature, _energy, deflected)

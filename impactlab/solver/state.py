@@ -1,0 +1,41 @@
+"""The state of a run, and the functions that a model of the beam is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from impactlab.solver.beam import Beam, Grid
+from impactlab.solver.contact.history import Pair
+from impactlab.solver.fibre_plasticity import PlasticState
+from impactlab.solver.section import Section
+
+
+class State(NamedTuple):
+    """What a run marches: contact pair, section and grid, and the state of the beam.
+
+    own: what the model of the beam has besides; its type is the model's.
+    """
+
+    pair: Pair
+    section: Section
+    grid: Grid
+    beam: Beam
+    plastic: PlasticState
+    own: Any
+
+
+class Model(NamedTuple):
+    """A model of the beam in one scheme: compiled functions, from which leapfrog.py makes a kernel.
+
+    make(case, section, grid): State.own at rest. step(state, now, F): move the beam under the
+    contact force F (N). curvature(state, now): at mid-span, 1/m. energy(state, now, F, u_mid): the
+    beam's in J, plastic strains' included, after a step, at its beginning; u_mid: u at mid-span
+    before it (m). deflect(state, now): set all of beam.w[now] in the end.
+    """
+
+    make: Callable[..., Any]
+    step: Callable[..., None]
+    curvature: Callable[..., float]
+    energy: Callable[..., float]
+    deflect: Callable[..., None]
