@@ -1,3 +1,4 @@
+from . import plot as plot
 from .analysis.analyse import analyse as analyse
 from .analysis.surrogate import load_surrogate as load_surrogate
 from .api import Study as Study

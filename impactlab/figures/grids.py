@@ -212,20 +212,31 @@ def _plan_effects(runs: xr.Dataset) -> Plan:
 def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response: colours by the second parameter, line styles by the third."""
     along, selected = runs[_along(runs)], _plan_effects(runs)
-    unit = display(along)
     figure, axes = responses_grid.panels(responses(runs), height=38)
     for name, ax in axes.items():
-        values, label = responses_grid.shown(runs, name)
-        ax.set_title(label, loc="left")
-        for curve in selected.curves:
-            y = values.isel(selected.held | curve.where).values
-            curves.add(ax, *curves.broken(unit(along), y), curve)
-        scales.fit(ax, "x", unit(along))
-        scales.fit(ax, "y", scales.drawn(ax, "y"))
-        if not ax.lines:
-            responses_grid.empty(ax, "no finite values")
-    label = labels.axis(labels.parameter(str(along.name)), unit.symbol)
-    return selected.finish(figure, label)
+        ax.set_title(response_curves(ax, runs, name, along, selected), loc="left")
+    return selected.finish(figure, parameter_axis(along))
+
+
+def response_curves(
+    ax: Axes, runs: xr.Dataset, name: str, along: xr.DataArray, selected: Plan
+) -> str:
+    """Draw the planned curves of a response over a parameter; return the response's label."""
+    values, label = responses_grid.shown(runs, name)
+    x = display(along)(along)
+    for curve in selected.curves:
+        y = values.isel(selected.held | curve.where).values
+        curves.add(ax, *curves.broken(x, y), curve)
+    scales.fit(ax, "x", x)
+    scales.fit(ax, "y", scales.drawn(ax, "y"))
+    if not ax.lines:
+        responses_grid.empty(ax, "no finite values")
+    return label
+
+
+def parameter_axis(along: xr.DataArray) -> str:
+    """Return the label of an axis of a parameter."""
+    return labels.axis(labels.parameter(str(along.name)), display(along).symbol)
 
 
 @record.figure(

@@ -54,25 +54,11 @@ def index_bars(name: str, family: Family) -> Figure:
         ranked = abs(analysis[ranking if ranking in given else given[-1]])
         largest = ranked.max([dim for dim in ranked.dims if dim != "parameter"]).fillna(-1.0)
         analysis = analysis.isel(parameter=np.argsort(-largest.values, kind="stable"))
-        listed = parameters(analysis)
-        height = 10 + max(5.2, 2.4 * len(shown)) * len(listed)
+        height = 10 + max(5.2, 2.4 * len(shown)) * analysis.sizes["parameter"]
         figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
         for at, (response, ax) in enumerate(axes.items()):
-            _bars(ax, analysis, family, response)
-            if np.isfinite(analysis[shown[0].name].sel(response=response)).any():
-                responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
-            else:
-                verdict = access.verdict(analysis, _VERDICT, response)
-                words = verdict.words if verdict else "no reason is given"
-                style.remark(ax, f"undefined:\n{words}")
-            ax.set_yticks(range(len(listed)))
-            ax.yaxis.set_major_formatter(FixedFormatter(list(map(labels.parameter, listed))))
-            ax.tick_params(axis="y", length=0, labelleft=at % responses_grid.COLUMNS == 0)
-            ax.grid(visible=False, axis="y")
-            ax.set_ylim(len(listed) - 0.5, -0.5)
-            low, high = ax.get_xlim()
-            ax.set_xlim(min(low, 0.0), max(high, 1.0 if family.shares else 0.0))
-            scales.linear(ax, "x")
+            bars(ax, analysis, family, response)
+            ax.tick_params(axis="y", labelleft=at % responses_grid.COLUMNS == 0)
         figure.supxlabel(family.axis)
         style.legend(figure)
         return figure
@@ -101,6 +87,26 @@ def _bar_sentences(family: Family, analysis: xr.Dataset) -> list[str]:
         noise,
         "Pale, too: below what the numerical error could change." if numerical else "",
     ]
+
+
+def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
+    """Draw the indices of a response: a row per parameter, its verdict where it is a warning."""
+    _bars(ax, analysis, family, response)
+    if np.isfinite(analysis[family.measures_in(analysis)[0].name].sel(response=response)).any():
+        responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
+    else:
+        verdict = access.verdict(analysis, _VERDICT, response)
+        words = verdict.words if verdict else "no reason is given"
+        style.remark(ax, f"undefined:\n{words}")
+    listed = parameters(analysis)
+    ax.set_yticks(range(len(listed)))
+    ax.yaxis.set_major_formatter(FixedFormatter(list(map(labels.parameter, listed))))
+    ax.tick_params(axis="y", length=0)
+    ax.grid(visible=False, axis="y")
+    ax.set_ylim(len(listed) - 0.5, -0.5)
+    low, high = ax.get_xlim()
+    ax.set_xlim(min(low, 0.0), max(high, 1.0 if family.shares else 0.0))
+    scales.linear(ax, "x")
 
 
 def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
@@ -289,12 +295,13 @@ def morris_plane(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, a marker per parameter."""
     figure, axes = responses_grid.panels(analysed(runs, analysis), height=48)
     for name, ax in axes.items():
-        _plane(ax, runs, analysis, name)
+        plane(ax, runs, analysis, name)
     style.legend(figure)
     return figure
 
 
-def _plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> None:
+def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> None:
+    """Draw the elementary effects of a response, a marker per parameter."""
     strength = measures.index(analysis, "morris_mu_star", response)
     spread = analysis["morris_sigma"].sel(response=response).values
     effects = xr.DataArray(strength.values, attrs=runs[response].attrs, name=response)

@@ -133,7 +133,7 @@ def scatter(response: str) -> Figure:
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per parameter; points are a bitmap, which keeps the vector file small."""
         values, label = responses_grid.shown(runs, response)
-        return _along_parameters(runs, label, 42, lambda ax, x: _scatter(ax, x, values.values))
+        return _along_parameters(runs, label, 42, lambda ax, x: scatter_runs(ax, x, values.values))
 
     return plot
 
@@ -153,7 +153,7 @@ def _along_parameters(
     return figure
 
 
-def _scatter(ax: Axes, x: Floats, y: Floats) -> None:
+def scatter_runs(ax: Axes, x: Floats, y: Floats) -> None:
     """Draw some of the runs, and the mean of all."""
     finite = np.isfinite(x) & np.isfinite(y)
     if not np.isfinite(y).any():

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 import textwrap
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 import matplotlib.style
@@ -70,6 +71,21 @@ def applied() -> Iterator[None]:
         yield
 
 
+_NEW: ContextVar[Callable[..., Figure]] = ContextVar("new figures", default=Figure)
+
+
+@contextmanager
+def interactive() -> Iterator[None]:
+    """Make new figures with pyplot, which notebooks and windows show."""
+    from matplotlib import pyplot  # late: reports do without
+
+    before = _NEW.set(pyplot.figure)
+    try:
+        yield
+    finally:
+        _NEW.reset(before)
+
+
 paper = applied()
 """Decorator of functions that draw, so that they do it under the style."""
 
@@ -84,7 +100,7 @@ def panels(
     columns = min(columns, count)
     rows = math.ceil(count / columns)
     size = ((SINGLE if columns == 1 else DOUBLE) * MILLIMETRE, rows * height * MILLIMETRE)
-    figure = Figure(figsize=size, layout="constrained")
+    figure = _NEW.get()(figsize=size, layout="constrained")
     grid = figure.subplots(rows, columns, sharex=sharex, sharey=sharey, squeeze=False).ravel()
     for spare in grid[count:]:
         spare.remove()

@@ -14,6 +14,7 @@ import xarray as xr
 from ruamel.yaml import YAML
 
 import impactlab as il
+from impactlab.figures.catalogue import CATALOGUE as INDEX_FIGURES
 from impactlab.files import read_netcdf
 from impactlab.study import steps
 from impactlab.study.schema.files import read_study
@@ -189,3 +190,50 @@ def test_runs_of_another_text_are_not_taken_for_these(folder):
     small(responses=["peak_force"]).run(workers=1)
     with pytest.raises(ValueError, match="holds runs of another study"):
         small(responses=["impulse"]).analyse()
+
+
+@pytest.fixture
+def pyplot(monkeypatch):
+    from matplotlib import pyplot
+
+    pyplot.switch_backend("agg")
+    yield pyplot
+    pyplot.close("all")
+
+
+def test_a_response_is_drawn_on_the_axes_given(pyplot):
+    varied = {"velocity": [1.0, 2.0, 3.0], "contact": ["hertz", "stronge"]}
+    runs = il.simulate_many(FAR, GRID, duration=1e-3, varied=varied, combine="product")
+    _, (left, right) = pyplot.subplots(1, 2)
+    assert il.plot.response(runs, "contact_duration", hue="contact", ax=left) is left
+    for line, law in zip(left.lines, varied["contact"], strict=True):
+        assert line.get_xdata().tolist() == varied["velocity"]
+        expected = 1e3 * runs.contact_duration.sel(contact=law)
+        assert line.get_ydata() == pytest.approx(expected.values)
+    assert not right.has_data()
+    assert il.plot.response(runs.sel(contact="hertz"), "peak_force") is right  # the current axes
+    with pytest.raises(
+        ValueError, match=r"differ in contact: first runs.sel\(contact='hertz'"
+    ):
+        il.plot.response(runs, "peak_force", x="velocity")
+    with pytest.raises(ValueError, match=r"^x = 'velocty': unknown x; did you mean 'velocity'\?"):
+        il.plot.response(runs, "peak_force", x="velocty")
+
+
+def test_indices_are_drawn_as_in_the_report(sobol_study, pyplot):
+    runs, analysis = sobol_study
+    units = [runs[str(name)].attrs["units"] for name in analysis["response"].values]
+    analysis = analysis.assign_coords(response_units=("response", units))
+    axes = il.plot.sobol(analysis)
+    assert pyplot.get_fignums() == [1]
+    drawn = INDEX_FIGURES["sobol_indices"].plot(runs, analysis).axes
+    assert len(axes) == len(drawn) > 1
+    for ours, theirs in zip(axes, drawn, strict=True):
+        widths = [[bar.get_width() for bar in ax.patches] for ax in (ours, theirs)]
+        assert widths[0] == pytest.approx(widths[1], nan_ok=True)
+    _, ax = pyplot.subplots()
+    assert il.plot.sobol(analysis, "peak_force", ax=ax) is ax
+    with pytest.raises(ValueError, match="holds no morris_mu_star"):
+        il.plot.morris(analysis)
+    with pytest.raises(ValueError, match=r"^figure = 'shear': unknown figure; choose from"):
+        il.plot.figure("shear", runs, analysis)

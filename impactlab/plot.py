@@ -1,0 +1,183 @@
+"""Plots of runs and of their analysis, on matplotlib axes: those of the reports.
+
+As in xarray, a function that draws one panel takes `ax` (by default the current axes) and returns
+it. Those of indices draw a panel per response where none is named, and return all of the axes.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from impactlab.figures import (
+    access,
+    catalogue,
+    grids,
+    indices,
+    labels,
+    measures,
+    one_run,
+    responses_grid,
+    samples,
+    style,
+)
+from impactlab.figures.curves import plan
+from impactlab.figures.labels import display
+from impactlab.study.errors import unknown
+
+__all__ = ["delta", "figure", "morris", "pawn", "regression", "response", "run", "sobol"]
+
+
+def response(
+    runs: xr.Dataset,
+    name: str,
+    *,
+    x: str | None = None,
+    hue: str | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw a response against a parameter.
+
+    Of a grid: over dimension `x`, with a curve for every value of dimension `hue`; jumps are not
+    joined. Of a sample: the runs as points, with the mean of those of about the same `x`. x: by
+    default the only dimension of numbers beside `hue`.
+
+    Raises ValueError for unknown names, and for further dimensions: select a value of each first.
+
+    >>> runs = il.simulate_many(
+    ...     il.paper_impact(), il.Discretisation(nodes=21), duration="1 ms", combine="product",
+    ...     varied={"velocity": [1, 2, 3], "contact": ["hertz", "stronge"]})
+    >>> ax = il.plot.response(runs, "contact_duration", x="velocity", hue="contact")
+    >>> ax.get_xlabel(), ax.get_ylabel(), len(ax.lines)
+    ('Impact velocity (m/s)', 'Contact duration (ms)', 2)
+    """
+    _require("response", name, [key for key in runs.data_vars if key not in ("status", "remarks")])
+    dims = [dim for dim in access.design_dims(runs, runs[name].dims) if runs.sizes[dim] > 1]
+    sample = access.is_sample(runs)
+    numbers = [dim for dim in dims if runs[dim].dtype.kind in "if" and dim != hue]
+    x = x if x or sample or len(numbers) != 1 else numbers[0]
+    coordinates = [
+        str(key)
+        for key, each in runs.coords.items()
+        if each.dims == (("run",) if sample else (key,)) and each.dtype.kind in "if"
+    ]
+    _require("x", x, coordinates)
+    if hue is not None:
+        _require("hue", hue, [] if sample else dims)
+    if others := [dim for dim in dims if dim not in (x, hue, "run")]:
+        first = f"{others[0]}={runs[others[0]].values[0].item()!r}"
+        raise ValueError(f"runs also differ in {', '.join(others)}: first runs.sel({first})")
+    ax = _current(ax)
+    along = runs[str(x)]
+    if sample:
+        values, label = responses_grid.shown(runs, name)
+        samples.scatter_runs(ax, display(along)(along.values), values.values)
+    else:
+        most = runs.sizes[hue] if hue else 1
+        selected = plan(runs, name, along=[str(x)], prefer=[hue] if hue else [], most=most)
+        label = grids.response_curves(ax, runs, name, along, selected)
+        if hue:
+            ax.legend(title=labels.sentence(labels.parameter(hue)))
+    ax.set(xlabel=grids.parameter_axis(along), ylabel=label)
+    return ax
+
+
+def run(one: xr.Dataset) -> Any:
+    """Draw a run of `il.simulate`: force, motion, the loop of the contact and the beam at the end.
+
+    Returns an array of four axes.
+
+    >>> one = il.simulate(il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms")
+    >>> [ax.get_ylabel() for ax in il.plot.run(one)][:2]
+    ['Contact force (kN)', 'Displacement down (mm)']
+    """
+    with style.interactive():
+        return np.array(one_run.plot(one).axes)
+
+
+def sobol(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
+    """Draw Sobol indices (or those of FAST) of `il.analyse` with their intervals.
+
+    Returns the axes of one response, or an array of axes, a panel per response. Pale bars are
+    within the noise; a verdict stands above indices that should not be trusted. Raises ValueError
+    where the analysis has none, or does not know the response.
+    """
+    return _indices("sobol_indices", measures.SOBOL, analysis, response, ax)
+
+
+def delta(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
+    """Draw delta indices; see `sobol`."""
+    return _indices("delta_indices", measures.DELTA, analysis, response, ax)
+
+
+def pawn(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
+    """Draw PAWN indices; see `sobol`."""
+    return _indices("pawn_indices", measures.PAWN, analysis, response, ax)
+
+
+def regression(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
+    """Draw regression coefficients of values and ranks; see `sobol`."""
+    return _indices("regression_indices", measures.REGRESSION, analysis, response, ax)
+
+
+def morris(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
+    """Draw Morris' plane: the mean of the magnitudes of elementary effects, and their spread.
+
+    See `sobol`.
+    """
+    return _indices("morris_plane", measures.MORRIS, analysis, response, ax)
+
+
+def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> Any:
+    """Draw a figure of the report by the name of its file, such as "parameter_effects".
+
+    runs, analysis: of a study. Returns an array of its axes. Raises ValueError, with the figures
+    that these datasets allow, for any other.
+    """
+    analysis = xr.Dataset() if analysis is None else analysis
+    found = catalogue.applicable(runs, analysis)
+    _require("figure", name, found)
+    with style.interactive():
+        return np.array(found[name].plot(runs, analysis).axes)
+
+
+def _indices(
+    name: str, family: measures.Family, analysis: xr.Dataset, response: str | None, ax: Axes | None
+) -> Any:
+    if not family.given(analysis):
+        missing = ", ".join(one.name for one in family.measures if not one.optional)
+        raise ValueError(f"the analysis holds no {missing}: it is not of runs for {family.title}")
+    listed = [str(each) for each in analysis["response"].values]
+    stand_ins = {
+        each: ((), np.nan, {"units": str(unit)})
+        for each, unit in zip(listed, analysis["response_units"].values, strict=True)
+    }
+    runs = xr.Dataset(stand_ins, attrs={"responses": listed})  # of which names and units are used
+    if response is None and ax is None:
+        return figure(name, runs, analysis)
+    if response is None:
+        raise ValueError(f"response: is needed with ax, one of {', '.join(listed)}")
+    _require("response", response, listed)
+    ax = _current(ax)
+    ax.set_title(labels.sentence(labels.response(response)), loc="left")
+    if family is measures.MORRIS:
+        indices.plane(ax, runs, analysis, response)
+    else:
+        indices.bars(ax, analysis, family, response)
+        ax.set_xlabel(family.axis)
+    ax.legend()
+    return ax
+
+
+def _current(ax: Axes | None) -> Axes:
+    from matplotlib import pyplot  # late: files of figures do without
+
+    return pyplot.gca() if ax is None else ax
+
+
+def _require(what: str, name: str | None, names: Any) -> None:
+    if name not in names:
+        raise ValueError(f"{what} = {name!r}: {unknown(what, name, map(str, names))}")
