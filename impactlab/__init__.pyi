@@ -8,6 +8,7 @@ from .model.impact import Impact as Impact
 from .model.impact import Material as Material
 from .model.impact import Sphere as Sphere
 from .model.impact import paper_impact as paper_impact
+from .report.answer import answers as answers
 from .simulate import simulate as simulate
 from .simulate import simulate_many as simulate_many
 from .study.errors import StudyError as StudyError
@@ -24,3 +25,5 @@ from .study.schema.written import Sobol as Sobol
 from .study.schema.written import Triangular as Triangular
 from .study.schema.written import TruncatedNormal as TruncatedNormal
 from .study.schema.written import Uniform as Uniform
+
+__version__: str

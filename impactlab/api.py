@@ -47,18 +47,31 @@ class Study:
 
     Raises StudyError, a ValueError, with every problem by key and value.
 
-    >>> study = Study(
+    >>> study = il.Study(
     ...     title="Depth", impact=il.paper_impact(velocity="2 m/s"), duration="1 ms",
+    ...     discretisation=il.Discretisation(nodes=41), responses=["peak_force"],
     ...     sampling=il.Grid(parameters={"beam_depth": ["26 mm", "29 mm"]}))
     >>> study
     <impactlab.Study depth: 2 runs, results/depth>
     title: Depth
     impact: {base: paper, velocity: 2.0}
+    discretisation: {nodes: 41}
     duration: 1 ms
     sampling:
       method: grid
       parameters:
         beam_depth: [26 mm, 29 mm]
+    responses: [peak_force]
+    >>> study.estimate(workers=1).runs
+    2
+    >>> runs = study.run(workers=1)  # again: nothing is left to solve
+    >>> runs.peak_force.dims, study.status().done
+    (('beam_depth',), 2)
+    >>> study.report("report.html").exists()
+    True
+    >>> study.to_yaml("studies/depth.yaml")
+    >>> il.Study.from_yaml("studies/depth.yaml").name
+    'depth'
     """
 
     def __init__(

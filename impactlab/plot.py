@@ -92,7 +92,7 @@ def run(one: xr.Dataset) -> Any:
 
     >>> one = il.simulate(il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms")
     >>> [ax.get_ylabel() for ax in il.plot.run(one)][:2]
-    ['Contact force (kN)', 'Displacement down (mm)']
+    ['Contact force (kN)', 'Displacement down (µm)']
     """
     with style.interactive():
         return np.array(one_run.plot(one).axes)
@@ -104,22 +104,45 @@ def sobol(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None 
     Returns the axes of one response, or an array of axes, a panel per response. Pale bars are
     within the noise; a verdict stands above indices that should not be trusted. Raises ValueError
     where the analysis has none, or does not know the response.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=64, parameters={
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
+    >>> ax = il.plot.sobol(il.analyse(study.run(workers=1)), "value")
     """
     return _indices("sobol_indices", measures.SOBOL, analysis, response, ax)
 
 
 def delta(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
-    """Draw delta indices; see `sobol`."""
+    """Draw delta indices; see `sobol`.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.Delta(samples=128, parameters={
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
+    >>> ax = il.plot.delta(il.analyse(study.run(workers=1)), "value")
+    """
     return _indices("delta_indices", measures.DELTA, analysis, response, ax)
 
 
 def pawn(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
-    """Draw PAWN indices; see `sobol`."""
+    """Draw PAWN indices; see `sobol`.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.Pawn(samples=128, parameters={
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
+    >>> ax = il.plot.pawn(il.analyse(study.run(workers=1)), "value")
+    """
     return _indices("pawn_indices", measures.PAWN, analysis, response, ax)
 
 
 def regression(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
-    """Draw regression coefficients of values and ranks; see `sobol`."""
+    """Draw regression coefficients of values and ranks; see `sobol`.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.Regression(samples=128, parameters={
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
+    >>> ax = il.plot.regression(il.analyse(study.run(workers=1)), "value")
+    """
     return _indices("regression_indices", measures.REGRESSION, analysis, response, ax)
 
 
@@ -127,6 +150,11 @@ def morris(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None
     """Draw Morris' plane: the mean of the magnitudes of elementary effects, and their spread.
 
     See `sobol`.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.Morris(trajectories=16, parameters={
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
+    >>> ax = il.plot.morris(il.analyse(study.run(workers=1)), "value")
     """
     return _indices("morris_plane", measures.MORRIS, analysis, response, ax)
 
@@ -136,6 +164,13 @@ def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> A
 
     runs, analysis: of a study. Returns an array of its axes. Raises ValueError, with the figures
     that these datasets allow, for any other.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=64, parameters={
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
+    >>> axes = il.plot.figure("scatter_value", study.run(workers=1))
+    >>> len(axes)
+    3
     """
     analysis = xr.Dataset() if analysis is None else analysis
     found = catalogue.applicable(runs, analysis)

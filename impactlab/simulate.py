@@ -67,7 +67,7 @@ def simulate(
     >>> grid = il.Discretisation(nodes=41)
     >>> run = il.simulate(il.paper_impact("2 m/s"), grid, duration="0.5 ms")
     >>> f"{run.peak_force.item() / 1e3:.0f} kN, {run.contact_force.sizes['time']} times"
-    '23 kN, 2001 times'
+    '24 kN, 2001 times'
     """
     import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
 
@@ -168,7 +168,7 @@ def _combined(
 
 
 def _in_si(name: str, values: Any) -> Any:
-    """Return the values of a parameter, those with a unit in SI units."""
+    """Return values in SI units where they have a unit."""
     values = as_text(values)
     if name not in PARAMETERS or PARAMETERS[name].choices or not isinstance(values, list | tuple):
         return values

@@ -44,6 +44,13 @@ def analyse(
     runs.
 
     Raises ValueError when the runs contradict their attributes.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=256, parameters={
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
+    >>> indices = il.analyse(study.run(workers=1))
+    >>> indices.total_order.sel(response="value").round(1).values
+    array([0.6, 0.4, 0.2])
     """
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
     parts = [

@@ -31,6 +31,9 @@ class Discretisation:
     plastic strain of a perfectly plastic beam depends on the time step, too.
 
     Raises ValueError naming the field otherwise.
+
+    >>> il.Discretisation(nodes=601, points=9).rule
+    'lobatto'
     """
 
     nodes: int = 201

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from impactlab.model.checks import instance, number, one_of, positive, require
-from impactlab.model.quantities import Quantity, fields_in_si
+from impactlab.model.quantities import Quantity, engineering, fields_in_si
 from impactlab.solver import BEAM_MODELS
 from impactlab.solver.contact import LAWS
 
@@ -30,6 +30,11 @@ class Material:
     contact laws know the initial yield stress alone.
 
     Raises ValueError naming the field when a value is not physical.
+
+    >>> steel = il.Material(
+    ...     density="7.8 g/cm3", youngs_modulus="210 GPa", poissons_ratio=0.3, yield_stress=345e6)
+    >>> steel.density, steel.yield_stress
+    (7800.0, 345000000.0)
     """
 
     density: float
@@ -66,6 +71,10 @@ class Sphere:
 
     Raises ValueError naming the field when radius or mass is not finite and positive, or the
     material is none.
+
+    >>> from dataclasses import replace
+    >>> replace(il.paper_impact().sphere, radius="3 cm").total_mass
+    0.8821592171280138
     """
 
     radius: float
@@ -98,6 +107,10 @@ class Beam:
 
     Raises ValueError naming the field when a length is not finite and positive, or when the
     depth is not below the span, the shear coefficient not in (0, 1], or the material is none.
+
+    >>> steel = il.paper_impact().beam.material
+    >>> il.Beam(span="78 cm", width="6 cm", depth="28 mm", material=steel).depth
+    0.028
     """
 
     span: float
@@ -140,6 +153,14 @@ class Impact:
     in which `contact` plays no part).
 
     Raises ValueError naming the field when a value is not physical or a name is unknown.
+
+    >>> paper = il.paper_impact()
+    >>> impact = il.Impact(sphere=paper.sphere, beam=paper.beam, velocity="7.2 km/h")
+    >>> impact.velocity
+    2.0
+    >>> il.Impact(sphere=paper.sphere, beam=paper.beam, velocity="2 kg")
+    Traceback (most recent call last):
+    ValueError: Impact.velocity = '2 kg': 'kg' has the wrong dimension; expected a velocity ...
     """
 
     sphere: Sphere
@@ -159,6 +180,19 @@ class Impact:
         one_of("Impact", "contact", self.contact, LAWS)
         one_of("Impact", "beam_model", self.beam_model, MODELS)
 
+    def _repr_html_(self) -> str:
+        """Return a table of all parameters for notebooks, with units."""
+        from impactlab.model.discretisation import Discretisation
+        from impactlab.model.parameters import PARAMETERS, flatten  # which import this module
+
+        values, rows = flatten(self, Discretisation()), ""
+        for name, entry in PARAMETERS.items():
+            if name in values and entry.path[0] == "impact":
+                value = values[name]
+                text = value if isinstance(value, str) else engineering(value, entry.units)
+                rows += f"<tr><td>{entry.long_name}</td><td>{text}</td></tr>"
+        return f"<table>{rows}</table>"
+
 
 def paper_impact(velocity: Quantity = 0.99, contact: str = "stronge") -> Impact:
     """Return the impact of the paper's Tables 2 and 3: Gr 15 sphere, Q345 beam; velocity in m/s.
@@ -167,6 +201,9 @@ def paper_impact(velocity: Quantity = 0.99, contact: str = "stronge") -> Impact:
     the beam's 10.148 kg does not with the printed 10.929 kg (that would be 840 mm of beam).
 
     Raises ValueError when velocity or contact is not valid (see Impact).
+
+    >>> il.paper_impact("2 m/s").beam.depth
+    0.0278
     """
     gr15 = Material(density=7800.0, youngs_modulus=208e9, poissons_ratio=0.3, yield_stress=2550e6)
     q345 = Material(density=7800.0, youngs_modulus=210e9, poissons_ratio=0.3, yield_stress=345e6)

@@ -45,6 +45,14 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     """Return what a study found, in at most five lines: the main finding first.
 
     runs, analysis: the stored runs.nc and analysis.nc; or findings.nc alone.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=256, parameters={
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
+    >>> runs = study.run(workers=1)
+    >>> for line in il.answers(runs, il.analyse(runs)):
+    ...     print(line)
+    Value (wide intervals): x1 ...
     """
     lines, _ = entries(runs, analysis)
     told = ["; ".join(": ".join(entry) for entry in line) + "." for line in lines]

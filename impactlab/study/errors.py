@@ -16,7 +16,12 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
 
 class StudyError(ValueError):
-    """Everything that is wrong with a study, one argument per problem."""
+    """Everything that is wrong with a study, one argument per problem.
+
+    >>> il.Study.from_yaml("nowhere.yaml")
+    Traceback (most recent call last):
+    impactlab.study.errors.StudyError: nowhere.yaml: there is no such file
+    """
 
     def __str__(self) -> str:
         """Return one line per problem: file, key, value, what is wrong and what to do."""

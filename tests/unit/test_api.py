@@ -212,9 +212,7 @@ def test_a_response_is_drawn_on_the_axes_given(pyplot):
         assert line.get_ydata() == pytest.approx(expected.values)
     assert not right.has_data()
     assert il.plot.response(runs.sel(contact="hertz"), "peak_force") is right  # the current axes
-    with pytest.raises(
-        ValueError, match=r"differ in contact: first runs.sel\(contact='hertz'"
-    ):
+    with pytest.raises(ValueError, match=r"differ in contact: first runs.sel\(contact='hertz'"):
         il.plot.response(runs, "peak_force", x="velocity")
     with pytest.raises(ValueError, match=r"^x = 'velocty': unknown x; did you mean 'velocity'\?"):
         il.plot.response(runs, "peak_force", x="velocty")
@@ -237,3 +235,22 @@ def test_indices_are_drawn_as_in_the_report(sobol_study, pyplot):
         il.plot.morris(analysis)
     with pytest.raises(ValueError, match=r"^figure = 'shear': unknown figure; choose from"):
         il.plot.figure("shear", runs, analysis)
+
+
+def test_a_client_of_ones_own_solves_and_stays_open(folder):
+    from distributed import Client
+
+    local = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None}
+    with Client(processes=False, **local) as client:
+        runs = small().run(client=client)
+        assert client.submit(int, 3).result() == 3
+    again = small(results="others").run(workers=1)
+    xr.testing.assert_identical(runs.drop_attrs(), again.drop_attrs())
+    assert (folder / "others/depth/runs.nc").exists()
+
+
+def test_notebooks_show_tables_and_texts():
+    assert "<td>depth of the beam</td><td>27.8 mm</td>" in FAR._repr_html_()
+    html = small(title="a < b")._repr_html_()
+    assert html.startswith("<b>a &lt; b</b><br><code>impactlab.Study a_b: 96 runs, results/a_b<")
+    assert "beam_depth: {distribution: uniform, low: 26 mm, high: 29 mm}" in html

@@ -146,5 +146,14 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
 
 
 def load_surrogate(path: str | Path) -> Surrogate:
-    """Load a study's surrogate.nc. Raises OSError or ValueError naming a file that holds none."""
+    """Load a study's surrogate.nc. Raises OSError or ValueError naming a file that holds none.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=256, parameters={
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
+    >>> runs, analysis = study.run(workers=1), study.analyse()
+    >>> surrogate = il.load_surrogate(study.folder / "surrogate.nc")
+    >>> surrogate.predict(x1=1.0, x2=0.5, x3=0.0).value.round(1).item()
+    2.5
+    """
     return Surrogate(read_netcdf(Path(path), "surrogate"))

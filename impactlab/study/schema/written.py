@@ -43,7 +43,7 @@ class _Distribution(_Section):
 class Uniform(_Distribution):
     """Equal probability from `low` to `high`.
 
-    >>> Uniform("26 mm", "29 mm")
+    >>> il.Uniform("26 mm", "29 mm")
     Uniform(low='26 mm', high='29 mm')
     """
 
@@ -53,7 +53,10 @@ class Uniform(_Distribution):
 
 @dataclass(frozen=True)
 class LogUniform(_Distribution):
-    """Equal probability of the logarithm, from `low` above zero to `high`."""
+    """Equal probability of the logarithm, from `low` above zero to `high`.
+
+    >>> speed = il.LogUniform("0.1 m/s", "10 m/s")
+    """
 
     low: Quantity
     high: Quantity
@@ -61,7 +64,10 @@ class LogUniform(_Distribution):
 
 @dataclass(frozen=True)
 class Normal(_Distribution):
-    """A normal distribution; for bounded parameters TruncatedNormal is safer."""
+    """A normal distribution; for bounded parameters TruncatedNormal is safer.
+
+    >>> stress = il.Normal("345 MPa", "20 MPa")
+    """
 
     mean: Quantity
     standard_deviation: Quantity
@@ -69,7 +75,10 @@ class Normal(_Distribution):
 
 @dataclass(frozen=True)
 class TruncatedNormal(_Distribution):
-    """A normal distribution, of this mean and deviation, that is cut at `low` and `high`."""
+    """A normal distribution, of this mean and deviation, that is cut at `low` and `high`.
+
+    >>> stress = il.TruncatedNormal("345 MPa", "25 MPa", low="270 MPa", high="420 MPa")
+    """
 
     mean: Quantity
     standard_deviation: Quantity
@@ -79,7 +88,10 @@ class TruncatedNormal(_Distribution):
 
 @dataclass(frozen=True)
 class Lognormal(_Distribution):
-    """A normal distribution of the logarithm; with a geometric deviation of 1.1, about ± 10 %."""
+    """A normal distribution of the logarithm; with a geometric deviation of 1.1, about ± 10 %.
+
+    >>> stress = il.Lognormal("345 MPa", 1.1)
+    """
 
     median: Quantity
     geometric_standard_deviation: float
@@ -87,7 +99,10 @@ class Lognormal(_Distribution):
 
 @dataclass(frozen=True)
 class Triangular(_Distribution):
-    """A density that rises from `low` to `mode` and falls to `high`."""
+    """A density that rises from `low` to `mode` and falls to `high`.
+
+    >>> stiffness = il.Triangular("190 GPa", "210 GPa", "230 GPa")
+    """
 
     low: Quantity
     mode: Quantity
@@ -100,11 +115,11 @@ class _Sampling(_Section):
 
 @dataclass(frozen=True, kw_only=True)
 class Grid(_Sampling):
-    """Every combination of the listed values is a run.
+    """A grid: every combination of the listed values is a run.
 
-    parameters: name (see `il.parameters`) -> its values.
+    parameters: name (docs/studies.md lists them) -> its values.
 
-    >>> grid = Grid(parameters={"velocity": ["50 cm/s", 1, 2], "contact": ["hertz", "stronge"]})
+    >>> speeds = il.Grid(parameters={"velocity": ["50 cm/s", 1, 2], "contact": ["hertz", "mjg"]})
     """
 
     parameters: Mapping[str, Sequence[Quantity]]
@@ -116,7 +131,7 @@ class _Sample(_Sampling):
     seed: int | None = None
 
     def written(self) -> dict[str, Any]:
-        """Return the section; a single value of a parameter is the same in all runs."""
+        """Return the section, with single values as fixed parameters."""
         found = super().written()
         found["parameters"] = {
             name: given if isinstance(given, dict) else {"distribution": "fixed", "value": given}
@@ -135,10 +150,10 @@ class Sobol(_Sample):
     `{"interval": 0.05, "runs": 100_000}` doubles the sample until the intervals of its indices are
     as narrow.
 
-    >>> depth, stress = Uniform("26 mm", "29 mm"), Normal("345 MPa", "20 MPa")
-    >>> sample = Sobol(
+    >>> depth, stress = il.Uniform("26 mm", "29 mm"), il.Normal("345 MPa", "20 MPa")
+    >>> sample = il.Sobol(
     ...     base_samples=1024, seed=1,
-    ...     parameters={"beam_depth": depth, "beam_yield_stress": stress})
+    ...     parameters={"beam_depth": depth, "beam_yield_stress": stress, "contact": "hertz"})
     """
 
     base_samples: int
@@ -152,6 +167,9 @@ class Morris(_Sample):
     """Trajectories for elementary effects: trajectories times (D + 1) runs.
 
     levels: of the grid, even. optimal_trajectories: how many of them, far apart, are kept.
+
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.Morris(trajectories=20, parameters={"velocity": speed, "beam_depth": depth})
     """
 
     trajectories: int
@@ -162,7 +180,11 @@ class Morris(_Sample):
 
 @dataclass(frozen=True, kw_only=True)
 class Fast(_Sample):
-    """Search curves of extended FAST: samples times (D + 1) runs."""
+    """Search curves of extended FAST: samples times (D + 1) runs.
+
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.Fast(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    """
 
     samples: int
     harmonics: int | None = None
@@ -170,27 +192,39 @@ class Fast(_Sample):
 
 @dataclass(frozen=True, kw_only=True)
 class Delta(_Sample):
-    """A Latin hypercube for Borgonovo's delta; `samples` runs."""
+    """A Latin hypercube for Borgonovo's delta; `samples` runs.
+
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.Delta(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    """
 
     samples: int
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pawn(_Sample):
-    """A Latin hypercube for PAWN indices; `samples` runs."""
+    """A Latin hypercube for PAWN indices; `samples` runs.
+
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.Pawn(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    """
 
     samples: int
 
 
 @dataclass(frozen=True, kw_only=True)
 class Regression(_Sample):
-    """A Latin hypercube for regression coefficients; `samples` runs."""
+    """A Latin hypercube for regression coefficients; `samples` runs.
+
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.Regression(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    """
 
     samples: int
 
 
 def plain(value: Any) -> Any:
-    """Return a value as a study file can hold it: numbers, text, lists and mappings."""
+    """Return numbers, text, lists and mappings in place of any other value."""
     if isinstance(value, _Section):
         return value.written()
     if isinstance(value, Impact):

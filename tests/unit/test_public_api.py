@@ -1,0 +1,54 @@
+"""Names, stubs and examples of `import impactlab`."""
+
+from __future__ import annotations
+
+import doctest
+import re
+import subprocess
+import sys
+from importlib.metadata import version
+from types import ModuleType
+
+import pytest
+
+import impactlab as il
+
+PUBLIC = [name for name in il.__all__ if not isinstance(getattr(il, name), ModuleType)]
+PLOTS = [f"plot.{name}" for name in il.plot.__all__]
+
+
+def found(name):
+    for step in name.split("."):
+        owner = getattr(locals().get("owner", il), step)
+    return owner
+
+
+@pytest.mark.parametrize("name", ["__doc__", *PUBLIC, *PLOTS])
+def test_examples_of_public_names_run(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    from matplotlib import pyplot
+
+    pyplot.switch_backend("agg")
+    thing = il if name == "__doc__" else found(name)
+    options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE | doctest.IGNORE_EXCEPTION_DETAIL
+    runner = doctest.DocTestRunner(verbose=False, optionflags=options)
+    examples = doctest.DocTestFinder(recurse=name != "__doc__").find(thing, name, globs={"il": il})
+    for each in examples:
+        runner.run(each)
+    pyplot.close("all")
+    assert runner.summarize(verbose=False).failed == 0
+    assert runner.tries > 0, f"{name} has no example"
+
+
+def test_the_package_names_its_public_names_and_version():
+    assert il.__version__ == version("impactlab")
+    assert dir(il) == sorted(il.__all__)
+    words = set(re.findall(r"\w+", il.__doc__))
+    assert set(il.__all__) <= words
+
+
+def test_importing_the_package_loads_nothing_heavy():
+    heavy = {"numba", "xarray", "dask", "matplotlib", "pydantic", "scipy", "impactlab.api"}
+    command = f"import sys, impactlab; print(sorted({heavy!r} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True)
+    assert done.stdout == "[]\n", done.stderr
