@@ -60,8 +60,8 @@ class Refinement:
     pair: tuple[int, int]
     courant: float = COURANT
 
-    def keys(self) -> list[GridKey]:
-        """Return those of the nodes, and of the pair."""
+    def tried(self) -> list[GridKey]:
+        """Return the grids: those in the figures, and the pair."""
         shorter = [(self.scheme, nodes, self.courant) for nodes in self.pair]
         return [*((self.scheme, nodes, COURANT) for nodes in self.nodes), *shorter]
 
@@ -102,7 +102,7 @@ def _finding(
         table = []
         for velocity in case.velocities:
             impact = replace(case.impact, velocity=velocity)
-            keys = dict.fromkeys(key for scheme in schemes for key in scheme.keys())
+            keys = dict.fromkeys(key for scheme in schemes for key in scheme.tried())
             runs = {key: _run(impact, key, case.duration) for key in keys}
             series, where = solve(impact, case.duration), f"{beam}, {velocity:g} m/s"
             row = (_compare(f"{each.scheme}: {where}", each, runs, series) for each in schemes)
