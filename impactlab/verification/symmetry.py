@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,10 +14,11 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.simulate import case_table, simulate
-from impactlab.solver.beam import Beam, Grid, make_beam, move_virgin, strike
+from impactlab.solver.beam import make_beam, move_virgin, strike
 from impactlab.solver.contact import LAWS
-from impactlab.solver.contact.history import CONTACT, Pair, force, make_pair
-from impactlab.solver.section import Section, make_section
+from impactlab.solver.contact.history import CONTACT, force, make_pair
+from impactlab.solver.modal import make_modes, move_modes
+from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
 from impactlab.types import Floats
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
@@ -44,7 +46,10 @@ _DIMENSIONS = {
 
 TOLERANCE = 1e-9
 """Round-off, the only allowed effect of the scale, and of the way back."""
-_SCALED_GRID = Discretisation(nodes=101, points=21)
+_SCALED_GRIDS = {
+    "leapfrog": Discretisation(nodes=101, points=21),
+    "modal": Discretisation(nodes=41, points=21, scheme="modal"),
+}
 
 
 @dataclass(frozen=True)
@@ -62,15 +67,15 @@ class Scale:
             powers += np.array(_DIMENSIONS[name]) * int(power or 1)
         return float(np.prod(np.array([self.mass, self.length, self.time]) ** powers))
 
-    def simulate(self, impact: Impact) -> xr.Dataset:
+    def simulate(self, impact: Impact, grid: Discretisation) -> xr.Dataset:
         """Simulate `impact` with its parameters, the grid's and the duration scaled."""
         values = {
             name: value * self.factor(PARAMETERS[name].units)
-            for name, value in flatten(impact, _SCALED_GRID).items()
+            for name, value in flatten(impact, grid).items()
             if PARAMETERS[name].units != "1" and not isinstance(value, str)
         }
-        scaled, _ = with_values(impact, _SCALED_GRID, values)
-        return simulate(scaled, _SCALED_GRID, duration=2e-3 * self.factor("s"))
+        scaled, _ = with_values(impact, grid, values)
+        return simulate(scaled, grid, duration=2e-3 * self.factor("s"))
 
 
 UNSCALED = Scale(1.0, 1.0, 1.0)
@@ -102,17 +107,19 @@ def similarity() -> Finding:
     break it.
     """
     found: list[Comparison] = []
-    for contact in LAWS:
-        impact = _yielding(contact)
-        run = UNSCALED.simulate(impact)
-        for name, scale in SCALES.items():
-            found += _compare(f"{contact}, {name}", run, scale.simulate(impact), scale)
     curves = []
-    for name, scale in {"the impact": UNSCALED, **SCALES}.items():
-        run = scale.simulate(_yielding("stronge"))
-        time = run.time.values / scale.factor("s")
-        newtons = run.contact_force.values / scale.factor("N")
-        curves.append(Curve(name, time, newtons, independent=scale is UNSCALED))
+    for scheme, grid in _SCALED_GRIDS.items():
+        for contact in LAWS if scheme == "leapfrog" else ("stronge",):
+            impact = _yielding(contact)
+            run = UNSCALED.simulate(impact, grid)
+            for name, scale in {"the impact": UNSCALED, **SCALES}.items():
+                scaled, where = scale.simulate(impact, grid), f"{scheme}, {contact}, {name}"
+                if scale is not UNSCALED:
+                    found += _compare(where, run, scaled, scale)
+                if contact == "stronge":
+                    time = scaled.time.values / scale.factor("s")
+                    newtons = scaled.contact_force.values / scale.factor("N")
+                    curves.append(Curve(f"{scheme}: {name}", time, newtons, scale is UNSCALED))
     axes = ("time", "s"), ("contact force", "N")
     return Finding(found, [Panel("scaled back", *axes, curves)])
 
@@ -149,92 +156,134 @@ def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> l
     return [worst(responses), worst(curves)]
 
 
-@dataclass
-class March:
+class _March(ABC):
     """The kernels' own beam and contact, one step at a time.
 
-    simulate() begins at first touch only; here the motion may begin anywhere. now: the row of the
-    beam's w that is now. w_s, u_s = dt w_s': the sphere's, in m.
+    simulate() begins at first touch only; here the motion may begin anywhere. w: what the beam
+    deflects by (m), its nodes' or its modes'; u = dt w'. w_s, u_s: the sphere's. midspan (m).
     """
 
-    impact: Impact
-    grid: Grid
-    pair: Pair
-    section: Section
-    beam: Beam
-    u_s: float
-    w_s: float = 0.0
-    now: int = 0
+    w: Floats
+    u: Floats
+    midspan = 0.0
+    w_s = 0.0
 
-    @property
-    def w(self) -> Floats:
-        """Deflection in m, as in solver.beam, (n + 4,)."""
-        return np.asarray(self.beam.w[self.now])
+    def __init__(self, impact: Impact, discretisation: Discretisation, duration: float) -> None:
+        case = case_table(impact, discretisation, duration=duration)[0]
+        self.impact, self.pair, self.section = impact, make_pair(case), make_section(case)
+        self.grid, self.steps = discretise(case, self.pair, self.section)
+        self.contact = np.zeros(1, CONTACT)  # Hertz contact has no memory
+        self.contact[0].n = 1.5
+        self.u_s = impact.velocity * self.grid.dt - 0.5 * impact.gravity * self.grid.dt**2
+
+    @abstractmethod
+    def move(self, newtons: float) -> None:
+        """Move the beam by a step under a force (N)."""
+
+    @abstractmethod
+    def undo(self) -> None:
+        """Take w back to the step before, where u has been reversed."""
 
     def step(self) -> float:
         """Advance by one step; return the force (N) at its beginning."""
-        contact = np.zeros(1, CONTACT)  # Hertz contact has no memory
-        contact[0].n = 1.5
-        newtons = float(force(contact[0], self.pair, self.w_s - self.w[self.grid.mid]))
-        w, u, now, yields = self.beam.w, self.beam.u, self.now, self.section.yield_curvature
-        move_virgin(w, now, u, 2, self.grid.mid + 1, self.grid, yields)
-        strike(w, now, u, newtons, self.grid)
+        newtons = float(force(self.contact[0], self.pair, self.w_s - self.midspan))
+        self.move(newtons)
         gravity = self.impact.gravity - newtons / self.impact.sphere.total_mass
         self.u_s += self.grid.dt**2 * gravity
         self.w_s += self.u_s
-        self.now = 1 - now
         return newtons
 
     def turn(self) -> None:
         """Reverse all velocities at the present positions."""
         self.step()  # for the velocities half a step later
-        self.beam.u[:] *= -1.0
+        self.u *= -1.0
         self.u_s *= -1.0
-        self.now = 1 - self.now
+        self.undo()
         self.w_s += self.u_s
+
+
+class _LeapfrogMarch(_March):
+    def __init__(self, impact: Impact, discretisation: Discretisation, duration: float) -> None:
+        super().__init__(impact, discretisation, duration)
+        self.beam, self.now = make_beam(self.grid), 0
+        self.w, self.u = self.beam.w[0], self.beam.u
+
+    def move(self, newtons: float) -> None:
+        w, grid = self.beam.w, self.grid
+        move_virgin(w, self.now, self.u, 2, grid.mid + 1, grid, self.section.yield_curvature)
+        strike(w, self.now, self.u, newtons, grid)
+        self.undo()
+
+    def undo(self) -> None:
+        """Turn to the other row of the beam's w: the next step, or the one before."""
+        self.now = 1 - self.now
+        self.w = self.beam.w[self.now]
+        self.midspan = float(self.w[self.grid.mid])
+
+
+class _ModalMarch(_March):
+    def __init__(self, impact: Impact, discretisation: Discretisation, duration: float) -> None:
+        super().__init__(impact, discretisation, duration)
+        bending = self.section.stiffness, self.section.yield_curvature
+        self.modes = make_modes(discretisation.nodes // 2, self.grid, *bending)
+        self.w, self.u = self.modes.q, self.modes.u
+
+    def move(self, newtons: float) -> None:
+        q, u, k2, d, push, source, _, seen, _, slack = self.modes
+        self.midspan = move_modes(q, u, d, push, source, k2, seen, slack, newtons)
+
+    def undo(self) -> None:
+        self.w += self.u
+        self.midspan = float(self.w.sum())
+
+
+_MARCHES = {
+    _LeapfrogMarch: Discretisation(nodes=201, points=3),
+    _ModalMarch: Discretisation(nodes=51, points=3, scheme="modal"),
+}
 
 
 @check(
     "Time reversal",
-    "Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section V.1: leapfrog and an "
-    "elastic law have no arrow of time",
+    "Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section V.1: leapfrog, of nodes "
+    "or of modes, and an elastic law have no arrow of time",
 )
 def time_reversal() -> Finding:
     """Compare forces there and, after all velocities are reversed, back; and the final state.
 
     The march uses the kernels' beam and contact, and is shown to be that of simulate().
     """
-    impact, discretisation = elastic(paper_impact(0.99)), Discretisation(nodes=201, points=3)
-    duration = 0.5e-3
-    case = case_table(impact, discretisation, duration=duration)[0]
-    pair, section = make_pair(case), make_section(case)
-    grid, steps = discretise(case, pair, section)
-    sphere = impact.velocity * grid.dt - 0.5 * impact.gravity * grid.dt**2
-    march = March(impact, grid, pair, section, make_beam(grid), sphere)
-    there = np.array([march.step() for _ in range(steps)])
-    largest = float(np.max(np.abs(march.w)))
-    march.turn()
-    back = np.array([march.step() for _ in range(steps)])[::-1]
-    march.turn()
-    solver = simulate(impact, discretisation, duration=duration, samples=steps + 1)
-    time, newtons = solver.time.values, solver.contact_force.values
-    where = f"the paper's case, elastic, {steps} steps there and back"
-    label = "contact force of the march and of simulate()"
-    left = {
-        "sphere's velocity over the first": (march.u_s / sphere, 1.0),
-        "sphere's place over deflection": (march.w_s / largest, 0.0),
-        "beam's velocity over the sphere's": (float(np.max(np.abs(march.beam.u))) / sphere, 0.0),
-        "deflection left over the largest": (float(np.max(np.abs(march.w))) / largest, 0.0),
-    }
-    # The force at the turn belongs to the way back, the force at first touch to the way there.
-    found = [
-        curve(label, where, "N", there, newtons[:-1], TOLERANCE),
-        curve("contact force, back and there", where, "N", back[:-1], there[1:], TOLERANCE),
-        *(absolute(name, where, "1", *values, TOLERANCE) for name, values in left.items()),
-    ]
-    curves = [
-        Curve("there", time[:-1], there),
-        Curve("back, in reverse", time[1:], back, independent=True),
-    ]
+    impact, duration = elastic(paper_impact(0.99)), 0.5e-3
+    found: list[Comparison] = []
+    curves: list[Curve] = []
+    for kind, grid in _MARCHES.items():
+        march = kind(impact, grid, duration)
+        steps, velocity = march.steps, march.u_s
+        there = np.array([march.step() for _ in range(steps)])
+        largest = float(np.max(np.abs(march.w)))
+        march.turn()
+        back = np.array([march.step() for _ in range(steps)])[::-1]
+        march.turn()
+        solver = simulate(impact, grid, duration=duration, samples=steps + 1)
+        time, newtons = solver.time.values, solver.contact_force.values
+        where = f"{grid.scheme}: the paper's case, elastic, {steps} steps there and back"
+        label = "contact force of the march and of simulate()"
+        moving, left = (float(np.max(np.abs(values))) for values in (march.u, march.w))
+        ends = {
+            "sphere's velocity over the first": (march.u_s / velocity, 1.0),
+            "sphere's place over deflection": (march.w_s / largest, 0.0),
+            "beam's velocity over the sphere's": (moving / velocity, 0.0),
+            "deflection left over the largest": (left / largest, 0.0),
+        }
+        # The force at the turn belongs to the way back, the force at first touch to the way there.
+        found += [
+            curve(label, where, "N", there, newtons[:-1], TOLERANCE),
+            curve("contact force, back and there", where, "N", back[:-1], there[1:], TOLERANCE),
+            *(absolute(name, where, "1", *values, TOLERANCE) for name, values in ends.items()),
+        ]
+        curves += [
+            Curve(f"{grid.scheme}: there", time[:-1], there),
+            Curve(f"{grid.scheme}: back, in reverse", time[1:], back, independent=True),
+        ]
     axes = ("time since first touch", "s"), ("contact force", "N")
     return Finding(found, [Panel("the paper's case, elastic", *axes, curves)])
