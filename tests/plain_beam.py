@@ -3,8 +3,8 @@
 The whole beam, every fibre through its return mapping at every step, the contact laws with
 unloading and reloading written out, the modal scheme's sums over modes as dense matrices of the
 nodes, and the responses read off the full histories afterwards. From impactlab come only the case,
-the number of steps and, from its independent solutions, the integration rules and the contact laws
-beyond the paper's.
+the number of steps and, from its independent solutions, the integration rules, the modes and the
+contact laws beyond the paper's.
 SI units; z and w point downwards.
 """
 
@@ -19,6 +19,7 @@ import numpy as np
 
 import impactlab as il
 from impactlab.verification.solutions import contact_laws, quadrature
+from impactlab.verification.solutions.beam_modes import modes_on_nodes
 
 Array = np.ndarray[Any, Any]
 
@@ -249,27 +250,15 @@ def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:
     )
 
 
-def make_matrices(bar: Bar, grid: il.Discretisation, dt: float) -> Matrices:
+def make_matrices(impact: il.Impact, bar: Bar, grid: il.Discretisation, dt: float) -> Matrices:
     """Return what the scheme of the grid does to the inner nodes."""
-    if grid.scheme == "modal":
-        return make_modes(bar, grid, dt)
-    return Matrices(*np.zeros((3, 0, 0)))
-
-
-def make_modes(bar: Bar, grid: il.Discretisation, dt: float) -> Matrices:
-    """Return those of the sine modes sin(k x) that are symmetric about mid-span.
-
-    A mode's inertia per length is such that a step turns its free vibration by omega dt, or by a
-    quarter of a turn if that is less.
-    """
-    number, intervals = np.arange(1, grid.nodes - 1, 2), grid.nodes - 1
-    k = number * np.pi / (bar.dx * intervals)
-    shapes = np.sin(np.outer(np.arange(1, intervals), number) * np.pi / intervals)
-    stiffness = bar.E * (bar.area @ bar.z**2) * k**4
-    turn = np.minimum(dt * np.sqrt(stiffness / bar.mu), 0.5 * np.pi)
-    inertia = stiffness * (0.5 * dt / np.sin(0.5 * turn)) ** 2
+    if grid.scheme == "leapfrog":
+        return Matrices(*np.zeros((3, 0, 0)))
+    stiffness = bar.E * (bar.area @ bar.z**2)
+    k, shapes, inertias = modes_on_nodes(impact.beam, grid.nodes, stiffness, dt)
+    shapes = shapes[1:-1]
     to_modes = np.linalg.pinv(shapes)
-    back = shapes / inertia
+    back = shapes / inertias
     return Matrices(shapes * -(k**2) @ to_modes, back * -(k**2) @ to_modes, back @ to_modes)
 
 
@@ -288,7 +277,7 @@ def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> 
         impact.sphere.total_mass,
         dt,
         steps,
-        make_matrices(bar, grid, dt),
+        make_matrices(impact, bar, grid, dt),
         histories,
         w,
         plastic_strain,

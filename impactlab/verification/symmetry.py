@@ -245,8 +245,8 @@ _MARCHES = {
 
 @check(
     "Time reversal",
-    "Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section V.1: leapfrog, of nodes "
-    "or of modes, and an elastic law have no arrow of time",
+    "Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section V.1: leapfrog of "
+    "nodes or of modes, and an elastic law have no arrow of time",
 )
 def time_reversal() -> Finding:
     """Compare forces there and, after all velocities are reversed, back; and the final state.

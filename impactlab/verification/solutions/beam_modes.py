@@ -71,6 +71,22 @@ def _odd_wave_numbers(beam: Beam, count: int) -> Floats:
     return np.arange(1, 2 * count, 2, dtype=np.float64) * (math.pi / beam.span)
 
 
+def modes_on_nodes(
+    beam: Beam, nodes: int, stiffness: float, dt: float
+) -> tuple[Floats, Floats, Floats]:
+    """Return (wave numbers, shapes, inertias) of the odd modes that nodes can tell apart.
+
+    They are half as many as there are spacings. shapes: sin(k x) at the nodes, (nodes, modes).
+    inertias: per length in kg/m, those with which central differences in time turn a free mode in
+    a step dt (s) by its exact omega dt, or by a quarter of a turn where that is less. stiffness:
+    EI in N m2, as the fibres have it.
+    """
+    k = _odd_wave_numbers(beam, nodes // 2)
+    shapes = np.sin(np.outer(np.linspace(0.0, beam.span, nodes), k))
+    turn = np.minimum(dt * k**2 * math.sqrt(stiffness / beam.mass_per_length), 0.5 * math.pi)
+    return k, shapes, stiffness * k**4 * (0.5 * dt / np.sin(0.5 * turn)) ** 2
+
+
 def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
     """Return both spectra of the first `count` odd n: the lower frequencies, then the higher.
 
