@@ -28,6 +28,7 @@ _CHECKS = (
     plasticity.static_deflection,
     plasticity.static_collapse,
     plasticity.rigid_plastic_mode,
+    plasticity.fibre_elements,
     modal_series.timoshenko_beam,
     beam_limits.slender_limit,
     contact.spring_mass,

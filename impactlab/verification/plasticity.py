@@ -13,9 +13,19 @@ from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
 from impactlab.simulate import case_table, simulate
 from impactlab.solver import RULES, section
 from impactlab.types import Floats
+from impactlab.variables import HISTORIES
 from impactlab.verification.cases import with_beam_material
-from impactlab.verification.finding import Comparison, Curve, Finding, Panel, check, curve, relative
-from impactlab.verification.solutions import beam_modes, bending, collapse, quadrature
+from impactlab.verification.finding import (
+    Comparison,
+    Curve,
+    Finding,
+    Panel,
+    check,
+    curve,
+    relative,
+    responses,
+)
+from impactlab.verification.solutions import beam_modes, bending, collapse, fibre_beam, quadrature
 
 _HARDENING = {
     "perfectly plastic": {},
@@ -292,3 +302,49 @@ def _permanent_deflection(run: xr.Dataset) -> float:
     curvature = run.plastic_strain.values @ (weights * z) / (weights @ z**2)
     near = np.minimum(x, x[-1] - x)
     return float(np.trapezoid(0.5 * curvature * near, x))
+
+
+STRUCK = {
+    "perfectly plastic, 15 m/s": paper_impact(15.0),
+    "isotropic hardening 20 GPa, 20 m/s": with_beam_material(
+        paper_impact(20.0), isotropic_hardening_modulus=20e9
+    ),
+}
+ELEMENTS, STEPS, STRUCK_DURATION = 32, 500, 0.5e-3
+FIBRE_TOLERANCES = {
+    "contact_force": 4e-3,
+    "midspan_deflection": 1e-3,
+    "peak_force": 5e-4,
+    "plastic_dissipation": 1e-2,
+}
+"""Of histories and responses: more than twice what the fibre solution changes by with twice the
+elements and steps."""
+
+
+@check(
+    "Yielding beam: fibre elements",
+    "cubic elements with fibre sections, Newmark's average acceleration, in "
+    "impactlab.verification.solutions.fibre_beam; McKenna, Comput. Sci. Eng. 13 (2011) 58",
+)
+def fibre_elements() -> Finding:
+    """Compare both schemes with an implicit solution of sphere, contact, beam and fibres."""
+    found: list[Comparison] = []
+    panels: list[Panel] = []
+    for name, impact in STRUCK.items():
+        exact = fibre_beam.solve(impact, STRUCK_DURATION, elements=ELEMENTS, steps=STEPS)
+        curves = []
+        for scheme, nodes in (("leapfrog", 401), ("modal", 201)):
+            where, grid = f"{scheme}: {name}", Discretisation(nodes=nodes, scheme=scheme)
+            run = simulate(impact, grid, duration=STRUCK_DURATION, samples=STEPS + 1)
+            for variable, tolerance in FIBRE_TOLERANCES.items():
+                theirs = getattr(exact, variable)
+                if variable in HISTORIES:
+                    label = f"history of {HISTORIES[variable].long_name}"
+                    ours, units = run[variable].values, HISTORIES[variable].units
+                    found.append(curve(label, where, units, ours, theirs, tolerance))
+                else:
+                    found += responses(run, where, {variable: theirs}, tolerance)
+            curves.append(Curve(f"{scheme}, {nodes} nodes", exact.time, run.contact_force.values))
+        curves.append(Curve("fibre elements", exact.time, exact.contact_force, independent=True))
+        panels.append(Panel(name, ("time", "s"), ("contact force", "N"), curves))
+    return Finding(found, panels)
