@@ -65,8 +65,6 @@ def audit(impact: Impact, grid: Discretisation, duration: float) -> Audit:
     force, time = run.contact_force.values, run.time.values
     impulse = float(np.trapezoid(force, time))
     contact = float(np.trapezoid(force, run.indentation.values))
-    curvature, inertia = _OPERATORS[grid.scheme](impact, grid, dt)
-    plastic, stored = _strain_energies(impact, grid, run, curvature @ run.deflection.values)
     # The sphere's velocities half a step before the end and half a step after.
     fallen, last = run.sphere_displacement.values, float(time[-1] - time[-2])
     earlier = float((fallen[-1] - fallen[-2]) / last)
@@ -76,7 +74,10 @@ def audit(impact: Impact, grid: Discretisation, duration: float) -> Audit:
         for shift in (-dt, dt)
     )
     here = run.deflection.values
-    moving = float(0.5 * (here - before) @ inertia @ (after - here) / dt**2)
+    bend = _bend_modes if grid.scheme == "modal" else _bend_differences
+    curvature, momentum = bend(impact, grid, dt, here, (here - before) / dt)
+    moving = float(0.5 * momentum @ (after - here) / dt)
+    plastic, stored = _strain_energies(impact, grid, run, curvature)
     start = impact.velocity**2 - (0.5 * gravity * dt) ** 2  # a product, too
     brought = 0.5 * mass * start + mass * gravity * float(fallen.max())
     spent = mass * gravity * float(fallen.max() - fallen[-1])
@@ -93,25 +94,24 @@ def audit(impact: Impact, grid: Discretisation, duration: float) -> Audit:
     )
 
 
-def _differences(impact: Impact, grid: Discretisation, dt: float) -> tuple[Floats, Floats]:
-    """Return (curvatures, inertia), (nodes, nodes): from deflections to 1/m, and in kg."""
-    beam, nodes = impact.beam, grid.nodes
-    dx = beam.span / (nodes - 1)
-    second = np.eye(nodes, k=1) + np.eye(nodes, k=-1) - 2.0 * np.eye(nodes)
-    second[[0, -1]] = 0.0
-    return second / dx**2, beam.mass_per_length * dx * np.eye(nodes)
+def _bend_differences(
+    impact: Impact, grid: Discretisation, dt: float, w: Floats, v: Floats
+) -> tuple[Floats, Floats]:
+    """Return the nodes' (curvatures in 1/m, momenta in kg m/s) from w (m) and v (m/s), (nodes,)."""
+    dx = impact.beam.span / (grid.nodes - 1)
+    return np.pad(np.diff(w, 2), 1) / dx**2, impact.beam.mass_per_length * dx * v
 
 
-def _modes(impact: Impact, grid: Discretisation, dt: float) -> tuple[Floats, Floats]:
-    """Return the same as _differences of the modal scheme."""
+def _bend_modes(
+    impact: Impact, grid: Discretisation, dt: float, w: Floats, v: Floats
+) -> tuple[Floats, Floats]:
+    """Return the same where modes are moved, by steps of dt (s)."""
     beam, (positions, weights) = impact.beam, quadrature.rule(grid.rule, grid.points)
     stiffness = 1.5 * float(weights @ positions**2) * beam.bending_stiffness
     k, shapes, inertia = modes_on_nodes(beam, grid.nodes, stiffness, dt)
-    to_modes = 2.0 / (grid.nodes - 1) * shapes.T
-    return -(shapes * k**2) @ to_modes, 0.5 * beam.span * (to_modes.T * inertia) @ to_modes
-
-
-_OPERATORS = {"leapfrog": _differences, "modal": _modes}
+    share = 2.0 / (grid.nodes - 1)
+    q, q_rate = share * (w @ shapes), share * (v @ shapes)
+    return -shapes @ (k**2 * q), share * 0.5 * beam.span * (shapes @ (inertia * q_rate))
 
 
 def _strain_energies(

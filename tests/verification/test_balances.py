@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import impactlab as il
 from impactlab.model.parameters import with_values
-from impactlab.solver import RULES, SCHEMES
+from impactlab.solver import RULES
 from impactlab.solver.contact import LAWS
 from impactlab.variables import STATUS_FLAGS
 from impactlab.verification.energy import audit
@@ -92,14 +92,14 @@ def test_force_moves_the_beam():
 
 @pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes hours as plain Python")
-def test_balances_of_hundreds_of_impacts():
+@pytest.mark.parametrize(("scheme", "nodes", "cases"), [("leapfrog", 201, 200), ("modal", 41, 150)])
+def test_balances_of_hundreds_of_impacts(scheme, nodes, cases):
     """Exact in an elastic beam; in one that yields, as good as the run itself reports."""
     seen = Counter()
 
-    @settings(FIXED, max_examples=300 // len(LAWS))
-    @given(VALUES, st.sampled_from(SCHEMES), st.floats(0.3e-3, 6e-3))
-    def check(law, values, scheme, duration):
-        nodes = {"leapfrog": 201, "modal": 51}[scheme]
+    @settings(FIXED, max_examples=cases // len(LAWS))
+    @given(VALUES, st.floats(0.3e-3, 6e-3))
+    def check(law, values, duration):
         impact, grid = il.paper_impact(contact=law), il.Discretisation(nodes=nodes, scheme=scheme)
         found = audit(*with_values(impact, grid, values), duration)
         run = found.run
@@ -107,7 +107,7 @@ def test_balances_of_hundreds_of_impacts():
             seen["no answer"] += 1
             return
         yields = run.peak_plastic_strain.item() > 0
-        seen[f"{scheme} yields" if yields else f"{scheme} stays elastic"] += 1
+        seen["yields" if yields else "stays elastic"] += 1
         assert abs(found.momentum) < 1e-9
         # few nodes and long steps are drawn, too: the run must say so itself
         assert abs(found.energy) < (0.01 + 5 * run.energy_error.item() if yields else 1e-9)
@@ -119,6 +119,5 @@ def test_balances_of_hundreds_of_impacts():
 
     for law in LAWS:
         check(law)
-    assert seen.pop("no answer", 0) < 30
-    assert len(seen) == 4
-    assert min(seen.values()) >= 25, seen
+    assert min(seen["yields"], seen["stays elastic"]) >= cases // 6, seen
+    assert seen["no answer"] < cases // 10, seen
