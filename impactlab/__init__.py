@@ -3,7 +3,8 @@
 One impact: Impact (of Sphere, Beam and Material, or paper_impact), Discretisation, simulate.
 Many: simulate_many; or a Study of a Grid, Sobol, Morris, Fast, Delta, Pawn or Regression sample of
 Uniform, LogUniform, Normal, TruncatedNormal, Lognormal and Triangular parameters.
-What they say: analyse, answers, plot, load_surrogate. What is wrong with a study: StudyError.
+Responses or a model of your own: Function. What they say: analyse, answers, plot, load_surrogate.
+What is wrong with a study: StudyError.
 
 >>> import impactlab as il
 >>> run = il.simulate(il.paper_impact("5 m/s"), duration="1 ms")

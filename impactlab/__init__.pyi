@@ -25,5 +25,6 @@ from .study.schema.written import Sobol as Sobol
 from .study.schema.written import Triangular as Triangular
 from .study.schema.written import TruncatedNormal as TruncatedNormal
 from .study.schema.written import Uniform as Uniform
+from .study.solvers.own import Function as Function
 
 __version__: str

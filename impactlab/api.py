@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 from os import cpu_count
 from pathlib import Path
@@ -13,11 +13,15 @@ import xarray as xr
 from impactlab.files import identity, opened, read_netcdf, replaced
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
+from impactlab.model.parameters import PARAMETERS
 from impactlab.model.quantities import Quantity
 from impactlab.study import REFINEMENT, RESOLUTION, steps
+from impactlab.study.errors import Problem, StudyError
 from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema import files, yaml_file
 from impactlab.study.schema.written import _Sampling, text_of
+from impactlab.study.solvers.own import Function, register
+from impactlab.variables import FLAGS, RESPONSES, VARIABLES
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -38,9 +42,13 @@ class Study:
 
     title: one line. impact: the one that all runs start from. sampling: which parameters vary, and
     how (Grid, Sobol, ...). duration: simulated time. discretisation: a Discretisation, or "auto",
-    which pilot runs find. responses, analyses: names; by default all. store, analysis: mappings as
-    in a file. function: the name of a test function in place of the solver. name: of the folder of
-    results; by default the title in small letters and digits. results: the folder of all results.
+    which pilot runs find. responses, analyses: names; by default all. Responses of your own are
+    functions of the dataset of one impact (see `simulate`) that return a number, or il.Function
+    with a unit: `{"momentum": function, "peak_force": "peak_force"}`. store, analysis: mappings as
+    in a file. function: in place of the solver, the name of a test function, or a function of your
+    own, called with a run's parameters by name, that returns a number, or a mapping of `responses`
+    to numbers. name: of the folder of results; by default the title in small letters and digits.
+    results: the folder of all results.
 
     Runs, analysis, figures and report go to `folder`, by default results/NAME of the working
     folder, and are found there again by whoever runs the same study: Python or the command line.
@@ -82,20 +90,32 @@ class Study:
         impact: Impact | Mapping[str, Any] | None = None,
         duration: Quantity = None,
         discretisation: Discretisation | Mapping[str, Any] | str | None = None,
-        responses: Sequence[str] | str | None = None,
+        responses: Sequence[str] | str | Mapping[str, Any] | None = None,
         analyses: Sequence[str] | str | None = None,
         store: Mapping[str, Any] | None = None,
         analysis: Mapping[str, Any] | None = None,
         description: str | None = None,
-        function: str | None = None,
+        function: str | Function | Callable[..., Any] | None = None,
         name: str | None = None,
         results: str | Path = "results",
     ) -> None:
         """Read the arguments as a study file is read."""
+        python: dict[str, str] = {}
+        if isinstance(responses, Mapping):
+            python = {
+                each: _key(f"responses.{each}", each, call)
+                for each, call in responses.items()
+                if not isinstance(call, str)
+            }
+            _check_names(python)
+            responses = list(responses)
+        if function is not None and not isinstance(function, str):
+            function = _key("function", getattr(function, "__name__", "model"), function)
         keys = {
             "title": title,
             "description": description,
             "function": function,
+            "python_responses": python or None,
             "impact": impact,
             "discretisation": discretisation,
             "duration": duration,
@@ -131,6 +151,9 @@ class Study:
         """
         path = Path(path)
         yaml_file.check_path(path)
+        if self.declared.python:
+            reason = "a study of Python functions cannot be written to a file: keep its code"
+            raise StudyError(Problem(str(path), "", reason))
         with replaced(path) as unfinished:
             unfinished.write_text(self.declared.text, encoding="utf-8")
 
@@ -182,7 +205,8 @@ class Study:
         They are kept in `folder`: shards/ while they are solved, so that an interrupted study
         resumes where it stopped, then runs.nc.
 
-        workers: threads, or processes of this machine. client: a dask client of your own in their
+        workers: threads, or processes of this machine (which begin with the script itself: they
+        need its `if __name__ == "__main__":`). client: a dask client of your own in their
         place; it is not closed. force: also what takes a month of one core, or all memory.
 
         Raises StudyError where that is exceeded, ValueError where the model refuses a run, OSError
@@ -270,6 +294,23 @@ def _engine(workers: int, processes: bool = False, client: Client | None = None)
     from impactlab.study.engine import Engine
 
     return Engine("processes" if processes else "threads", workers, own=client)
+
+
+def _key(path: str, name: str, function: Any) -> str:
+    """Return the key of a Python function. Raises StudyError with the reason why there is none."""
+    try:
+        return register(name, function)
+    except ValueError as error:
+        raise StudyError(Problem("Study", path, str(error))) from None
+
+
+def _check_names(python: Iterable[str]) -> None:
+    taken = {*PARAMETERS, *VARIABLES, *FLAGS} - {*RESPONSES}
+    for name in python:
+        if not name.isidentifier() or name in taken:
+            why = "another variable has it" if name in taken else "use letters, digits and _"
+            problem = Problem("Study", f"responses.{name}", f"cannot name a response: {why}")
+            raise StudyError(problem)
 
 
 def _name(title: Any, name: str | None) -> str:

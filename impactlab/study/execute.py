@@ -22,7 +22,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.progress import items_done
 from impactlab.study.runs import Work, open_answers
-from impactlab.study.solvers import solver_named, solver_of
+from impactlab.study.solvers import functions_of, solver_named, solver_of
 from impactlab.study.store import OutputSpec, RunIndex, Shards, joined, locked
 
 log = logging.getLogger(__name__)
@@ -82,11 +82,19 @@ _KEPT = "Finished runs are kept: the same command resumes where it stopped."
 _GONE = f"the dask scheduler is gone. {_KEPT}"
 
 
-def solve_batch(solver: str, cases: Array, output: OutputSpec, version: str) -> Result:
+def solve_batch(
+    solver: str, cases: Array, output: OutputSpec, version: str, functions: Any = None
+) -> Result:
     """Return the answers and the seconds that they took: the task that dask runs.
+
+    functions: of `solvers.functions_of`, for a worker that may not know them.
 
     Raises RuntimeError where the solver has another version than the caller's.
     """
+    if functions is not None:
+        from impactlab.study.solvers.own import TASKS
+
+        TASKS[solver] = functions
     if version != solver_named(solver).version:
         raise RuntimeError(
             "this dask worker has another version of impactlab: install the same one on all of them"
@@ -156,7 +164,7 @@ class WorkerPool:
                 break
             cases, solver = work.solver.cases(work.design, runs), solver_of(work.design)
             task = solve_batch, solver, cases, work.output, work.solver.version
-            future = self.client.submit(*task, pure=False)
+            future = self.client.submit(*task, functions_of(solver), pure=False)
             self.under_way[future.key] = runs
             futures.append(future)
         return futures

@@ -31,6 +31,8 @@ log = logging.getLogger(__name__)
 
 _STUDY = "study"
 """File in a folder of shards that names the study file."""
+PYTHON = "python_functions.txt"
+"""File for the text of a study of Python functions, which only Python can read again."""
 AnyStudy = Study | FunctionStudy
 Tell = Callable[[xr.Dataset], object]
 
@@ -132,7 +134,7 @@ def run(
         drawn = design(resolved(study, path.parent, engine, tell))
         file = study.path
         if not file.is_file():  # made in Python: `clean` finds its text there
-            file = path.with_name(f"{study.name}.yaml")
+            file = path.with_name(PYTHON if study.python else f"{study.name}.yaml")
             with replaced(file) as unfinished:
                 unfinished.write_text(study.text, encoding="utf-8")
         solve(drawn, path, engine, file)
@@ -224,6 +226,8 @@ def _stale(file: Path, shards: Path) -> dict[Path, str]:
             file = Path((shards.with_name(SHARDS) / _STUDY).read_text().strip())
     if not file.is_file():
         return removable_files(shards, ())
+    if file.name == PYTHON:
+        return {}
     if shards.name != SHARDS:
         return removable_files(shards, None)
     declared = resolved_before(read_study(file), shards.parent)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import prod
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
@@ -41,7 +42,7 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
     sampling = study.sampling
     fixed: dict[str, Any]
     if isinstance(study, FunctionStudy):
-        ranges = FUNCTIONS[study.function].ranges
+        ranges = {} if study.python else FUNCTIONS[study.function].ranges
         fixed = {name: 0.5 * (low + high) for name, (low, high) in ranges.items()}
         fixed |= {name: float(value) for name, value in sampling.fixed.items()}
         own: dict[str, Any] = {"solver": "function", "function": study.function}
@@ -58,6 +59,8 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
             "profiles": int(study.store.profiles),
             "history_samples": study.store.samples,
         }
+    if study.python:
+        own |= {"solver": resolve_name("impactlab.study.solvers.own:solver_name")(study)}
     varied: dict[str, Any]
     if isinstance(sampling, Grid):
         varied = {name: (name, np.array(values)) for name, values in sampling.parameters.items()}
@@ -72,7 +75,7 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
     found = xr.Dataset(coords=scalars | varied, attrs=_common_attributes(study) | own)
     if isinstance(study, Study):
         return described(found)
-    for name in fixed:
+    for name in () if study.python else fixed:
         words = f"{name} of the {FUNCTIONS[study.function].title}"
         found[name].attrs = {"long_name": words, "units": "1"} | found[name].attrs
     return found

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator, create_model
 
+from impactlab.model.impact import SOLID
 from impactlab.model.parameters import Parameter
 from impactlab.study.errors import Problem, StudyError, unknown
 from impactlab.study.sampling import read_sampling
@@ -16,7 +17,7 @@ from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.checks import CHECKS, has_solid_runs, values_of
-from impactlab.study.schema.section import Heading, names, validated
+from impactlab.study.schema.section import Heading, Names, names, validated
 from impactlab.study.schema.study import Analysis, FunctionStudy, Study, StudyFile, Verification
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
 from impactlab.verification.functions import FUNCTIONS
@@ -125,7 +126,8 @@ _STAND_INS: dict[str, Any] = {
 
 def _study(source: Source) -> Study:
     """Return a study of impacts. Raises StudyError with every problem of the file."""
-    data, path = source.data, str(source.path)
+    path = str(source.path)
+    data, requested, python = _python_responses(source.data, path)
     problems: list[Problem] = []
     try:
         file = validated(StudyFile, data, path)
@@ -143,13 +145,50 @@ def _study(source: Source) -> Study:
     grid, auto = file.discretisation
     models = values_of(file.sampling, "beam_model", file.impact.beam_model)
     grid = grid.resolved(map(str, models))
-    own = {"discretisation": grid, "auto": auto, "analysis": file.analysis or Analysis()}
+    if python and has_solid_runs(file):
+        reason = f"are not possible with beam_model: {SOLID}"
+        raise StudyError(Problem(path, "python_responses", reason))
+    own: dict[str, Any] = {"discretisation": grid, "auto": auto}
+    own |= {"analysis": file.analysis or Analysis(), "python": python}
+    own |= {"responses": requested} if python else {}
     return Study(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 
 
+def _python_responses(
+    data: dict[str, Any], path: str
+) -> tuple[dict[str, Any], tuple[str, ...], dict[str, str]]:
+    """Return the data without Python functions, all names of responses, and the functions' keys.
+
+    Raises StudyError for functions that this process does not know, or that do not fit the study.
+    """
+    if "python_responses" not in data:
+        return data, (), {}
+    from impactlab.study.solvers.own import KNOWN
+
+    python, rest = data["python_responses"], dict(data)
+    del rest["python_responses"]
+    if not isinstance(python, dict) or not {*map(str, python.values())} <= KNOWN.keys():
+        raise StudyError(Problem(path, "python_responses", _NOT_KNOWN))
+    requested = tuple(map(str, data.get("responses", ())))
+    ours = [name for name in requested if name not in python]
+    rest |= {"responses": ours} if ours else {}
+    if not ours:
+        del rest["responses"]
+    section = data.get("discretisation")
+    if section == "auto" or (isinstance(section, dict) and "auto" in section):
+        reason = "is not possible with Python functions as responses: state the discretisation"
+        raise StudyError(Problem(path, "discretisation.auto", reason))
+    return rest, requested, {str(name): str(key) for name, key in python.items()}
+
+
+_NOT_KNOWN = "holds a Python function, which is in no file: build the study in Python"
+
+
 def _function_study(source: Source) -> FunctionStudy:
-    """Return a study of a test function. Raises StudyError with every problem of the file."""
+    """Return a study of a function. Raises StudyError with every problem of the file."""
     name, path = source.data.get("function"), str(source.path)
+    if isinstance(name, str) and "@" in name:
+        return _own_function_study(source, name)
     if not isinstance(name, str) or name not in FUNCTIONS:
         raise StudyError(Problem(path, "function", unknown("function", name, FUNCTIONS), name))
     title = FUNCTIONS[name].title
@@ -161,12 +200,36 @@ def _function_study(source: Source) -> FunctionStudy:
     return FunctionStudy(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 
 
+def _own_function_study(source: Source, key: str) -> FunctionStudy:
+    from impactlab.study.solvers.own import KNOWN
+
+    path = str(source.path)
+    if key not in KNOWN:
+        raise StudyError(Problem(path, "function", _NOT_KNOWN))
+    sampling = source.data.get("sampling")
+    listed = sampling.get("parameters") if isinstance(sampling, dict) else None
+    names = [str(name) for name in listed] if isinstance(listed, dict) else []
+    if wrong := [name for name in names if not name.isidentifier() or name in ("run", "status")]:
+        reason = "cannot name an argument of a function: use letters, digits and _"
+        raise StudyError(Problem(path, f"sampling.parameters.{wrong[0]}", reason))
+    parameters = {name: Parameter(name, "1", name.replace("_", " "), ()) for name in names}
+    file = validated(_OwnFunctionFile, source.data, path, parameters)
+    own: dict[str, Any] = {"analyses": ("sensitivity", "surrogate")}
+    return FunctionStudy(name=source.name, path=source.path, text=source.text, **dict(file) | own)
+
+
 class _FunctionFile(Heading):
     """The keys of a study of a test function."""
 
     function: str
     sampling: Annotated[Grid | Sample, PlainValidator(read_sampling)]
     analysis: Analysis = Field(default_factory=Analysis)
+
+
+class _OwnFunctionFile(_FunctionFile):
+    """The keys of a study of a Python function."""
+
+    responses: Names = ("value",)
 
 
 def _verification(source: Source) -> Verification:

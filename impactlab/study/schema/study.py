@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass
+from dataclasses import MISSING, dataclass, field
 from functools import reduce
 from pathlib import Path
 from typing import Annotated, Any
@@ -204,7 +204,7 @@ class Study(StudyBase):
 
     impact and discretisation: the base of all runs. auto: how to find nodes, points and courant
     where they are not given. duration: simulated time in s. responses: names out of RESPONSES.
-    store: other data kept of each run.
+    store: other data kept of each run. python: keys of the responses that are Python functions.
     """
 
     impact: Impact
@@ -212,13 +212,22 @@ class Study(StudyBase):
     auto: Auto | None
     duration: float
     store: Store
+    python: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class FunctionStudy(StudyBase):
-    """A study of a test function in place of the solver. function: a name out of FUNCTIONS."""
+    """A study of a function in place of the solver.
+
+    function: a name out of FUNCTIONS, or the key of a Python function.
+    """
 
     function: str
+
+    @property
+    def python(self) -> bool:
+        """True for a Python function of the user."""
+        return "@" in self.function
 
 
 @dataclass(frozen=True)

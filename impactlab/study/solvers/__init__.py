@@ -73,9 +73,20 @@ SOLVERS = {
 
 
 def solver_named(name: str) -> Solver:
-    """Return the solver of this name."""
+    """Return the solver of this name.
+
+    Raises ValueError where it is of Python functions that this process does not know.
+    """
+    if name.startswith("own "):
+        own: Solver = resolve_name("impactlab.study.solvers.own:solver")(name)
+        return own
     found: Solver = resolve_name(SOLVERS[name])
     return found
+
+
+def functions_of(name: str) -> Any:
+    """Return what a worker has to know for a solver of Python functions; None for any other."""
+    return resolve_name("impactlab.study.solvers.own:TASKS")[name] if name[:4] == "own " else None
 
 
 def solver_of(design: xr.Dataset) -> str:

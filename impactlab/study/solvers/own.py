@@ -1,0 +1,222 @@
+"""Functions of the user: as responses of an impact, or as a model in place of the solver.
+
+A study holds them by keys, NAME@FINGERPRINT, under which this process knows them; workers are sent
+what they need with each batch.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from hashlib import sha256
+from numbers import Real
+from typing import Any
+
+import cloudpickle
+import numpy as np
+import xarray as xr
+
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import paper_impact
+from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.simulate import simulate
+from impactlab.study.netcdf import Array, Columns
+from impactlab.study.schema.study import FunctionStudy, Study
+from impactlab.study.solvers import Solver, flattened, run_shape
+from impactlab.study.solvers.fingerprint import fingerprint
+from impactlab.study.solvers.impact import SOLVER as IMPACT
+from impactlab.study.store import OutputSpec
+from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES, described, provenance
+
+_COST = 3e6
+"""Cost of calling functions once, about 10 ms."""
+
+
+@dataclass(frozen=True)
+class Function:
+    """A Python function as a response or as a model, with the unit of what it returns.
+
+    call: of the dataset of one impact (that of `il.simulate`), or of a model's parameters by name;
+    returns a number, NaN where there is none. units: SI, as "N" or "m s-1". long_name: for labels.
+    version: by default a hash of the code and of all that it uses; stored answers of another
+    version are not reused.
+
+    >>> def mean_force(run):
+    ...     return run.impulse / run.total_contact_time
+    >>> force = il.Function(mean_force, units="N", long_name="mean contact force")
+    """
+
+    call: Callable[..., Any]
+    units: str = "1"
+    long_name: str = ""
+    version: str | None = None
+
+
+@dataclass(frozen=True)
+class Task:
+    """The functions of a study, by the name of the response, or one under "" for a model.
+
+    samples: of the histories that responses are given. parameters, responses: of a model.
+    """
+
+    functions: Mapping[str, Function]
+    samples: int = 0
+    parameters: tuple[str, ...] = ()
+    responses: tuple[str, ...] = ()
+
+
+KNOWN: dict[str, Function] = {}
+"""Functions that studies of this process were built with, by their keys."""
+TASKS: dict[str, Task] = {}
+"""The same for solvers, by their names."""
+SOLVER_NAME = "own"
+
+
+def register(name: str, function: Function | Callable[..., Any]) -> str:
+    """Return the key of a function. Raises ValueError with the reason where it cannot be used."""
+    given = function if isinstance(function, Function) else Function(function)
+    if not callable(given.call):
+        raise ValueError(
+            f"is of type {type(given.call).__name__}: expected a function, or il.Function"
+        )
+    version = given.version or fingerprint(given.call)
+    try:
+        cloudpickle.dumps(given.call)
+    except Exception as error:  # whatever its content raises
+        raise ValueError(f"cannot be sent to workers ({error})") from None
+    digest = sha256(f"{version} {given.units}".encode()).hexdigest()[:16]
+    KNOWN[f"{name}@{digest}"] = given
+    return f"{name}@{digest}"
+
+
+def solver_name(study: Study | FunctionStudy) -> str:
+    """Return the name of the solver of a study with functions of the user; it is known from now.
+
+    Raises ValueError where a function, or what it uses, has changed since the study was built.
+    """
+    keys = [study.function] if isinstance(study, FunctionStudy) else list(study.python.values())
+    for key in keys:
+        if register(key.partition("@")[0], KNOWN[key]) != key:
+            raise ValueError(f"{key}: has changed since the study was built: build it again")
+    if isinstance(study, FunctionStudy):
+        names = tuple(study.sampling.parameters)
+        task = Task({"": KNOWN[study.function]}, 0, names, study.responses)
+    else:
+        functions = {name: KNOWN[key] for name, key in study.python.items()}
+        task = Task(functions, study.store.samples)
+    told = f"{keys} {task.samples} {task.parameters} {task.responses}"
+    name = f"{SOLVER_NAME} {sha256(told.encode()).hexdigest()}"
+    TASKS[name] = task
+    return name
+
+
+def solver(name: str) -> Solver:
+    """Return the solver of this name. Raises ValueError where its functions are not known."""
+    if name not in TASKS:
+        raise ValueError(
+            "these runs are of Python functions, which no file holds: build the study in Python"
+        )
+    task = TASKS[name]
+    if "" in task.functions:
+        return Solver(
+            version=name,
+            columns=lambda design: (*task.responses, "status"),
+            failures=lambda design: 0,
+            cases=partial(_points, task),
+            cost=lambda cases: np.full(cases.size, _COST),
+            values=lambda cases, output: len(task.responses) + 1,
+            solve=partial(_model, task),
+            prepare=lambda design: None,
+            labelled=partial(_labelled_model, task),
+        )
+    return replace(
+        IMPACT,
+        version=f"{IMPACT.version} {name}",
+        cost=lambda cases: IMPACT.cost(cases) + _COST,
+        solve=partial(_responses, task),
+        labelled=partial(_labelled_responses, task),
+    )
+
+
+def _number(function: Function, name: str, *args: Any, **values: Any) -> Any:
+    """Return what a function gives. Raises ValueError where it raises."""
+    try:
+        return function.call(*args, **values)
+    except Exception as error:
+        where = f" at {values}" if values else ""
+        raise ValueError(f"{name}{where}: raised {type(error).__name__}: {error}") from error
+
+
+def _real(value: Any, name: str) -> float:
+    plain = value.item() if hasattr(value, "item") and np.size(value) == 1 else value
+    if not isinstance(plain, int | float | Real) or type(plain) is bool:
+        raise ValueError(f"{name}: gave {str(value)[:80]!r}, not one real number")
+    return float(plain)
+
+
+def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
+    """Return the answers of impacts and of the functions, one row per case."""
+    if not cases.size:
+        return {}
+    rows: list[dict[str, Any]] = []
+    for case in cases:
+        values = {
+            name: entry.choices[case[name]] if entry.choices else case[name].item()
+            for name, entry in PARAMETERS.items()
+            if name in (cases.dtype.names or ())
+        }
+        impact, grid = with_values(paper_impact(), Discretisation(), values)
+        with warnings.catch_warnings():  # told before
+            warnings.simplefilter("ignore")
+            run = simulate(impact, grid, duration=case["duration"].item(), samples=task.samples)
+        row: dict[str, Any] = {name: run[name].values for name in (*RESPONSES, *FLAGS)}
+        row |= {name: run[name].values for name in HISTORIES if output.samples}
+        row |= {name: run[name].values for name in PROFILES if output.profiles}
+        for name, function in task.functions.items():
+            row[name] = _real(_number(function, f"responses.{name}", run), f"responses.{name}")
+        rows.append(row)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def _attributes(function: Function, name: str) -> dict[str, str]:
+    return {"long_name": function.long_name or name.replace("_", " "), "units": function.units}
+
+
+def _labelled_responses(task: Task, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
+    runs = IMPACT.labelled(design, answers)
+    for name, function in task.functions.items():
+        runs[name].attrs = _attributes(function, name)
+    return runs
+
+
+def _points(task: Task, design: xr.Dataset, runs: Array) -> Array:
+    table = np.zeros(runs.size, [(name, "f8") for name in task.parameters])
+    for name in task.parameters:
+        table[name] = flattened(design, name, runs)
+    return table
+
+
+def _model(task: Task, cases: Array, output: OutputSpec) -> Columns:
+    """Return the answers of the model, one row per case: a number, or a mapping of numbers."""
+    columns: Columns = {name: np.empty(cases.size) for name in task.responses}
+    for at, case in enumerate(cases):
+        values = {name: case[name].item() for name in task.parameters}
+        found = _number(task.functions[""], "function", **values)
+        if not isinstance(found, Mapping):
+            found = {task.responses[0]: found}
+        if set(found) != set(task.responses):
+            given, wanted = ", ".join(map(str, found)), ", ".join(task.responses)
+            raise ValueError(f"function: gave {given}, but `responses` of the study are {wanted}")
+        for name in task.responses:
+            columns[name][at] = np.float64(_real(found[name], f"function: {name}"))
+    return columns | {"status": np.zeros(cases.size, dtype=np.int32)}
+
+
+def _labelled_model(task: Task, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
+    dims, shape = run_shape(design)
+    runs = design.assign({name: (dims, each.reshape(shape)) for name, each in answers.items()})
+    for name in task.responses:
+        runs[name].attrs = _attributes(task.functions[""], name)
+    return described(runs.assign_attrs(provenance()))

@@ -1,0 +1,207 @@
+"""Functions of the user: solved, kept and analysed like ours, and never taken for one another."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab.study import steps
+from impactlab.study.solvers.fingerprint import fingerprint
+
+SCALE = 1.0
+TABLE = object()
+
+
+def momentum(run):
+    return SCALE * run.impulse
+
+
+def work(run):
+    """Work of the contact force on the beam, in J."""
+    return np.trapezoid(run.contact_force, run.midspan_deflection)
+
+
+def product(a, b=2.0):
+    return a * b
+
+
+def two(a, b):
+    return {"sum": a + b, "difference": a - b}
+
+
+SAMPLE = il.Sobol(
+    base_samples=16, parameters={"velocity": il.Uniform(1, 2), "beam_depth": il.Uniform(0.02, 0.03)}
+)
+PLANE = il.Sobol(base_samples=256, parameters={"a": il.Uniform(0, 1), "b": il.Uniform(0, 1)})
+
+
+def impacts(**others):
+    given = {"title": "Own", "impact": il.paper_impact(), "duration": "1 ms", "sampling": SAMPLE}
+    return il.Study(**given | {"discretisation": il.Discretisation(nodes=21, points=3)} | others)
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_response_of_ones_own_is_that_of_each_run():
+    given = {"momentum": il.Function(momentum, units="N s"), "work": work, "impulse": "impulse"}
+    runs = impacts(responses=given).run(workers=2)
+    assert set(runs.data_vars) == {*given, "status", "remarks"}
+    assert runs.momentum.values.tobytes() == runs.impulse.values.tobytes()
+    assert runs.momentum.attrs == {"long_name": "momentum", "units": "N s"}
+    ours = impacts(responses=["impulse"], title="Ours").run(workers=2)
+    assert runs.impulse.values.tobytes() == ours.impulse.values.tobytes()
+    one = runs.isel(run=7)
+    beam = il.paper_impact().beam
+    impact = il.Impact(
+        sphere=il.paper_impact().sphere,
+        beam=il.Beam(
+            span=beam.span, width=beam.width, depth=one.beam_depth.item(), material=beam.material
+        ),
+        velocity=one.velocity.item(),
+    )
+    grid = il.Discretisation(nodes=21, points=3)
+    alone = il.simulate(impact, grid, duration=1e-3, samples=1000)
+    assert one.work.item() == work(alone)
+    assert set(il.analyse(runs).response.values) == set(given)
+
+
+def test_a_model_of_ones_own_has_its_known_indices():
+    """Of a product of two uniform variables on (0, 1): 3/7 each alone, 4/7 in total."""
+    study = il.Study(title="Product", function=product, sampling=PLANE)
+    indices = il.analyse(study.run(workers=1))
+    assert indices.first_order.values == pytest.approx(3 / 7, abs=0.05)
+    assert indices.total_order.values == pytest.approx(4 / 7, abs=0.05)
+    assert study.report().exists()
+
+
+def test_a_model_may_give_several_responses():
+    study = il.Study(title="Two", function=two, responses=["sum", "difference"], sampling=PLANE)
+    runs = study.run(workers=1)
+    assert runs["sum"].values == pytest.approx(runs.a.values + runs.b.values)
+    assert runs.difference.values == pytest.approx(runs.a.values - runs.b.values)
+
+
+def test_growing_samples_take_functions_too():
+    growing = il.Sobol(
+        base_samples=64,
+        second_order=False,
+        parameters=PLANE.parameters,
+        until={"interval": 0.1, "runs": 2048},
+    )
+    runs = il.Study(title="Growing", function=product, sampling=growing).run(workers=1)
+    assert 256 < runs.sizes["run"] <= 2048
+
+
+def test_stored_answers_are_those_of_the_very_function(monkeypatch):
+    """A changed global is noticed, an unchanged one solves nothing again."""
+    first = impacts(responses={"momentum": momentum}).run(workers=1)
+    with monkeypatch.context() as patch:
+        patch.setattr("impactlab.study.execute.solved", None)  # which solves
+        again = impacts(responses={"momentum": momentum}).run(workers=1)
+    assert again.momentum.values.tobytes() == first.momentum.values.tobytes()
+    study = impacts(responses={"momentum": momentum})
+    monkeypatch.setitem(globals(), "SCALE", 2.0)
+    with pytest.raises(ValueError, match=r"momentum@\w+: has changed since the study was built"):
+        study.run(workers=1)
+    doubled = impacts(responses={"momentum": momentum}).run(workers=1)
+    assert doubled.momentum.values == pytest.approx(2 * first.momentum.values, nan_ok=True)
+
+
+def test_tidying_up_leaves_runs_of_functions_alone(folder):
+    impacts(responses={"momentum": momentum}).run(workers=1)
+    (folder / "studies").mkdir()
+    impacts().to_yaml("studies/other.yaml")
+    with steps.removable(folder / "studies", folder / "results") as found:
+        assert found == {}
+
+
+def inner(factor):
+    def scaled(run):
+        return factor * helper(run)
+
+    return scaled
+
+
+def helper(run):
+    return math.sqrt(run.impulse)
+
+
+def other(run):
+    return math.sin(run.impulse)
+
+
+@pytest.mark.parametrize(
+    ("one", "another"),
+    [
+        (inner(1.0), inner(2.0)),
+        (lambda run: run.impulse, lambda run: run.restitution),
+        (lambda run: run.impulse + 1, lambda run: run.impulse + 2),
+        (functools.partial(product, b=1), functools.partial(product, b=2)),
+        (lambda run, power=1: run.impulse**power, lambda run, power=2: run.impulse**power),
+        (lambda run: np.sin(run.impulse), lambda run: np.cos(run.impulse)),
+        (lambda run: helper(run), lambda run: other(run)),
+        (lambda run: run.impulse in {1, 2}, lambda run: run.impulse in {1, 3}),
+    ],
+)
+def test_functions_that_differ_have_fingerprints_that_differ(one, another):
+    assert fingerprint(one) == fingerprint(one)
+    assert fingerprint(one) != fingerprint(another)
+
+
+def test_a_changed_helper_changes_the_fingerprint(monkeypatch):
+    before = fingerprint(inner(1.0))
+    monkeypatch.setitem(globals(), "helper", other)
+    assert fingerprint(inner(1.0)) != before
+
+
+@pytest.mark.parametrize(
+    ("responses", "said"),
+    [
+        ({"own": lambda run: TABLE}, "responses.own: its global TABLE is of type object, which"),
+        ({"own": inner(object())}, "responses.own: its variable factor is of type object, which"),
+        ({"own": 3}, "responses.own: is of type int: expected a function"),
+        ({"velocity": work}, "responses.velocity: cannot name a response: another variable"),
+        ({"two words": work}, "responses.two words: cannot name a response: use letters"),
+    ],
+)
+def test_functions_that_cannot_be_identified_are_refused_with_the_reason(responses, said):
+    with pytest.raises(il.StudyError, match=f"^Study: {said}"):
+        impacts(responses=responses)
+
+
+def test_a_version_of_ones_own_takes_the_place_of_the_fingerprint():
+    given = il.Function(lambda run: 0.0 if TABLE else 1.0, version="1")
+    assert impacts(responses={"own": given}).run(workers=1).own.values.tolist() == [0.0] * 96
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda run: run.force, "responses.own: raised AttributeError: .* no attribute 'force'"),
+        (lambda run: run.contact_force, "responses.own: gave .*, not one real number"),
+        (lambda run: "much", "responses.own: gave 'much', not one real number"),
+    ],
+)
+def test_functions_that_fail_say_which_and_why(call, said):
+    with pytest.raises(ValueError, match=f"(?s)^{said}"):
+        impacts(responses={"own": call}).run(workers=1)
+
+
+def test_a_study_of_functions_is_in_no_file():
+    study = impacts(responses={"momentum": momentum})
+    with pytest.raises(il.StudyError, match="cannot be written to a file"):
+        study.to_yaml("own.yaml")
+    with pytest.raises(il.StudyError, match=r"^Study: discretisation.auto: is not"):
+        impacts(responses={"momentum": momentum}, discretisation="auto")
+    (folder := study.folder).mkdir(parents=True)
+    (folder / "forged.yaml").write_text(study.declared.text.replace("momentum@", "momentum@0"))
+    with pytest.raises(il.StudyError, match="python_responses: holds a Python function"):
+        il.Study.from_yaml(folder / "forged.yaml")
