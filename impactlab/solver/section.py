@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver import RULES
-from impactlab.solver.jit import allocating, compiled, vectorised
+from impactlab.solver.jit import allocating, called_from_python, compiled, vectorised
 from impactlab.solver.types import ELASTIC, Array, Record
 
 _LOBATTO = RULES.index("lobatto")
@@ -71,7 +71,7 @@ def legendre_pair(degree: int, x: float) -> tuple[float, float]:
     return current, previous
 
 
-@compiled
+@called_from_python
 def upper_half(rule: int, points: int, positions: Array, weights: Array) -> None:
     """Fill `positions`, `weights`, shape (points // 2,), with the points above 0, outermost first.
 
