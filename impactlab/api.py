@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from impactlab.files import identity, opened, read_netcdf, replaced
+from impactlab.files import opened, read_netcdf, replaced
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.parameters import PARAMETERS
 from impactlab.model.quantities import Quantity
 from impactlab.study import REFINEMENT, RESOLUTION, steps
 from impactlab.study.errors import Problem, StudyError
-from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema import files, yaml_file
 from impactlab.study.schema.written import _Sampling, text_of
 from impactlab.study.solvers.own import Function, register
@@ -265,15 +264,7 @@ class Study:
 
     def _analyse(self) -> tuple[xr.Dataset, xr.Dataset]:
         runs = self._runs()
-        known: dict[str, Path] = {}
-        found = self.folder / RESOLUTION
-        if getattr(self.declared, "auto", None) and isinstance(self.declared.sampling, Sample):
-            known = {"resolution": found} if found.exists() else {}
-        refined = self.folder / f"{REFINEMENT}.nc"
-        if refined.exists():
-            with opened(refined, "refinement") as made, opened(runs, "runs") as solved:
-                if identity(solved) in made.attrs["made_from"].split():
-                    known["refinement"] = refined
+        known = steps.evidence(self.declared, runs)
         return steps.analyse_runs(runs, self.folder / "analysis.nc", **known)
 
     def __repr__(self) -> str:

@@ -164,31 +164,25 @@ def go(study: StudyFile, workers: Threads = _ALL, force: Force = False) -> None:
     """
     from impactlab.cli import results
     from impactlab.cli.verify import verify
-    from impactlab.study import REFINEMENT, RESOLUTION
-    from impactlab.study.schema.files import describe, read_any
+    from impactlab.study.sampling.samples import Sobol
+    from impactlab.study.schema.files import read_any
+    from impactlab.study.schema.study import Study, Verification
+    from impactlab.study.steps import evidence
 
-    name = read_any(study).name
-    traits = describe(study)["traits"]
-    runs, analysis, findings, resolution, refinement = (
-        results_file(name, file)
-        for file in ("runs.nc", "analysis.nc", "findings.nc", RESOLUTION, f"{REFINEMENT}.nc")
-    )
+    declared = read_any(study)
     failed = False
-    if "checks" in traits:
-        stored = [findings]
+    if isinstance(declared, Verification):
+        stored = [results_file(declared.name, "findings.nc")]
         try:
             verify(study)
         except typer.Exit:  # the report comes first, the verdict last
             failed = True
     else:
+        stored = [results_file(declared.name, name) for name in ("runs.nc", "analysis.nc")]
         run(study, workers=workers, force=force)
-        if "sobol" in traits:
-            refine(runs, workers=workers)
-        known = "auto" in traits and "sample" in traits
-        results.analyse(
-            runs, resolution if known else None, refinement if "sobol" in traits else None
-        )
-        stored = [runs, analysis]
+        if isinstance(declared, Study) and isinstance(declared.sampling, Sobol):
+            refine(stored[0], workers=workers)
+        results.analyse(stored[0], **evidence(declared, stored[0]))
     results.figures(stored)
     results.report(stored)
     if failed:

@@ -91,10 +91,8 @@ class Estimate:
         if self.disk > self.free:
             needed, there = f"needs about {amount(self.disk)} of disk", amount(self.free)
             exceeded.append((self.large, f"{needed}, which exceeds the {there} available"))
-        return [
-            Problem(self.file, key, f"{reason}; see --dry-run, or run it anyway with --force")
-            for key, reason in exceeded
-        ]
+        way_out = "see --dry-run, or run it anyway with --force (Python: estimate(), force=True)"
+        return [Problem(self.file, key, f"{reason}; {way_out}") for key, reason in exceeded]
 
 
 def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estimate:

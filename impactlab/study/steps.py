@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from impactlab.files import check_source, opened, read_netcdf, replaced, write_netcdf
+from impactlab.files import check_source, identity, opened, read_netcdf, replaced, write_netcdf
 from impactlab.study import REFINEMENT, RESOLUTION, SHARDS, TRIALS
 from impactlab.study.errors import StudyError
+from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.study import Auto, FunctionStudy, Study, Verification
 from impactlab.study.schema.yaml_file import check_name
 
@@ -242,6 +243,22 @@ def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = No
     part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
     solved = read_netcdf(runs, "runs")
     write_netcdf(refine_cases(solved, part, base_samples), path, "refinement", solved)
+
+
+def evidence(study: AnyStudy, runs: Path) -> dict[str, Path]:
+    """Return the files beside solved runs on their numerical uncertainty, for `analyse_runs`.
+
+    They hold what pilot runs of `auto` found for a sample, and `refine` of these very runs.
+    """
+    found = {}
+    resolution, refinement = runs.with_name(RESOLUTION), runs.with_name(f"{REFINEMENT}.nc")
+    if isinstance(study, Study) and study.auto and isinstance(study.sampling, Sample):
+        found = {"resolution": resolution} if resolution.exists() else {}
+    if refinement.exists():
+        with opened(refinement, "refinement") as made, opened(runs, "runs") as solved:
+            if identity(solved) in made.attrs["made_from"].split():
+                found["refinement"] = refinement
+    return found
 
 
 def analyse_runs(
