@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d import kratos
-from impactlab.fem3d.kratos.engine import Engine, engine
-from impactlab.fem3d.kratos.solve import Run
+from impactlab.fem3d.kratos import Engine, Run, engine
 from impactlab.fem3d.solver import Mesh, quarter_mesh
 from impactlab.fem3d.solver.march import History
 from impactlab.model.impact import Impact

@@ -1,45 +1,45 @@
-"""One impact on one mesh, solved by Kratos step by step and returned as a dataset."""
+"""The 3-D FE model in an independent program: Kratos Multiphysics.
+
+The mesh is that of impactlab.fem3d; all else is Kratos': elements, plasticity, contact,
+steps in time. It is no dependency: pip install 'impactlab[kratos]'.
+"""
 
 from __future__ import annotations
 
+import json
 import time
 from dataclasses import KW_ONLY, dataclass
+from importlib import import_module
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.kratos.engine import (
-    BEAM_TOP,
-    MM,
-    MPA,
-    PART,
-    RESIDUAL_RATIO,
-    SPHERE_BOTTOM,
-    TONNES_PER_MM3,
-    Engine,
-    engine,
-    settings,
-)
 from impactlab.fem3d.solver import Mesh, PatchTooSmallError, quarter_mesh
 from impactlab.fem3d.solver.march import History, Moment, Progress
-from impactlab.fem3d.solver.mesh import (
-    BEAM,
-    SPHERE,
-    Floats,
-    Integers,
-    nodal_masses,
-    sphere_density,
-)
+from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Integers, nodal_masses, sphere_density
 from impactlab.fem3d.solver.responses import history_responses, plastic_responses
 from impactlab.fem3d.solver.solve import OWN, histories, named
 from impactlab.model.checks import integer, positive
 from impactlab.model.impact import Impact, Material
 from impactlab.variables import provenance
 
-ELEMENT, LAW, FACE = "SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw", 4
+ELEMENT, LAW = "SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw"
 TIME_STEP, PENALTY = 8e-6, 1e15
 """s, and N/m3 (1e6 N/mm3)."""
+MM, MPA, TONNES_PER_MM3, N_PER_MM3 = 1e3, 1e-6, 1e-12, 1e-9
+"""Kratos' units over SI: of lengths and velocities, stresses, densities, and penalties."""
+PART, BEAM_TOP, SPHERE_BOTTOM = "Structure", "BeamTop", "SphereBottom"
+"""Names of the whole model and of the two surfaces that may touch."""
+RESIDUAL_RATIO = 1e-5
+"""Residual over that at a step's beginning, at which the step has converged."""
+_HALVINGS = 5
+"""Number of times that a step is cut in half if it does not converge."""
+
+
+class KratosMissingError(ImportError):
+    """Kratos Multiphysics, or a part of it, is not installed."""
 
 
 def solve(
@@ -124,15 +124,44 @@ def to_dataset(run: Run) -> xr.Dataset:
             "penalty": run.penalty,
             "element_size": run.mesh.element_size,
         },
-        attrs=provenance() | {"model": f"Kratos Multiphysics {run.engine.version}"},
+        attrs=provenance() | {"model": f"Kratos Multiphysics {version('KratosMultiphysics')}"},
     )
     if run.history.stopped:
         dataset.attrs["stopped"] = run.history.stopped
     return named(dataset, _OWN)
 
 
-_HALVINGS = 5
-"""Number of times that a step is cut in half if it does not converge."""
+@dataclass(frozen=True)
+class Engine:
+    """core: the module KratosMultiphysics. analysis: its class of structural analyses."""
+
+    core: Any
+    analysis: Any
+
+    def variable(self, name: str) -> Any:
+        """Return a variable of the core or of an application."""
+        return self.core.KratosGlobals.GetVariable(name)
+
+
+def engine(threads: int) -> Engine:
+    """Return Kratos on `threads` threads, silent except for warnings.
+
+    Raises KratosMissingError, which says what to install.
+    """
+    try:
+        core = import_module("KratosMultiphysics")
+        core.Logger.GetDefaultOutput().SetSeverity(core.Logger.Severity.WARNING)
+        # These register elements, laws and conditions.
+        for name in ("StructuralMechanics", "ConstitutiveLaws", "ContactStructuralMechanics"):
+            import_module(f"KratosMultiphysics.{name}Application")
+        module = "StructuralMechanicsApplication.structural_mechanics_analysis"
+        analysis = import_module(f"KratosMultiphysics.{module}").StructuralMechanicsAnalysis
+    except ImportError as error:
+        raise KratosMissingError(
+            f"Kratos Multiphysics is not complete here ({error}): pip install 'impactlab[kratos]'"
+        ) from error
+    core.ParallelUtilities.SetNumThreads(threads)
+    return Engine(core, analysis)
 
 
 @dataclass
@@ -209,9 +238,11 @@ class Run:
 
     def _keep(self) -> None:
         """Add this step to the history, unless its contact has left the patch."""
-        mesh = self.mesh
-        down = -vectors(self.engine, self.part, "DISPLACEMENT")[:, 2]
-        speed = -vectors(self.engine, self.part, "VELOCITY")[:, 2]
+        mesh, values = self.mesh, self.engine.core.VariableUtils().GetSolutionStepValuesVector
+        down, speed = (  # of every node, from mm to m
+            -(np.array(values(self.part.Nodes, self.engine.variable(name), 0, 3))[2::3] / MM)
+            for name in ("DISPLACEMENT", "VELOCITY")
+        )
         upper, lower = mesh.pairs[mesh.rim].T
         if np.any(mesh.gaps[mesh.rim] < down[upper] - down[lower]):
             raise PatchTooSmallError(
@@ -221,7 +252,7 @@ class Run:
             )
         moment = Moment(
             time=self._analysis.time,
-            force=contact_force(self.engine, self.part),
+            force=self._force(),
             sphere=float(self._sphere @ down),
             pole=float(down[mesh.pole]),
             axis=float(down[mesh.axis_node]),
@@ -231,6 +262,71 @@ class Run:
         self.history.moments.append(moment)
         iterations = self.engine.variable("NL_ITERATION_NUMBER")
         self.iterations.append(float(self.part.ProcessInfo[iterations]))
+
+    def _force(self) -> float:
+        """Return the force of the whole beam on the whole sphere in N, upwards: four quarters."""
+        core, total = self.engine.core, 0.0
+        residual = core.Vector()
+        for pair in self.part.GetSubModelPart("ComputingContact").Conditions:
+            if pair.Is(core.ACTIVE):
+                pair.CalculateRightHandSide(residual, self.part.ProcessInfo)
+                total -= sum(list(residual)[2:12:3])  # on the beam's four nodes, which come first
+        return 4.0 * total
+
+
+def settings(duration: float, time_step: float, penalty: float) -> str:
+    """Return project parameters in Kratos' JSON; arguments in s, s and N/m3."""
+    problem = {
+        "problem_name": "impact",
+        "parallel_type": "OpenMP",
+        "start_time": 0.0,
+        "end_time": duration - 0.5 * time_step,
+        "echo_level": 0,
+    }
+    solver = {
+        "solver_type": "Dynamic",
+        "model_part_name": PART,
+        "domain_size": 3,
+        "echo_level": 0,
+        "time_integration_method": "implicit",
+        "scheme_type": "bossak",
+        "damp_factor_m": -0.3,  # Kratos' own choice; it damps what a step cannot resolve
+        "analysis_type": "non_linear",
+        "model_import_settings": {"input_type": "use_input_model_part"},
+        "time_stepping": {"time_step": time_step},
+        "compute_reactions": False,
+        "reform_dofs_at_each_step": True,
+        "convergence_criterion": "contact_residual_criterion",
+        "residual_relative_tolerance": RESIDUAL_RATIO,
+        "residual_absolute_tolerance": 1e-3,
+        "max_iteration": 10,
+        "contact_settings": {
+            "mortar_type": "PenaltyContactFrictionless",
+            "fancy_convergence_criterion": False,
+        },
+        "linear_solver_settings": {
+            "solver_type": "amgcl",
+            "smoother_type": "ilu0",
+            "krylov_type": "gmres",
+            "coarsening_type": "aggregation",
+            "tolerance": 1e-7,
+            "max_iteration": 300,
+        },
+    }
+    contact = {
+        "python_module": "penalty_contact_process",
+        "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication",
+        "process_name": "PenaltyContactProcess",
+        "Parameters": {
+            "model_part_name": PART,
+            "contact_model_part": {"0": [SPHERE_BOTTOM, BEAM_TOP]},
+            "assume_master_slave": {"0": [SPHERE_BOTTOM]},
+            "contact_type": "Frictionless",
+            "advance_ALM_parameters": {"manual_ALM": True, "penalty": penalty * N_PER_MM3},
+        },
+    }
+    processes = {"contact_process_list": [contact]}
+    return json.dumps({"problem_data": problem, "solver_settings": solver, "processes": processes})
 
 
 def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
@@ -257,25 +353,8 @@ def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
         surface = part.CreateSubModelPart(name)
         surface.AddNodes(np.unique(quads + 1).tolist())
         for number, nodes in enumerate((quads + 1).tolist(), first):
-            surface.CreateNewCondition(f"SurfaceCondition3D{FACE}N", number, nodes, steels[body])
+            surface.CreateNewCondition("SurfaceCondition3D4N", number, nodes, steels[body])
         first += len(quads)
-
-
-def constrain(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
-    """Fix nodes on planes of symmetry and supports; launch the sphere and let it fall.
-
-    The sphere alone has gravity, and its velocity now and in the step before.
-    """
-    held = {"X": mesh.symmetry_x, "Y": mesh.symmetry_y, "Z": mesh.support}
-    for axis, nodes in held.items():
-        variable = engine.variable(f"DISPLACEMENT_{axis}")
-        for node in (nodes + 1).tolist():
-            part.GetNode(node).Fix(variable)
-    given = {"VELOCITY_Z": impact.velocity, "VOLUME_ACCELERATION_Z": impact.gravity}
-    for node in (np.unique(mesh.elements[mesh.body == SPHERE]) + 1).tolist():
-        for name, value in given.items():
-            for step in (0, 1):
-                part.GetNode(node).SetSolutionStepValue(engine.variable(name), step, -value * MM)
 
 
 def _steel(engine: Engine, part: Any, number: int, material: Material, density: float) -> Any:
@@ -308,26 +387,21 @@ def _quads(patch: Integers) -> Integers:
     side = round(np.sqrt(patch.size))
     place = patch.reshape(side, side)
     corners = (place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:])
-    return np.stack(corners, axis=-1).reshape(-1, FACE)
+    return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
-def vectors(engine: Engine, part: Any, name: str) -> Floats:
-    """Return a vector at every node, (n, 3), converted from mm to m."""
-    values = engine.core.VariableUtils().GetSolutionStepValuesVector(
-        part.Nodes, engine.variable(name), 0, 3
-    )
-    return np.array(values).reshape(-1, 3) / MM
+def constrain(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
+    """Fix nodes on planes of symmetry and supports; launch the sphere and let it fall.
 
-
-def contact_force(engine: Engine, part: Any) -> float:
-    """Return the force of the whole beam on the whole sphere in N, upwards: four quarters.
-
-    Of each pair of faces that Kratos found in contact, what its condition puts on the beam's four
-    nodes, which come first in it, the other way round.
+    The sphere alone has gravity, and its velocity now and in the step before.
     """
-    core, total, residual = engine.core, 0.0, engine.core.Vector()
-    for pair in part.GetSubModelPart("ComputingContact").Conditions:
-        if pair.Is(core.ACTIVE):
-            pair.CalculateRightHandSide(residual, part.ProcessInfo)
-            total -= sum(list(residual)[2:12:3])
-    return 4.0 * total
+    held = {"X": mesh.symmetry_x, "Y": mesh.symmetry_y, "Z": mesh.support}
+    for axis, nodes in held.items():
+        variable = engine.variable(f"DISPLACEMENT_{axis}")
+        for node in (nodes + 1).tolist():
+            part.GetNode(node).Fix(variable)
+    given = {"VELOCITY_Z": impact.velocity, "VOLUME_ACCELERATION_Z": impact.gravity}
+    for node in (np.unique(mesh.elements[mesh.body == SPHERE]) + 1).tolist():
+        for name, value in given.items():
+            for step in (0, 1):
+                part.GetNode(node).SetSolutionStepValue(engine.variable(name), step, -value * MM)
