@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh, uniform
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact, Material
 from impactlab.verification.solutions import hertz
+
+if TYPE_CHECKING:
+    from impactlab.fem3d.solver.mesh import Mesh
 
 _HARDNESS = 2.8
 """Mean pressure of a fully plastic contact over the yield stress (Tabor)."""
@@ -54,6 +57,11 @@ def largest_patch(impact: Impact) -> float:
     """Return the largest patch in m that fits on beam and sphere."""
     beam = impact.beam
     return min(0.9 * beam.width / 2.0, 0.45 * impact.sphere.radius, beam.span / 4.0)
+
+
+def uniform(size: float, length: float) -> int:
+    """Return the number of intervals of at most `size` in `length` (both in m), at least 1."""
+    return max(math.ceil(length / size * (1.0 - 1e-9)), 1)
 
 
 def checked_patch(impact: Impact, element_size: float, patch: float | None) -> float:
@@ -118,7 +126,7 @@ def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
     edges = [np.linalg.norm(points[:, one] - points[:, other], axis=1) for one, other in ends]
     shortest = np.min(edges, axis=0)
     stable = []
-    for body, steel, density in _metals(impact):
+    for body, (steel, density) in enumerate(_metals(impact)):
         nu = steel.poissons_ratio
         modulus = steel.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
         stable.append(float(shortest[mesh.body == body].min()) / np.sqrt(modulus / density))
@@ -143,16 +151,14 @@ def least_cost(
     half = checked_patch(impact, size, patch)
     far = beam.span / 2.0 * beam.width / 2.0 * beam.depth / max(beam.depth / 6.0, size) ** 3
     near = 2.0 * (half / size) ** 3
-    fastest = max(
-        math.sqrt(steel.youngs_modulus / density) for _, steel, density in _metals(impact)
-    )
+    fastest = max(math.sqrt(steel.youngs_modulus / density) for steel, density in _metals(impact))
     steps = int(duration * fastest / size) + 1
     seconds = steps * (near * FULL_SECONDS + far * ONE_POINT_SECONDS)
     return Cost(int(near + far), steps, seconds, int(near + far) * _BYTES)
 
 
-def _metals(impact: Impact) -> tuple[tuple[int, Material, float], tuple[int, Material, float]]:
-    """Return each body's material and density in kg/m3; the sphere's follows from its mass."""
+def _metals(impact: Impact) -> list[tuple[Material, float]]:
+    """Return material and density in kg/m3 of beam and sphere, whose density follows its mass."""
     beam, sphere = impact.beam.material, impact.sphere
     density = sphere.total_mass / (4.0 / 3.0 * math.pi * sphere.radius**3)
-    return (BEAM, beam, beam.density), (SPHERE, sphere.material, density)
+    return [(beam, beam.density), (sphere.material, density)]

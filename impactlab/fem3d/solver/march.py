@@ -11,9 +11,9 @@ import numpy as np
 
 from impactlab.fem3d.solver.elements import DISSIPATED, HOURGLASS_WORK, WORK
 from impactlab.fem3d.solver.estimates import largest_patch
-from impactlab.fem3d.solver.mesh import Floats
 from impactlab.fem3d.solver.system import System, corner_volumes, critical_step
 from impactlab.model.impact import Impact
+from impactlab.types import Floats
 
 
 class Moment(NamedTuple):

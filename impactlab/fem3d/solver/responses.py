@@ -7,9 +7,10 @@ import xarray as xr
 
 from impactlab.fem3d.solver.march import History
 from impactlab.fem3d.solver.material import ALONG, PEEQ, STRESS
-from impactlab.fem3d.solver.mesh import BEAM, Floats, Mesh
+from impactlab.fem3d.solver.mesh import BEAM, Mesh
 from impactlab.fem3d.solver.system import Group
 from impactlab.model.impact import Impact
+from impactlab.types import Floats
 from impactlab.variables import STATUS_FLAGS
 
 _IMBALANCE = 0.05

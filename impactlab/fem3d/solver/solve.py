@@ -11,14 +11,14 @@ import xarray as xr
 
 from impactlab.fem3d.solver.jit import FOLDER
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
-from impactlab.fem3d.solver.mesh import Floats, Mesh
-from impactlab.fem3d.solver.quarter import quarter_mesh
+from impactlab.fem3d.solver.mesh import Mesh, quarter_mesh
 from impactlab.fem3d.solver.responses import fields, plastic_responses, responses
 from impactlab.fem3d.solver.system import System, ThreadPool
 from impactlab.model.checks import integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten
+from impactlab.types import Floats
 from impactlab.variables import described, provenance
 
 

@@ -23,11 +23,11 @@ from impactlab.fem3d.solver.mesh import (
     BEAM,
     NEIGHBOURS,
     SPHERE,
-    Floats,
     Mesh,
     nodal_masses,
 )
 from impactlab.model.impact import Impact, Material
+from impactlab.types import Floats
 
 
 @dataclass(frozen=True, eq=False)
