@@ -35,14 +35,12 @@ from impactlab.simulate import solve as solve_cases
 from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
-from impactlab.study.netcdf import Columns
+from impactlab.study.netcdf import Array, Columns
 from impactlab.study.solvers import Solver, flattened, impact, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FAILURES, HISTORIES, RESPONSES, WITNESS, described
 
 log = logging.getLogger(__name__)
-
-Array = np.ndarray[Any, Any]
 
 VERSION = hashlib.sha256(f"{SOURCES_HASH} {SOLID_HASH}".encode()).hexdigest()
 """Hash of the sources of the kernels and of the 3-D FE model."""
@@ -55,7 +53,6 @@ _BEAM_MODELS_ONLY = (
     *("nodes", "points", "rule", "scheme", "courant"),
 )
 """Fields that the 3-D FE model does not use."""
-STOPPED = FAILURES["stopped"][0]
 _LARGER = 1.5
 """A patch of matched nodes over one that the contact has outgrown."""
 _STEPS = 10_001
@@ -65,12 +62,7 @@ _LONG = 3600.0
 
 
 def table(
-    impact: Impact,
-    grid: Discretisation,
-    *,
-    duration: float,
-    varied: Mapping[str, Any],
-    first_run: int = 0,
+    impact: Impact, grid: Discretisation, *, varied: Mapping[str, Any], **options: Any
 ) -> Array:
     """Return one record per run, each run checked; arguments as those of simulate.case_table.
 
@@ -83,39 +75,29 @@ def table(
         plain["beam_model"] = np.where(models == SOLID, BEAM_MODELS[0], models)
     elif impact.beam_model == SOLID:
         impact = replace(impact, beam_model=BEAM_MODELS[0])
-    known = case_table(impact, grid, duration=duration, varied=plain, first_run=first_run)
-    found: Array = require_fields(known, SOLID_CASE)
+    found: Array = require_fields(case_table(impact, grid, varied=plain, **options), SOLID_CASE)
     solid = np.broadcast_to(models == SOLID, found.shape)
-    if solid.any():
-        found["beam_model"][solid] = SOLID_MODEL
-        for name in _BEAM_MODELS_ONLY:
-            found[name][solid] = 0
-        found["element_size"][solid] = _sizes(grid, varied, found[solid], solid)
-    return found
-
-
-def _sizes(grid: Discretisation, varied: Mapping[str, Any], cases: Array, solid: Array) -> Array:
-    """Return the element size in m of each run of the 3-D FE model. solid: which runs are."""
+    if not solid.any():
+        return found
+    found["beam_model"][solid] = SOLID_MODEL
+    for name in _BEAM_MODELS_ONLY:
+        found[name][solid] = 0
     for name in ("element_size", "elements_per_radius"):
         values = varied.get(name, [getattr(grid, name)])
-        if any(value is None for value in values):
-            continue
-        checked = positive("Discretisation", name, column(values))
-        given: Array = np.broadcast_to(checked, solid.shape)[solid]
-        if name == "element_size":
-            return given
-        return np.array([contact_radius(_impact_of(case)) for case in cases]) / given
-    raise ValueError("Discretisation.element_size: is required for the solid model")
+        if not any(value is None for value in values):
+            break
+    else:
+        raise ValueError("Discretisation.element_size: is required for the solid model")
+    given = np.broadcast_to(positive("Discretisation", name, column(values)), solid.shape)[solid]
+    if name == "elements_per_radius":
+        given = np.array([contact_radius(_impact_of(case)) for case in found[solid]]) / given
+    found["element_size"][solid] = given
+    return found
 
 
 def is_solid(cases: Array) -> Array:
     """Return which cases are of the 3-D FE model, (cases,)."""
     return np.asarray(cases["beam_model"] == SOLID_MODEL)
-
-
-def _kernel_cases(cases: Array) -> Array:
-    """Return the cases of the beam models as the kernels take them."""
-    return np.asarray(require_fields(cases[~is_solid(cases)], CASE))
 
 
 def _impact_of(case: Any) -> Impact:
@@ -142,7 +124,7 @@ def _priced(
     cases: Array, of_beams: Callable[[Array], Array], of_solid: Callable[[Cost], float]
 ) -> Array:
     found, solid = np.zeros(cases.size), is_solid(cases)
-    found[~solid] = of_beams(_kernel_cases(cases))
+    found[~solid] = of_beams(require_fields(cases[~solid], CASE))
     found[solid] = [of_solid(_cost(case.tobytes())) for case in cases[solid]]
     return found
 
@@ -169,24 +151,24 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
     model does not know is NaN; so is all of a run that stopped before its time, and `status` says
     so. Raises KeyboardInterrupt where the run was interrupted: it is no answer.
     """
-    answers: dict[str, Any] = {"status": STOPPED, "remarks": 0}
+    stopped = FAILURES["stopped"][0]
+    answers: dict[str, Any] = {"status": stopped, "remarks": 0}
     given, size, duration = _impact_of(case), case["element_size"].item(), case["duration"].item()
     options: dict[str, Any] = {"element_size": size, "duration": duration, "samples": _STEPS}
     try:
         patch = quarter_mesh(given, element_size=size).patch
         while "patch_needed" in (run := solve_alone(given, patch=patch, **options)).attrs:
             patch = _LARGER * patch
-            millimetres, reason = 1e3 * patch, run.attrs["stopped"]
-            log.info("a 3-D run begins again with a patch of %.3g mm: %s", millimetres, reason)
+            again = "a 3-D run begins again with a patch of %.3g mm: %s"
+            log.info(again, 1e3 * patch, run.attrs["stopped"])
     except ValueError as error:  # no mesh of this size, or no larger patch
         log.warning("a 3-D run was not possible: %s", error)
         return answers
-    stopped = str(run.attrs.get("stopped", ""))
-    if stopped.startswith("interrupted"):
-        raise KeyboardInterrupt
-    if stopped:
-        log.warning("a 3-D run stopped: %s", stopped)
-        return answers | {"status": int(run["status"]) | STOPPED}
+    if reason := str(run.attrs.get("stopped", "")):
+        if reason.startswith("interrupted"):
+            raise KeyboardInterrupt
+        log.warning("a 3-D run stopped: %s", reason)
+        return answers | {"status": int(run["status"]) | stopped}
     answers |= {name: float(run[name]) for name in RESPONSES if name in run}
     if samples:  # the last time may lie within a step of the run's end
         times = np.linspace(0.0, duration, samples)
@@ -211,7 +193,7 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
 def solve(cases: Array, form: OutputSpec) -> Columns:
     """Return the answers of the kernels and of the 3-D FE model, in the order of the cases."""
     solid = is_solid(cases)
-    found = solve_cases(_kernel_cases(cases), samples=form.samples)
+    found = solve_cases(require_fields(cases[~solid], CASE), samples=form.samples)
     columns = {}
     for name, values in found.items():
         missing = np.nan if values.dtype.kind == "f" else 0
