@@ -115,12 +115,12 @@ def _misprints(judged: Judged) -> Table:
 
 def _cases(judgements: Iterable[Judgement]) -> Table:
     """Return one row per case."""
-    kinds = {Verdict.FAILS: "warning", Verdict.UNKNOWN: "warning"}
+    wrong = Verdict.FAILS, Verdict.UNKNOWN
     rows: list[Row] = [
         [
             judgement.case,
             _numbers(judgement) or "–",
-            Cell(judgement.verdict, kinds.get(judgement.verdict, "")),
+            Cell(judgement.verdict, "warning" if judgement.verdict in wrong else ""),
             judgement.why,
         ]
         for judgement in judgements

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from impactlab.model.impact import Beam, paper_impact
-from impactlab.paper.statements.convergence import READINGS_OF_P
+from impactlab.paper.statements.beam import READINGS_OF_P
 from impactlab.paper.statements.statement import (
     Data,
     Judgement,

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import xarray as xr
 
-from impactlab.paper.statements import STATEMENTS, convergence, judge_all, velocity
+from impactlab.paper.statements import STATEMENTS, beam, judge_all
 from impactlab.paper.statements.statement import Verdict
 from impactlab.solver import outputs
 
@@ -47,26 +47,26 @@ def fig08(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
 
 
 def test_duration_falls(fig08: Any) -> None:
-    assert verdicts(velocity.duration_falls.judge(fig08())) == [HOLDS]
-    assert verdicts(velocity.duration_falls.judge(fig08(power=0.2))) == [FAILS]
-    (partly,) = velocity.duration_falls.judge(fig08(rise=0.5))
+    assert verdicts(beam.duration_falls.judge(fig08())) == [HOLDS]
+    assert verdicts(beam.duration_falls.judge(fig08(power=0.2))) == [FAILS]
+    (partly,) = beam.duration_falls.judge(fig08(rise=0.5))
     assert partly.verdict == READING
     assert "up to 10 m/s and rises" in partly.why
 
 
 def test_a_fall_within_the_uncertainty_does_not_count(fig08: Any) -> None:
-    (flat,) = velocity.duration_falls.judge(fig08(power=-1e-7))
+    (flat,) = beam.duration_falls.judge(fig08(power=-1e-7))
     assert flat.verdict == FAILS
     assert "does not fall by more than its uncertainty" in flat.why
 
 
 def test_above_spring_mass(fig08: Any) -> None:
-    assert verdicts(velocity.above_spring_mass.judge(fig08())) == [HOLDS]
-    assert verdicts(velocity.above_spring_mass.judge(fig08(lumped=1.1))) == [FAILS]
+    assert verdicts(beam.above_spring_mass.judge(fig08())) == [HOLDS]
+    assert verdicts(beam.above_spring_mass.judge(fig08(lumped=1.1))) == [FAILS]
     data = fig08(lumped=1.1, rise=0.5)
     data["fig08"]["contact_duration"].loc[{"beam_model": "spring_mass"}] /= 1.2
     data["fig08"]["contact_duration"].loc[{"velocity": 20.0, "beam_model": "spring_mass"}] *= 2.0
-    (partly,) = velocity.above_spring_mass.judge(data)
+    (partly,) = beam.above_spring_mass.judge(data)
     assert partly.verdict == READING
     assert partly.why.endswith("not at 20.")
 
@@ -95,10 +95,10 @@ def fig10(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
 
 
 def test_dent_grows(fig10: Any) -> None:
-    assert verdicts(velocity.dent_grows.judge(fig10())) == [HOLDS]
+    assert verdicts(beam.dent_grows.judge(fig10())) == [HOLDS]
     data = fig10()
     data["fig10_nodes"]["permanent_indentation"].loc[{"velocity": 7.0}] = 1e-6
-    (found,) = velocity.dent_grows.judge(data)
+    (found,) = beam.dent_grows.judge(data)
     assert found.verdict == FAILS
     assert "6 to 7 m/s" in found.why
 
@@ -106,31 +106,31 @@ def test_dent_grows(fig10: Any) -> None:
 def test_a_dent_that_shrinks_in_the_last_step_fails(fig10: Any) -> None:
     data = fig10()
     data["fig10_nodes"]["permanent_indentation"].loc[{"velocity": SPEEDS[-1]}] = 1e-6
-    (found,) = velocity.dent_grows.judge(data)
+    (found,) = beam.dent_grows.judge(data)
     assert found.verdict == FAILS
     assert f"to {SPEEDS[-1]:g} m/s" in found.why
 
 
 def test_plastic_strain_as_in_the_paper(fig10: Any) -> None:
     data = fig10(begins=6.5, slope=4e-4)
-    assert verdicts(velocity.elastic_to_5.judge(data)) == [HOLDS, READING]
-    assert verdicts(velocity.below_limit_at_10.judge(data)) == [HOLDS, READING, READING, READING]
-    assert verdicts(velocity.above_limit_at_15.judge(data)) == [HOLDS, READING] * 2
-    assert verdicts(velocity.plasticity_begins.judge(data)) == [HOLDS, READING, READING, READING]
+    assert verdicts(beam.elastic_to_5.judge(data)) == [HOLDS, READING]
+    assert verdicts(beam.below_limit_at_10.judge(data)) == [HOLDS, READING, READING, READING]
+    assert verdicts(beam.above_limit_at_15.judge(data)) == [HOLDS, READING] * 2
+    assert verdicts(beam.plasticity_begins.judge(data)) == [HOLDS, READING, READING, READING]
 
 
 def test_plastic_strain_other_than_in_the_paper(fig10: Any) -> None:
-    assert verdicts(velocity.elastic_to_5.judge(fig10(begins=3.0))) == [FAILS, FAILS]
-    assert verdicts(velocity.below_limit_at_10.judge(fig10(slope=1e-3))) == [FAILS] * 4
-    assert verdicts(velocity.above_limit_at_15.judge(fig10(begins=12.0))) == [FAILS] * 4
-    assert verdicts(velocity.plasticity_begins.judge(fig10(begins=12.0))) == [FAILS] * 4
-    assert verdicts(velocity.plasticity_begins.judge(fig10(begins=30.0))) == [UNKNOWN] * 4
+    assert verdicts(beam.elastic_to_5.judge(fig10(begins=3.0))) == [FAILS, FAILS]
+    assert verdicts(beam.below_limit_at_10.judge(fig10(slope=1e-3))) == [FAILS] * 4
+    assert verdicts(beam.above_limit_at_15.judge(fig10(begins=12.0))) == [FAILS] * 4
+    assert verdicts(beam.plasticity_begins.judge(fig10(begins=12.0))) == [FAILS] * 4
+    assert verdicts(beam.plasticity_begins.judge(fig10(begins=30.0))) == [UNKNOWN] * 4
 
 
 def test_a_strain_limit_within_the_uncertainty_cannot_be_judged(fig10: Any) -> None:
     """The strain at 10 m/s on the finest grid is about 0.2 %."""
     data = fig10(begins=6.0, slope=5e-4, error=0.01)
-    assert verdicts(velocity.below_limit_at_10.judge(data)) == [UNKNOWN] * 4
+    assert verdicts(beam.below_limit_at_10.judge(data)) == [UNKNOWN] * 4
 
 
 @pytest.fixture
@@ -165,15 +165,15 @@ def fig06(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
 
 
 def test_nodes(fig06: Any) -> None:
-    assert verdicts(convergence.nodes_suffice.judge(fig06(0.006))) == [HOLDS] * 4
-    assert verdicts(convergence.nodes_suffice.judge(fig06(0.0005))) == [READING] * 4
-    assert verdicts(convergence.nodes_suffice.judge(fig06(0.02))) == [FAILS] * 4
+    assert verdicts(beam.nodes_suffice.judge(fig06(0.006))) == [HOLDS] * 4
+    assert verdicts(beam.nodes_suffice.judge(fig06(0.0005))) == [READING] * 4
+    assert verdicts(beam.nodes_suffice.judge(fig06(0.02))) == [FAILS] * 4
 
 
 def test_points(fig06: Any) -> None:
-    good = verdicts(convergence.points_suffice.judge(fig06(0.0)))
+    good = verdicts(beam.points_suffice.judge(fig06(0.0)))
     assert good == [HOLDS] * 4 + [READING] * 12
-    assert verdicts(convergence.points_suffice.judge(fig06(0.0, bad_points=2))) == (
+    assert verdicts(beam.points_suffice.judge(fig06(0.0, bad_points=2))) == (
         [FAILS] * 4 + [READING] * 8 + [FAILS] * 4
     )
 
@@ -182,7 +182,7 @@ def test_one_inaccurate_response_is_enough_to_fail(fig06: Any) -> None:
     data = fig06(0.0005)
     where = {"velocity": 15.0, "points": 21, "nodes": 601}
     data["fig06_nodes"]["contact_duration"].loc[where] *= 1.05
-    found = {entry.case: entry for entry in convergence.nodes_suffice.judge(data)}
+    found = {entry.case: entry for entry in beam.nodes_suffice.judge(data)}
     assert found["15 m/s, force and motion"].verdict == FAILS
     assert "contact duration" in found["15 m/s, force and motion"].why
     assert found["15 m/s, plastic strain (PEEQ)"].verdict == READING
@@ -192,7 +192,7 @@ def test_a_failed_run_is_reported_and_not_judged(fig08: Any) -> None:
     data = fig08()
     where = {"velocity": 5.0, "beam_model": "euler_bernoulli", "nodes": 601}
     data["fig08"]["status"].loc[where] = outputs.DIVERGED
-    (found,) = velocity.duration_falls.judge(data)
+    (found,) = beam.duration_falls.judge(data)
     assert found.verdict == UNKNOWN
     assert "at 5 m/s 1 of 3 runs lack it: the run diverged" in found.why
 
@@ -214,4 +214,4 @@ def test_names_are_unique() -> None:
 
 def test_two_grids_give_no_uncertainty(fig10: Any) -> None:
     data = {name: runs.isel(nodes=slice(2)) for name, runs in fig10().items()}
-    assert verdicts(velocity.below_limit_at_10.judge(data)) == [UNKNOWN] * 4
+    assert verdicts(beam.below_limit_at_10.judge(data)) == [UNKNOWN] * 4
