@@ -1,8 +1,11 @@
-"""Figures of a study with 3-D runs: all models against velocity, and what makes them differ."""
+"""Figures of a study with 3-D runs: all models against velocity, and what makes them differ.
+
+Each model is taken on its finest grid, with its uncertainty.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -11,13 +14,111 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter
 from matplotlib.transforms import ScaledTranslation
 
-from impactlab.fem3d.figures import differences
 from impactlab.figures import access, labels, record, scales, style
-from impactlab.figures.access import usable
+from impactlab.figures.access import known, usable
 from impactlab.figures.labels import display
 from impactlab.model.impact import SOLID
+from impactlab.types import Floats
 
-_NAMES = (
+AXES = {"nodes": np.argmax, "element_size": np.argmin, "elements_per_radius": np.argmax}
+"""Refinements, and the function that finds the finest grid on each."""
+_FEWEST = 3
+
+
+class Side(NamedTuple):
+    """A response of one model: value and half-width, (velocities,), SI; the latter NaN if unknown.
+
+    Where nothing bounds the error, the half-width is infinite.
+    """
+
+    value: Floats
+    uncertainty: Floats
+
+
+def differ(runs: xr.Dataset) -> bool:
+    """Return whether a grid has the 3-D FE model beside others at three velocities or more."""
+    if "beam_model" not in runs.dims or runs.sizes.get("velocity", 0) < _FEWEST:
+        return False
+    rest = set(runs.dims) - {"time", "x", "z", "velocity", "beam_model", *AXES}
+    return SOLID in runs["beam_model"].values and runs.sizes["beam_model"] > 1 and not rest
+
+
+def models(runs: xr.Dataset) -> list[str]:
+    """Return the 3-D FE model first, then the others in the study's order."""
+    listed = [str(name) for name in runs["beam_model"].values]
+    return [SOLID, *(name for name in listed if name != SOLID)]
+
+
+def finest(runs: xr.Dataset) -> dict[str, int]:
+    """Return the index of the finest grid, by dimension."""
+    return {dim: int(at(runs[dim].values)) for dim, at in AXES.items() if dim in runs.dims}
+
+
+def side(runs: xr.Dataset, analysis: xr.Dataset, name: str, model: str) -> Side:
+    """Return a response of one model against the velocity, in the order of the runs."""
+    values = usable(runs, name).sel(beam_model=model).isel(finest(runs), missing_dims="ignore")
+    found = values.values.astype(float)
+    variable = f"{'element_size' if model == SOLID else 'nodes'}_uncertainty"
+    if variable not in analysis or not known(analysis, name):
+        return Side(found, np.full(found.shape, np.nan))
+    share = analysis[variable].sel(response=name, beam_model=model)
+    share = share.isel(dict.fromkeys(AXES, 0), missing_dims="ignore")
+    return Side(found, abs(found) * share.values.astype(float))
+
+
+def difference(over: list[Side], under: list[Side]) -> Side:
+    """Return product over product, minus one, with the uncertainties of all; NaN over 0."""
+    below = np.prod([each.value for each in under], axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.prod([each.value for each in over], axis=0) / np.where(below, below, np.nan)
+        share = sum(abs(each.uncertainty / each.value) for each in (*over, *under))
+    return Side(ratio - 1.0, abs(ratio) * share)
+
+
+EULER, TIMOSHENKO = "euler_bernoulli", "timoshenko"
+NAMES = ("peak_force", "contact_duration")
+_YIELD = "beam_yield_stress"
+
+EFFECTS = {
+    "shear": "shear and rotary inertia",
+    "flexibility": "3-D elasticity of the contact",
+    "law": "contact law in yielding",
+    "all": "all together",
+}
+"""Each effect in words."""
+
+
+def separable(runs: xr.Dataset) -> bool:
+    """Return whether a grid varies only the three models and two yield stresses."""
+    if "beam_model" not in runs.dims or runs.sizes.get(_YIELD, 0) != 2:
+        return False
+    rest = set(runs.dims) - {"time", "beam_model", _YIELD, *AXES}
+    wanted = {EULER, TIMOSHENKO, SOLID} <= set(runs["beam_model"].values.tolist())
+    return wanted and not rest and all(name in runs for name in NAMES)
+
+
+def effects(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> dict[str, Side]:
+    """Return the share by which each effect changes a response, by the keys of EFFECTS.
+
+    Each is of shape (). With E, T and S the response of the Euler-Bernoulli beam, the Timoshenko
+    beam and the 3-D FE model, and e for the runs in which nothing yields: shear T/E - 1,
+    flexibility Se/Te - 1, law (S/Se)/(T/Te) - 1, all S/E - 1. One plus the last is the product of
+    one plus each other.
+    """
+    soft, hard = np.argsort(runs[_YIELD].values)
+    curves = [side(runs, analysis, name, model) for model in (EULER, TIMOSHENKO, SOLID)]
+    (e, _), (t, te), (s, se) = (
+        [Side(curve.value[at], curve.uncertainty[at]) for at in (soft, hard)] for curve in curves
+    )
+    return {
+        "shear": difference([t], [e]),
+        "flexibility": difference([se], [te]),
+        "law": difference([s, te], [se, t]),
+        "all": difference([s], [e]),
+    }
+
+
+_SHOWN = (
     *("peak_force", "contact_duration", "maximum_deflection"),
     *("permanent_indentation", "maximum_indentation"),
 )
@@ -33,7 +134,7 @@ _LEAST, _ROOM = 2.0, 2.0
     "finite-element model, in parts of that; bars: the numerical uncertainty of both models "
     "together, left out where nothing bounds it and cut at the panel's edge. Markers below are "
     "drawn a little beside their velocity, not to hide each other.",
-    lambda runs, analysis: differences.differ(runs) and bool(_drawn(runs)),
+    lambda runs, analysis: differ(runs) and bool(_drawn(runs)),
     lambda runs, analysis: (access.missing_note(runs, _drawn(runs)),),
 )
 def witness(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
@@ -50,30 +151,26 @@ def witness(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         below.set_xlim(0.85 * runs["velocity"].values.min(), 1.18 * runs["velocity"].values.max())
         below.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
     axes[len(names)].set_ylabel(labels.wrapped_axis("difference from the 3-D FE model", "%", 24))
-    style.legend(
-        figure,
-        "Model of the beam",
-        [labels.beam_model(model) for model in differences.models(runs)],
-    )
+    style.legend(figure, "Model of the beam", [labels.beam_model(name) for name in models(runs)])
     return figure
 
 
 def _drawn(runs: xr.Dataset) -> list[str]:
-    return [name for name in _NAMES if name in access.responses(runs)][:_MOST]
+    return [name for name in _SHOWN if name in access.responses(runs)][:_MOST]
 
 
-def _look(at: int) -> dict[str, Any]:
-    """Return the style: 3-D black, others as in all figures, one marker each."""
-    colour = "black" if at == 0 else style.COLOURS[at - 1]
-    return {"color": colour, "marker": style.MARKERS[at], "linestyle": style.LINES[at]}
+def _look(at: int, model: str) -> dict[str, Any]:
+    """Return label and style: 3-D black, others as in all figures, one marker each."""
+    look = {"color": style.COLOURS[at - 1] if at else "black", "label": labels.beam_model(model)}
+    return look | {"marker": style.MARKERS[at], "linestyle": style.LINES[at]}
 
 
 def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
     unit = display(usable(runs, name))
-    for at, model in enumerate(differences.models(runs)):
-        values = unit(differences.side(runs, analysis, name, model).value)
+    for at, model in enumerate(models(runs)):
+        values = unit(side(runs, analysis, name, model).value)
         if np.isfinite(values).any():
-            ax.plot(runs["velocity"].values, values, label=labels.beam_model(model), **_look(at))
+            ax.plot(runs["velocity"].values, values, **_look(at, model))
     ax.set_title(labels.sentence(labels.response(name)), loc="left")
     ax.set_ylabel(labels.axis(labels.response(name), unit.symbol))
     if not ax.lines:
@@ -85,18 +182,17 @@ def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
 
 
 def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
-    first, *others = differences.models(runs)
-    against = differences.side(runs, analysis, name, first)
+    first, *others = models(runs)
+    against = side(runs, analysis, name, first)
     speeds = runs["velocity"].values
     ends: list[float] = []
     for at, model in enumerate(others, 1):
-        gap = differences.difference([differences.side(runs, analysis, name, model)], [against])
+        gap = difference([side(runs, analysis, name, model)], [against])
         bars = np.where(np.isfinite(gap.uncertainty), 100.0 * gap.uncertainty, np.nan)
         points = 2.2 * (at - 0.5 * (len(others) + 1))  # beside its velocity, in the picture alone
         shift = ScaledTranslation(points / 72.0, 0.0, ax.figure.dpi_scale_trans)
         if np.isfinite(gap.value).any():
-            look = _look(at) | {"label": labels.beam_model(model)}
-            look |= {"elinewidth": 0.8, "transform": ax.transData + shift}
+            look = _look(at, model) | {"elinewidth": 0.8, "transform": ax.transData + shift}
             ax.errorbar(speeds, 100.0 * gap.value, yerr=bars, **look)
             reach = np.nan_to_num(bars)
             ends += [*(100.0 * gap.value - reach), *(100.0 * gap.value + reach)]
@@ -113,7 +209,7 @@ def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) ->
 
 
 _HISTORIES = ("contact_force", "indentation")
-_LABELS = {differences.TIMOSHENKO: "contact law (Timoshenko beam)", SOLID: "3-D FE model"}
+_LABELS = {TIMOSHENKO: "contact law (Timoshenko beam)", SOLID: "3-D FE model"}
 
 
 @record.figure(
@@ -126,11 +222,8 @@ _LABELS = {differences.TIMOSHENKO: "contact law (Timoshenko beam)", SOLID: "3-D 
     "Timoshenko beam under Hertz's law; what the local compliance through the depth and the "
     "waves in the sphere do. Contact law in yielding: what yielding does to the solid over "
     "what it does under the contact law.",
-    lambda runs, analysis: differences.separable(runs) and all(name in runs for name in _HISTORIES),
-    lambda runs, analysis: (
-        _finding(runs, analysis),
-        access.missing_note(runs, differences.NAMES),
-    ),
+    lambda runs, analysis: separable(runs) and all(name in runs for name in _HISTORIES),
+    lambda runs, analysis: (_finding(runs, analysis), access.missing_note(runs, NAMES)),
 )
 def witness_parts(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw force against indentation on the left, the effects on the right."""
@@ -142,9 +235,7 @@ def witness_parts(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def _curves(ax: Axes, runs: xr.Dataset) -> None:
-    chosen = xr.Dataset({name: usable(runs, name) for name in _HISTORIES}).isel(
-        differences.finest(runs)
-    )
+    chosen = xr.Dataset({name: usable(runs, name) for name in _HISTORIES}).isel(finest(runs))
     force, depth = (display(runs[name]) for name in _HISTORIES)
     softest = float(runs["beam_yield_stress"].min())
     for at, (model, label) in enumerate(_LABELS.items()):
@@ -170,45 +261,42 @@ def _curves(ax: Axes, runs: xr.Dataset) -> None:
 
 
 def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
-    for at, name in enumerate(differences.NAMES):
-        found = differences.effects(runs, analysis, name).values()
-        shares = np.array([float(each.value) for each in found])
-        widths = np.array([float(each.uncertainty) for each in found])
+    for at, name in enumerate(NAMES):
+        found = effects(runs, analysis, name).values()
+        shares, widths = np.array(list(found), dtype=float).T
         there = np.flatnonzero(np.isfinite(shares))
         bars = np.where(np.isfinite(widths), widths, np.nan)
-        marks = ax.errorbar(
+        ax.errorbar(
             100.0 * shares[there],
             there + 0.24 * (at - 0.5),
             xerr=100.0 * bars[there],
             linestyle="",
             color=style.COLOURS[1 + at],
             marker=style.MARKERS[1 + at],
+            label=labels.response(name),
         )
-        marks.set_label(labels.response(name))
     ax.axvline(0.0, label="_guide", **style.GUIDE)
-    ax.set_yticks(range(len(differences.EFFECTS)))
-    ax.yaxis.set_major_formatter(FixedFormatter(list(differences.EFFECTS.values())))
+    ax.set_yticks(range(len(EFFECTS)))
+    ax.yaxis.set_major_formatter(FixedFormatter(list(EFFECTS.values())))
     ax.invert_yaxis()
     ax.set_xlabel(labels.axis("change of the beam's answer", "%"))
     scales.linear(ax, "x")
 
 
 def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """Return the shares as sentences."""
+    """Return the shares as sentences; EFFECTS ends with all together."""
     sentences = []
-    for name in differences.NAMES:
-        found = differences.effects(runs, analysis, name)
-        if not np.isfinite([float(each.value) for each in found.values()]).all():
-            continue
-        listed = labels.listing(
-            [
-                f"{labels.number(100.0 * float(found[key].value), 2)} % by the {effect}"
-                for key, effect in differences.EFFECTS.items()
-                if key != "all"
-            ]
-        )
-        total = labels.number(100.0 * float(found["all"].value), 2)
-        sentences.append(f"The {labels.response(name)} changes by {listed}; together {total} %.")
+    for name in NAMES:
+        shares = [float(each.value) for each in effects(runs, analysis, name).values()]
+        if np.isfinite(shares).all():
+            *parts, total = (f"{labels.number(100.0 * share, 2)} %" for share in shares)
+            listed = labels.listing(
+                [
+                    f"{part} by the {effect}"
+                    for part, effect in zip(parts, EFFECTS.values(), strict=False)
+                ]
+            )
+            sentences.append(f"The {labels.response(name)} changes by {listed}; together {total}.")
     return " ".join(sentences)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.figures import differences
+from impactlab.fem3d.figures import witness
 from impactlab.figures import labels
 from impactlab.figures.access import responses, usable
 from impactlab.figures.labels import Display, display
@@ -27,12 +27,12 @@ _PARTS = (
 def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the sections of a study with 3-D runs beside others, else none."""
     found = []
-    if differences.differ(runs):
+    if witness.differ(runs):
         names = [name for name in responses(runs) if name != "energy_error"]
         tables = [_table(runs, analysis, name) for name in names]
         title = "Model by model"
         found.append(Section("witness", title, _LEAD, tables=tables, figures=["witness"]))
-    if differences.separable(runs):
+    if witness.separable(runs):
         title = "Where the difference comes from"
         tables = [_effects(runs, analysis)]
         found.append(Section("parts", title, _PARTS, tables=tables, figures=["witness_parts"]))
@@ -41,9 +41,9 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
 
 def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     """Return one row per velocity and one column per model, the 3-D FE model first."""
-    models = differences.models(runs)
+    models = witness.models(runs)
     unit = display(usable(runs, name))
-    sides = [differences.side(runs, analysis, name, model) for model in models]
+    sides = [witness.side(runs, analysis, name, model) for model in models]
     rows = []
     for at, speed in enumerate(runs["velocity"].values):
         cells = [_cell(unit, side, sides[0], at, name not in UNLIKE) for side in sides]
@@ -54,9 +54,7 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     return Table(caption, ["Impact velocity", *map(labels.beam_model, models)], rows)
 
 
-def _cell(
-    unit: Display, side: differences.Side, against: differences.Side, at: int, alike: bool
-) -> Cell:
+def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, alike: bool) -> Cell:
     value = float(side.value[at])
     if not np.isfinite(value):
         return Cell("missing", "warning")
@@ -64,7 +62,7 @@ def _cell(
     width = float(side.uncertainty[at])
     if value and not width <= _NOTHING * abs(value):
         text = f"{text} ± {_bound(100.0 * width / abs(value))}"
-    gap = float(differences.difference([side], [against]).value[at])
+    gap = float(witness.difference([side], [against]).value[at])
     shown = alike and side is not against and np.isfinite(gap)
     detail = f"{_signed(gap)} against the 3-D FE model" if shown else ""
     return Cell(text, "number", detail)
@@ -72,16 +70,16 @@ def _cell(
 
 def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """Return one row per effect and one column per response."""
-    found = {name: differences.effects(runs, analysis, name) for name in differences.NAMES}
+    found = {name: witness.effects(runs, analysis, name) for name in witness.NAMES}
     rows = []
-    for key, text in differences.EFFECTS.items():
+    for key, text in witness.EFFECTS.items():
         cells = [Cell(labels.sentence(text))]
-        for side in (found[name][key] for name in differences.NAMES):
+        for side in (found[name][key] for name in witness.NAMES):
             value, width = float(side.value), float(side.uncertainty)
             known = Cell(f"{_signed(value)} ± {_bound(100.0 * width)}", "number")
             cells.append(known if np.isfinite(value) else Cell("missing", "warning"))
         rows.append(cells)
-    head = ["Effect", *(labels.sentence(labels.response(name)) for name in differences.NAMES)]
+    head = ["Effect", *(labels.sentence(labels.response(name)) for name in witness.NAMES)]
     return Table("Change of the answer of the paper's beam by each effect", head, rows)
 
 

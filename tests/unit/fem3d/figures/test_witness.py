@@ -7,7 +7,7 @@ import pytest
 import witnesses
 import xarray as xr
 
-from impactlab.fem3d.figures import FIGURES, differences
+from impactlab.fem3d.figures import FIGURES, witness
 from impactlab.fem3d.study.report import _cell, sections
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.data import drawn
@@ -22,12 +22,12 @@ def study():
 
 
 def test_each_side_is_the_finest_with_its_own_uncertainty(study):
-    beam = differences.side(*study, "peak_force", "euler_bernoulli")
-    solid = differences.side(*study, "peak_force", "solid")
+    beam = witness.side(*study, "peak_force", "euler_bernoulli")
+    solid = witness.side(*study, "peak_force", "solid")
     assert beam.value == pytest.approx(1.05e4 * 1.01 * SPEEDS)
     assert solid.value == pytest.approx(1e4 * 1.01 * SPEEDS)
     assert solid.uncertainty == pytest.approx(1.25 * 0.01e4 * SPEEDS, rel=1e-3)
-    gap = differences.difference([beam], [solid])
+    gap = witness.difference([beam], [solid])
     assert gap.value == pytest.approx(0.05)
     assert gap.uncertainty == pytest.approx(1.05 * 2 * 1.25 * 0.01 / 1.01, rel=1e-3)
 
@@ -77,7 +77,7 @@ def test_elements_may_be_counted_over_the_radius(study):
     counted = witnesses.counted(study[0])
     for model in witnesses.MODELS:
         for name in ("peak_force", "contact_duration"):
-            one, other = (differences.side(*each, name, model) for each in (study, counted))
+            one, other = (witness.side(*each, name, model) for each in (study, counted))
             assert one.value == pytest.approx(other.value)
             assert one.uncertainty == pytest.approx(other.uncertainty, rel=1e-6)
     assert CATALOGUE["element_size_convergence"].applies(*counted)
@@ -91,7 +91,7 @@ def test_a_missing_run_leaves_a_gap_and_is_counted(study):
     runs = study[0].copy(deep=True)
     runs["status"].loc[{"velocity": 5.0, "beam_model": "solid", "element_size": 2.5e-4}] = 256
     analysis = witnesses.analysed(runs)
-    assert np.isnan(differences.side(runs, analysis, "peak_force", "solid").value[-1])
+    assert np.isnan(witness.side(runs, analysis, "peak_force", "solid").value[-1])
     assert "3-D model stopped" in FIGURES["witness"].caption(runs, analysis)
     FIGURES["witness"].plot(runs, analysis)
     (section,) = sections(runs, analysis)
@@ -100,10 +100,10 @@ def test_a_missing_run_leaves_a_gap_and_is_counted(study):
 
 def test_it_needs_the_solid_beside_others_at_three_velocities(study):
     runs, analysis = study
-    assert differences.differ(runs)
-    assert not differences.differ(runs.isel(velocity=slice(2)))
-    assert not differences.differ(runs.sel(beam_model=["solid"]))
-    assert not differences.differ(runs.sel(beam_model=witnesses.MODELS[:2]))
+    assert witness.differ(runs)
+    assert not witness.differ(runs.isel(velocity=slice(2)))
+    assert not witness.differ(runs.sel(beam_model=["solid"]))
+    assert not witness.differ(runs.sel(beam_model=witnesses.MODELS[:2]))
     assert not FIGURES["witness"].applies(runs.sel(beam_model=witnesses.MODELS[:2]), analysis)
 
 
@@ -131,7 +131,7 @@ def test_a_width_is_told_unless_it_is_that_of_round_off():
         np.array([1e-9, 0.02, np.inf]),
         display(xr.DataArray(2.0, name="number", attrs={"units": "1"})),
     )
-    side = differences.Side(np.full(3, 2.0), widths)
+    side = witness.Side(np.full(3, 2.0), widths)
     assert [_cell(unit, side, side, at, True).text for at in range(3)] == ["2", "2 ± 1 %", "2 ± ?"]
 
 
@@ -141,7 +141,7 @@ def taken_apart():
 
 
 def test_the_effects_multiply_to_the_whole(taken_apart):
-    found = differences.effects(*taken_apart, "peak_force")
+    found = witness.effects(*taken_apart, "peak_force")
     shares = {key: float(each.value) for key, each in found.items()}
     assert shares["shear"] == pytest.approx(0.98 / 1.05 - 1.0)
     assert shares["flexibility"] == pytest.approx(1.0 / 0.98 - 1.0)
@@ -158,7 +158,7 @@ def test_their_figure_and_table(taken_apart):
     assert len(left.lines) == 4
     shares = np.asarray(right.containers[0].lines[0].get_xdata())
     found = [one for one in drawn(figure) if one.curve == "peak force"]
-    assert (found[0].category, found[0].y_label) == (list(differences.EFFECTS.values()), "")
+    assert (found[0].category, found[0].y_label) == (list(witness.EFFECTS.values()), "")
     assert shares[2] == pytest.approx(100.0 * (0.8 / 0.9 - 1.0))
     assert "−11 % by the contact law in yielding" in FIGURES["witness_parts"].caption(*taken_apart)
     (section,) = sections(*taken_apart)
