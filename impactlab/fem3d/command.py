@@ -79,7 +79,7 @@ def witness(
     A table compares their answers; fields, histories and figures are kept. Ctrl-C keeps what was
     computed until then.
     """
-    from impactlab.fem3d.comparison.plan import case_of, paper_case, planned, print_plan
+    from impactlab.fem3d.comparison.plan import case_of, planned, print_plan
     from impactlab.fem3d.deck import FLAVOURS
     from impactlab.study.schema.files import read_impacts
 
@@ -100,8 +100,8 @@ def witness(
         for name, units in _UNITS.items()
         if name in asked
     }
-    case = case_of(read_impacts(study)) if study else paper_case()
-    case = case.with_impact(numbers.pop("velocity", None), contact or None)
+    speed = numbers.pop("velocity", None)
+    case = case_of(read_impacts(study) if study else None, velocity=speed, contact=contact or None)
     if case.held:
         values = ", ".join(f"{name} = {value}" for name, value in case.held.items())
         logging.getLogger("impactlab").info(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 from dask.system import CPU_COUNT
 from distributed.system import MEMORY_LIMIT
@@ -41,29 +42,29 @@ class Case:
     impact: Impact
     discretisation: Discretisation
     longest: float
-    held: dict[str, Value] = field(default_factory=dict)
-
-    def with_impact(self, velocity: float | None, contact: str | None) -> Case:
-        """Return the case with another velocity (m/s) or contact law. Raises as Impact does."""
-        changed = {"velocity": velocity, "contact": contact}
-        given = {name: value for name, value in changed.items() if value is not None}
-        held = {name: value for name, value in self.held.items() if name not in given}
-        impact: Impact = replace(self.impact, **given)  # type: ignore[arg-type]
-        return replace(self, impact=impact, held=held)
+    held: dict[str, Value]
 
 
-def paper_case() -> Case:
-    """Return the paper's own case, with as many nodes for the beam models as it takes."""
-    grid = Discretisation(nodes=601)
-    return Case("paper", "the paper's case", paper_impact(), grid, _LONGEST)
+def case_of(
+    study: Study | None, *, velocity: float | None = None, contact: str | None = None
+) -> Case:
+    """Return the base of a study with its fixed values, or the paper's own case where it is None.
 
-
-def case_of(study: Study) -> Case:
-    """Return the base of a study with its fixed values; varied parameters keep their base value."""
-    base = with_values(study.impact, study.discretisation, study.sampling.fixed)
-    values = flatten(*base) | {"sphere_mass": base[0].sphere.total_mass}
-    held = {name: values[name] for name in study.sampling.varied if name in values}
-    return Case(study.name, str(study.path), *base, study.duration, held)
+    Varied parameters keep their base value. velocity (m/s), contact: in place of the study's.
+    Raises as Impact does.
+    """
+    given = {"velocity": velocity, "contact": contact}
+    changed: Any = {name: value for name, value in given.items() if value is not None}
+    if study is None:
+        grid = Discretisation(nodes=601)  # as many for the beam models as the paper takes
+        impact = replace(paper_impact(), **changed)
+        return Case("paper", "the paper's case", impact, grid, _LONGEST, {})
+    base, grid = with_values(study.impact, study.discretisation, study.sampling.fixed)
+    values = flatten(base, grid) | {"sphere_mass": base.sphere.total_mass}
+    kept = [name for name in study.sampling.varied if name in values and name not in changed]
+    held = {name: values[name] for name in kept}
+    impact = replace(base, **changed)
+    return Case(study.name, str(study.path), impact, grid, study.duration, held)
 
 
 USUAL_TIME = 120.0

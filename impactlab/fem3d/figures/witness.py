@@ -290,12 +290,8 @@ def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
         shares = [float(each.value) for each in effects(runs, analysis, name).values()]
         if np.isfinite(shares).all():
             *parts, total = (f"{labels.number(100.0 * share, 2)} %" for share in shares)
-            listed = labels.listing(
-                [
-                    f"{part} by the {effect}"
-                    for part, effect in zip(parts, EFFECTS.values(), strict=False)
-                ]
-            )
+            pairs = zip(parts, EFFECTS.values(), strict=False)
+            listed = labels.listing([f"{part} by the {effect}" for part, effect in pairs])
             sentences.append(f"The {labels.response(name)} changes by {listed}; together {total}.")
     return " ".join(sentences)
 

@@ -164,7 +164,10 @@ def hourglass(
     L: dv/dx at the step's end. The forces in `state` are updated.
     """
     row = POINT_ROWS + 4
-    e = _frame(c)
+    # A frame of unit vectors: along c_1, in the plane of c_1 and c_2, across it.
+    along, across = times(1.0 / math.sqrt(dot(c[0], c[0])), c[0]), cross(c[0], c[1])
+    across = times(1.0 / math.sqrt(dot(across, across)), across)
+    e = (along, cross(across, along), across)
     half = (dot(e[0], c[0]), dot(e[1], c[1]), dot(e[2], c[2]))
     q1, q2 = _rate(e, c[3], w[3], L), _rate(e, c[4], w[4], L)
     q3, q4 = _rate(e, c[5], w[5], L), _rate(e, c[6], w[6], L)
@@ -175,15 +178,6 @@ def hourglass(
     Q4, four = _raised(state, row + 9, lane, p4, q4)
     work = dt * ((one + two) + (three + four))
     return (combine(e, Q1), combine(e, Q2), combine(e, Q3), combine(e, Q4)), work
-
-
-@inlined
-def _frame(c: Shape) -> Tensor:
-    """Return unit vectors: along c_1, in the plane of c_1 and c_2, across it."""
-    along = times(1.0 / math.sqrt(dot(c[0], c[0])), c[0])
-    across = cross(c[0], c[1])
-    across = times(1.0 / math.sqrt(dot(across, across)), across)
-    return (along, cross(across, along), across)
 
 
 @inlined

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,7 +29,6 @@ from impactlab.model.impact import Impact, Material
 from impactlab.types import Floats
 
 
-@dataclass(frozen=True, eq=False)
 class Group:
     """Elements of one body with the same number of integration points.
 
@@ -38,11 +36,14 @@ class Group:
     state: (blocks, rows W), the rows of the points first.
     """
 
-    elements: Array
-    points: int
-    nodes: Array
-    metal: Metal
-    state: Array
+    def __init__(self, elements: Array, numbers: Array, full: bool, metal: Metal) -> None:
+        """Take the elements of these numbers, at rest; elements: the mesh's, (e, 8)."""
+        blocks = -(-numbers.size // W)
+        filled = np.append(numbers, np.repeat(numbers[-1], blocks * W - numbers.size))
+        nodes = elements[filled].reshape(blocks, W, 8).transpose(0, 2, 1).reshape(blocks, 8 * W)
+        self.elements, self.points, self.metal = numbers, 8 if full else 1, metal
+        self.nodes = np.ascontiguousarray(nodes)
+        self.state = np.zeros((blocks, (FULL_ROWS if full else ONE_POINT_ROWS) * W))
 
     def of_elements(self, row: int) -> Array:
         """Return a row of `state` after those of the points, by element: (g,)."""
@@ -55,15 +56,6 @@ class Group:
     def _row(self, row: int) -> Array:
         values = self.state.reshape(len(self.nodes), -1, W)[:, row]
         return values.reshape(-1)[: self.elements.size]
-
-
-def make_group(elements: Array, numbers: Array, full: bool, steel: Metal) -> Group:
-    """Return a group at rest of these numbers of the elements."""
-    blocks = -(-numbers.size // W)
-    filled = np.append(numbers, np.repeat(numbers[-1], blocks * W - numbers.size))
-    nodes = elements[filled].reshape(blocks, W, 8).transpose(0, 2, 1).reshape(blocks, 8 * W)
-    state = np.zeros((blocks, (FULL_ROWS if full else ONE_POINT_ROWS) * W))
-    return Group(numbers, 8 if full else 1, np.ascontiguousarray(nodes), steel, state)
 
 
 def metal(material: Material) -> Metal:
@@ -224,7 +216,7 @@ class System:
         self.x, self.v = mesh.nodes.copy(), np.zeros_like(mesh.nodes)
         metals = {BEAM: metal(impact.beam.material), SPHERE: metal(impact.sphere.material)}
         self.groups = [
-            make_group(mesh.elements, numbers, full, metals[body])
+            Group(mesh.elements, numbers, full, metals[body])
             for body, full, numbers in mesh.groups()
         ]
         self.assembly = ForceAssembly(self.groups, len(mesh.nodes))

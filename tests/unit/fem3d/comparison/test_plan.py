@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.comparison import plan as plans
-from impactlab.fem3d.comparison.plan import USUAL_TIME, case_of, paper_case, planned
+from impactlab.fem3d.comparison.plan import USUAL_TIME, case_of, planned
 from impactlab.fem3d.solver import estimate, least_cost, quarter_mesh
 from impactlab.study.errors import StudyError
 from impactlab.study.schema.files import read_impacts
@@ -35,7 +35,7 @@ responses: [peak_force]
 @pytest.fixture
 def quick():
     """The paper's case with few nodes for its beam models."""
-    case = paper_case()
+    case = case_of(None)
     return replace(case, discretisation=replace(case.discretisation, nodes=41))
 
 
@@ -46,7 +46,7 @@ def test_a_study_gives_its_base_and_fixed_values_and_says_what_it_varies(tmp_pat
     assert (case.name, case.file, case.longest) == ("some", str(path), 0.5e-3)
     assert (case.impact.beam.depth, case.impact.contact, case.impact.velocity) == (0.03, "hertz", 3)
     assert case.held == {"sphere_radius": 0.035, "velocity": 3.0}
-    other = case.with_impact(5.0, None)
+    other = case_of(read_impacts(path), velocity=5.0)
     assert other.impact.velocity == 5.0
     assert other.held == {"sphere_radius": 0.035}
 

@@ -9,7 +9,7 @@ from impactlab.fem3d.solver.elements import MEAN, add_forces
 from impactlab.fem3d.solver.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.material import STRESS
 from impactlab.fem3d.solver.mesh import brick
-from impactlab.fem3d.solver.system import ForceAssembly, make_group, metal
+from impactlab.fem3d.solver.system import ForceAssembly, Group, metal
 from impactlab.model.impact import Material
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
@@ -21,7 +21,7 @@ class Body:
     def __init__(self, nodes, elements, kind, steel=STEEL):
         self.x, self.elements = nodes.copy(), elements
         numbers = np.arange(len(elements))
-        self.group = make_group(elements, numbers, kind == "full", metal(steel))
+        self.group = Group(elements, numbers, kind == "full", metal(steel))
         self._rows = ForceAssembly([self.group], len(nodes))
         self._forces = np.zeros((self._rows.count, 3))
         self._scratch = np.zeros(SCRATCH * W)

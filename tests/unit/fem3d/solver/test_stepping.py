@@ -11,10 +11,10 @@ from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh, brick
 from impactlab.fem3d.solver.system import (
     MOST_THREADS,
     ForceAssembly,
+    Group,
     System,
     ThreadPool,
     blocks_of,
-    make_group,
 )
 from impactlab.model.impact import Beam, Impact, Material, Sphere
 
@@ -26,7 +26,7 @@ def two_groups():
     nodes, elements = brick(np.arange(11.0), np.arange(12.0), np.arange(10.0))
     numbers = np.split(np.arange(len(elements)), [11])
     groups = [
-        make_group(elements, which, whole, METAL)
+        Group(elements, which, whole, METAL)
         for which, whole in zip(numbers, (True, False), strict=True)
     ]
     return len(nodes), groups
