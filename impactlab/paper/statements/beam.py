@@ -7,7 +7,10 @@ beam, after two times and at two places.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
+from itertools import pairwise
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -73,19 +76,15 @@ def _response_groups(data: Data, study: str) -> Iterator[Case]:
 )
 def nodes_suffice(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> Judgement:
     """Judge 601 nodes by the error of each response."""
-    found = [_nodes_error(data, velocity, name) for name in names]
-    errors, needed = [error for error, _ in found], [least for _, least in found]
-    worst = names[int(np.argmax([error.high for error in errors]))].replace("_", " ")
-    least = max(needed)
+    errors, needed = zip(*(_nodes_error(data, velocity, name) for name in names), strict=True)
+    highest = [error.high for error in errors]
+    worst, least = names[int(np.argmax(highest))].replace("_", " "), max(needed)
     numbers = (*errors, Number("least nodes for all of them", least, "1"))
-    if max(error.high for error in errors) > TOLERANCE:
-        why = f"With {PRINTED_NODES} nodes the {worst} is not known within {100 * TOLERANCE:g} %."
-        return Judgement(case, numbers, Verdict.FAILS, why)
-    if least == PRINTED_NODES:
-        why = "Every smaller number of nodes in the study falls short."
-        return Judgement(case, numbers, Verdict.HOLDS, why)
-    why = f"Read as “{PRINTED_NODES} are enough”: {least:g} already are."
-    return Judgement(case, numbers, Verdict.READING, why)
+    beyond = f"With {PRINTED_NODES} nodes the {worst} is not known within {100 * TOLERANCE:g} %."
+    why = "Every smaller number of nodes in the study falls short."
+    if not (exact := least == PRINTED_NODES):
+        why = f"Read as “{PRINTED_NODES} are enough”: {least:g} already are."
+    return judged(case, numbers, not max(highest) > TOLERANCE, why, beyond, literal=exact)
 
 
 def _nodes_error(data: Data, velocity: float, name: str) -> tuple[Number, float]:
@@ -184,24 +183,25 @@ def _contact_laws(data: Data) -> Iterator[tuple[str, str]]:
 def duration_falls(case: str, data: Data, law: str) -> Judgement:
     """Judge the fall from each velocity to the next."""
     curve = response_curve(data, DURATION_STUDY, "contact_duration", contact=law)
-    falls = curve.high[1:] < curve.low[:-1]
-    count = falls.size if falls.all() else int(np.argmin(falls))
+    speeds, found = list(curve), list(curve.values())
+    falls = [faster.high < slower.low for slower, faster in pairwise(found)]
+    count = [*falls, False].index(False)
     # at the lowest velocity, where the duration stops falling, and at the highest
     numbers = tuple(
-        curve.number(at, f"contact duration at {curve.velocity[at]:g} m/s", "s")
-        for at in dict.fromkeys((0, count, curve.velocity.size - 1))
+        replace(found[at], name=f"contact duration at {speeds[at]:g} m/s")
+        for at in dict.fromkeys((0, count, len(falls)))
     )
-    case = f"{case}, {curve.velocity[0]:g} to {curve.velocity[-1]:g} m/s"
-    if count == falls.size:
+    case = f"{case}, {speeds[0]:g} to {speeds[-1]:g} m/s"
+    if count == len(falls):
         why = f"It falls at every one of the {count} steps."
         return Judgement(case, numbers, Verdict.HOLDS, why)
-    rises = curve.low[count + 1] > curve.high[count]
-    change = "rises" if rises else "does not fall by more than its uncertainty"
-    why = f"It falls up to {curve.velocity[count]:g} m/s and {change} from there to "
-    why += f"{curve.velocity[count + 1]:g} m/s"
-    merges = curve.value[count + 1] > 1.25 * curve.value[count]  # a second push with the first
+    last, after = found[count : count + 2]
+    change = "rises" if after.low > last.high else "does not fall by more than its uncertainty"
+    why = f"It falls up to {speeds[count]:g} m/s and {change} from there to "
+    why += f"{speeds[count + 1]:g} m/s"
+    merges = after.value > 1.25 * last.value  # a second push with the first
     why += ": the sphere no longer lifts off between two pushes." if merges else "."
-    outcome = Verdict.READING if 2 * count > falls.size else Verdict.FAILS
+    outcome = Verdict.READING if 2 * count > len(falls) else Verdict.FAILS
     return Judgement(case, numbers, outcome, why)
 
 
@@ -222,21 +222,25 @@ def above_spring_mass(case: str, data: Data, law: str) -> Judgement:
     study = DURATION_STUDY, "contact_duration"
     ours = response_curve(data, *study, contact=law)
     theirs = response_curve(data, *study, contact=law, beam_model="spring_mass")
-    above = ours.low > theirs.high
-    ratio = ours.value / theirs.value
-    width = ratio * (ours.uncertainty / ours.value + theirs.uncertainty / theirs.value)
+    higher: list[str] = []
+    lower: list[str] = []
+    ratios = []
+    for (velocity, one), other in zip(ours.items(), theirs.values(), strict=True):
+        (higher if one.low > other.high else lower).append(f"{velocity:g}")
+        ratio = one.value / other.value
+        width = ratio * (one.uncertainty / one.value + other.uncertainty / other.value)
+        ratios.append((ratio, width))
+    first = itemgetter(0)
+    ends = {"smallest": min(ratios, key=first), "largest": max(ratios, key=first)}
     numbers = tuple(
-        Number(f"{name} model over spring-mass", float(ratio[at]), "1", float(width[at]))
-        for name, at in (("smallest", int(ratio.argmin())), ("largest", int(ratio.argmax())))
+        Number(f"{name} model over spring-mass", ratio, "1", width)
+        for name, (ratio, width) in ends.items()
     )
-    if above.all():
+    if not lower:
         return Judgement(case, numbers, Verdict.HOLDS, "It is above at every velocity.")
-    if not above.any():
+    if not higher:
         return Judgement(case, numbers, Verdict.FAILS, "It is above at no velocity.")
-    higher, lower = (
-        ", ".join(f"{velocity:g}" for velocity in ours.velocity[where]) for where in (above, ~above)
-    )
-    why = f"Above at {higher} m/s, not at {lower}."
+    why = f"Above at {', '.join(higher)} m/s, not at {', '.join(lower)}."
     return Judgement(case, numbers, Verdict.READING, why)
 
 
@@ -249,12 +253,12 @@ def above_spring_mass(case: str, data: Data, law: str) -> Judgement:
 def dent_grows(case: str, data: Data) -> Judgement:
     """Judge the growth from each velocity to the next."""
     curve = response_curve(data, LATE, "permanent_indentation")
-    grows = curve.low[1:] > curve.high[:-1]
-    numbers = tuple(curve.number(at, f"dent at {curve.velocity[at]:g} m/s", "m") for at in (0, -1))
+    ends = min(curve), max(curve)
+    numbers = tuple(replace(curve[end], name=f"dent at {end:g} m/s") for end in ends)
     steps = [
-        f"{a:g} to {b:g}"
-        for a, b, up in zip(curve.velocity[:-1], curve.velocity[1:], grows, strict=True)
-        if not up
+        f"{slow:g} to {fast:g}"
+        for slow, fast in pairwise(curve)
+        if not curve[fast].low > curve[slow].high
     ]
     shrinks = f"It does not from {', '.join(steps)} m/s."
     return judged(case, numbers, not steps, "It grows at every step.", shrinks)
@@ -269,13 +273,13 @@ def dent_grows(case: str, data: Data) -> Judgement:
 def elastic_to_5(case: str, data: Data, study: str, response: str, literal: bool) -> Judgement:
     """Judge the largest strain up to 5 m/s."""
     curve = response_curve(data, study, response)
-    low = curve.velocity <= 5.0
-    if curve.velocity[low].max(initial=0.0) < 5.0:
+    low = [velocity for velocity in curve if velocity <= 5.0]
+    if max(low, default=0.0) < 5.0:
         raise UnknownError(f"the study {study} has no run at 5 m/s")
-    worst = int(curve.high[low].argmax())
-    largest = curve.number(worst, "largest PEEQ up to 5 m/s", "1")
+    worst = max(low, key=lambda velocity: curve[velocity].high)
+    largest = replace(curve[worst], name="largest PEEQ up to 5 m/s")
     elastic = "No fibre there yields on any grid."
-    yields = f"Some fibre there yields at {curve.velocity[worst]:g} m/s."
+    yields = f"Some fibre there yields at {worst:g} m/s."
     return judged(case, (largest,), largest.high == 0.0, elastic, yields, literal=literal)
 
 
@@ -338,10 +342,10 @@ above_limit_at_15 = Statement(
 def plasticity_begins(case: str, data: Data, study: str, response: str, literal: bool) -> Judgement:
     """Judge the velocities that enclose the first yield."""
     curve = response_curve(data, study, response)
-    first = int(np.argmax(curve.value > 0))
+    first = int(np.argmax([number.value > 0 for number in curve.values()]))
     if first == 0:  # no strain anywhere, or strain from the lowest velocity on
         raise UnknownError(f"the velocities of {study} do not enclose the first yield")
-    below, above = float(curve.velocity[first - 1]), float(curve.velocity[first])
+    below, above = list(curve)[first - 1 : first + 1]
     found = Number("velocity at first yield", 0.5 * (below + above), "m s-1", 0.5 * (above - below))
     why = f"No plastic strain at {below:g} m/s, some at {above:g} m/s."
     return judged(case, (found,), below >= 5.0 and above <= 10.0, why, literal=literal)

@@ -15,7 +15,6 @@ import xarray as xr
 
 from impactlab.analysis.convergence.judgement import judge
 from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL
-from impactlab.types import Floats
 from impactlab.variables import RESPONSES, reasons, status_bits
 
 Data = Mapping[str, xr.Dataset]
@@ -127,25 +126,6 @@ def judged(
     return Judgement(case, numbers, Verdict.HOLDS if literal else Verdict.READING, why)
 
 
-@dataclass(frozen=True)
-class Curve:
-    """A response against the velocity.
-
-    velocity (m/s, ascending), value, uncertainty, and the smallest and largest value that it allows
-    (SI): each of shape (velocities,).
-    """
-
-    velocity: Floats
-    value: Floats
-    uncertainty: Floats
-    low: Floats
-    high: Floats
-
-    def number(self, at: int, name: str, units: str) -> Number:
-        """Return the value at one velocity, given by its index."""
-        return Number(name, float(self.value[at]), units, float(self.uncertainty[at]))
-
-
 def runs_of(data: Data, study: str) -> xr.Dataset:
     """Return the runs of a study. Raises UnknownError where there are none."""
     if study not in data:
@@ -194,23 +174,22 @@ def finest_grid(runs: xr.Dataset, response: str, **where: Any) -> Number:
     return Number(entry.long_name, float(values[0]), entry.units, uncertainty)
 
 
-def response_curve(data: Data, study: str, response: str, **where: Any) -> Curve:
-    """Return a response over the velocities of a study, on the paper's beam unless `where` differs.
+def response_curve(data: Data, study: str, response: str, **where: Any) -> dict[float, Number]:
+    """Return a response by the velocities of a study in m/s, from the lowest on.
 
-    Raises UnknownError where a run or an uncertainty is missing, naming the velocity.
+    On the paper's beam unless `where` differs. Raises UnknownError where a run or an uncertainty is
+    missing, naming the velocity.
     """
     runs = runs_of(data, study)
     if "beam_model" in runs.dims:
         where = {"beam_model": BEAM} | where
-    velocities = np.sort(runs["velocity"].values.astype(float))
-    found = []
-    for velocity in velocities:
+    curve = {}
+    for velocity in np.sort(runs["velocity"].values.astype(float)).tolist():
         try:
             number = finest_grid(runs, response, velocity=velocity, **where)
         except UnknownError as reason:
             raise UnknownError(f"at {velocity:g} m/s {reason}") from None
         if np.isnan(number.uncertainty):
             raise UnknownError(f"at {velocity:g} m/s there are fewer than three grids")
-        found.append((number.value, number.uncertainty))
-    value, uncertainty = np.array(found).T
-    return Curve(velocities, value, uncertainty, value - uncertainty, value + uncertainty)
+        curve[velocity] = number
+    return curve
