@@ -124,7 +124,7 @@ def expected(units: str) -> str:
     kind, example = KINDS.get(units, (f"a quantity in {units}", f"1 {units}"))
     if units == "1":
         return f"expected {kind} such as {example}"
-    return f"expected {kind} such as {example!r}, or a number in {_symbol(units)}"
+    return f"expected {kind} such as {example!r}, or a number in {symbol(units)}"
 
 
 def _parsed(text: str, units: str) -> float:
@@ -228,18 +228,18 @@ def time(seconds: float) -> str:
 def engineering(value: float, units: str, digits: int = 4) -> str:
     """Return a quantity in SI units (UDUNITS) with a prefix: "97.52 µs"; a pure number as it is."""
     rounded, power = float(f"{value:.{digits}g}"), 0
-    if rounded and units in _PREFIXED:
+    if rounded and units in PREFIXED:
         power = min(max(math.floor(math.log10(abs(rounded)) / 3), -3), 5)
     prefix = "nµm kMGTP"[power + 3].strip()
-    return f"{float(f'{rounded / 1000.0**power:.{digits}g}'):,g} {prefix}{_symbol(units)}".rstrip()
+    return f"{float(f'{rounded / 1000.0**power:.{digits}g}'):,g} {prefix}{symbol(units)}".rstrip()
 
 
-def _symbol(units: str) -> str:
+def symbol(units: str) -> str:
     """Return SI units as people write them: "m/s²" for "m s-2"."""
     return re.sub(r" (\w+)-(\d)", r"/\1\2", units).translate(str.maketrans("23", "²³", "1"))
 
 
-_PREFIXED = ("B", "J", "N", "N s", "Pa", "m", "s")
+PREFIXED = ("B", "J", "N", "N s", "Pa", "m", "s")
 """Units that a prefix fits."""
 
 

@@ -21,6 +21,7 @@ from impactlab.report import sensitivity
 from impactlab.report.answer import entries
 from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
+from impactlab.report.explorer import write_explorer
 from impactlab.report.indices import numerical_sections
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
 from impactlab.variables import attributes
@@ -50,7 +51,8 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     """Write the report of a study from its stored datasets and figures.
 
     runs: runs.nc; analysis: analysis.nc; figures_folder: what draw_all wrote. The report
-    of a sample links indices.csv, which lies beside its analysis. Raises FileNotFoundError when a
+    of a sample links indices.csv, which lies beside its analysis, and the page of sliders that is
+    written beside the report where a surrogate is usable. Raises FileNotFoundError when a
     figure is missing, OSError when `path` cannot be written.
     """
     sections = _sections(runs, analysis)
@@ -87,6 +89,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         pictures=drawn,
         files=os.path.relpath(figures_folder, path.parent),
         sections=sections,
+        explorer=write_explorer(runs, analysis, path),
         command="run",
         purpose="solves this study again",
     )

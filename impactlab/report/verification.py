@@ -63,6 +63,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
         pictures=drawn,
         files="",
         sections=[summary, *map(_section, outcomes)],
+        explorer="",
         command="verify",
         purpose="repeats these checks",
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,16 +14,6 @@ from impactlab.report.results import write_index
 from impactlab.report.study import write_report
 
 pytestmark = [pytest.mark.chromium, pytest.mark.slow]
-CHROMIUM = shutil.which("chromium")
-FLAGS = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-)
 ALIKE = ("pawn", "regression", "surrogate_first_order", "total_order_by_samples")
 """Left out: their figures look like others, and each takes seconds to draw."""
 FOCUS = "document.activeElement"
@@ -41,18 +30,6 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     draw_all(runs, analysis, folder / "figures")
     write_report(runs, analysis, folder / "figures", folder / "report.html")
     return (folder / "report.html").as_uri()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """Chromium, as Debian has it."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-    if CHROMIUM is None:
-        pytest.skip("there is no command chromium")
-    with playwright.sync_playwright() as driver:
-        chromium = driver.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
-        yield chromium
-        chromium.close()
 
 
 @pytest.fixture

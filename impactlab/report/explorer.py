@@ -1,0 +1,175 @@
+"""A page of sliders: the surrogates of a sample, evaluated in the browser as `predict` does."""
+
+from __future__ import annotations
+
+import json
+import math
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.surrogate import packed
+from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
+from impactlab.analysis.surrogate.stored import IMPRECISE
+from impactlab.figures import labels
+from impactlab.model.distributions import cumulative
+from impactlab.model.quantities import PREFIXED, symbol
+from impactlab.report.page import described, write_page
+
+_POSITIONS = 200
+"""Positions of a slider, about."""
+_OUTER = 0.01
+"""Share of the runs at either end of a parameter's range, where an error may be far larger."""
+_FAR_LARGER = 2.0
+_LOGARITHMIC = ("log_uniform", "lognormal")
+
+
+def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
+    """Write the page beside a report, and return its name; "" where no surrogate is usable.
+
+    A page that an earlier report left there is then removed. runs, analysis: as of write_report.
+    Raises OSError when the page cannot be written.
+    """
+    path = report.with_name(f"{report.stem}_explorer.html")
+    surrogates = packed(runs, analysis)
+    verdicts = {} if surrogates is None else _verdicts(surrogates)
+    if surrogates is None or not any(verdict.sound for verdict in verdicts.values()):
+        path.unlink(missing_ok=True)
+        return ""
+    outer = _outer_errors(runs, analysis)
+    write_page(
+        "explorer.html.j2",
+        path,
+        **described(runs),
+        report=report.name,
+        parameters=[_parameter(runs[name], given) for name, given in _distributions(surrogates)],
+        responses=[
+            _response(surrogates.sel(response=name), runs[name], outer[name])
+            for name, verdict in verdicts.items()
+            if verdict.sound
+        ],
+        refused=[
+            (labels.sentence(labels.response(name)), verdict.meaning)
+            for name, verdict in verdicts.items()
+            if not verdict.sound
+        ],
+        good=SurrogateVerdict.USABLE.meaning,
+        imprecise=IMPRECISE,
+        outer=_OUTER,
+    )
+    return path.name
+
+
+def _verdicts(surrogates: xr.Dataset) -> dict[str, SurrogateVerdict]:
+    pairs = zip(surrogates["response"].values, surrogates["verdict"].values, strict=True)
+    kinds = list(SurrogateVerdict)
+    return {str(name): kinds[int(code)] for name, code in pairs}
+
+
+def _distributions(surrogates: xr.Dataset) -> list[tuple[str, dict[str, Any]]]:
+    """Return the parameters, each with its distribution and the ends of its range, in SI units."""
+    columns = (surrogates[key].values for key in ("parameter", "distribution", "lowest", "highest"))
+    return [
+        (str(name), json.loads(text) | {"lowest": float(lowest), "highest": float(highest)})
+        for name, text, lowest, highest in zip(*columns, strict=True)
+    ]
+
+
+def _parameter(column: xr.DataArray, given: dict[str, Any]) -> dict[str, Any]:
+    """Return what the page knows of a parameter; all numbers are in its display unit."""
+    unit, distribution = labels.display(column), given["distribution"]
+    numbers = {
+        key: _short(value if "geometric" in key else value * unit.scale)
+        for key, value in given.items()
+        if key != "distribution"
+    }
+    logarithmic = distribution in _LOGARITHMIC
+    lowest, highest = _inside(numbers["lowest"], numbers["highest"])
+    return numbers | {
+        "lowest": lowest,
+        "highest": highest,
+        "range": f"{lowest:.12g} to {highest:.12g} {unit.symbol}".rstrip(),
+        "name": str(column.name),
+        "label": labels.sentence(labels.parameter(str(column.name))),
+        "unit": unit.symbol,
+        "distribution": distribution,
+        "logarithmic": logarithmic,
+        "values": _positions(lowest, highest, logarithmic),
+    }
+
+
+def _inside(lowest: float, highest: float) -> tuple[float, float]:
+    """Return the ends of a range in few digits, rounded so that they do not leave it."""
+    digits = 6 if highest - lowest > 1e-3 * max(abs(lowest), abs(highest)) else 12
+    up, down = (Context(digits, rounding) for rounding in (ROUND_CEILING, ROUND_FLOOR))
+    return float(up.create_decimal(repr(lowest))), float(down.create_decimal(repr(highest)))
+
+
+def _positions(lowest: float, highest: float, logarithmic: bool) -> list[float]:
+    """Return the values of a slider, rising: both ends of the range, and round ones between."""
+    if logarithmic:
+        inner = [float(f"{x:.4g}") for x in np.geomspace(lowest, highest, _POSITIONS)]
+    else:
+        least = (highest - lowest) / _POSITIONS
+        decade = 10.0 ** math.floor(math.log10(least))
+        step = next(decade * each for each in (1, 2, 5, 10) if decade * each >= least)
+        inner = [k * step for k in range(math.ceil(lowest / step), math.ceil(highest / step))]
+    return sorted({lowest, highest, *(_short(x) for x in inner if lowest < x < highest)})
+
+
+def _short(value: float) -> float:
+    """Return a number without the last digits, which changes of unit leave."""
+    return float(f"{value:.12g}")
+
+
+def _outer_errors(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, list[float]]:
+    """Return how many times larger each response's error is at the ends of each parameter's range.
+
+    The error is that on the runs held out, at either end the share _OUTER of them; 1 where it is
+    not far larger, or where no run held out lies there.
+    """
+    tested = runs.sel(run=analysis["held_out"].values)
+    places = [
+        cumulative(runs[name].attrs, tested[name].values)
+        for name in analysis["surrogate_input"].values
+    ]
+    found = {}
+    for name in map(str, analysis["response"].values):
+        entry = analysis.sel(response=name)
+        square = (entry["surrogate_held_out"].values - tested[name].values) ** 2
+        ends = [square[np.abs(place - 0.5) > 0.5 - _OUTER] for place in places]
+        mean = float(entry["surrogate_rmse"]) ** 2
+        ratios = [np.sqrt(end.mean() / mean) if end.size and mean else 1.0 for end in ends]
+        found[name] = [round(float(x), 1) if x >= _FAR_LARGER else 1.0 for x in ratios]
+    return found
+
+
+def _response(found: xr.Dataset, values: xr.DataArray, outer: list[float]) -> dict[str, Any]:
+    """Return what the page knows of a response; numbers are in its SI unit.
+
+    terms: of each its coefficient, and the parameters that it has a polynomial in, by position,
+    with the degree. lowest, highest: of the runs. outer: of _outer_errors.
+    """
+    units, name = str(found["response_units"].item()), str(found["response"].item())
+    pairs = zip(found["coefficient"].values.tolist(), found["degree"].values.tolist(), strict=True)
+    terms = [
+        [coefficient, [[at, degree] for at, degree in enumerate(degrees) if degree]]
+        for coefficient, degrees in pairs
+        if coefficient
+    ]
+    return {
+        "name": name,
+        "label": labels.sentence(labels.response(name)),
+        "meaning": str(found["response_long_name"].item()),
+        "symbol": symbol(units),
+        "prefixed": units in PREFIXED,
+        "terms": terms,
+        "rmse": float(found["rmse"]),
+        "outer": outer,
+        "q2": f"{float(found['q2']):.4f}",
+        "lowest": float(values.min()),
+        "highest": float(values.max()),
+    }

@@ -1,0 +1,188 @@
+"""The page of sliders, used in a browser: its numbers are those of `impactlab predict`."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import command_line
+import numpy as np
+import pytest
+import xarray as xr
+
+from impactlab.analysis.surrogate import analysis, packed
+from impactlab.files import write_netcdf
+from impactlab.model.distributions import quantile
+from impactlab.report.study import write_report
+from impactlab.variables import described
+
+DISTRIBUTIONS: dict[str, dict[str, Any]] = {
+    "velocity": {"distribution": "log_uniform", "low": 0.5, "high": 20.0},
+    "beam_depth": {"distribution": "triangular", "low": 0.0264, "mode": 0.0264, "high": 0.0292},
+    "beam_yield_stress": {  # what is left of its upper tail
+        "distribution": "truncated_normal",
+        "mean": 60e6,
+        "standard_deviation": 40e6,
+        "low": 280e6,
+        "high": 500e6,
+    },
+    "beam_youngs_modulus": {"distribution": "normal", "mean": 210e9, "standard_deviation": 4e9},
+    "sphere_radius": {
+        "distribution": "lognormal",
+        "median": 0.035,
+        "geometric_standard_deviation": 1.04,
+    },
+    "beam_density": {"distribution": "uniform", "low": 7700.0, "high": 7900.0},
+}
+Page = Any
+
+
+@pytest.fixture(scope="module")
+def sample() -> tuple[xr.Dataset, xr.Dataset]:
+    """Runs of every distribution: smooth answers, one across zero, one constant."""
+    unit = np.random.default_rng(4).uniform(size=(600, len(DISTRIBUTIONS)))
+    pairs = enumerate(DISTRIBUTIONS.items())
+    varied = {name: ("run", quantile(given, unit[:, at]), given) for at, (name, given) in pairs}
+    runs = xr.Dataset(coords=varied | {"run": np.arange(len(unit))})
+    depth, stress = runs["beam_depth"] / 0.0278, runs["beam_yield_stress"] / 345e6
+    smooth = runs["velocity"] ** 0.3 * depth**1.5 + (runs["sphere_radius"] / 0.035) ** 2
+    smooth = smooth + 0.3 * runs["beam_youngs_modulus"] / 210e9 * runs["beam_density"] / 7800
+    runs["peak_force"] = 3e4 * smooth * stress
+    runs["rebound_velocity"] = stress - 0.9 + 0.1 * depth * np.log(runs["velocity"])
+    runs["restitution"] = 0.5 + 0 * depth
+    runs["status"] = "run", np.zeros(len(unit), np.int32)
+    attrs = {"study": "made", "title": "Made <up>", "study_text": "title: Made", "method": "delta"}
+    attrs |= {"varied": list(DISTRIBUTIONS), "seed": 1, "confidence": 0.95}
+    attrs["responses"] = ["peak_force", "rebound_velocity", "restitution"]
+    runs = described(runs.assign_attrs(attrs))
+    return runs, analysis(runs).assign_attrs(attrs)
+
+
+@pytest.fixture
+def folder(sample: tuple[xr.Dataset, xr.Dataset], tmp_path: Path) -> Path:
+    """A folder with surrogate.nc, report and explorer."""
+    (tmp_path / "captions.json").write_text("{}")
+    write_report(*sample, tmp_path, tmp_path / "report.html")
+    surrogates = packed(*sample)
+    assert surrogates is not None
+    write_netcdf(surrogates, tmp_path / "surrogate.nc", "surrogate")
+    return tmp_path
+
+
+@pytest.fixture
+def explorer(browser: Any, folder: Path) -> Iterator[Page]:
+    """The page, reached from its report; it must ask for no other and complain of nothing."""
+    page = browser.new_page(viewport={"width": 1300, "height": 900})
+    asked: list[str] = []
+    complaints: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("console", lambda message: complaints.append(message.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto((folder / "report.html").as_uri())
+    page.click("text=The explorer")
+    yield page
+    page.close()
+    assert asked == [(folder / name).as_uri() for name in ("report.html", "report_explorer.html")]
+    assert complaints == []
+
+
+def move(page: Page, name: str, share: float) -> None:
+    """Move a slider to a share of its way."""
+    page.locator(f"#{name}-slider").evaluate(
+        "(e, x) => { e.value = Math.round(e.max * x); e.dispatchEvent(new Event('input')) }",
+        share,
+    )
+
+
+def shown(page: Page, response: str) -> str:
+    return str(page.locator(f"#response-{response} output").inner_text())
+
+
+def predicted(page: Page, folder: Path) -> dict[str, list[str]]:
+    """Cells of the table that the command on the page prints, by response."""
+    command = shlex.split(page.locator("#command").inner_text())
+    assert command[:3] == ["impactlab", "predict", "surrogate.nc"]
+    table = command_line.done(*command[1:], cwd=folder).stdout
+    rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in table.splitlines()]
+    return {row[0]: row[1:] for row in rows if row}
+
+
+@pytest.mark.chromium
+def test_moved_sliders_show_what_predict_prints(
+    explorer: Page, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    rng, seen = np.random.default_rng(5), set()
+    ends = [np.zeros(6), np.ones(6)]
+    for shares in [*ends, *rng.uniform(size=(5, 6))]:
+        for name, share in zip(DISTRIBUTIONS, shares, strict=True):
+            move(explorer, name, share)
+        table = predicted(explorer, folder)
+        assert table.pop("restitution") == ["none", "–", "–", "constant"]
+        for name, (value, error, q2, verdict) in table.items():
+            text, _, remark = shown(explorer, name).partition("; at the ends")
+            rest = "" if verdict == "usable" else f", {verdict}"
+            assert text == f"{value} ± {error}{rest}"
+            assert f"Q² = {q2}" in explorer.locator(f"#response-{name}").inner_text()
+            seen |= {verdict[:9], remark[:20]}
+    assert {"usable", "imprecise"} <= seen
+    assert " of “Yield stress of" in seen, "a tail of few runs is not told"
+
+
+@pytest.mark.chromium
+def test_no_number_outside_the_range(explorer: Page, folder: Path) -> None:
+    before = shown(explorer, "peak_force")
+    for text in ("29.3", "26.3", ""):
+        explorer.fill("#beam_depth", text)
+        assert "none" in shown(explorer, "peak_force")
+        assert explorer.locator("svg *").count() == 0
+        assert explorer.locator("#command").inner_text() == ""
+        assert "trained from 26.4 to 29.2 mm" in explorer.inner_text("#beam_depth-refusal")
+    explorer.fill("#beam_depth", "29.2")
+    assert explorer.inner_text("#beam_depth-refusal") == ""
+    assert shown(explorer, "peak_force") != before
+    explorer.locator("#beam_depth-slider").press("ArrowRight")
+    assert explorer.input_value("#beam_depth") == "29.2", "the slider left its range"
+
+
+@pytest.mark.chromium
+def test_the_curve_passes_through_the_number_and_follows_the_choice(explorer: Page) -> None:
+    curve, point = explorer.locator("#response-peak_force .curve"), "#response-peak_force .point"
+    for name in ("velocity", "sphere_radius"):
+        explorer.select_option("#against", label=explorer.inner_text(f"label[for={name}]"))
+        move(explorer, name, 0.75)
+        place = [explorer.get_attribute(point, key) for key in ("cx", "cy")]
+        assert ",".join(map(str, place)) in curve.get_attribute("d")
+
+
+@pytest.mark.chromium
+@pytest.mark.parametrize("width", [420, 1300])
+def test_nothing_is_wider_than_the_window(explorer: Page, width: int) -> None:
+    explorer.set_viewport_size({"width": width, "height": 900})
+    assert explorer.evaluate("document.documentElement.scrollWidth") <= width
+    slider, curve = explorer.locator("#velocity-slider"), explorer.locator("svg").first
+    slider.scroll_into_view_if_needed()
+    both = [each.bounding_box() for each in (slider, curve)]
+    assert all(0 <= box["y"] < 900 for box in both), "slider and curve are not seen together"
+
+
+def test_what_is_refused_is_named_with_the_reason(folder: Path, page: type[Any]) -> None:
+    explorer = page((folder / "report_explorer.html").read_text("utf-8"))
+    assert "Restitution : the response does not vary: there is none." in explorer.text
+    assert [section["id"] for section in explorer.named("section")] == [
+        "response-peak_force",
+        "response-rebound_velocity",
+        "refused",
+    ]
+
+
+def test_without_a_good_surrogate_there_is_no_page(
+    sample: tuple[xr.Dataset, xr.Dataset], folder: Path
+) -> None:
+    runs, found = sample
+    poor = found.assign(surrogate_verdict=found["surrogate_verdict"].where(False, 1))
+    write_report(runs, poor, folder, folder / "report.html")
+    assert not (folder / "report_explorer.html").exists(), "that of another report is left"
+    assert "explorer" not in (folder / "report.html").read_text("utf-8")
