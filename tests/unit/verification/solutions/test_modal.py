@@ -81,6 +81,12 @@ def test_modes_left_out_matter(solve):
     assert abs(one / many - 1) > 1e-3
 
 
+def integrated(motion, duration, start, times, **options):
+    """States at the times, (states, times), by a general integrator."""
+    tight = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-15, **options}
+    return solve_ivp(motion, (0, duration), start, t_eval=times, **tight).y
+
+
 def reference_motion(impact, count, residual):
     """Right side of the same equations, modes written out by hand; the rest of them static."""
     beam, k = impact.beam, contact_stiffness(impact)
@@ -119,17 +125,8 @@ def test_agrees_with_a_general_integrator(impact, duration, share):
     solution = solve_with(modes, impact, duration, step, compliance)
     times = solution.time[::400]
     motion = reference_motion(impact, count, rest + compliance)
-    path = solve_ivp(
-        motion,
-        (0, duration),
-        start,
-        method="DOP853",
-        rtol=1e-10,
-        atol=1e-15,
-        max_step=duration / 100,
-        t_eval=times,
-    )
-    sphere, beam_deflection = path.y[0], path.y[1 : count + 1]
+    path = integrated(motion, duration, start, times, max_step=duration / 100)
+    sphere, beam_deflection = path[0], path[1 : count + 1]
     np.testing.assert_allclose(solution.sphere_displacement[::400], sphere, rtol=1e-6, atol=1e-15)
     scale = np.abs(beam_deflection).max()
     np.testing.assert_allclose(
@@ -175,20 +172,10 @@ def test_shear_agrees_with_a_general_integrator(impact, duration):
     start[2 * count + 1] = impact.velocity
     solution = solve_timoshenko(impact, duration, modes=count, step=duration / 4000)
     motion, sign = sheared_motion(impact, count)
-    path = solve_ivp(
-        motion,
-        (0, duration),
-        start,
-        method="DOP853",
-        rtol=1e-10,
-        atol=1e-15,
-        t_eval=solution.time[::400],
-    )
-    np.testing.assert_allclose(
-        solution.sphere_displacement[::400], path.y[0], rtol=2e-6, atol=1e-15
-    )
+    path = integrated(motion, duration, start, solution.time[::400])
+    np.testing.assert_allclose(solution.sphere_displacement[::400], path[0], rtol=2e-6, atol=1e-15)
     lower, upper = solution.amplitudes[::400, :count], solution.amplitudes[::400, count:]
-    W = path.y[1 : count + 1].T * sign
+    W = path[1 : count + 1].T * sign
     np.testing.assert_allclose(lower + upper, W, rtol=0, atol=2e-6 * np.abs(W).max())
 
 
