@@ -14,6 +14,7 @@ from impactlab.model.parameters import with_values
 from impactlab.solver import RULES
 from impactlab.solver.contact import LAWS
 from impactlab.variables import STATUS_FLAGS
+from impactlab.verification.cases import with_beam_material
 from impactlab.verification.energy import audit
 
 from .test_plain_beam import FIXED, VALUES
@@ -22,12 +23,8 @@ NO_ANSWER = STATUS_FLAGS["diverged"][0] | STATUS_FLAGS["energy_out_of_balance"][
 
 
 def hardened(impact, isotropic, kinematic):
-    material = replace(
-        impact.beam.material,
-        isotropic_hardening_modulus=isotropic,
-        kinematic_hardening_modulus=kinematic,
-    )
-    return replace(impact, beam=replace(impact.beam, material=material))
+    moduli = {"isotropic_hardening_modulus": isotropic, "kinematic_hardening_modulus": kinematic}
+    return with_beam_material(impact, **moduli)
 
 
 @pytest.mark.parametrize(

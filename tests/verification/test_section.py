@@ -1,7 +1,5 @@
 """The fibre section under imposed curvature, against closed forms."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,6 +8,7 @@ from impactlab.simulate import case_table
 from impactlab.solver import RULES, section
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.types import CASE
+from impactlab.verification.cases import with_beam_material
 from impactlab.verification.solutions import bending, quadrature
 
 IMPACT = il.paper_impact()
@@ -21,12 +20,8 @@ def bend(section, kappa, plastic, peeq):
 
 
 def make_section(points, rule, isotropic=0.0, kinematic=0.0):
-    material = replace(
-        IMPACT.beam.material,
-        isotropic_hardening_modulus=isotropic,
-        kinematic_hardening_modulus=kinematic,
-    )
-    impact = replace(IMPACT, beam=replace(IMPACT.beam, material=material))
+    moduli = {"isotropic_hardening_modulus": isotropic, "kinematic_hardening_modulus": kinematic}
+    impact = with_beam_material(IMPACT, **moduli)
     cases = case_table(impact, il.Discretisation(points=points, rule=rule), duration=1e-3)
     assert cases.dtype == CASE
     return section.make_section(cases[0]), impact.beam
