@@ -107,8 +107,9 @@ def similarity() -> Finding:
     break it.
     """
     found: list[Comparison] = []
-    curves = []
+    panels: list[Panel] = []
     for scheme, grid in _SCALED_GRIDS.items():
+        curves = []
         for contact in LAWS if scheme == "leapfrog" else ("stronge",):
             impact = _yielding(contact)
             run = UNSCALED.simulate(impact, grid)
@@ -119,9 +120,10 @@ def similarity() -> Finding:
                 if contact == "stronge":
                     time = scaled.time.values / scale.factor("s")
                     newtons = scaled.contact_force.values / scale.factor("N")
-                    curves.append(Curve(f"{scheme}: {name}", time, newtons, scale is UNSCALED))
-    axes = ("time", "s"), ("contact force", "N")
-    return Finding(found, [Panel("scaled back", *axes, curves)])
+                    curves.append(Curve(name, time, newtons, scale is UNSCALED))
+        axes = ("time", "s"), ("contact force", "N")
+        panels.append(Panel(f"{scheme}, scaled back", *axes, curves))
+    return Finding(found, panels)
 
 
 def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> list[Comparison]:
