@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from impactlab.model.checks import integer, one_of, positive, require
-from impactlab.model.quantities import fields_in_si
+from impactlab.model.quantities import SI
 from impactlab.solver import BENDING_MODELS, RULES, SCHEMES
 
 
@@ -40,12 +40,11 @@ class Discretisation:
     points: int = 9
     rule: str = "lobatto"
     scheme: str = "leapfrog"
-    courant: float = 0.9
-    element_size: float | None = None
-    elements_per_radius: float | None = None
+    courant: SI[float] = SI("1", 0.9)
+    element_size: SI[float | None] = SI("m", None)
+    elements_per_radius: SI[float | None] = SI("1", None)
 
     def __post_init__(self) -> None:
-        fields_in_si(self, courant="1", element_size="m", elements_per_radius="1")
         for field, least in (("nodes", 5), ("points", 2)):  # 21.0, as YAML may give it, is 21
             value = integer("Discretisation", field, getattr(self, field), least)
             object.__setattr__(self, field, value)

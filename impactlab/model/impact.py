@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from impactlab.model.checks import instance, number, one_of, positive, require
-from impactlab.model.quantities import Quantity, engineering, fields_in_si
+from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.solver import BEAM_MODELS
 from impactlab.solver.contact import LAWS
 
@@ -37,20 +37,17 @@ class Material:
     (7800.0, 345000000.0)
     """
 
-    density: float
-    youngs_modulus: float
-    poissons_ratio: float
-    yield_stress: float
-    isotropic_hardening_modulus: float = 0.0
-    kinematic_hardening_modulus: float = 0.0
+    density: SI[float] = SI("kg m-3")
+    youngs_modulus: SI[float] = SI("Pa")
+    poissons_ratio: SI[float] = SI("1")
+    yield_stress: SI[float] = SI("Pa")
+    isotropic_hardening_modulus: SI[float] = SI("Pa", 0.0)
+    kinematic_hardening_modulus: SI[float] = SI("Pa", 0.0)
 
     def __post_init__(self) -> None:
-        moduli = dict.fromkeys(("isotropic_hardening_modulus", "kinematic_hardening_modulus"), "Pa")
-        fields_in_si(self, density="kg m-3", youngs_modulus="Pa", yield_stress="Pa", **moduli)
-        fields_in_si(self, poissons_ratio="1")
         for field in ("density", "youngs_modulus", "yield_stress"):
             positive("Material", field, getattr(self, field))
-        for field in moduli:
+        for field in ("isotropic_hardening_modulus", "kinematic_hardening_modulus"):
             modulus = number("Material", field, getattr(self, field))
             require(modulus >= 0, "Material", field, modulus, "must not be negative")
         ratio = number("Material", "poissons_ratio", self.poissons_ratio)
@@ -77,13 +74,12 @@ class Sphere:
     0.8821592171280138
     """
 
-    radius: float
+    radius: SI[float] = SI("m")
     material: Material
-    mass: float | None = None
+    mass: SI[float | None] = SI("kg", None)
 
     def __post_init__(self) -> None:
         instance("Sphere", "material", self.material, Material)
-        fields_in_si(self, radius="m", mass="kg")
         positive("Sphere", "radius", self.radius)
         if self.mass is not None:
             positive("Sphere", "mass", self.mass)
@@ -113,15 +109,14 @@ class Beam:
     0.028
     """
 
-    span: float
-    width: float
-    depth: float
+    span: SI[float] = SI("m")
+    width: SI[float] = SI("m")
+    depth: SI[float] = SI("m")
     material: Material
-    shear_coefficient: float = 5.0 / 6.0
+    shear_coefficient: SI[float] = SI("1", 5.0 / 6.0)
 
     def __post_init__(self) -> None:
         instance("Beam", "material", self.material, Material)
-        fields_in_si(self, span="m", width="m", depth="m", shear_coefficient="1")
         for field in ("span", "width", "depth"):
             positive("Beam", field, getattr(self, field))
         below = f"must be below the span ({self.span!r} m)"
@@ -165,15 +160,14 @@ class Impact:
 
     sphere: Sphere
     beam: Beam
-    velocity: float
+    velocity: SI[float] = SI("m s-1")
     contact: str = "stronge"
-    gravity: float = 9.81
+    gravity: SI[float] = SI("m s-2", 9.81)
     beam_model: str = "euler_bernoulli"
 
     def __post_init__(self) -> None:
         instance("Impact", "sphere", self.sphere, Sphere)
         instance("Impact", "beam", self.beam, Beam)
-        fields_in_si(self, velocity="m s-1", gravity="m s-2")
         positive("Impact", "velocity", self.velocity)
         gravity = number("Impact", "gravity", self.gravity)
         require(gravity >= 0, "Impact", "gravity", gravity, "must not be negative")

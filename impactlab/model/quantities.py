@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import MISSING
 from decimal import Decimal
 from functools import cache
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
@@ -86,15 +87,33 @@ def in_si(name: str, value: Any, units: str) -> Any:
         raise ValueError(f"{name} = {given!r}: {error}") from None
 
 
-def fields_in_si(owner: Any, **units: str) -> None:
-    """Replace strings and pint quantities in fields of a frozen dataclass by floats in `units`.
+T = TypeVar("T", float, float | None)
 
-    Raises ValueError naming the field.
+
+class SI(Generic[T]):
+    """A field of a dataclass that takes quantities, and holds numbers in SI `units`.
+
+    Raises ValueError naming the field, when it is set, for a unit of another dimension.
     """
-    for field, unit in units.items():
-        if not isinstance(value := getattr(owner, field), float):
-            name = f"{type(owner).__name__}.{field}"
-            object.__setattr__(owner, field, in_si(name, value, unit))
+
+    def __init__(self, units: str, default: Any = MISSING) -> None:
+        """Note the units, and the default if any."""
+        self._units, self._default = units, default
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, instance: Any, owner: type) -> T:
+        """Return the number; of the class, the default, where dataclasses look for it."""
+        if instance is None and self._default is MISSING:
+            raise AttributeError(self._name)
+        found: T = self._default if instance is None else instance.__dict__[self._name]
+        return found
+
+    def __set__(self, instance: Any, value: Quantity) -> None:
+        """Set the number, once: dataclasses are frozen."""
+        name = f"{type(instance).__name__}.{self._name}"
+        instance.__dict__[self._name] = in_si(name, value, self._units)
 
 
 def duration(value: object) -> float:
