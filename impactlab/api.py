@@ -229,13 +229,16 @@ class Study:
 
         With the numerical uncertainty that pilot runs of `auto`, or `refine`, have found.
         """
-        return self._analyse()[1]
+        runs = self._runs()
+        known = steps.evidence(self.declared, runs)
+        return steps.analyse_runs(runs, self.folder / "analysis.nc", **known)
 
     def figures(self) -> list[Path]:
         """Draw the figures of the report into folder/figures; return their files."""
         from impactlab.report.results import RUNS
 
-        return RUNS.draw(*self._analyse(), self.folder / "figures")
+        found = self.analyse()
+        return RUNS.draw(read_netcdf(self._runs(), "runs"), found, self.folder / "figures")
 
     def report(self, path: str | Path | None = None) -> Path:
         """Analyse, draw, and write the report, one file; return it (default: folder/report.html).
@@ -245,9 +248,10 @@ class Study:
         from impactlab.report.results import RUNS
 
         path = self.folder / "report.html" if path is None else Path(path)
-        both, figures = self._analyse(), self.folder / "figures"
-        RUNS.draw(*both, figures)
-        RUNS.write(*both, figures, path)
+        found, figures = self.analyse(), self.folder / "figures"
+        solved = read_netcdf(self._runs(), "runs")
+        RUNS.draw(solved, found, figures)
+        RUNS.write(solved, found, figures, path)
         return path
 
     def _runs(self) -> Path:
@@ -261,11 +265,6 @@ class Study:
                 f"{path}: holds runs of another study, or of an earlier text: call run()"
             )
         return path
-
-    def _analyse(self) -> tuple[xr.Dataset, xr.Dataset]:
-        runs = self._runs()
-        known = steps.evidence(self.declared, runs)
-        return steps.analyse_runs(runs, self.folder / "analysis.nc", **known)
 
     def __repr__(self) -> str:
         """Return name, size and folder, and the text of the study file."""

@@ -7,6 +7,7 @@ when they are read into memory, and the digests of what it was made from.
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 from collections.abc import Iterator, Mapping
@@ -71,6 +72,8 @@ CONTENTS = {
 """What a dataset's file may hold, and the command that makes it."""
 _CACHE = 1_000_000
 """Bytes per variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
+_BLOCK = 1 << 20
+"""Numbers that are checked together."""
 _ATTRIBUTES = "attributes"
 """The name of the digest of a dataset's own attributes."""
 _UNCHECKED = {"created", "versions", "source_revision", "processor", "history", "checksums"}
@@ -106,7 +109,7 @@ def write_netcdf(
         variable.attrs = attrs
         if name in dataset.coords:
             encoding[str(name)] = {"_FillValue": None}
-        elif variable.dtype.kind == "f" and variable.size > 10_000:
+        elif variable.dtype.kind == "f" and variable.ndim > 1 and variable.size > 10_000:
             encoding[str(name)] = {"zlib": True, "complevel": 1}
         if variable.chunks is None:
             digests[str(name)] = _digest(_head(variable), variable.data)
@@ -124,14 +127,17 @@ def write_netcdf(
 
 
 @contextmanager
-def opened(path: Path, *contents: str) -> Iterator[xr.Dataset]:
+def opened(path: Path, *contents: str, indexed: bool = True) -> Iterator[xr.Dataset]:
     """Give a dataset whose file is open, its values neither read nor checked.
 
-    contents: of CONTENTS, what it may hold; none: anything. Raises OSError naming an unreadable
+    contents: of CONTENTS, what it may hold; none: anything. indexed: with an index per dimension,
+    which is held in memory. Raises OSError naming an unreadable
     file, ValueError naming one that holds something else.
     """
     with _readable(path):
-        dataset = xr.open_dataset(path, engine="netcdf4")
+        dataset = xr.open_dataset(
+            path, engine="netcdf4", cache=False, create_default_indexes=indexed
+        )
     with dataset:
         wrong = ""
         if not {"content", "checksums", "made_from"} <= dataset.attrs.keys():
@@ -151,16 +157,41 @@ def read_netcdf(path: Path, *contents: str) -> xr.Dataset:
     """
     with opened(path, *contents) as lazy, _readable(path):
         dataset = lazy.load()
+    _check(dataset, _digests(dataset), path)
+    return dataset
+
+
+@contextmanager
+def checked(path: Path, *contents: str) -> Iterator[xr.Dataset]:
+    """Give a dataset whose file is open; it was read once, in blocks, to check it.
+
+    Its values are read each time that they are used, and `run` has no index: memory need not hold
+    all variables. Raises as `read_netcdf` does.
+    """
+    with opened(path, *contents, indexed=False) as lazy:
+        with _readable(path):
+            found = _digests(lazy)
+        _check(lazy, found, path)
+        for dim in map(str, lazy.dims):
+            if dim in lazy.coords and dim != "run":
+                lazy = lazy.set_xindex(dim)
+        yield lazy
+
+
+def _digests(dataset: xr.Dataset) -> dict[str, str]:
+    found = {str(name): _digest(_head(each), each) for name, each in dataset.variables.items()}
+    return found | {_ATTRIBUTES: _digest(dataset.attrs)}
+
+
+def _check(dataset: xr.Dataset, found: Mapping[str, str], path: Path) -> None:
+    """Raise ValueError where the digests found are not those written."""
     kept: dict[str, str] = json.loads(dataset.attrs["checksums"])
-    found = {str(name): _digest(_head(each), each.data) for name, each in dataset.variables.items()}
-    found[_ATTRIBUTES] = _digest(dataset.attrs)
     if changed := sorted(name for name in kept.keys() | found if kept.get(name) != found.get(name)):
         command = CONTENTS[dataset.attrs["content"]]
         raise ValueError(
             f"{path}: was changed after it was written ({', '.join(changed)}): make it again with "
             f"`{command}`"
         )
-    return dataset
 
 
 def identity(dataset: xr.Dataset | None) -> str:
@@ -203,7 +234,10 @@ def _digest(attrs: Mapping[Any, Any], values: Any = None) -> str:
     plain = {key: np.ravel(each).tolist() for key, each in attrs.items() if key not in _UNCHECKED}
     digest = blake2b(json.dumps(plain, sort_keys=True, default=str).encode(), digest_size=16)
     if values is not None and values.dtype.kind in "OUS":
-        digest.update(json.dumps(values.tolist(), default=str).encode())
+        digest.update(json.dumps(np.asarray(values).tolist(), default=str).encode())
     elif values is not None:
-        digest.update(np.ascontiguousarray(values).data)
+        rows = max(1, _BLOCK // max(1, math.prod(values.shape[1:])))
+        starts = range(0, len(values), rows) if values.ndim else ()
+        for block in (values[at : at + rows] for at in starts) if values.ndim else (values,):
+            digest.update(np.ascontiguousarray(block).data)
     return digest.hexdigest()

@@ -16,7 +16,7 @@ import xarray as xr
 
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
-from impactlab.analysis.responses import usable
+from impactlab.analysis.responses import in_order, listed, usable
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity import sobol
 from impactlab.analysis.sensitivity.indices import imputed
@@ -110,9 +110,10 @@ def _of_responses(runs: xr.Dataset, resolution: xr.Dataset) -> dict[str, xr.Data
             )
     if runs.attrs.get("study_sha256") != resolution.attrs.get("study_sha256"):
         raise ValueError(f"the resolution was found for another text of the study file: {again}")
-    values = usable(runs)
-    deviation = values.std([dim for dim in values.dims if dim != "response"])
-    asked = resolution.sel(response=values["response"].values).reset_coords(drop=True)
+    names = listed(runs, "responses")
+    deviations = [usable(runs, name).std(set(runs["status"].dims)) for name in names]
+    deviation = xr.concat(deviations, "response", coords="minimal", compat="override")
+    asked = resolution.sel(response=names).reset_coords(drop=True)
     squares = (asked["grid_uncertainty"] ** 2).mean("case")
     share = (squares / deviation.where(deviation > 0) ** 2).where(squares > 0, 0.0)
     return {
@@ -138,9 +139,12 @@ _TO_LIMIT = 2.0
 
 def _check_refinement(runs: xr.Dataset, refinement: xr.Dataset) -> None:
     """Raise ValueError unless the used grid of the refinement gives what the runs give."""
-    there = usable(refinement).sel(grid=USED)
-    here = usable(runs).reindex_like(there).transpose(*there.dims)
-    if not np.allclose(here, there, rtol=ROUND_OFF, atol=0.0, equal_nan=True):
+    there, ordered = usable(refinement).sel(grid=USED), in_order(runs)
+    numbers, wanted = ordered["run"].values, there["run"].values
+    places = np.searchsorted(numbers, wanted).clip(max=numbers.size - 1)
+    here = usable(ordered.isel(run=places)).transpose(*there.dims)
+    same = np.allclose(here, there, rtol=ROUND_OFF, atol=0.0, equal_nan=True)
+    if not same or (numbers[places] != wanted).any():
         raise ValueError(
             "the refinement was made from other runs: make it again (impactlab refine "
             f"results/{runs.attrs.get('study', 'NAME')}/runs.nc)"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -13,11 +15,12 @@ def listed(runs: xr.Dataset, attribute: str) -> list[str]:
     return [str(entry) for entry in np.atleast_1d(runs.attrs[attribute])]
 
 
-def usable(runs: xr.Dataset) -> xr.DataArray:
+def usable(runs: xr.Dataset, response: str | None = None) -> xr.DataArray:
     """Return the requested responses in SI units on (response, *design dims).
 
     NaN where a run gives no usable number: it is not finite, or its status excludes it. Coordinates
-    response_units and response_long_name describe each one. Raises ValueError when a requested
+    response_units and response_long_name describe each one. response: this one alone, without the
+    coordinates on `run`, so that memory holds little beside it. Raises ValueError when a requested
     response is not among the variables.
     """
     names = listed(runs, "responses")
@@ -26,21 +29,42 @@ def usable(runs: xr.Dataset) -> xr.DataArray:
             f"the runs of study {runs.attrs.get('study', '?')!r} hold no {', '.join(absent)}, "
             "which its attribute `responses` lists: solve the study again"
         )
-    values = runs[names].compute().to_array("response", name="value").astype(float)
-    values["response"].attrs = {"long_name": "response"}
-    labels = {
-        f"response_{key}": ("response", [str(runs[name].attrs.get(key, "")) for name in names])
-        for key in ("units", "long_name")
-    }
-    good = np.isfinite(values) & ~_excluded(runs, values)
-    return values.where(good).assign_coords(labels)
+    excluded = _excluded(runs, names if response is None else [response])
+    if response is None:
+        values = runs[names].compute().to_array("response", name="value")
+    else:
+        alone = runs[response].rename("value")
+        of_runs = [name for name, each in alone.coords.items() if "run" in each.dims]
+        values = alone.drop_vars(of_runs).compute().expand_dims(response=[response])
+    values = values.astype(float, copy=False)
+    values = values.assign_coords(labels(runs, *values["response"].values))
+    good = np.isfinite(values) & ~excluded.transpose(*values.dims)
+    return values if good.all() else values.where(good)
 
 
-def _excluded(runs: xr.Dataset, values: xr.DataArray) -> xr.DataArray:
-    """Return True, on the dimensions of the values, where its status makes a response missing."""
-    bits = [status_bits([name]) for name in values["response"].values]
-    excluded = (runs["status"].compute() & xr.DataArray(bits, dims="response")) != 0
-    return excluded.transpose(*values.dims)
+def labels(runs: xr.Dataset, *names: Any) -> dict[str, Any]:
+    """Return the coordinates of these responses, of all requested ones by default."""
+    of = [str(name) for name in names or listed(runs, "responses")]
+    found: dict[str, Any] = {"response": ("response", of, {"long_name": "response"})}
+    for key in ("units", "long_name"):
+        found[f"response_{key}"] = "response", [str(runs[name].attrs.get(key, "")) for name in of]
+    return found
+
+
+def in_order(runs: xr.Dataset) -> xr.Dataset:
+    """Return a sample in the order of `run`: as it is, not read, where it has that order."""
+    numbers = runs["run"].values
+    return runs if (numbers[1:] >= numbers[:-1]).all() else runs.sortby("run")
+
+
+def _excluded(runs: xr.Dataset, names: list[str]) -> xr.DataArray:
+    """Return True, on `response` and the dimensions of runs, where its status takes one away."""
+    status, bits = _status(runs), [status_bits([name]) for name in names]
+    return (status & xr.DataArray(np.array(bits, status.dtype), dims="response")) != 0
+
+
+def _status(runs: xr.Dataset) -> xr.DataArray:
+    return xr.DataArray(runs["status"].variable.compute())
 
 
 UNEXPLAINED = ("unexplained", "a response is missing and the run's status does not say why")
@@ -53,22 +77,28 @@ def failures(runs: xr.Dataset) -> xr.Dataset:
     A run that failed for two reasons counts under both. `reason` holds the names of the status
     flags and "unexplained"; reason_long_name explains them.
     """
-    values, status = usable(runs), runs["status"].compute()
-    gaps = values.isnull().drop_vars(["response_units", "response_long_name"])
-    unexplained = (gaps & ~_excluded(runs, values)).any("response")
-    failed = ((status & FAILED) != 0) | unexplained
-    reasons = [((status & bit) != 0, name, words) for name, (bit, words) in FAILURES.items()]
-    by_reason, names, words = zip(*reasons, (unexplained, *UNEXPLAINED), strict=True)
+    status = _status(runs)
+    counts = [int(((status & bit) != 0).sum()) for bit, _ in FAILURES.values()]
+    failed, size = (status & FAILED) != 0, status.size
+    del status  # before the columns are read
+    unexplained, missing = xr.zeros_like(failed), []
+    for name in listed(runs, "responses"):
+        gaps = usable(runs, name).isnull().drop_vars(["response_units", "response_long_name"])
+        missing.append(gaps.sum([dim for dim in gaps.dims if dim != "response"]))
+        gaps = gaps & ~_excluded(runs, [name])
+        unexplained = unexplained | gaps.isel(response=0, drop=True)
+    failed = failed | unexplained
+    words = [words for _, words in FAILURES.values()]
     dataset = xr.Dataset(
         {
-            "number_of_runs": status.size,
+            "number_of_runs": size,
             "number_of_failed_runs": int(failed.sum()),
-            "failed_runs": ("reason", [int(found.sum()) for found in by_reason]),
-            "missing_runs": gaps.sum([dim for dim in gaps.dims if dim != "response"]),
+            "failed_runs": ("reason", [*counts, int(unexplained.sum())]),
+            "missing_runs": xr.concat(missing, "response", coords="minimal", compat="override"),
         },
         {
-            "reason": ("reason", list(names), {"long_name": "reason of failure"}),
-            "reason_long_name": ("reason", list(words)),
+            "reason": ("reason", [*FAILURES, UNEXPLAINED[0]], {"long_name": "reason of failure"}),
+            "reason_long_name": ("reason", [*words, UNEXPLAINED[1]]),
         },
     )
     for name, long_name in _COUNTS.items():

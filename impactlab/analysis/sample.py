@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import scipy  # its stats are loaded when first used
 import xarray as xr
+from numpy.typing import NDArray
 
-from impactlab.analysis.responses import listed
+from impactlab.analysis.responses import in_order, listed
 from impactlab.types import Floats
 
 
@@ -18,25 +20,42 @@ from impactlab.types import Floats
 class Sample:
     """A sample, and the settings of its indices.
 
-    groups: the group of each parameter; empty where each stands for itself. inputs: (runs,
-    parameter), in SI units and in the order of the runs. settings: the attributes of the runs.
+    groups: the group of each parameter; empty where each stands for itself. runs: in their order,
+    perhaps not read. settings: the attributes of the runs.
     """
 
     parameters: tuple[str, ...]
     groups: tuple[str, ...]
-    inputs: Floats
+    runs: xr.Dataset
     settings: Mapping[Any, Any]
 
     @classmethod
     def of(cls, runs: xr.Dataset) -> Sample:
         """Return the sample of runs, from their coordinates and attributes."""
-        names, ordered = listed(runs, "varied"), runs.sortby("run")
         return cls(
-            parameters=tuple(names),
+            parameters=tuple(listed(runs, "varied")),
             groups=tuple(listed(runs, "groups")) if "groups" in runs.attrs else (),
-            inputs=np.stack([np.asarray(ordered[name].values, float) for name in names], axis=1),
+            runs=in_order(runs),
             settings=runs.attrs,
         )
+
+    @property
+    def size(self) -> int:
+        """The number of runs."""
+        return int(self.runs.sizes["run"])
+
+    @cached_property
+    def inputs(self) -> Floats:
+        """The parameters of all runs, (runs, parameter), in SI units: held in memory once used."""
+        return np.stack([self.column(name) for name in self.parameters], axis=1)
+
+    def column(self, parameter: str) -> Floats:
+        """Return a parameter in all runs, (runs,)."""
+        return np.asarray(self.runs[parameter].values, float)
+
+    def rows(self, runs: NDArray[np.int64]) -> Floats:
+        """Return the parameters of these runs, (runs, parameter); one column is read at a time."""
+        return np.stack([self.column(name)[runs] for name in self.parameters], axis=1)
 
     @property
     def memberships(self) -> tuple[str, ...]:
@@ -73,9 +92,9 @@ class Sample:
 
     def expect(self, runs: int, words: str) -> None:
         """Raise ValueError unless the sample has this number of runs; words: where it is from."""
-        if len(self.inputs) != runs:
+        if self.size != runs:
             raise ValueError(
-                f"{self.study} has {len(self.inputs)} runs, but {words} make {runs}: solve it again"
+                f"{self.study} has {self.size} runs, but {words} make {runs}: solve it again"
             )
 
     def ungrouped(self) -> None:

@@ -8,6 +8,8 @@ from typing import Self
 import numpy as np
 import xarray as xr
 
+from impactlab.types import Floats
+
 TOLERANCE = 0.01
 """Relative numerical error up to which a response counts as converged."""
 ROUND_OFF = 1e-9
@@ -30,6 +32,17 @@ class Verdict(IntEnum):
         member.sound = sound
         member.meaning = meaning
         return member
+
+
+def distinct(outputs: Floats) -> tuple[int, int]:
+    """Return the number of distinct values, and of runs with the middle one.
+
+    That is the commonest value, where more than half of the runs share one.
+    """
+    ordered = np.sort(outputs)
+    middle = ordered[ordered.size // 2]
+    most = np.searchsorted(ordered, middle, "right") - np.searchsorted(ordered, middle)
+    return 1 + int(np.count_nonzero(ordered[1:] != ordered[:-1])), int(most)
 
 
 def names(kind: type[Verdict]) -> list[str]:

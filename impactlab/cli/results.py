@@ -34,11 +34,14 @@ def analyse(
     Of a sample also, beside the output: every index with its interval (indices.csv, indices.nc),
     and surrogate.nc for `impactlab predict`.
     """
+    from impactlab.files import opened
     from impactlab.report.answer import answers
     from impactlab.study.steps import analyse_runs
 
     path = output or runs.with_name("analysis.nc")
-    print(f"{path}: {answers(*analyse_runs(runs, path, resolution, refinement))[0]}")
+    found = analyse_runs(runs, path, resolution, refinement)
+    with opened(runs, "runs") as solved:
+        print(f"{path}: {answers(solved, found)[0]}")
 
 
 def predict(

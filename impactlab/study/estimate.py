@@ -36,7 +36,7 @@ MOST_TIME = 30 * 86400.0
 _NUMBER = 8
 """Bytes of a number."""
 _IN_MEMORY = 2
-"""Copies of answers in memory, read and in order: of one column, or all of a growing sample."""
+"""Copies of a column of answers in memory, read and in order."""
 _PER_RUN = 60.0
 """Bytes of a run in memory beside them: its key, place and cost."""
 _ON_DISK = 2
@@ -126,7 +126,7 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
         history = study.store.samples * study.store.histories
         profile = int(end["nodes"][0] * end["points"][0]) * study.store.profiles
         kept = parameters + len(RESPONSES) + 2 + len(HISTORIES) * history + len(PROFILES) * profile
-        held = kept if until else max(1, history, profile)
+        held = max(1, history, profile)
         working = workers * float(model.memory(np.append(cases, end)).max())
         slow, large = _drivers(study, model, end, runs)
         found = implausibilities(extremes((study.impact, study.discretisation), study.sampling))

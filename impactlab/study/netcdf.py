@@ -48,9 +48,8 @@ def write_shard(path: Path, keys: Array, columns: Columns) -> None:
                 if dim not in file.dimensions:
                     file.createDimension(dim, length)
             variable = file.createVariable(table, first.dtype, dims, fill_value=False)
-            for row, name in enumerate(names):
-                variable[row] = arrays[name]
-                places[name] = table, row
+            variable[:] = np.stack([arrays[name] for name in names])  # one call per row takes long
+            places |= {name: (table, row) for row, name in enumerate(names)}
         file.setncattr("places", json.dumps(places))
         checksums = {name: _checksum(path, name, values) for name, values in arrays.items()}
         file.setncattr("checksums", json.dumps(checksums))

@@ -15,7 +15,15 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from impactlab.files import check_source, identity, opened, read_netcdf, replaced, write_netcdf
+from impactlab.files import (
+    check_source,
+    checked,
+    identity,
+    opened,
+    read_netcdf,
+    replaced,
+    write_netcdf,
+)
 from impactlab.study import REFINEMENT, RESOLUTION, SHARDS, TRIALS
 from impactlab.study.errors import StudyError
 from impactlab.study.sampling.sections import Sample
@@ -151,7 +159,7 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
 
     Raises ValueError, OSError and BlockingIOError as execute.open_runs does.
     """
-    from impactlab.study.execute import execute, open_runs
+    from impactlab.study.execute import open_runs
     from impactlab.study.store import locked
 
     shards = path.with_name(SHARDS)
@@ -163,8 +171,12 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
         from impactlab.analysis.analyse import analyse
         from impactlab.study.adaptive.extending import extend_sample
 
-        stage = partial(execute, shards_folder=shards, engine=engine)
-        with locked(shards):  # over all its stages
+        with locked(shards), ExitStack() as last:  # locked over all its stages
+
+            def stage(samples: xr.Dataset) -> xr.Dataset:
+                last.close()
+                return last.enter_context(open_runs(samples, shards, engine))
+
             write_netcdf(extend_sample(samples, stage, analyse), path, "runs")
     else:
         with open_runs(samples, shards, engine) as runs:
@@ -241,8 +253,8 @@ def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = No
     from impactlab.study.execute import execute
 
     part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
-    solved = read_netcdf(runs, "runs")
-    write_netcdf(refine_cases(solved, part, base_samples), path, "refinement", solved)
+    with checked(runs, "runs") as solved:
+        write_netcdf(refine_cases(solved, part, base_samples), path, "refinement", solved)
 
 
 def evidence(study: AnyStudy, runs: Path) -> dict[str, Path]:
@@ -263,33 +275,34 @@ def evidence(study: AnyStudy, runs: Path) -> dict[str, Path]:
 
 def analyse_runs(
     runs: Path, path: Path, resolution: Path | None = None, refinement: Path | None = None
-) -> tuple[xr.Dataset, xr.Dataset]:
-    """Analyse solved runs, write the analysis to `path` (analysis.nc), and return both.
+) -> xr.Dataset:
+    """Analyse solved runs; write the analysis to `path` (analysis.nc), and return it.
 
     Beside it, for a sample: indices.csv, indices.nc and surrogate.nc. resolution, refinement:
-    evidence on the numerical uncertainty, see analysis.analyse.
+    evidence on the numerical uncertainty, see analysis.analyse. The runs stay in their file: memory
+    holds few columns of a sample by Sobol.
     """
     from impactlab.analysis.analyse import analyse
     from impactlab.analysis.sensitivity.indices import sensitivity_variables, write_csv
     from impactlab.analysis.surrogate import packed
 
-    sources = [solved := read_netcdf(runs, "runs")]
     given = {"resolution": resolution, "refinement": refinement}
     evidence = {name: read_netcdf(file, name) for name, file in given.items() if file}
-    if refinement:
-        check_source(evidence["refinement"], refinement, solved, runs)
-    sources += evidence.values()
-    found = analyse(solved, **evidence)
-    write_netcdf(found, path, "analysis", *sources)
-    for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps another study's
-        path.with_name(name).unlink(missing_ok=True)
-    if indices := sensitivity_variables(found):
-        with replaced(path.with_name("indices.csv"), indices.nbytes) as unfinished:
-            write_csv(found, unfinished)
-        write_netcdf(indices, path.with_name("indices.nc"), "indices", *sources)
-    if surrogates := packed(solved, found):
-        write_netcdf(surrogates, path.with_name("surrogate.nc"), "surrogate", *sources)
-    return solved, found
+    with checked(runs, "runs") as solved:
+        if refinement:
+            check_source(evidence["refinement"], refinement, solved, runs)
+        sources = solved, *evidence.values()
+        found = analyse(solved, **evidence)
+        write_netcdf(found, path, "analysis", *sources)
+        for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps another study's
+            path.with_name(name).unlink(missing_ok=True)
+        if indices := sensitivity_variables(found):
+            with replaced(path.with_name("indices.csv"), indices.nbytes) as unfinished:
+                write_csv(found, unfinished)
+            write_netcdf(indices, path.with_name("indices.nc"), "indices", *sources)
+        if surrogates := packed(solved, found):
+            write_netcdf(surrogates, path.with_name("surrogate.nc"), "surrogate", *sources)
+    return found
 
 
 def check(verification: Verification) -> xr.Dataset:

@@ -12,35 +12,45 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import resource
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import dask
+import dask.array as da
 import numpy as np
 import xarray as xr
+from dask.delayed import delayed
 from rich.console import Console
 from rich.table import Table
 
 import impactlab as il
-from impactlab.files import write_netcdf
+from impactlab.files import opened, write_netcdf
 from impactlab.model.parameters import flatten
 from impactlab.study.engine import Engine
 from impactlab.study.execute import open_runs
 from impactlab.study.netcdf import Columns
 from impactlab.study.solvers import impact
 from impactlab.study.store import OutputSpec
+from impactlab.variables import RESPONSES, described
 
 KINDS = {"memory": (11, 1e-3), "short": (101, 1e-3), "long": (101, 8e-3)}
 """Nodes and duration, in s."""
 SMALL = {"memory": (10_000, 100_000), "short": (3_000,), "long": (3_000,)}
 FULL = {"memory": (10_000, 1_000_000), "short": (100_000,), "long": (100_000,)}
+ANALYSED = {False: 1_000_000, True: 150_000_000}
+"""Runs of the sample that is analysed, in full or not."""
+_PROGRAM, _COLUMNS = 2e9, 2.5
+"""Its limit of address space: bytes, and columns of 8 bytes per run."""
 THREADS = {"memory": (2,), "short": (1,), "long": (1, 2, 2, 1)}
 """Of the lines, in their order; what drifts weighs on one as on two."""
 
@@ -54,10 +64,82 @@ def design(runs: int, nodes: int, duration: float) -> xr.Dataset:
         "sphere_radius": random.uniform(0.03, 0.04, runs),
         "beam_yield_stress": random.uniform(300e6, 400e6, runs),
     }
-    attrs = {"study": "scaling", "varied": [*varied], "responses": [*il.dataset.RESPONSES]}
+    attrs = {"study": "scaling", "varied": [*varied], "responses": [*RESPONSES]}
     attrs |= {"histories": 0, "profiles": 0, "history_samples": 2}
     fixed |= {name: ("run", values) for name, values in varied.items()}
     return xr.Dataset(coords=fixed, attrs=attrs)
+
+
+SAMPLED = (
+    *("velocity", "sphere_radius", "beam_yield_stress", "beam_youngs_modulus"),
+    *("beam_depth", "beam_width", "beam_span", "beam_density"),
+)
+ANSWERED = "peak_force", "impulse", "maximum_deflection"
+"""Parameters and responses of the sample that is analysed."""
+
+
+def weights(response: int) -> np.ndarray[Any, Any]:
+    """The weights of the parameters in a response, whose Sobol indices are w^2 / sum(w^2)."""
+    return np.roll(np.arange(1.0, len(SAMPLED) + 1), response)
+
+
+def write_sample(path: Path, runs: int) -> None:
+    """Write runs.nc of a Saltelli sample in which responses are sums of the parameters."""
+    step = len(SAMPLED) + 2
+
+    def inputs(at: int) -> np.ndarray[Any, Any]:
+        first, second = np.random.default_rng(at).random((2, runs // step, 1))
+        table = np.repeat(first, step, axis=1)
+        table[:, [at + 1, -1]] = second
+        return table.ravel()
+
+    def outputs(at: int) -> np.ndarray[Any, Any]:
+        total = np.zeros(runs)
+        for parameter, weight in enumerate(weights(at)):
+            total += weight * inputs(parameter)
+        return total
+
+    def column(make: Callable[[int], Any], at: int, **attrs: Any) -> tuple[str, Any, Any]:
+        return "run", da.from_delayed(delayed(make)(at), (runs,), float), attrs
+
+    known = {"distribution": "uniform", "low": 0.0, "high": 1.0}
+    coords = {name: column(inputs, at, **known) for at, name in enumerate(SAMPLED)}
+    answers = {name: column(outputs, at) for at, name in enumerate(ANSWERED)}
+    attrs = {"study": "scaling", "method": "sobol", "varied": SAMPLED, "responses": ANSWERED}
+    attrs |= {"base_samples": runs // step, "second_order": 0, "seed": 1}
+    answers["status"] = "run", da.zeros(runs, dtype=np.int32, chunks=-1)
+    coords["run"] = "run", np.arange(runs)
+    with dask.config.set(scheduler="synchronous"):  # a column at a time
+        write_netcdf(described(xr.Dataset(answers, coords, attrs)), path, "runs")
+
+
+def analysed(runs: int) -> dict[str, object]:
+    """The line of the analysis: `impactlab analyse` in an address space too small for the runs."""
+    limit = int(_PROGRAM + _COLUMNS * 8 * runs)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "runs.nc"
+        subprocess.run([sys.executable, __file__, "--write", str(path), str(runs)], check=True)
+        start, command = time.perf_counter(), [sys.executable, "-m", "impactlab", "analyse"]
+        limited = partial(resource.setrlimit, resource.RLIMIT_AS, (limit, limit))
+        process = subprocess.Popen([*command, str(path)], preexec_fn=limited)
+        _, status, used = os.wait4(process.pid, 0)
+        wall = time.perf_counter() - start
+        if status:
+            raise RuntimeError(f"the analysis of {runs} runs failed within {limit / 1e6:.0f} MB")
+        with opened(path) as stored, opened(path.with_name("analysis.nc")) as found:
+            size = stored.nbytes
+            exact = np.array([weights(at) ** 2 for at in range(len(ANSWERED))])
+            exact /= exact.sum(axis=1, keepdims=True)
+            away = [np.abs(found[f"{name}_order"] - exact).max() for name in ("first", "total")]
+    return {
+        "runs": runs,
+        "runs_MB": size / 1e6,
+        "limit_MB": limit / 1e6,
+        "peak_MB": used.ru_maxrss / 1e3,
+        "wall_s": wall,
+        "processor_s": used.ru_utime + used.ru_stime,
+        "largest_error_of_indices": float(max(away)),
+    }
 
 
 @contextmanager
@@ -122,16 +204,31 @@ def _all(lines: Iterable[dict], name: str) -> float:
     return sum(line[name] for line in lines)
 
 
+def _table(lines: list[dict]) -> Table:
+    table = Table(*lines[0])
+    for line in lines:
+        table.add_row(*(f"{v:,.4g}" if isinstance(v, float) else f"{v:,}" for v in line.values()))
+    return table
+
+
 def main() -> int:
     """Print the tables and write them as CSV."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--full", action="store_true", help="A million runs: eight to ten minutes.")
     parser.add_argument("--output", type=Path, default=Path("results/benchmark_scaling.csv"))
     parser.add_argument("--one", nargs=3, help=argparse.SUPPRESS)
+    parser.add_argument("--analysis", type=int, help="Only the analysis, of so many runs.")
+    parser.add_argument("--write", nargs=2, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.one:
         what, runs, threads = options.one
         print(json.dumps(measured(what, int(runs), int(threads))))
+        return 0
+    if options.write:
+        write_sample(Path(options.write[0]), int(options.write[1]))
+        return 0
+    if options.analysis:
+        Console().print(_table([analysed(options.analysis)]))
         return 0
     sizes = FULL if options.full else SMALL
     apart("memory", 100, 1)  # the kernels are compiled, where they are not yet
@@ -141,13 +238,10 @@ def main() -> int:
         for runs in counts
         for threads in THREADS[what]
     ]
-    table = Table(*lines[0])
-    for line in lines:
-        table.add_row(*(f"{v:,.1f}" if isinstance(v, float) else f"{v}" for v in line.values()))
     told = Table("ratio", "value", "target")
     for what, value, target in verdicts(lines):
         told.add_row(what, f"{value:.3f}", target)
-    Console().print(table, told)
+    Console().print(_table(lines), told, _table([analysed(ANALYSED[options.full])]))
     options.output.parent.mkdir(parents=True, exist_ok=True)
     rows = [",".join(lines[0]), *(",".join(map(str, line.values())) for line in lines)]
     options.output.write_text("\n".join(rows) + "\n")

@@ -38,7 +38,7 @@ _INDICES = {
 def _check(sample: Sample) -> None:
     sample.ungrouped()
     curves = len(sample.parameters) + 1
-    points, harmonics = len(sample.inputs) // curves, sample.number("harmonics")
+    points, harmonics = sample.size // curves, sample.number("harmonics")
     sample.expect(points * curves, f"{curves} curves of {points} points")
     if points <= 4 * harmonics**2:
         raise ValueError(

@@ -9,14 +9,15 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.stats import rankdata
+from numpy.typing import NDArray
 
-from impactlab.analysis.responses import usable
+from impactlab.analysis.responses import labels, listed, usable
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity import delta, fast, morris, pawn, regression, sobol, verdict
 from impactlab.analysis.sensitivity.method import BY_SAMPLES, PAIR, Index, SensitivityMethod
 from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
 from impactlab.analysis.surrogate import fit
+from impactlab.analysis.surrogate.chaos import drawn
 from impactlab.analysis.verdicts import flagged
 from impactlab.types import Floats
 
@@ -37,19 +38,15 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     """
     sample, method = Sample.of(runs), METHODS[str(runs.attrs["method"])]
     method.check(sample)
-    values = usable(runs).sortby("run").transpose("response", "run")
-    answers = [_answer(str(row["response"].item()), row.values, sample, method) for row in values]
+    answers = [_answer(name, sample, method) for name in listed(runs, "responses")]
     verdicts, shares, rows = zip(*answers, strict=True)
     wanted = {
         name: index
         for name, index in method.indices.items()
         if index.dims != PAIR or sample.number("second_order")
     }
-    factors, of_responses = list(sample.factors), values["response"].coords.items()
+    factors, coordinates = list(sample.factors), labels(runs)
     what = "group of varied parameters" if sample.groups else "varied parameter"
-    coordinates: dict[str, Any] = {
-        str(name): each.variable for name, each in of_responses if each.ndim
-    }
     coordinates["parameter"] = ("parameter", factors, {"long_name": what})
     dims = {index.dims for index in wanted.values()}
     if PAIR in dims:
@@ -71,9 +68,10 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 
 
 def _answer(
-    response: str, outputs: Floats, sample: Sample, method: SensitivityMethod
+    response: str, sample: Sample, method: SensitivityMethod
 ) -> tuple[list[SensitivityVerdict], float, dict[str, Floats]]:
-    """Return verdicts, share of runs that a surrogate supplied, and indices; outputs: (runs,)."""
+    """Return verdicts, share of runs that a surrogate supplied, and indices of a response."""
+    outputs = usable(sample.runs, response).values[0]
     complete = imputed(outputs, sample, response)
     if complete is None:
         return [SensitivityVerdict.TOO_FEW_RUNS], 0.0, {}
@@ -111,6 +109,8 @@ MOST_IMPUTED = 0.2
 """Largest share of runs that may be supplied."""
 FEWEST_PER_PARAMETER = 10
 """Good runs that a surrogate needs per parameter."""
+_AT_ONCE = 100_000
+"""Runs that are predicted together."""
 
 
 def imputed(outputs: Floats, sample: Sample, response: str) -> Floats | None:
@@ -118,7 +118,8 @@ def imputed(outputs: Floats, sample: Sample, response: str) -> Floats | None:
 
     They are returned as they are where none is NaN or the study does not ask for it
     (`failed_runs: impute`); None where too few runs are left. A mean would take away variance; the
-    share of supplied runs is stored beside the indices.
+    share of supplied runs is stored beside the indices. The runs that the surrogate is fitted to
+    are picked here: the places of all may not fit into memory.
 
     The surrogate's place of a value is the share of runs below it. In a sample as even as those of
     sensitivity analyses, this is the probability to 1/runs, whatever the distribution.
@@ -129,11 +130,27 @@ def imputed(outputs: Floats, sample: Sample, response: str) -> Floats | None:
     enough = np.count_nonzero(~gaps) >= FEWEST_PER_PARAMETER * len(sample.parameters)
     if not enough or np.count_nonzero(gaps) > MOST_IMPUTED * outputs.size:
         return None
-    places = np.asarray((rankdata(sample.inputs, axis=0) - 0.5) / len(sample.inputs))
     seed = int(sample.rng("surrogate", response).integers(1, 2**31))
+    good, gone = np.flatnonzero(~gaps), np.flatnonzero(gaps)
+    good = good[drawn(good.size, seed)]
+    places = _places(sample, np.concatenate([good, gone]))
+    surrogate = fit(places[: good.size], outputs[good], seed)
     filled = outputs.copy()
-    filled[gaps] = fit(places[~gaps], outputs[~gaps], seed)(places[gaps])
+    for start in range(0, gone.size, _AT_ONCE):
+        part = slice(good.size + start, good.size + min(start + _AT_ONCE, gone.size))
+        filled[gone[start : start + _AT_ONCE]] = surrogate(places[part])
     return filled
+
+
+def _places(sample: Sample, runs: NDArray[np.int64]) -> Floats:
+    """Return the share of all runs below each parameter of these, (runs, parameter)."""
+    found = np.empty((runs.size, len(sample.parameters)))
+    for at, name in enumerate(sample.parameters):
+        column = sample.column(name)
+        wanted, ordered = column[runs], np.sort(column)
+        below, above = (np.searchsorted(ordered, wanted, side) for side in ("left", "right"))
+        found[:, at] = ((below + above + 1) / 2 - 0.5) / column.size
+    return found
 
 
 _BESIDE = ("sensitivity_verdict", "sensitivity_remarks", "imputed_share")

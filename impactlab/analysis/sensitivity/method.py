@@ -56,7 +56,7 @@ class SensitivityMethod:
 
 def dummy_column(sample: Sample) -> Floats:
     """Return a Latin hypercube in (0, 1), (runs,): unseen by the model, its indices are noise."""
-    runs = len(sample.inputs)
+    runs = sample.size
     return (sample.rng("dummy").permutation(runs) + 0.5) / runs
 
 

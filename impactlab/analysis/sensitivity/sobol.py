@@ -9,10 +9,10 @@ over the base samples.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from SALib.analyze import sobol
-from SALib.analyze.sobol import separate_output_values
 
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity.method import (
@@ -28,34 +28,70 @@ from impactlab.types import Floats
 _ALONE = 4  # columns of the statistics that belong to no factor: a, b, a^2, b^2
 
 
+ALL = slice(None)
+MOST_ROWS = 1 << 18
+"""Base samples that are resampled as they are; more are resampled in groups."""
+
+
 @dataclass(frozen=True)
 class Outputs:
     """Outputs of one response at the points of a Saltelli sample, standardised as a whole.
 
-    a, b: (base samples,), at the two independent samples; ab: (base samples, factors), at A with
-    the factor's columns from B; ba: the same at B with columns from A, None without second order.
+    They are standardised when they are used: memory holds the outputs as they are, once.
+
+    table: (base samples, runs of one), in SALib's order. second: whether with second order.
     """
 
-    a: Floats
-    b: Floats
-    ab: Floats
-    ba: Floats | None
+    table: Floats
+    mean: float
+    deviation: float
+    factors: int
+    second: bool
 
     @classmethod
     def of(cls, outputs: Floats, sample: Sample) -> Outputs:
-        """Return the parts of outputs (runs,) in SALib's order, not all equal."""
-        standard = (outputs - outputs.mean()) / outputs.std()
-        size, second = len(outputs) // step(sample), bool(sample.number("second_order"))
-        return cls(*separate_output_values(standard, len(sample.factors), size, second))
+        """Return outputs (runs,), which are not all equal, as a table."""
+        table, second = outputs.reshape(-1, step(sample)), bool(sample.number("second_order"))
+        return cls(table, outputs.mean(), outputs.std(), len(sample.factors), second)
 
-    def statistics(self, interactions: bool = True) -> Floats:
+    def at(self, *columns: int | slice, rows: slice = ALL) -> list[Floats]:
+        """Return columns of the table, standardised.
+
+        At A (the first) and B (the last); behind A at A with a factor's columns from B, then at B
+        with columns from A.
+        """
+        return [(self.table[rows, each] - self.mean) / self.deviation for each in columns]
+
+    def statistics(self, interactions: bool = True, rows: slice = ALL) -> Floats:
         """Return the columns whose means the estimators take, (base samples, columns)."""
-        a, b = self.a[:, None], self.b[:, None]
-        columns = [a, b, a**2, b**2, b * (self.ab - a), (a - self.ab) ** 2 / 2]
-        if self.ba is not None and interactions:
-            first, second = np.triu_indices(self.ab.shape[1], 1)
-            columns.append(self.ba[:, first] * self.ab[:, second] - a * b)
+        end = 1 + self.factors
+        a, ab, b = self.at(slice(0, 1), slice(1, end), slice(-1, None), rows=rows)
+        columns = [a, b, a**2, b**2, b * (ab - a), (a - ab) ** 2 / 2]
+        if self.second and interactions:
+            first, second = np.triu_indices(self.factors, 1)
+            (ba,) = self.at(slice(end, -1), rows=rows)
+            columns.append(ba[:, first] * ab[:, second] - a * b)
         return np.concatenate(columns, axis=1)
+
+    def resampled(self, interactions: bool, rng: np.random.Generator) -> Floats:
+        """Return the rows to resample, (rows, columns): the statistics, or the means of groups.
+
+        More than MOST_ROWS base samples are drawn into groups of equal size, block by block. Of the
+        mean of all, the means of groups tell the variance as the rows do: to a share of
+        sqrt(2 / groups), which is beside that of the resamples. (Drawn, for neighbours in a
+        low-discrepancy sequence are no independent draws.) The fewer base samples than one group
+        has that are left over are not resampled.
+        """
+        size = -(-len(self.table) // MOST_ROWS)
+        groups = len(self.table) // size
+        if size == 1:
+            return self.statistics(interactions)
+        starts = range(0, groups * size, groups)
+        blocks = (self.statistics(interactions, slice(at, at + groups)) for at in starts)
+        total = next(blocks)
+        for block in blocks:
+            total += block[rng.permutation(groups)]
+        return total / size
 
 
 def step(sample: Sample) -> int:
@@ -143,7 +179,8 @@ def _of_first(size: int, outputs: Floats, sample: Sample, response: str) -> dict
     if still(start, varying(start, sample)):
         return {}
     parts = Outputs.of(start, sample)  # pairs have intervals on the whole sample alone
-    statistics = parts.statistics(interactions=start.size == outputs.size)
+    interactions = start.size == outputs.size
+    statistics = parts.resampled(interactions, sample.rng(response, "groups"))
     spread = half_widths(statistics, lambda means: estimates(means, factors), sample, response)
     found = points(parts) | spread
     if "second_order_interval" in found:
@@ -153,15 +190,16 @@ def _of_first(size: int, outputs: Floats, sample: Sample, response: str) -> dict
 
 def points(outputs: Outputs) -> dict[str, Floats]:
     """Return SALib's indices: first_order, total_order (factor) and second_order, symmetric."""
-    a, b, ab, ba = outputs.a, outputs.b, outputs.ab, outputs.ba
+    factors, (a, b) = outputs.factors, outputs.at(0, -1)
+    columns = range(1, 1 + factors)
     found = {
-        "first_order": np.array([sobol.first_order(a, column, b) for column in ab.T]),
-        "total_order": np.array([sobol.total_order(a, column, b) for column in ab.T]),
+        "first_order": np.array([sobol.first_order(a, *outputs.at(i), b) for i in columns]),
+        "total_order": np.array([sobol.total_order(a, *outputs.at(i), b) for i in columns]),
     }
-    if ba is not None:
-        pairs = zip(*np.triu_indices(ab.shape[1], 1), strict=True)
-        joint = [sobol.second_order(a, ab[:, i], ab[:, j], ba[:, i], b) for i, j in pairs]
-        found["second_order"] = _matrix(np.array(joint, float), ab.shape[1])
+    if outputs.second:
+        pairs = combinations(columns, 2)
+        joint = [sobol.second_order(a, *outputs.at(i, j, factors + i), b) for i, j in pairs]
+        found["second_order"] = _matrix(np.array(joint, float), factors)
     return found
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.verdicts import ROUND_OFF, Verdict
+from impactlab.analysis.verdicts import ROUND_OFF, Verdict, distinct
 from impactlab.types import Floats
 
 MOSTLY = 0.9
@@ -77,25 +77,28 @@ def of_outputs(
         return [SensitivityVerdict.FAILED_RUNS]
     if still(outputs, varying):
         return [SensitivityVerdict.CONSTANT]
-    values, counts = np.unique(outputs, return_counts=True)
+    values, most = distinct(outputs)
     holds = {
-        SensitivityVerdict.MOSTLY_CONSTANT: counts.max() >= MOSTLY * outputs.size,
+        SensitivityVerdict.MOSTLY_CONSTANT: most >= MOSTLY * outputs.size,
         SensitivityVerdict.IMPUTED: imputed > 0,
         SensitivityVerdict.FEW_RUNS_CARRY_IT: tail(outputs) > TAIL_SHARE,
-        SensitivityVerdict.JUMPS: values.size <= min(FEW_VALUES, outputs.size // 2),
+        SensitivityVerdict.JUMPS: values <= min(FEW_VALUES, outputs.size // 2),
     }
     return [verdict for verdict, held in holds.items() if held]
 
 
 def still(outputs: Floats, varying: Sequence[Floats]) -> bool:
     """Return True if a part does not vary, for its size or beside the variance of the whole."""
-    smallest, least = ROUND_OFF * np.abs(outputs).max(), ROUND_OFF * np.var(outputs)
+    largest = max(outputs.max(), -outputs.min())
+    smallest, least = ROUND_OFF * largest, ROUND_OFF * np.var(outputs)
     return any(np.ptp(part) <= smallest or np.var(part) <= least for part in varying)
 
 
 def tail(outputs: Floats) -> float:
     """Return the share of the variance that comes from the runs farthest from the mean."""
-    squares = np.sort((outputs - outputs.mean()) ** 2)
+    squares = outputs - outputs.mean()
+    squares *= squares  # in place, as the next: a copy may be gigabytes
+    squares.sort()
     return float(squares[-max(1, round(TAIL * squares.size)) :].sum() / squares.sum())
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -10,10 +10,10 @@ import xarray as xr
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from impactlab.analysis.responses import listed, usable
+from impactlab.analysis.responses import labels, listed, usable
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.surrogate.chaos import drawn, fewest_runs, fit, indices, influence
-from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
+from impactlab.analysis.verdicts import ROUND_OFF, Verdict, distinct, flagged
 from impactlab.model.distributions import ARGUMENTS, cumulative
 from impactlab.types import Floats
 
@@ -38,20 +38,20 @@ def applies(runs: xr.Dataset) -> bool:
 class Divided:
     """A sample, divided into runs to fit to and runs to test on, in the order of `run`.
 
-    unit: (runs, parameters), the probability of each value. block: (runs,), equal for runs that
-    differ in few parameters. held_out: mask of the runs that no surrogate sees, (runs,), a fifth of
-    the blocks. tests: positions of these runs, rising; of more than _MOST_TESTS, a draw of as many.
+    length: of a block of runs, which differ in few parameters. held_out: mask of the runs that no
+    surrogate sees, (runs,), a fifth of the blocks. tests: positions of these runs, rising; of more
+    than _MOST_TESTS, a draw of as many.
     """
 
     sample: Sample
-    unit: Floats
-    block: NDArray[np.int64]
+    length: int
     held_out: NDArray[np.bool_]
     tests: NDArray[np.int64]
+    _units: dict[bytes, Floats] = field(default_factory=dict)
 
     @classmethod
     def of(cls, runs: xr.Dataset) -> Divided:
-        """Divide runs sorted by `run`. Raises ValueError where blocks do not fit."""
+        """Divide runs. Raises ValueError where blocks do not fit."""
         sample = Sample.of(runs)
         method, count = str(runs.attrs.get("method")), runs.sizes["run"]
         length = sample.number(_LENGTHS[method]) if method in _LENGTHS else 1
@@ -62,13 +62,24 @@ class Divided:
                 f"{sample.study} has {count} runs, not a whole number of blocks of its method "
                 f"{method}: solve it again"
             )
-        block, blocks = np.arange(count) // length, count // length
+        blocks = count // length
         shuffled = sample.rng("surrogate held out").permutation(blocks)
-        held_out = np.isin(block, shuffled[: max(1, round(_SHARE * blocks))])
+        held_blocks = np.zeros(blocks, dtype=bool)
+        held_blocks[shuffled[: max(1, round(_SHARE * blocks))]] = True
+        held_out = np.repeat(held_blocks, length)
         tests = sample.rng("surrogate tests").permutation(np.flatnonzero(held_out))[:_MOST_TESTS]
-        pairs = zip(sample.parameters, sample.inputs.T, strict=True)
-        columns = [cumulative(runs[name].attrs, column) for name, column in pairs]
-        return cls(sample, np.column_stack(columns), block, held_out, np.sort(tests))
+        return cls(sample, length, held_out, np.sort(tests))
+
+    def unit(self, rows: NDArray[np.int64]) -> Floats:
+        """Return the probability of each value in these runs, (runs, parameters).
+
+        It is kept: most responses are fitted to the same runs.
+        """
+        if (key := rows.tobytes()) not in self._units:
+            pairs = zip(self.sample.parameters, self.sample.rows(rows).T, strict=True)
+            columns = [cumulative(self.sample.runs[name].attrs, column) for name, column in pairs]
+            self._units[key] = np.column_stack(columns)
+        return self._units[key]
 
 
 GOOD = 0.9
@@ -97,31 +108,34 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     constant or with too few runs. q2 is -inf where the tested values are all equal.
     """
     sample, answered = divided.sample, np.isfinite(values)
-    training = np.flatnonzero(answered & ~divided.held_out)
+    training = answered & ~divided.held_out
+    number = int(np.count_nonzero(training))
     tested = answered[divided.tests]
-    few = training.size < fewest_runs(len(sample.parameters))
+    few = number < fewest_runs(len(sample.parameters))
     if few or np.count_nonzero(tested) < _FEWEST_TESTS:
         return SurrogateVerdict.TOO_FEW_RUNS, {}
-    known = values[answered]
-    if np.ptp(known) <= ROUND_OFF * np.abs(known).max():
+    known = values if answered.all() else values[answered]
+    if np.ptp(known) <= ROUND_OFF * max(known.max(), -known.min()):
         return SurrogateVerdict.CONSTANT, {}
     seed = int(sample.rng("surrogate fit").integers(2**31))
-    rows = training[drawn(training.size, seed)]
-    chaos = fit(divided.unit[rows], values[rows], seed)
-    predicted = chaos(divided.unit[divided.tests])
+    picked = drawn(number, seed)  # before the numbers of all take as much memory
+    rows = np.flatnonzero(training)[picked]
+    unit, block = divided.unit(rows), rows // divided.length
+    chaos = fit(unit, values[rows], seed)
+    predicted = chaos(divided.unit(divided.tests))
     square = float(np.mean((predicted - values[divided.tests])[tested] ** 2))
     variance = float(np.var(values[divided.tests][tested]))
     q2, rmse = 1 - square / variance if variance > 0 else -np.inf, float(np.sqrt(square))
-    pull = influence(chaos, divided.unit[rows], values[rows], divided.block[rows], rmse)
+    pull = influence(chaos, unit, values[rows], block, rmse)
     missed = min(max(1 - q2, 0.0), 1.0)
     found = {"chaos": chaos, "q2": q2, "rmse": rmse, "runs": rows.size, "held_out": predicted}
     found |= indices(chaos, sample.memberships, pull, missed, sample.confidence)
-    counts = np.unique(known, return_counts=True)[1]
+    levels, most = distinct(known)
     if known.size < values.size:
         return SurrogateVerdict.FAILED_RUNS, found
-    if counts.max() >= MOSTLY * known.size:
+    if most >= MOSTLY * known.size:
         return SurrogateVerdict.MOSTLY_CONSTANT, found
-    if counts.size <= min(FEW, known.size // 10):
+    if levels <= min(FEW, known.size // 10):
         return SurrogateVerdict.JUMPS, found
     return SurrogateVerdict.USABLE if q2 >= GOOD else SurrogateVerdict.POOR, found
 
@@ -138,11 +152,10 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     (see `basis`). NaN where a response has no surrogate. Raises ValueError when the number of
     runs does not fit the sample.
     """
-    runs = runs.sortby("run")
-    divided, values = Divided.of(runs), usable(runs).transpose("response", "run")
+    divided, names = Divided.of(runs), listed(runs, "responses")
     sample = divided.sample
     with threadpool_limits(limits=1):  # the same bits on any number of processors
-        answers = [surrogate(row, divided) for row in values.values]
+        answers = [surrogate(usable(sample.runs, name).values[0], divided) for name in names]
     terms = [np.zeros((1, len(sample.parameters)), dtype=np.int64)]
     terms += [found["chaos"].degrees for _, found in answers if found]
     degrees = np.unique(np.concatenate(terms), axis=0)
@@ -150,12 +163,9 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         at = (degrees[:, np.newaxis] == found["chaos"].degrees).all(axis=-1).argmax(axis=0)
         found["coefficient"] = np.zeros(len(degrees))
         found["coefficient"][at] = found["chaos"].coefficients
-    of_responses = values["response"].coords.items()
-    coordinates: dict[str, Any] = {
-        str(name): each.variable for name, each in of_responses if each.ndim
-    }
+    coordinates = labels(runs)
     for name, entries, words in (
-        ("held_out", runs["run"].values[divided.tests], "number of a run held out"),
+        ("held_out", sample.runs["run"].values[divided.tests], "number of a run held out"),
         ("parameter", sample.factors, "varied parameter"),
         ("surrogate_input", sample.parameters, "parameter that the surrogate depends on"),
     ):

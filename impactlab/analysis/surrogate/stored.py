@@ -128,8 +128,8 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
     columns = [runs[str(name)] for name in dataset["parameter"].values]
     given = [arguments(column.attrs) for column in columns]
     pairs = list(zip(given, columns, strict=True))
-    lowest = [float(known.get("low", column.min())) for known, column in pairs]
-    highest = [float(known.get("high", column.max())) for known, column in pairs]
+    lowest = [known["low"] if "low" in known else float(each.min()) for known, each in pairs]
+    highest = [known["high"] if "high" in known else float(each.max()) for known, each in pairs]
     inputs = {
         "distribution": ([json.dumps(known) for known in given], {}),
         "parameter_units": ([column.attrs.get("units", "1") for column in columns], {}),

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.responses import listed
+from impactlab.analysis.responses import in_order, listed
 from impactlab.study.solvers import solver_of
 
 MOST, FEWEST, SHARE = 64, 16, 8
@@ -39,7 +39,7 @@ def refine_cases(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr
         )
     if solver_of(runs) != "impact":
         raise ValueError(f"study {study!r}: its runs are not impacts, so they have no grid")
-    names, first = listed(runs, "varied"), _first(runs.sortby("run"), count)
+    names, first = listed(runs, "varied"), _first(in_order(runs), count).compute()
     nodes, points = int(runs["nodes"]), int(runs["points"])
     grids = {
         "used": (nodes, points),

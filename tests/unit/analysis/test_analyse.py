@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,10 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.analyse import analyse
+from impactlab.analysis.sensitivity import method, sobol
+from impactlab.analysis.surrogate import chaos
+from impactlab.files import write_netcdf
+from impactlab.study.steps import analyse_runs
 
 Build = Callable[..., xr.Dataset]
 AXES = {"rule": ["lobatto", "layers"], "nodes": [101, 51, 201], "points": [9, 3]}
@@ -153,3 +159,32 @@ def test_only_the_wanted_analyses_are_made(discretisation: xr.Dataset) -> None:
     assert "points_verdict" in found
     assert "nodes_verdict" not in found
     assert "missing_runs" in found  # failures are always counted
+
+
+def test_a_sample_is_analysed_one_response_at_a_time(
+    sample_runs: Build, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Memory holds fewer than 6 columns; the responses and parameters of the runs are 12."""
+    monkeypatch.setattr(sobol, "MOST_ROWS", 1024)
+    monkeypatch.setattr(method, "_CELLS", 10_000)
+    monkeypatch.setattr(chaos, "MOST_RUNS", 100)
+    names, parameters = [f"y{at}" for at in range(6)], ["x0", "x1", "x2", "x3", "x4", "x5"]
+
+    def peak(base: int) -> float:
+        random = np.random.default_rng(1)
+        outputs = {name: random.normal(size=base * 8) for name in names}
+        attrs = {"resamples": 10}
+        runs = sample_runs(parameters, base, second_order=False, attrs=attrs, **outputs)
+        for name in parameters:
+            runs[name].attrs = {"distribution": "uniform", "low": 1.0, "high": 2.0}
+        write_netcdf(runs, tmp_path / "runs.nc", "runs")
+        del runs, outputs
+        tracemalloc.start()
+        found = analyse_runs(tmp_path / "runs.nc", tmp_path / "analysis.nc")
+        assert {"missing_runs", "first_order", "surrogate_q2"} <= found.keys()
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return most
+
+    peak(64)  # whatever is loaded once
+    assert peak(1 << 14) < 6 * 8 * (8 << 14)

@@ -14,6 +14,7 @@ from SALib.sample import sobol as sampler
 
 from impactlab.analysis import sensitivity
 from impactlab.analysis.sample import Sample
+from impactlab.analysis.sensitivity import sobol as module
 from impactlab.analysis.sensitivity.sobol import Outputs, estimates, points
 from impactlab.figures import measures
 
@@ -108,6 +109,22 @@ def test_points_and_their_bootstrap_agree(sample_runs: Build, ishigami: Any) -> 
         np.testing.assert_allclose(ours[name], theirs[name], atol=1e-12)
     upper = theirs["second_order"][np.triu_indices(3, 1)]
     np.testing.assert_allclose(ours["second_order"], upper, atol=1e-12)
+
+
+@pytest.mark.parametrize("most", [512, 300])
+def test_groups_of_many_base_samples_have_the_same_intervals(
+    sample_runs: Build, ishigami: Any, monkeypatch: pytest.MonkeyPatch, most: int
+) -> None:
+    outputs, names = ishigami.of_unit(_sample(3, 4096)), ["x0", "x1", "x2"]
+    runs = sample_runs(names, 4096, attrs={"resamples": 1000}, peak_force=outputs)
+    whole = sensitivity.analysis(runs)
+    monkeypatch.setattr(module, "MOST_ROWS", most)
+    found = sensitivity.analysis(runs)
+    for name in ("first_order", "total_order", "second_order"):
+        np.testing.assert_array_equal(found[name], whole[name])
+        widths = found[f"{name}_interval"], whole[f"{name}_interval"]
+        np.testing.assert_allclose(*widths, rtol=0.15)  # 1000 resamples, some 300 groups
+        assert not np.array_equal(*widths)
 
 
 def test_a_small_share_is_real_and_an_unseen_parameter_is_not(sample_runs: Build) -> None:
