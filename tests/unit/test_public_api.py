@@ -7,12 +7,14 @@ import re
 import subprocess
 import sys
 from importlib.metadata import version
+from pathlib import Path
 from types import ModuleType
 
 import pytest
 
 import impactlab as il
 
+ROOT = Path(__file__).parents[2]
 PUBLIC = [name for name in il.__all__ if not isinstance(getattr(il, name), ModuleType)]
 PLOTS = [f"plot.{name}" for name in il.plot.__all__]
 
@@ -38,6 +40,19 @@ def test_examples_of_public_names_run(name, tmp_path, monkeypatch):
     pyplot.close("all")
     assert runner.summarize(verbose=False).failed == 0
     assert runner.tries > 0, f"{name} has no example"
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_code_of_pages_runs_in_their_order(page, tmp_path, monkeypatch):
+    from matplotlib import pyplot
+
+    monkeypatch.chdir(tmp_path)
+    pyplot.switch_backend("agg")
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.S)
+    assert blocks
+    exec(compile("\n".join(blocks), page, "exec"), {"__name__": "page"})
+    pyplot.close("all")
+    assert (tmp_path / "report.html").exists()
 
 
 def test_the_package_names_its_public_names_and_version():
