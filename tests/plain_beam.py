@@ -58,7 +58,7 @@ class Bar(NamedTuple):
 
 
 class Matrices(NamedTuple):
-    """What the modal scheme does to the inner nodes in place of differences; empty for leapfrog.
+    """Matrices of the modal scheme for the inner nodes, not differences; empty for leapfrog.
 
     curve: from deflections (m) to curvatures (1/m); pull, push: from
     moments (N m) and from forces per length (N/m) to accelerations (m/s2).

@@ -77,7 +77,7 @@ class Case:
         return simulate(self.impact, chosen, duration=self.duration, samples=samples)
 
     def critical_step(self, grid: Discretisation) -> float:
-        """Return the scheme's largest time step in s, from the number of steps in a second."""
+        """Return the scheme's largest time step in s."""
         return 1.0 / discretised(self.impact, replace(grid, courant=1.0), 1.0)[1]
 
 
