@@ -243,8 +243,11 @@ class Study:
     def report(self, path: str | Path | None = None) -> Path:
         """Analyse, draw, and write the report, one file; return it (default: folder/report.html).
 
+        Writes folder/ro-crate-metadata.json, too: what the folder holds, and what made it.
+
         Raises ValueError where nothing is solved yet.
         """
+        from impactlab.report.crate import write_crate
         from impactlab.report.results import RUNS
 
         path = self.folder / "report.html" if path is None else Path(path)
@@ -252,6 +255,7 @@ class Study:
         solved = read_netcdf(self._runs(), "runs")
         RUNS.draw(solved, found, figures)
         RUNS.write(solved, found, figures, path)
+        write_crate(solved, self.folder, figures, path)
         return path
 
     def _runs(self) -> Path:

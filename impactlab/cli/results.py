@@ -86,13 +86,16 @@ def report(
         Path | None, new_file(help="Default: report.html beside the first of them.")
     ] = None,
 ) -> None:
-    """Write a study's report."""
+    """Write a study's report, and, beside the runs, ro-crate-metadata.json: what made each file."""
     from impactlab.report.answer import answers
+    from impactlab.report.crate import write_crate
     from impactlab.report.results import read_stored
 
     kind, datasets = read_stored(stored)
     path = output or stored[0].with_name("report.html")
-    kind.write(*datasets, figures or stored[0].with_name("figures"), path)
+    drawn = figures or stored[0].with_name("figures")
+    kind.write(*datasets, drawn, path)
+    write_crate(datasets[0], stored[0].parent, drawn, path)
     print(f"{path}: {answers(*datasets)[0]}")
 
 

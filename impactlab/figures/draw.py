@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -35,6 +35,8 @@ class Drawing(NamedTuple):
     title: str
     plot: Callable[[], Figure]
     caption: Callable[[], str]
+    attrs: Mapping[Any, Any]
+    """Attributes of the dataset that it shows: they name the study."""
 
 
 def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]:
@@ -52,7 +54,13 @@ def draw_figures(
 ) -> list[Path]:
     """Draw each of the figures of two datasets; see `draw`."""
     drawings = (
-        Drawing(each.name, each.title, partial(each.plot, *pair), partial(each.caption, *pair))
+        Drawing(
+            each.name,
+            each.title,
+            partial(each.plot, *pair),
+            partial(each.caption, *pair),
+            pair[0].attrs,
+        )
         for each in figures
     )
     return draw(drawings, folder, study, made_from)
@@ -67,6 +75,7 @@ def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
             "All comparisons",
             partial(findings.plot_overview, outcomes),
             partial(findings.overview_caption, outcomes),
+            stored.attrs,
         )
     ]
     drawings += [
@@ -75,6 +84,7 @@ def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
             outcome.title,
             partial(findings.plot_curves, outcome),
             partial(findings.curves_caption, outcome),
+            stored.attrs,
         )
         for outcome in outcomes
         if any(panel.curves for panel in outcome.finding.panels)
@@ -86,6 +96,8 @@ def draw(
     drawings: Iterable[Drawing], folder: Path, study: str, made_from: xr.Dataset | None = None
 ) -> list[Path]:
     """Write NAME.svg, NAME.png, the data behind it (see data.py), and captions.json.
+
+    The metadata of both pictures name the study and the hash of its file.
 
     captions.json: {NAME: {"title", "caption", "alt", "made_from"}} in the order of the report.
     Files of figures that it named before and that are no longer drawn are removed. The same
@@ -101,7 +113,11 @@ def draw(
     for drawing in drawings:
         try:
             figure = drawing.plot()
-            written += save(figure, folder, drawing.name)
+            source = f"study {drawing.attrs.get('study', study)}"
+            if digest := drawing.attrs.get("study_sha256"):
+                source += f", SHA-256 of its file: {digest}"
+            about = {"Title": drawing.title, "Source": source}
+            written += save(figure, folder, drawing.name, about)
             written += data.save(figure, folder, drawing.name)
             captions[drawing.name] = {
                 "title": drawing.title,
@@ -131,16 +147,21 @@ def listed(folder: Path) -> dict[str, dict[str, str]]:
     raise ValueError(f"{path}: is damaged: draw the figures again (impactlab figures)")
 
 
-def save(figure: Figure, folder: Path, name: str) -> list[Path]:
-    """Write the figure in each format, atomically, without a date inside. Returns the paths."""
+def save(
+    figure: Figure, folder: Path, name: str, about: Mapping[str, str] | None = None
+) -> list[Path]:
+    """Write the figure in each format, atomically, without a date inside. Returns the paths.
+
+    about: metadata of both files, by the terms of Dublin Core that PNG knows too.
+    """
     svg, png = (folder / f"{name}.{kind}" for kind in FORMATS)
     with style.applied(), replaced(svg) as vectors, replaced(png) as pixels:
         # Figure.savefig would draw each file twice
         vector: Any = FigureCanvasSVG(figure)
         figure.dpi = rcParams["savefig.dpi"]
-        vector.print_svg(vectors, metadata={"Date": None})
+        vector.print_svg(vectors, metadata={"Date": None, **(about or {})})
         figure.set_layout_engine("none")  # laid out once: that takes most of the time
         bitmap: Any = FigureCanvasAgg(figure)
         figure.dpi = rcParams["savefig.dpi"]
-        bitmap.print_png(pixels, metadata={"Software": None})
+        bitmap.print_png(pixels, metadata={"Software": None, **(about or {})})
     return [svg, png]

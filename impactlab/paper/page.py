@@ -68,7 +68,8 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
             title = f"{number.lstrip('0')}. {figure.title}"
             plot = partial(figure.plot, *stored[study])
             caption = partial(_caption, study, figure, *stored[study])
-            drawings.append(Drawing(f"figure_{number}", title, plot, caption))
+            attrs = stored[study][0].attrs
+            drawings.append(Drawing(f"figure_{number}", title, plot, caption, attrs))
     draw(drawings, output / "figures", study="paper")
     _write_tables(judged, output)
     write_page(

@@ -41,9 +41,12 @@ def test_every_dependency_is_pinned_within_its_bounds(requirement: Requirement) 
     assert Version(pinned.version) in requirement.specifier
 
 
-def test_citation_and_changelog_name_the_version() -> None:
+def test_citation_and_changelog_agree_with_the_project() -> None:
     citation = YAML(typ="safe").load(ROOT / "CITATION.cff")
     assert citation["version"] == PROJECT["version"]
+    assert citation["license"] == PROJECT["license"]
+    assert citation["keywords"] == PROJECT["keywords"]
+    assert citation["authors"] == PROJECT["authors"]
     assert f"\n## {PROJECT['version']} " in (ROOT / "CHANGELOG.md").read_text()
 
 
