@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from impactlab.files import opened, read_netcdf, replaced
+from impactlab.model.checks import integer
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.parameters import PARAMETERS
@@ -287,6 +288,7 @@ class Study:
 def _engine(workers: int, processes: bool = False, client: Client | None = None) -> Engine:
     from impactlab.study.engine import Engine
 
+    workers = integer("run", "workers", workers, 1)
     return Engine("processes" if processes else "threads", workers, own=client)
 
 

@@ -88,12 +88,14 @@ def response(
 def run(one: xr.Dataset) -> Any:
     """Draw a run of `il.simulate`: force, motion, the loop of the contact and the beam at the end.
 
-    Returns an array of four axes.
+    Returns an array of four axes. Raises ValueError for runs without histories and fields.
 
     >>> one = il.simulate(il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms")
     >>> [ax.get_ylabel() for ax in il.plot.run(one)][:2]
     ['Contact force (kN)', 'Displacement down (µm)']
     """
+    if one.get("contact_force", xr.DataArray()).dims != ("time",) or "deflection" not in one:
+        raise ValueError("run: expected the dataset of one impact, from il.simulate")
     with style.interactive():
         return np.array(one_run.plot(one).axes)
 

@@ -43,7 +43,7 @@ def analyse(
     analyses document, on `response` and the dimensions that they leave, with the attributes of the
     runs.
 
-    Raises ValueError when the runs contradict their attributes.
+    Raises ValueError when the runs are not a study's, or contradict their attributes.
 
     >>> study = il.Study(
     ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=256, parameters={
@@ -52,6 +52,10 @@ def analyse(
     >>> indices.total_order.sel(response="value").round(1).values
     array([0.6, 0.4, 0.2])
     """
+    if "responses" not in runs.attrs:
+        raise ValueError(
+            "the runs are not those of a study: analyse what il.Study(...).run() gives"
+        )
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
     parts = [
         analysis(runs)

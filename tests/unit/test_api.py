@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 import sys
 from dataclasses import replace
@@ -16,8 +17,11 @@ from ruamel.yaml import YAML
 import impactlab as il
 from impactlab.figures.catalogue import CATALOGUE as INDEX_FIGURES
 from impactlab.files import read_netcdf
+from impactlab.model.distributions import ARGUMENTS
 from impactlab.study import steps
+from impactlab.study.sampling import METHODS
 from impactlab.study.schema.files import read_study
+from impactlab.study.schema.written import _Distribution, _Sampling
 
 UNITS = pint.UnitRegistry()
 ROOT = Path(__file__).parents[2]
@@ -106,6 +110,15 @@ def test_shipped_studies_are_the_same_from_python(path, folder):
     assert (folder / path.name).read_bytes() == path.read_bytes()
 
 
+def test_every_method_and_distribution_has_its_class():
+    classes = [getattr(il, name) for name in il.__all__ if isinstance(getattr(il, name), type)]
+    for base, names in ((_Sampling, METHODS), (_Distribution, ARGUMENTS)):
+        found = [each for each in classes if issubclass(each, base)]
+        given = [{each.name: {} for each in dataclasses.fields(one)} for one in found]
+        keys = {one(**each).written()[base._key] for one, each in zip(found, given, strict=True)}
+        assert keys == set(names)
+
+
 FAR = il.paper_impact()
 IMPACTS = [
     replace(FAR, velocity=3.3, contact="hertz", gravity=0.0),
@@ -154,6 +167,9 @@ def test_quantities_are_numbers_texts_or_pint(made, value):
     assert made() == pytest.approx(value, rel=1e-15)
 
 
+MANY = il.simulate_many(FAR, GRID, duration="0.1 ms", varied={"velocity": [1.0, 2.0]})
+
+
 @pytest.mark.parametrize(
     ("made", "said"),
     [
@@ -161,6 +177,15 @@ def test_quantities_are_numbers_texts_or_pint(made, value):
         (lambda: il.paper_impact(5 * UNITS.kg), "Impact.velocity = '5.0 kg': 'kg' has the wrong"),
         (lambda: small(duration="1 kg"), "Study: duration = '1 kg': 'kg' has the wrong dimension"),
         (lambda: small(duration=None), "Study: duration: is required"),
+        (lambda: small(store=il), "Study: store: is of type module, which no study file can hold"),
+        (
+            lambda: small(sampling=replace(SAMPLE, parameters=["velocity"])),
+            "Study: sampling.parameters",
+        ),
+        (lambda: small(sampling=il.Sobol), "Study: sampling: is of type type, which no study"),
+        (lambda: small().run(workers=0), "run.workers = 0: must be a whole number of at least 1"),
+        (lambda: il.analyse(MANY), "the runs are not those of a study"),
+        (lambda: il.plot.run(MANY), "run: expected the dataset of one impact"),
         (lambda: small(sampling=None), "Study: sampling: is required"),
         (lambda: small(responses=["force"]), "Study: responses.0 = 'force': unknown response; did"),
         (lambda: small(impact={"base": "paper", "speed": 1}), "Study: impact.speed = 1: unknown"),

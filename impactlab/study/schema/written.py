@@ -19,6 +19,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.model.quantities import Quantity, as_text
+from impactlab.study.errors import Problem, StudyError
 
 Values = Mapping[str, Any]
 
@@ -115,7 +116,7 @@ class _Sampling(_Section):
 
 @dataclass(frozen=True, kw_only=True)
 class Grid(_Sampling):
-    """A grid: every combination of the listed values is a run.
+    """A grid: all combinations of the listed values are runs.
 
     parameters: name (docs/studies.md lists them) -> its values.
 
@@ -133,10 +134,11 @@ class _Sample(_Sampling):
     def written(self) -> dict[str, Any]:
         """Return the section, with single values as fixed parameters."""
         found = super().written()
-        found["parameters"] = {
-            name: given if isinstance(given, dict) else {"distribution": "fixed", "value": given}
-            for name, given in found["parameters"].items()
-        }
+        if isinstance(self.parameters, Mapping):
+            found["parameters"] = {
+                name: each if isinstance(each, dict) else {"distribution": "fixed", "value": each}
+                for name, each in found["parameters"].items()
+            }
         return found
 
 
@@ -237,7 +239,9 @@ def plain(value: Any) -> Any:
         return {key: plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple | set):
         return [plain(each) for each in value]
-    return as_text(value)
+    if not isinstance(text := as_text(value), str | int | float | list | None):
+        raise ValueError(f"is of type {type(value).__name__}, which no study file can hold")
+    return text
 
 
 def _changes(own: tuple[Impact, Discretisation], root: str, **others: Any) -> dict[str, Any]:
@@ -255,10 +259,19 @@ def _changes(own: tuple[Impact, Discretisation], root: str, **others: Any) -> di
 
 
 def text_of(sections: Values) -> str:
-    """Return the text of a study file with these sections."""
+    """Return the text of a study file with these sections; those that are None are left out.
+
+    Raises StudyError naming a section that no file can hold.
+    """
+    given: dict[str, Any] = {}
+    for key, each in sections.items():
+        try:
+            given |= {} if each is None else {key: plain(each)}
+        except ValueError as error:
+            raise StudyError(Problem("Study", key, str(error))) from None
     yaml: Any = YAML(typ="safe", pure=True)
     text = io.StringIO()
     yaml.default_flow_style, yaml.sort_base_mapping_type_on_output = None, False
     yaml.width, yaml.allow_unicode = 96, True
-    yaml.dump({key: plain(each) for key, each in sections.items() if each is not None}, text)
+    yaml.dump(given, text)
     return text.getvalue()

@@ -74,7 +74,7 @@ def test_a_response_of_ones_own_is_that_of_each_run():
 
 
 def test_a_model_of_ones_own_has_its_known_indices():
-    """Of a product of two uniform variables on (0, 1): 3/7 each alone, 4/7 in total."""
+    """The product of two uniform variables on (0, 1): 3/7 each alone, 4/7 in total."""
     study = il.Study(title="Product", function=product, sampling=PLANE)
     indices = il.analyse(study.run(workers=1))
     assert indices.first_order.values == pytest.approx(3 / 7, abs=0.05)
@@ -87,6 +87,13 @@ def test_a_model_may_give_several_responses():
     runs = study.run(workers=1)
     assert runs["sum"].values == pytest.approx(runs.a.values + runs.b.values)
     assert runs.difference.values == pytest.approx(runs.a.values - runs.b.values)
+
+
+def test_grids_take_functions_too():
+    sampling = il.Grid(parameters={"a": [1, 2, 3], "b": [0.5, 1.5]})
+    runs = il.Study(title="Grid", function=product, sampling=sampling).run(workers=1)
+    assert runs.value.dims == ("a", "b")
+    assert (runs.value == runs.a * runs.b).all()
 
 
 def test_growing_samples_take_functions_too():
