@@ -177,7 +177,10 @@ MANY = il.simulate_many(FAR, GRID, duration="0.1 ms", varied={"velocity": [1.0, 
         (lambda: il.paper_impact(5 * UNITS.kg), "Impact.velocity = '5.0 kg': 'kg' has the wrong"),
         (lambda: small(duration="1 kg"), "Study: duration = '1 kg': 'kg' has the wrong dimension"),
         (lambda: small(duration=None), "Study: duration: is required"),
-        (lambda: small(store=il), "Study: store: is of type module, which no study file can hold"),
+        (
+            lambda: small(store=object()),
+            "Study: store: is of type object, which no study file can hold",
+        ),
         (
             lambda: small(sampling=replace(SAMPLE, parameters=["velocity"])),
             "Study: sampling.parameters",
