@@ -228,4 +228,4 @@ def _deflect(state: State, now: int) -> None:
     deflect(state.own, state.beam.w, now, state.grid.mid)
 
 
-MODEL = Model(_make, _step, _curvature, _energy, _deflect, least_stride=64)  # it takes 4 steps
+MODEL = Model(_make, _step, _curvature, _energy, _deflect, flight_stride=64)

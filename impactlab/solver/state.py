@@ -31,8 +31,8 @@ class Model(NamedTuple):
     make(case, section, grid): State.own at rest. step(state, now, F): move the beam under the
     contact force F (N). curvature(state, now): at mid-span, 1/m. energy(state, now, F, u_mid): the
     beam's in J, plastic strains' included, after a step, at its beginning; u_mid: u at mid-span
-    before it (m). deflect(state, now): set all of beam.w[now] in the end. least_stride: steps
-    between two audits of the energy, at least.
+    before it (m). deflect(state, now): set all of beam.w[now] in the end. flight_stride: steps
+    between two audits of the energy without contact, at least.
     """
 
     make: Callable[..., Any]
@@ -40,4 +40,4 @@ class Model(NamedTuple):
     curvature: Callable[..., float]
     energy: Callable[..., float]
     deflect: Callable[..., None]
-    least_stride: int = 16
+    flight_stride: int = 1
