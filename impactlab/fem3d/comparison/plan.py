@@ -85,8 +85,7 @@ _FEWEST = 2.0
 class Plan:
     """One 3-D run. mesh: None where it does not fit memory. Lengths in m, times in s.
 
-    first_contact: NaN where it outlasts the study. contact_radius: the largest to expect.
-    beam_seconds: time that the beam models take.
+    first_contact: NaN where it outlasts the study. beam_seconds: time that the beam models take.
     """
 
     case: Case
@@ -95,7 +94,6 @@ class Plan:
     duration: float
     first_contact: float
     usual_duration: float
-    contact_radius: float
     beam_seconds: float
     cost: Cost
     mesh: Mesh | None
@@ -157,11 +155,10 @@ def planned(
     size = _usual_size(case.impact, patch, simulated) if element_size is None else element_size
     solid, mesh = _cost(case.impact, size, patch, simulated)
     half = mesh.patch if mesh else checked_patch(case.impact, size, patch)
-    radius = contact_radius(case.impact)
     grid = replace(case.discretisation, scheme="leapfrog")
     beams = case_table(case.impact, grid, duration=simulated, varied={"beam_model": MODELS})
     beside = float(cost.work(beams).sum() / cost.A_SECOND)
-    return Plan(case, size, half, simulated, first, usual, radius, beside, solid, mesh)
+    return Plan(case, size, half, simulated, first, usual, beside, solid, mesh)
 
 
 def _cost(
@@ -187,10 +184,9 @@ def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
     usual, *finer = [size for size in sizes if size <= largest]
     for size in finer:
         least = least_cost(impact, element_size=size, duration=duration, patch=patch)
-        if least.cpu_seconds > USUAL_TIME or least.elements > _MOST_ELEMENTS:
+        large = least.cpu_seconds > USUAL_TIME or least.elements > _MOST_ELEMENTS
+        if large or _cost(impact, size, patch, duration)[0].cpu_seconds > USUAL_TIME:
             break  # no mesh is made of what is known to be large
-        if _cost(impact, size, patch, duration)[0].cpu_seconds > USUAL_TIME:
-            break
         usual = size
     return usual
 
@@ -200,7 +196,7 @@ def print_plan(plan: Plan, workers: int | None, problem: str) -> None:
 
     workers: None for a deck, which another program solves.
     """
-    solid, across = plan.cost, plan.contact_radius / plan.element_size
+    solid, across = plan.cost, contact_radius(plan.case.impact) / plan.element_size
     contact = f"the first contact is longer than {1e3 * plan.case.longest:.4g} ms"
     if not math.isnan(plan.first_contact):
         lasting = f"{1e3 * plan.first_contact:.2g} ms"

@@ -166,8 +166,8 @@ class March:
         system, mesh = self.system, self.system.mesh
         at = (mesh.pole, mesh.axis_node, mesh.top_node)
         pole, axis, top = mesh.nodes[at, 2] - system.x[at, 2]
-        system.move(self._velocity_dt, self._dt)
-        if system.beyond:  # for the patch needed, work grows with radius**4 at least (plastic)
+        impulse, lost, beyond = system.move(self._velocity_dt, self._dt)
+        if beyond:  # for the patch needed, work grows with radius**4 at least (plastic)
             first = self.impact.velocity**2
             left = min(self._velocity, 0.999 * first**0.5) ** 2
             needed = 1.1 * mesh.patch * (first / (first - left)) ** 0.25
@@ -178,12 +178,12 @@ class March:
             if needed > (room := largest_patch(self.impact)):
                 message += f"; beam and sphere have room for {room:.4g} m"
             raise PatchTooSmallError(message, needed)
-        force = 4.0 * system.impulse / self._velocity_dt
+        force = 4.0 * impulse / self._velocity_dt
         mass = self.impact.sphere.total_mass
         self._velocity += self._velocity_dt * (self.impact.gravity - force / mass)
         moment = Moment(self._time, force, self._sphere, pole, axis, top, self._velocity)
         self.history.moments.append(moment)
-        self._lost += system.lost
+        self._lost += lost
         self._sphere += self._dt * self._velocity
         self._time += self._dt
         system.strain(self._dt)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.solver.jit import FOLDER
+from impactlab.fem3d.solver.jit import COMPILER
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, quarter_mesh
 from impactlab.fem3d.solver.responses import fields, plastic_responses, responses
@@ -65,7 +65,7 @@ def solve_on(
 def compile_all() -> Path | None:
     """Compile the loops into their cache; return its folder, None where they cannot be kept."""
     solve(paper_impact(), element_size=4e-3, duration=2e-6)
-    return FOLDER
+    return COMPILER.folder
 
 
 OWN = {

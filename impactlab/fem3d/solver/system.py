@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,13 +19,7 @@ from impactlab.fem3d.solver.elements import FULL_ROWS, ONE_POINT_ROWS, add_force
 from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
 from impactlab.fem3d.solver.jit import Array, compiled, inlined
 from impactlab.fem3d.solver.material import POINT_ROWS, Metal
-from impactlab.fem3d.solver.mesh import (
-    BEAM,
-    NEIGHBOURS,
-    SPHERE,
-    Mesh,
-    nodal_masses,
-)
+from impactlab.fem3d.solver.mesh import BEAM, NEIGHBOURS, SPHERE, Mesh, nodal_masses
 from impactlab.model.impact import Impact, Material
 from impactlab.types import Floats
 
@@ -119,16 +114,13 @@ class ThreadPool(ThreadPoolExecutor):
         super().__init__(max(threads - 1, 1))
         self.threads = threads
 
-    def run(self, work: Callable[[int], Any]) -> None:
-        """Call work(part) for every part from 0 to threads - 1, and wait for all."""
-        others = [self.submit(work, part) for part in range(1, self.threads)]
-        work(0)
-        for other in others:
+    def run(self, work: Callable[[int, int, int], Any], count: int) -> None:
+        """Call work(part, first, end) for each thread's part of `count` numbers; wait for all."""
+        own, *others = pairwise(count * part // self.threads for part in range(self.threads + 1))
+        started = [self.submit(work, part, *share) for part, share in enumerate(others, 1)]
+        work(0, *own)
+        for other in started:
             other.result()
-
-    def share(self, part: int, count: int) -> tuple[int, int]:
-        """Return the first and the one past the last of `count` numbers that are this part's."""
-        return count * part // self.threads, count * (part + 1) // self.threads
 
 
 @compiled
@@ -206,8 +198,7 @@ def close_gaps(
 class System:
     """Nodes with positions x (n, 3) in m and velocities v (n, 3) in m/s, half a step apart.
 
-    groups: the elements. mass: (n,) in kg. impulse, lost, beyond: of the last step's contact, see
-    close_gaps. All arrays are changed in place.
+    groups: the elements. mass: (n,) in kg. All arrays are changed in place.
     """
 
     def __init__(self, mesh: Mesh, impact: Impact, pool: ThreadPool) -> None:
@@ -231,30 +222,29 @@ class System:
         self.pull[sphere] = impact.gravity
         upper, lower = mesh.pairs.T
         self.approach = np.ascontiguousarray(self.v[lower, 2] - self.v[upper, 2])
-        self.impulse, self.lost, self.beyond = 0.0, 0.0, False
         self._scratch = [np.zeros(SCRATCH * W) for _ in range(pool.threads)]
 
     def strain(self, dt: float) -> None:
         """Strain the elements by a motion of dt (s) with v, which has led to x."""
 
-        def work(part: int) -> None:
-            pieces, scratch = self.pool.share(part, MOST_THREADS), self._scratch[part]
+        def work(part: int, first: int, end: int) -> None:
             for group, rows in zip(self.groups, self.assembly.of_groups, strict=True):
-                blocks = blocks_of(group, *pieces)
+                blocks = blocks_of(group, first, end)
                 own = (group.points == 8, group.metal, group.nodes, rows, group.state)
-                add_forces(blocks, *own, self.x, self.v, dt, self.forces, scratch)
+                add_forces(blocks, *own, self.x, self.v, dt, self.forces, self._scratch[part])
 
-        self.pool.run(work)
+        self.pool.run(work, MOST_THREADS)
 
-    def move(self, velocity_dt: float, dt: float) -> None:
-        """Apply the elements' forces for velocity_dt (s), move the nodes by dt, and close gaps."""
-        pool, count = self.pool, len(self.x)
+    def move(self, velocity_dt: float, dt: float) -> tuple[float, float, bool]:
+        """Apply the elements' forces for velocity_dt (s), move the nodes by dt, and close gaps.
+
+        Returns what close_gaps does.
+        """
         rows = (self.assembly.starts, self.assembly.slots, self.forces)
-        own = (*rows, self.inverse_mass, self.pull, self.x, self.v)
-        pool.run(lambda part: integrate(pool.share(part, count), *own, velocity_dt, dt))
-        self.impulse, self.lost, self.beyond = close_gaps(
-            self.mesh.pairs, self.mesh.rim, self.inverse_mass, self.x, self.v, dt, self.approach
-        )
+        own = (*rows, self.inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
+        self.pool.run(lambda part, first, end: integrate((first, end), *own), len(self.x))
+        pairs = (self.mesh.pairs, self.mesh.rim, self.inverse_mass)
+        return close_gaps(*pairs, self.x, self.v, dt, self.approach)
 
 
 _TINY = 1e-12

@@ -22,7 +22,7 @@ from impactlab.analysis.responses import listed
 from impactlab.fem3d.solver import Cost, estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver import solve as solve_alone
 from impactlab.fem3d.solver.estimates import contact_radius
-from impactlab.fem3d.solver.jit import SOURCES_HASH as SOLID_HASH
+from impactlab.fem3d.solver.jit import COMPILER
 from impactlab.fem3d.solver.responses import surface_reach
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.model import cost
@@ -42,7 +42,7 @@ from impactlab.variables import FAILURES, HISTORIES, RESPONSES, WITNESS, describ
 
 log = logging.getLogger(__name__)
 
-VERSION = hashlib.sha256(f"{SOURCES_HASH} {SOLID_HASH}".encode()).hexdigest()
+VERSION = hashlib.sha256(f"{SOURCES_HASH} {COMPILER.sources_hash}".encode()).hexdigest()
 """Hash of the sources of the kernels and of the 3-D FE model."""
 SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
 """Record type of the table of cases."""

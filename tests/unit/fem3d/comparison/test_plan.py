@@ -10,6 +10,7 @@ import pytest
 from impactlab.fem3d.comparison import plan as plans
 from impactlab.fem3d.comparison.plan import USUAL_TIME, case_of, planned
 from impactlab.fem3d.solver import estimate, least_cost, quarter_mesh
+from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.study.errors import StudyError
 from impactlab.study.schema.files import read_impacts
 
@@ -91,7 +92,7 @@ def test_a_size_beyond_reason_is_refused(quick):
 def test_a_smaller_contact_takes_smaller_elements(quick):
     small = replace(quick.impact, sphere=replace(quick.impact.sphere, radius=0.005))
     found = planned(replace(quick, impact=small), duration=5e-5)
-    assert found.element_size < found.contact_radius / 2
+    assert found.element_size < contact_radius(small) / 2
 
 
 def test_duration_ends_with_the_study_at_the_latest(quick):
