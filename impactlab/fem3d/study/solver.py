@@ -36,14 +36,12 @@ from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
 from impactlab.study.netcdf import Array, Columns
-from impactlab.study.solvers import Solver, flattened, impact, run_shape
+from impactlab.study.solvers import flattened, impact, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FAILURES, HISTORIES, RESPONSES, WITNESS, described
 
 log = logging.getLogger(__name__)
 
-VERSION = hashlib.sha256(f"{SOURCES_HASH} {COMPILER.sources_hash}".encode()).hexdigest()
-"""Hash of the sources of the kernels and of the 3-D FE model."""
 SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
 """Record type of the table of cases."""
 SOLID_MODEL = len(BEAM_MODELS)
@@ -178,11 +176,6 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
     return answers | {"plastic_zone_radius": surface_reach(run), "status": int(run["status"])}
 
 
-def columns(design: xr.Dataset) -> tuple[str, ...]:
-    """Return the columns of the beam models, and those of the 3-D FE model alone."""
-    return (*impact.columns(design), *WITNESS)
-
-
 def cases(design: xr.Dataset, runs: Array) -> Array:
     """Return the table of these runs. Raises ValueError naming a run that the model refuses."""
     varied = {name: flattened(design, name, runs) for name in listed(design, "varied")}
@@ -213,14 +206,12 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     return described(impact.labelled(design, answers).assign(own))
 
 
-SOLVER = Solver(
-    version=VERSION,
-    columns=columns,
-    failures=impact.SOLVER.failures,
+SOLVER = replace(
+    impact.SOLVER,
+    version=hashlib.sha256(f"{SOURCES_HASH} {COMPILER.sources_hash}".encode()).hexdigest(),
+    columns=lambda design: (*impact.columns(design), *WITNESS),
     cases=cases,
     cost=work,
-    values=impact.values,
     solve=solve,
-    prepare=impact.prepare,
     labelled=labelled,
 )

@@ -159,7 +159,7 @@ def test_the_answers_depend_on_the_sources_of_both():
     from impactlab.fem3d.solver.jit import COMPILER
     from impactlab.solver.jit import SOURCES_HASH
 
-    assert len({witness.VERSION, SOURCES_HASH, COMPILER.sources_hash}) == 3
+    assert len({witness.SOLVER.version, SOURCES_HASH, COMPILER.sources_hash}) == 3
 
 
 def test_what_does_not_fit_memory_is_priced_without_a_mesh(monkeypatch):
