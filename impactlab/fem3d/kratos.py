@@ -34,8 +34,6 @@ PART, BEAM_TOP, SPHERE_BOTTOM = "Structure", "BeamTop", "SphereBottom"
 """Names of the whole model and of the two surfaces that may touch."""
 RESIDUAL_RATIO = 1e-5
 """Residual over that at a step's beginning, at which the step has converged."""
-_HALVINGS = 5
-"""Number of times that a step is cut in half if it does not converge."""
 
 
 class KratosMissingError(ImportError):
@@ -217,7 +215,7 @@ class Run:
         """Take one step, or as much of it as converges; the following steps take the rest."""
         analysis, before = self._analysis, self._analysis.time
         analysis.time = analysis._GetSolver().AdvanceInTime(before)
-        for _ in range(1 + _HALVINGS):
+        for _ in range(6):  # cut in half five times at most
             analysis.InitializeSolutionStep()
             if analysis.SolveSolutionStep() or self._balanced():
                 analysis.FinalizeSolutionStep()

@@ -29,10 +29,6 @@ from impactlab.simulate import simulate
 from impactlab.variables import RESPONSES, UNLIKE, attributes, reasons, status_bits
 
 _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")
-_WHOLE = 9.95
-"""Difference in % from which on it is printed without a decimal."""
-_FAR = 1e-3
-"""PEEQ of elements that are not fully integrated, from which on it is printed."""
 
 
 def compare(
@@ -217,7 +213,7 @@ def print_yielding(solid: xr.Dataset) -> None:
     show = partial(Console().print, markup=False, highlight=False)
     if (sphere := float(solid["sphere_plastic_strain"])) > 0.0:
         show(f"the sphere yields, too: PEEQ up to {sphere:.2%}, in plastic_dissipation alone")
-    if (coarse := float(solid["one_point_plastic_strain"])) > _FAR:
+    if (coarse := float(solid["one_point_plastic_strain"])) > 1e-3:
         show(
             f"elements with one integration point yield: PEEQ up to {coarse:.2%} away from contact "
             "and middle, where they are too stiff in bending"
@@ -227,5 +223,5 @@ def print_yielding(solid: xr.Dataset) -> None:
 def _cell(value: float, share: float) -> str:
     if np.isnan(value):
         return "missing"
-    digits = 1 if abs(share) < _WHOLE else 0
+    digits = 1 if abs(share) < 9.95 else 0
     return f"{value:.4g}" + ("" if np.isnan(share) else f" {share:+.{digits}f}%")

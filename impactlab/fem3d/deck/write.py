@@ -31,14 +31,10 @@ _CORNERS = np.array(
 """An element's nodes on its faces S1 to S6."""
 _PER_LINE = 16
 """Entries that a data line may hold in both programs."""
-_NEAR = 1e-6
-"""Distance from a plane at which a node is on it, over the size of an element."""
 _OVERCLOSURE = 0.002
 """Overclosure at the contact's centre over the indentation, in Hertz's contact, in CalculiX."""
 _LONGEST = 10.0
 """Plastic strain at which the tables end; both programs keep the stress from there on."""
-_SAMPLES = 60
-"""Intervals in the contact duration of an elastic half-space."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +105,7 @@ def write_deck(
     positive("deck", "duration", duration)
     if interval is None:
         contact = hertz.contact_duration(*hertz.arguments(impact))
-        interval = min(contact / _SAMPLES, duration)
+        interval = min(contact / 60.0, duration)
     elif positive("deck", "interval", interval) > duration:
         raise ValueError(
             f"deck.interval = {interval!r} s: must not be above the duration ({duration!r} s)"
@@ -215,7 +211,7 @@ def _geometry(
         for at in range(0, len(members), _PER_LINE):
             yield ", ".join(str(node + 1) for node in members[at : at + _PER_LINE])
     # The sphere's surface below its centre, and the beam's top.
-    on_plane = np.abs(mesh.nodes) < _NEAR * mesh.element_size  # through the origin, across an axis
+    on_plane = np.abs(mesh.nodes) < 1e-6 * mesh.element_size  # through the origin, across an axis
     ball, corners = _outer(mesh, SPHERE)
     middle = mesh.nodes[corners, 2].mean(axis=1)
     height = 0.5 * np.ptp(mesh.nodes[np.unique(corners), 2])

@@ -54,8 +54,6 @@ def _draw_faces(ax: Axes, polygons: Floats, **looks: Any) -> PolyCollection:
 
 _COLOURS = {"beam": "#DCE9F2", "sphere": "#F7E3D4", "fully integrated": "#9CC4DD"}
 _EDGE = "0.25"
-_ENLARGED = 3.0
-"""Sides of the enlarged views over half the side of the matched patch."""
 
 
 def _mesh_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
@@ -76,7 +74,7 @@ def mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     figure = Figure(figsize=size, layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.5])
     patch = 1e3 * float(solid["patch"])
-    thin, reach = min(0.15, 0.15e3 * float(solid["element_size"])), _ENLARGED * patch
+    thin, reach = min(0.15, 0.15e3 * float(solid["element_size"])), 3.0 * patch
     axes = []
     for place, axis, width, title, label in (
         (grid[0, :], 1, thin, "Plane of symmetry along the beam", "height"),
@@ -117,9 +115,6 @@ def mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
 THRESHOLD = 1e-5
 """PEEQ from which on an element counts as plastic."""
 _STRAIN = "equivalent_plastic_strain"
-_NONE = "0.94"
-_REACH = 1.6
-"""Sides of the view over half the side of the matched patch, or the plastic zone below it."""
 
 
 def _strain_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
@@ -145,10 +140,10 @@ def plastic_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     polygons, elements = faces(solid, 1)
     strain = solid[_STRAIN].values[elements]
     plastic = strain >= THRESHOLD
-    _draw_faces(ax, polygons[~plastic], facecolors=_NONE, edgecolors="0.75", linewidths=0.3)
+    _draw_faces(ax, polygons[~plastic], facecolors="0.94", edgecolors="0.75", linewidths=0.3)
     extent = np.abs(polygons[plastic]).max(initial=0.0)  # at most half the beam's depth
     extent = min(float(extent), 0.5e3 * float(solid["beam_depth"]))
-    reach = _REACH * max(1e3 * float(solid["patch"]), extent)
+    reach = 1.6 * max(1e3 * float(solid["patch"]), extent)
     ax.set(xlim=(0.0, reach), ylim=(-0.75 * reach, 0.25 * reach))
     ax.set_title(plastic_strain.title, loc="left")
     ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis("height", "mm"))

@@ -19,18 +19,11 @@ from impactlab.verification.solutions import hertz
 if TYPE_CHECKING:
     from impactlab.fem3d.solver.mesh import Mesh
 
-_HARDNESS = 2.8
-"""Mean pressure of a fully plastic contact over the yield stress (Tabor)."""
-_FINEST = 1e-5
-"""Smallest element size over the sphere's radius."""
-_MARGIN = 1.25
-"""Patch over the estimated contact radius."""
-
 
 def checked_size(impact: Impact, element_size: float) -> float:
     """Return an element size in m. Raises ValueError where no mesh could ever have it."""
     size = positive("mesh", "element_size", element_size)
-    if size < (finest := _FINEST * impact.sphere.radius):
+    if size < (finest := 1e-5 * impact.sphere.radius):
         raise ValueError(
             f"mesh.element_size = {size!r} m: must be at least {finest:.2g} m, "
             "a hundred-thousandth of the sphere's radius"
@@ -42,13 +35,12 @@ def contact_radius(impact: Impact) -> float:
     """Return the largest contact radius in m to expect, of an elastic and a plastic half-space.
 
     Hertz: a = sqrt(R delta_m). Plastic: F = pi a^2 p with a^2 = 2 R delta takes up m v^2/2 at
-    a^4 = 2 R m v^2/(pi p), p = 2.8 of the softer body's yield stress. A beam gives way and stays
-    below the larger one.
+    a^4 = 2 R m v^2/(pi p), p = 2.8 (Tabor) of the softer body's yield stress. A beam gives way and
+    stays below the larger one.
     """
-    mass, velocity, _, radius = hertz.arguments(impact)
-    depth = hertz.maximum_indentation(*hertz.arguments(impact))
-    softer = min(impact.sphere.material.yield_stress, impact.beam.material.yield_stress)
-    pressure = _HARDNESS * softer
+    mass, velocity, _, radius = given = hertz.arguments(impact)
+    depth = hertz.maximum_indentation(*given)
+    pressure = 2.8 * min(impact.sphere.material.yield_stress, impact.beam.material.yield_stress)
     plastic = math.pow(2.0 * radius * mass * velocity**2 / (math.pi * pressure), 0.25)
     return max(math.sqrt(radius * depth), plastic)
 
@@ -67,14 +59,14 @@ def uniform(size: float, length: float) -> int:
 def checked_patch(impact: Impact, element_size: float, patch: float | None) -> float:
     """Return half the side of the square of matched nodes in m, rounded up to whole elements.
 
-    patch: None for an estimate of at least 3 elements, whose margin is cut where the bodies end,
-    down to the contact radius to expect. Raises ValueError where it is not positive, or does not
-    fit on beam and sphere.
+    patch: None for an estimate of at least 3 elements, a quarter above the contact radius to expect
+    or, where the bodies end, less. Raises ValueError where it is not positive, or does not fit on
+    beam and sphere.
     """
     room = largest_patch(impact)
     if patch is None:
         radius = contact_radius(impact)
-        half = element_size * max(math.ceil(_MARGIN * radius / element_size), 3)
+        half = element_size * max(math.ceil(1.25 * radius / element_size), 3)
         fits = element_size * math.floor(room / element_size)
         if fits >= max(radius, 3.0 * element_size):
             half = min(half, fits)

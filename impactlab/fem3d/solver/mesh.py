@@ -33,10 +33,6 @@ NEIGHBOURS = np.array(
     [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
 )
 """The three corners that share an edge with each corner, turning right-handed."""
-_BENT = 2.5
-"""Length of beam beside the impact, over its depth, that is fully integrated where it may yield."""
-_THINNEST = 0.7
-"""Thickness of a layer of elements at least, over their size in the contact."""
 _CORE = 0.45
 """Half the height of the sphere's core, over the radius."""
 _ROUND = 0.5
@@ -161,7 +157,7 @@ def quarter_mesh(
     x, y = (graded(size, half, side / 2, ratio, largest) for side in (beam.span, beam.width))
     # The axis is one of the cuts along z. Where a last layer above it would be thin, all are alike.
     middle = beam.depth / 2
-    fine = depth if middle - depth > _THINNEST * size else middle
+    fine = depth if middle - depth > 0.7 * size else middle
     upper = graded(size, fine, middle, ratio, largest)
     last = upper[-1] - upper[-2]
     lower = middle + graded(last, last, middle, ratio, largest)
@@ -185,7 +181,7 @@ def quarter_mesh(
     centres = nodes[elements].mean(axis=1)
     full = np.all(np.abs(centres) < 1.5 * half, axis=1)
     if bending_yields(impact):
-        full |= (body == BEAM) & (centres[:, 0] < _BENT * beam.depth)
+        full |= (body == BEAM) & (centres[:, 0] < 2.5 * beam.depth)
     on_plane = np.abs(nodes[:, :2]) < 1e-6 * size
     symmetry_x, symmetry_y = (np.flatnonzero(on).astype(np.int32) for on in on_plane.T)
     return Mesh(

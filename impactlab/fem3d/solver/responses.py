@@ -13,8 +13,6 @@ from impactlab.model.impact import Impact
 from impactlab.types import Floats
 from impactlab.variables import STATUS_FLAGS
 
-_IMBALANCE = 0.05
-"""Largest imbalance of energy, over the initial kinetic energy, at which answers are given."""
 _CAUSES = {
     "first_contact_unfinished": "contact_duration",
     "in_contact_at_end": "total_contact_time",
@@ -41,7 +39,7 @@ def responses(history: History, impact: Impact, pause: float) -> tuple[dict[str,
     first = 0.5 * impact.sphere.total_mass * impact.velocity**2
     balances = np.array([entry.balance for entry in history.energies] or [np.nan])
     error = float(np.max(np.abs(balances - first)) / first)
-    if not error <= _IMBALANCE:
+    if not error <= 0.05:  # of the initial kinetic energy
         reasons = ["energy_out_of_balance" if np.isfinite(error) else "diverged"]
         answers = dict.fromkeys(answers, np.nan)
     answers["energy_error"] = error if np.isfinite(error) else np.nan

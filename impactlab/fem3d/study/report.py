@@ -16,8 +16,6 @@ _LEAD = (
     "Each model on its finest grid, with its numerical uncertainty (± of the value itself; none "
     "where a finer grid changes nothing), and its difference from the 3-D finite-element model."
 )
-_NOTHING = 1e-8
-"""Uncertainty over the value that counts as round-off."""
 _PARTS = (
     "The answer of the paper's beam is turned into that of the 3-D FE model one effect after the "
     "other: (1 + shear)(1 + elasticity)(1 + law) = 1 + all."
@@ -60,7 +58,7 @@ def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, ali
         return Cell("missing", "warning")
     text = labels.number(float(unit(value)))
     width = float(side.uncertainty[at])
-    if value and not width <= _NOTHING * abs(value):
+    if value and not width <= 1e-8 * abs(value):  # more than round-off
         text = f"{text} ± {_bound(100.0 * width / abs(value))}"
     gap = float(witness.difference([side], [against]).value[at])
     shown = alike and side is not against and np.isfinite(gap)

@@ -51,12 +51,8 @@ _BEAM_MODELS_ONLY = (
     *("nodes", "points", "rule", "scheme", "courant"),
 )
 """Fields that the 3-D FE model does not use."""
-_LARGER = 1.5
-"""A patch of matched nodes over one that the contact has outgrown."""
 _STEPS = 10_001
 """Samples of a history before it is brought to the study's times: closer than the time steps."""
-_LONG = 3600.0
-"""Duration of a run in s beyond which no mesh is made to estimate it."""
 
 
 def table(
@@ -129,12 +125,12 @@ def _priced(
 
 @lru_cache(maxsize=4096)
 def _cost(record: bytes) -> Cost:
-    """Return the cost of a 3-D run, the least one if long or large; zeros where no mesh fits."""
+    """Return a run's cost, the least one if above an hour or memory; zeros where no mesh fits."""
     case = np.frombuffer(record, dtype=SOLID_CASE)[0]
     given, size, duration = _impact_of(case), case["element_size"].item(), case["duration"].item()
     try:
         least = least_cost(given, element_size=size, duration=duration)
-        if least.cpu_seconds > _LONG or least.memory_bytes > MEMORY_LIMIT:
+        if least.cpu_seconds > 3600.0 or least.memory_bytes > MEMORY_LIMIT:
             return least
         mesh = quarter_mesh(given, element_size=size)
     except ValueError:  # the run will say so in its status
@@ -156,7 +152,7 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
     try:
         patch = quarter_mesh(given, element_size=size).patch
         while "patch_needed" in (run := solve_alone(given, patch=patch, **options)).attrs:
-            patch = _LARGER * patch
+            patch = 1.5 * patch
             again = "a 3-D run begins again with a patch of %.3g mm: %s"
             log.info(again, 1e3 * patch, run.attrs["stopped"])
     except ValueError as error:  # no mesh of this size, or no larger patch
