@@ -120,11 +120,10 @@ def witness(
     if deck:
         _write_deck(plan, deck, folder, plastic=not elastic)
         return
-    from impactlab.fem3d.comparison.run import compare, print_comparison, print_yielding
+    from impactlab.fem3d.comparison.run import compare, print_comparison
 
     solid, responses, folder = compare(plan, folder, workers=workers, watched=_watched())
-    print_comparison(responses)
-    print_yielding(solid)
+    print_comparison(responses, solid)
     _end(solid, folder)
 
 

@@ -172,10 +172,12 @@ def write_vtu(dataset: xr.Dataset, path: Path) -> None:
         Path(written).replace(unfinished)
 
 
-def print_comparison(found: xr.Dataset) -> None:
+def print_comparison(found: xr.Dataset, solid: xr.Dataset) -> None:
     """Print one row per response: the 3-D value, and each beam model's with its difference in %.
 
-    found: see compared. Below the table, the missing responses and the reasons, by model.
+    found: see compared. solid: a dataset of fem3d.solver. Below the table, the missing responses
+    and the reasons, by model, and where more yields than the responses show: elements with one
+    integration point yield as a whole, and late in bending.
     """
     names = found["model"].values.tolist()
     models = ["3-D" if name == SOLID else name.replace("_", "-").title() for name in names]
@@ -202,15 +204,7 @@ def print_comparison(found: xr.Dataset) -> None:
     for reason, lacking in missing.items():
         who = "all models" if lacking == models else ", ".join(lacking)
         console.print(f"missing ({who}): {reason}", markup=False)
-
-
-def print_yielding(solid: xr.Dataset) -> None:
-    """Print one line per body or region that yields where the responses do not show it.
-
-    solid: a dataset of fem3d.solver. Elements with one integration point yield as a whole, and late
-    in bending.
-    """
-    show = partial(Console().print, markup=False, highlight=False)
+    show = partial(console.print, markup=False, highlight=False)
     if (sphere := float(solid["sphere_plastic_strain"])) > 0.0:
         show(f"the sphere yields, too: PEEQ up to {sphere:.2%}, in plastic_dissipation alone")
     if (coarse := float(solid["one_point_plastic_strain"])) > 1e-3:
