@@ -167,7 +167,7 @@ class Run:
     """An impact on a mesh in Kratos; times in s, penalty in N/m3.
 
     history: at the start and at the end of each step so far, velocities included. iterations:
-    Newton's, in each. Raises ValueError for a material that Kratos' law cannot follow.
+    Newton's, in each.
     """
 
     engine: Engine
@@ -197,10 +197,7 @@ class Run:
         self._sphere = mass / mass.sum()  # each node's share
 
     def go(self, progress: Progress | None) -> None:
-        """Step on to the end, or until a step does not converge or Ctrl-C is pressed.
-
-        Raises PatchTooSmallError when the contact leaves the matched patch.
-        """
+        """Step on to the end, or until a step does not converge or Ctrl-C is pressed."""
         analysis = self._analysis
         try:
             while analysis.KeepAdvancingSolutionLoop() and not self.history.stopped:
@@ -263,8 +260,7 @@ class Run:
 
     def _force(self) -> float:
         """Return the force of the whole beam on the whole sphere in N, upwards: four quarters."""
-        core, total = self.engine.core, 0.0
-        residual = core.Vector()
+        core, residual, total = self.engine.core, self.engine.core.Vector(), 0.0
         for pair in self.part.GetSubModelPart("ComputingContact").Conditions:
             if pair.Is(core.ACTIVE):
                 pair.CalculateRightHandSide(residual, self.part.ProcessInfo)
@@ -331,8 +327,6 @@ def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
     """Put the mesh into the empty model part `part`, which must know its variables.
 
     Kratos counts from 1: its node i + 1 is the mesh's node i.
-
-    Raises ValueError for a material with kinematic hardening, which Kratos' law does not have.
     """
     for number, place in enumerate((mesh.nodes * MM).tolist(), 1):
         part.CreateNewNode(number, *place)

@@ -40,15 +40,13 @@ def compare(
 ) -> tuple[xr.Dataset, xr.Dataset, Path]:
     """Solve a planned case by the 3-D FE model and the beam models; write and draw the answers.
 
-    Returns the answers of the 3-D FE model, the responses of all models (see compared), and the
-    folder where the files lie.
-
     folder: gets witness.nc, witness.vtu, beams.nc, comparison.csv and figures/. If the 3-D run
     stopped before its end, and the folder holds a complete run, FOLDER_stopped gets them instead.
     workers: number of threads. watched: is entered around the 3-D run, and gives its `progress`.
-    Answers are on disk before anything is made of them.
 
-    Raises OSError where the folder cannot be written to, before anything is solved.
+    Returns the answers of the 3-D FE model, the responses of all models (see compared), and the
+    folder where the files lie. Answers are on disk before anything is made of them. Raises OSError
+    where the folder cannot be written to, before anything is solved.
     """
     check_writable(folder)
     try:

@@ -236,10 +236,7 @@ class System:
         self.pool.run(work, MOST_THREADS)
 
     def move(self, velocity_dt: float, dt: float) -> tuple[float, float, bool]:
-        """Apply the elements' forces for velocity_dt (s), move the nodes by dt, and close gaps.
-
-        Returns what close_gaps does.
-        """
+        """Apply the elements' forces for velocity_dt (s), move the nodes by dt; see close_gaps."""
         rows = (self.assembly.starts, self.assembly.slots, self.forces)
         own = (*rows, self.inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
         self.pool.run(lambda part, first, end: integrate((first, end), *own), len(self.x))
