@@ -133,10 +133,9 @@ def _solved(data: Mapping[str, xr.Dataset]) -> Table:
     """Return one row per study: its runs, and where they come from."""
     rows: list[Row] = []
     for name, runs in data.items():
-        title, created, revision = (
-            str(runs.attrs.get(key, "")) for key in ("title", "created", "source_revision")
-        )
-        rows.append([name, title, Cell(str(count(runs)), "number"), created, revision])
+        keys = "title", "created", "source_revision"
+        title, *origin = (str(runs.attrs.get(key, "")) for key in keys)
+        rows.append([name, title, Cell(str(count(runs)), "number"), *origin])
     head = ["Study", "Title", "Runs", "Solved", "Source revision"]
     return Table("Studies that the verdicts are computed from", head, rows)
 

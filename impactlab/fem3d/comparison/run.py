@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -32,11 +32,7 @@ _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_b
 
 
 def compare(
-    plan: Plan,
-    folder: Path,
-    *,
-    workers: int = 1,
-    watched: AbstractContextManager[Progress | None] | None = None,
+    plan: Plan, folder: Path, *, workers: int, watched: AbstractContextManager[Progress]
 ) -> tuple[xr.Dataset, xr.Dataset, Path]:
     """Solve a planned case by the 3-D FE model and the beam models; write and draw the answers.
 
@@ -54,7 +50,7 @@ def compare(
             complete = "stopped" not in before.attrs
     except OSError:
         complete = False
-    with watched or nullcontext() as progress:
+    with watched as progress:
         mesh, impact = plan.solved_mesh(), plan.case.impact
         solid = solve_on(mesh, impact, duration=plan.duration, threads=workers, progress=progress)
     if "stopped" in solid.attrs and complete:
