@@ -53,16 +53,14 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_a_study_from_sample_to_report(folder):
-    """The code of the documentation, on a small grid."""
-    study = small(responses=["peak_force", "contact_duration"])
+def test_a_study_from_sample_to_file(folder):
+    """Its report is made by the tests of the pages."""
+    study = small(responses=["peak_force"])
     runs = study.run(workers=2)
     assert runs.sizes == {"run": 96}
     assert np.isfinite(runs.peak_force).all()
     indices = il.analyse(runs)
     assert {"total_order", "sensitivity_verdict"} <= set(indices)
-    study.report("report.html")
-    assert "Depth" in (folder / "report.html").read_text()
     study.to_yaml("studies/depth.yaml")
     again = il.Study.from_yaml("studies/depth.yaml")
     assert again.declared == replace(study.declared, path=again.declared.path)

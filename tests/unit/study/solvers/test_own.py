@@ -79,7 +79,6 @@ def test_a_model_of_ones_own_has_its_known_indices():
     indices = il.analyse(study.run(workers=1))
     assert indices.first_order.values == pytest.approx(3 / 7, abs=0.05)
     assert indices.total_order.values == pytest.approx(4 / 7, abs=0.05)
-    assert study.report().exists()
 
 
 def test_a_model_may_give_several_responses():
