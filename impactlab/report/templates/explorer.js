@@ -132,7 +132,8 @@ function update() {
   for (const response of responses) {
     const section = element(`response-${response.name}`);
     const [output, drawing] = [section.querySelector("output"), section.querySelector("svg")];
-    drawing.innerHTML = output.textContent = "";
+    const ends = section.querySelector("small");
+    drawing.innerHTML = output.textContent = ends.textContent = "";
     if (!known) {
       output.textContent = "none: a parameter is outside its range";
       continue;
@@ -142,7 +143,7 @@ function update() {
     if (response.rmse > imprecise * Math.abs(value))
       output.textContent += `, imprecise: the error is ${((100 * response.rmse) / Math.abs(value)).toFixed(0)} % of the prediction`;
     const [ratio, label] = enlarged(response, polynomials);
-    if (ratio > 1) output.textContent += `; at the ends of “${label}” the error is ${ratio} times that`;
+    if (ratio > 1) ends.textContent = `The error is ${ratio} times that at the ends of “${label}”.`;
     drawing.innerHTML = plot(response, along, moved, values[at], value);
     drawing.setAttribute("aria-label", `${response.label} against ${along.label}: ${output.textContent} at ${values[at]} ${along.unit}`);
   }
