@@ -29,6 +29,7 @@ def test_a_project_brings_workflow_and_studies(tmp_path):
 def test_the_wheel_brings_what_a_project_copies():
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]
     included = settings["hatch"]["build"]["targets"]["wheel"]["force-include"]
+    assert included.pop("CITATION.cff") == "impactlab/CITATION.cff"  # which results refer to
     assert included == {name: f"impactlab/project/{name}" for name in included}
     for name in FILES:
         assert any(name == kept or name.startswith(f"{kept}/") for kept in included), name
