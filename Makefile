@@ -5,6 +5,8 @@
 # make long    the tests that take longer: the 3-D model and its decks on finer meshes
 # make chaos   what crashes, full disks, lost workers and hostile files must not do (20 minutes)
 # make kratos  the 3-D model against Kratos Multiphysics, in a coarse case (2 minutes)
+# make docs    the site, in site/index.html: its notebooks and small studies are solved (4 minutes)
+# make site    the same, then its pages, links and code blocks are tested
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings; both schemes' cost and error;
 #              the bootstrap of Sobol indices: wants an idle machine
@@ -32,7 +34,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete \
   --max-jobs-per-timespan 100/5s
 
-.PHONY: study paper all test lint pytest long chaos kratos bench scaling mutants coverage constraints unlock clean
+.PHONY: study paper all test lint pytest long chaos kratos docs site bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -72,6 +74,13 @@ chaos: $(MADE)-dev
 kratos: $(MADE)-dev $(MADE)-kratos
 	$(IN_VENV) python -m pytest -m kratos $(PYTEST_ARGS)
 
+docs: $(MADE)-docs
+	$(IN_VENV) python -m sphinx -W --keep-going --quiet -d build/docs docs site
+	@echo 'Done. Open site/index.html'
+
+site: docs $(MADE)-dev
+	$(IN_VENV) python -m pytest -m site $(PYTEST_ARGS)
+
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
@@ -100,7 +109,7 @@ unlock: $(MADE)-workflow
 
 # Keeps results.
 clean:
-	rm -rf $(VENV) build dist .coverage htmlcov .hypothesis .import_linter_cache \
+	rm -rf $(VENV) build dist site jupyter_execute docs/gallery .coverage htmlcov .hypothesis .import_linter_cache \
 	  .mypy_cache .pytest_cache .ruff_cache
 
 $(MADE):

@@ -79,6 +79,8 @@ def interactive() -> Iterator[None]:
     """Make new figures with pyplot, which notebooks and windows show."""
     from matplotlib import pyplot  # late: reports do without
 
+    # Loads the backend, so that `applied` does not take back what a notebook's sets.
+    pyplot.draw_if_interactive()  # type: ignore[no-untyped-call]
     before = _NEW.set(pyplot.figure)
     try:
         yield

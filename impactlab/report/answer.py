@@ -7,6 +7,7 @@ from collections import defaultdict
 import numpy as np
 import xarray as xr
 
+from impactlab.analysis.analyse import analyse
 from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels, measures
 from impactlab.figures.access import design_dims, responses, usable
@@ -44,7 +45,8 @@ Entry = tuple[str, str]
 def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     """Return what a study found, in at most five lines: the main finding first.
 
-    runs, analysis: the stored runs.nc and analysis.nc; or findings.nc alone.
+    runs, analysis: the stored runs.nc and analysis.nc; or findings.nc alone. Runs without their
+    analysis are analysed.
 
     >>> study = il.Study(
     ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=256, parameters={
@@ -54,6 +56,8 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     ...     print(line)
     Value (wide intervals): x1 ...
     """
+    if analysis is None and runs.attrs.get("content") != "findings":
+        analysis = analyse(runs)
     lines, _ = entries(runs, analysis)
     told = ["; ".join(": ".join(entry) for entry in line) + "." for line in lines]
     return told or ["There is no answer in these runs."]

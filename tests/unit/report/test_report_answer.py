@@ -33,6 +33,7 @@ def test_of_a_grid_gives_ranges_by_what_drives_them(velocity_study: Any) -> None
     assert 1 <= len(lines) <= LINES
     assert lines[0].startswith("Impact velocity explains 95 to 100 % of the variation")
     assert ": peak force 2 to 193 kN, contact duration 0.212 to 0.528 ms" in lines[0]
+    assert answers(velocity_study[0]) == lines, "runs alone are analysed"
 
 
 def test_of_a_convergence_study_gives_the_least_grid_however_bad_others_are() -> None:
