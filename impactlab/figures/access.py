@@ -148,8 +148,9 @@ def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | Non
 
 
 def occurring(flags: xr.DataArray) -> list[Verdict]:
-    """Return every flag that occurs in a variable of CF flags, by rising value."""
-    return [_read(flags, int(value)) for value in np.unique(flags.values)]
+    """Return every flag that occurs in a variable of CF flags, by rising value; none without."""
+    occurring = np.unique(flags.values) if "flag_values" in flags.attrs else ()
+    return [_read(flags, int(value)) for value in occurring]
 
 
 def _read(array: xr.DataArray, value: int) -> Verdict:

@@ -11,6 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE
 from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
 from impactlab.figures.access import known, responses, usable
 from impactlab.figures.curves import Choice, Plan, plan
@@ -46,8 +47,6 @@ _BESIDE: dict[str, Any] = {
 }
 """Legend of the orders, to the right of a panel."""
 _DASHED: dict[str, Any] = {"linestyle": (0, (2, 1.5)), "linewidth": 0.6}
-_TOLERANCE = 0.01
-"""Relative difference that the analysis asks for."""
 _INPUTS = (
     "beam_span",
     "beam_depth",
@@ -171,8 +170,7 @@ def _draw(
     figure, axes = responses_grid.panels(axis.names(runs), height=44)
     for name, ax in axes.items():
         responses_grid.write_verdict(ax, analysis, f"{axis.name}_summary", name)
-        flags = _verdicts(analysis, axis.name, name)
-        found = access.occurring(flags) if flags is not None else []
+        found = access.occurring(_of(analysis, f"{axis.name}_verdict", name))
         if any(verdict.flag == "not_convergent_by_design" for verdict in found):
             _draw_values(ax, runs, name, spacing, selected)
             continue
@@ -180,7 +178,7 @@ def _draw(
         orders = []
         for curve, errors in _above_round_off(difference, selected):
             curves.add(ax, spacing, errors, curve)
-            order, uncertainty, text = _trend(analysis, axis, name, selected.held | curve.where)
+            order, uncertainty, text = _trend(analysis, axis, name, curve.where)
             if np.isfinite(order):
                 orders.append((ax.lines[-1], text))
             _draw_trend(ax, spacing, errors, order, uncertainty)
@@ -202,7 +200,7 @@ def _draw_values(ax: Axes, runs: xr.Dataset, name: str, spacing: Floats, selecte
     """Draw a response that has no limit to differ from."""
     values, label = responses_grid.shown(runs, name)
     for curve in selected.curves:
-        y = values.isel(selected.held | curve.where).values
+        y = values.isel(curve.where).values
         if (y > 0).any():
             curves.add(ax, spacing, y, curve)
     ax.set_ylabel(label)
@@ -216,9 +214,7 @@ def _unconverged(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[
     """Return a sentence that names the cases behind each verdict that is a warning."""
     found = []
     for name in names:
-        flags = _verdicts(analysis, axis, name)
-        if flags is None:
-            continue
+        flags = _of(analysis, f"{axis}_verdict", name)
         warnings = [verdict.value for verdict in access.occurring(flags) if not verdict.sound]
         cases = np.argwhere(np.isin(flags.values, warnings))
         shown = [
@@ -239,31 +235,27 @@ def _enough(runs: xr.Dataset, analysis: xr.Dataset, axis: Refined) -> str:
     finest = _finest(runs, axis.dim)
     order = np.argsort(abs(np.argsort(np.argsort(runs[axis.dim].values)) - finest))
     for name in axis.names(runs):
-        flags = _verdicts(analysis, axis.name, name)
-        uncertainty = _of(analysis, f"{axis.name}_uncertainty", name)
-        if flags is None or uncertainty is None:
-            continue
+        flags = _of(analysis, f"{axis.name}_verdict", name)
         sound = [v.value for v in access.occurring(flags) if v.sound and v.flag != "at_round_off"]
         values = usable(runs, name)
         reference = values.isel({axis.dim: finest}, drop=True)
+        uncertainty = _of(analysis, f"{axis.name}_uncertainty", name)
         distance = abs(values / reference.where(reference != 0) - 1.0) + uncertainty
-        outside = (distance > _TOLERANCE) & flags.isin(sound)
+        outside = (distance > TOLERANCE) & flags.isin(sound)
         passes = ~outside.any([dim for dim in outside.dims if dim != axis.dim]).values[order]
         if sound and passes[0]:
             last = len(passes) if passes.all() else int(np.argmin(passes))
             at = labels.value(runs[axis.dim], int(order[last - 1])).replace("_", " ")
             from_on.setdefault(at, []).append(labels.response(name))
     found = [f"{labels.listing(names)} from {at} on" for at, names in from_on.items()]
-    head = f"At most {_TOLERANCE} from the limit, uncertainty included, where it converges"
+    head = f"At most {TOLERANCE} from the limit, uncertainty included, where it converges"
     return f"{head}: {'; '.join(found)}." if found else ""
 
 
 def _above_round_off(difference: xr.DataArray, selected: Plan) -> Iterator[tuple[Choice, Floats]]:
     """Yield each curve that has an error above round-off, with its errors along the axis."""
     for curve in selected.curves:
-        errors = scales.positive(
-            difference.isel(selected.held | curve.where), above=responses_grid.ROUND_OFF
-        )
+        errors = scales.positive(difference.isel(curve.where), above=ROUND_OFF)
         if np.isfinite(errors).any():
             yield curve, errors
 
@@ -279,7 +271,7 @@ def _relative_difference(
     reference = values.isel({axis.dim: _finest(runs, axis.dim)}, drop=True)
     for kind in ("fit_extrapolated", "extrapolated"):
         limit = _of(analysis, f"{axis.name}_{kind}", name)
-        reference = reference if limit is None else limit.where(np.isfinite(limit), reference)
+        reference = limit.where(np.isfinite(limit), reference)
     ratio = abs(values - reference) / abs(reference).where(reference != 0)
     return ratio.where((values != 0) | (reference != 0), 0.0).transpose(axis.dim, ...)
 
@@ -289,16 +281,11 @@ def _finest(runs: xr.Dataset, dim: str) -> int:
     return int(np.argmin(refined) if dim in ("courant", "element_size") else np.argmax(refined))
 
 
-def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray | None:
+def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray:
+    """Return a variable of one response; NaN where the analysis does not have it."""
     if variable not in analysis or not known(analysis, name):
-        return None
+        return xr.DataArray(np.nan)
     return analysis[variable].sel(response=name, drop=True)
-
-
-def _verdicts(analysis: xr.Dataset, axis: str, name: str) -> xr.DataArray | None:
-    """Return the flags of each case, None without them."""
-    flags = _of(analysis, f"{axis}_verdict", name)
-    return None if flags is None or "flag_values" not in flags.attrs else flags
 
 
 def _trend(
@@ -311,7 +298,7 @@ def _trend(
 
     def read(key: str) -> float:
         found = _of(analysis, f"{axis.name}_{key}", name)
-        return float("nan") if found is None else float(found.isel(where))
+        return float(found.isel(where, missing_dims="ignore"))
 
     richardson = bool(np.isfinite(read("extrapolated")))
     order = read("observed_order" if richardson else "fit_order")
@@ -330,7 +317,7 @@ def _draw_trend(
         ends = np.array([spacing.min(), spacing.max()])
         power = np.exp(np.nanmedian(scale)) * ends**order
         ax.plot(ends, power, color=colour, label="_order", **_DASHED)
-    if np.isfinite(uncertainty) and uncertainty > responses_grid.ROUND_OFF:
+    if np.isfinite(uncertainty) and uncertainty > ROUND_OFF:
         at, low = spacing[near[0]], errors[near[0]]
         look: dict[str, Any] = {"marker": "_", "markersize": 6}
         if np.isfinite(low):
@@ -377,8 +364,8 @@ def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 def _draw_tolerance(ax: Axes) -> None:
     """Make the vertical axis logarithmic, to hold a line at the tolerance."""
-    scales.logarithmic(ax, "y", [*scales.drawn(ax, "y"), _TOLERANCE])
-    ax.axhline(_TOLERANCE, label=f"_guide: tolerance {_TOLERANCE}", linestyle="--", **style.GUIDE)
+    scales.logarithmic(ax, "y", [*scales.drawn(ax, "y"), TOLERANCE])
+    ax.axhline(TOLERANCE, label=f"_guide: tolerance {TOLERANCE}", linestyle="--", **style.GUIDE)
 
 
 @record.figure(
@@ -400,15 +387,13 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     given = {name: runs[name].reset_coords(drop=True) for name in _INPUTS}
     for name, words in {"beam_model": BEAM_MODELS, "scheme": SCHEMES}.items():
         given[name] = xr.apply_ufunc(np.vectorize(words.index), given[name])
-    inputs = xr.broadcast(*given.values())
-    steps = node_steps({name: field.values for name, field in zip(given, inputs, strict=True)})
-    work = xr.DataArray(steps, dims=inputs[0].dims)
+    work = node_steps(dict(zip(given, xr.broadcast(*given.values()), strict=True)))
     figure, axes = responses_grid.panels(_COST.names(runs), height=40)
     for name, ax in axes.items():
         difference = _relative_difference(runs, analysis, _COST, name)
         for curve, errors in _above_round_off(difference, selected):
-            where = selected.held | curve.where
-            curves.add(ax, work.isel(where, missing_dims="ignore").values, errors, curve)
+            x = work.isel(curve.where, missing_dims="ignore").values
+            curves.add(ax, x, errors, curve)
         if not ax.lines:
             responses_grid.empty(ax, "no error to show")
             continue

@@ -25,7 +25,10 @@ _MOST = 6
 
 @dataclass(frozen=True)
 class Choice:
-    """Positions on design dimensions, their label, and ordinals (colour, line style) to draw by."""
+    """Positions on design dimensions, their label, and ordinals (colour, line style) to draw by.
+
+    where: of a curve, on all dimensions but those of the panels and of the axes, for `isel`.
+    """
 
     where: dict[str, int]
     label: str
@@ -43,10 +46,6 @@ class Plan:
     curves: list[Choice]
     shown: dict[str, list[int]]
     held: dict[str, int]
-
-    def runs(self, panel: Choice, curve: Choice) -> dict[str, int]:
-        """Return the indexers of a curve in a panel, for `isel`."""
-        return self.held | panel.where | curve.where
 
     def finish(self, figure: Figure, x: str = "", y: str = "") -> Figure:
         """Add the legend, headed by the parameters in which curves differ; x, y: for all panels."""
@@ -106,7 +105,7 @@ def plan(
         where = {dim: shown[dim][i] for dim, i in zip(shown, ordinals, strict=True)}
         label = ", ".join(labels.value(runs[dim], at) for dim, at in where.items())
         colour, line = (*ordinals, *ordinals, 0, 0)[:2]
-        curves.append(Choice(where | single, label, (colour, line)))
+        curves.append(Choice(held | where | single, label, (colour, line)))
     return Plan(panels, curves, shown, held)
 
 
@@ -197,7 +196,7 @@ def draw(
     figure, axes = style.titled_panels(titles, columns=columns, height=62, sharex=True, sharey=True)
     for ax, panel in zip(axes, selected.panels, strict=True):
         for curve in selected.curves:
-            run = valid.isel(selected.runs(panel, curve))
+            run = valid.isel(panel.where | curve.where)
             if np.isfinite(run[variable]).any():
                 ax.plot(*line(run), label=curve.label or "_only", **look(curve, markers=markers))
         if not ax.lines:
@@ -217,7 +216,7 @@ def note(runs: xr.Dataset, variable: str) -> str:
         ", ".join(filter(None, (curve.label, panel.label)))
         for panel in selected.panels
         for curve in selected.curves
-        if bool(absent.isel(selected.runs(panel, curve)))
+        if bool(absent.isel(panel.where | curve.where))
     ]
     without = f" No curve for {labels.listing(gaps)}." if gaps else ""
     return f"{selected.note(runs)}{without}".strip()

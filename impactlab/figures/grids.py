@@ -56,7 +56,7 @@ def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, 
     unit, speed = display(valid), runs["velocity"].values
     figure, (ax,) = style.panels(1, columns=1, height=62)
     for curve in selected.curves:
-        y = unit(valid.isel(selected.held | curve.where))
+        y = unit(valid.isel(curve.where))
         curves.add(ax, *curves.broken(speed, y), curve)
     if not ax.lines:
         style.remark(ax, "no finite values")
@@ -108,8 +108,7 @@ def _law_variables(runs: xr.Dataset) -> list[str]:
 
 def _plan_laws(runs: xr.Dataset) -> Plan:
     """Plan a curve for every law."""
-    laws = runs.sizes["contact"]
-    return plan(runs, "status", along=["velocity"], prefer=["contact"], most=laws)
+    return _velocity_plan(runs, "status", most=runs.sizes["contact"])
 
 
 def _law_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
@@ -149,13 +148,12 @@ def contact_laws(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 def _law_forces(ax: Axes, runs: xr.Dataset, selected: Plan) -> None:
     """Draw force against indentation at the middle velocity."""
     force, depth = display(runs[_FORCE]), display(runs[_INDENTATION])
-    valid, middle = usable(runs, _FORCE), {"velocity": runs.sizes["velocity"] // 2}
+    valid = runs.assign({_FORCE: usable(runs, _FORCE)})
+    middle = {"velocity": runs.sizes["velocity"] // 2}
     for curve in selected.curves:
-        where = selected.held | curve.where | middle
-        values = valid.isel(where).values
-        touching = values > 0
-        x = depth(runs[_INDENTATION].isel(where).values[touching])
-        curves.add(ax, x, force(values[touching]), curve, markers=False)
+        run = valid.isel(curve.where | middle)
+        run = run.isel(time=run[_FORCE].values > 0)
+        curves.add(ax, depth(run[_INDENTATION]), force(run[_FORCE]), curve, markers=False)
     ax.set_xlabel(labels.axis("indentation", depth.symbol))
     ax.set_ylabel(labels.axis("contact force", force.symbol))
     if ax.lines:
@@ -170,13 +168,11 @@ def _law_responses(ax: Axes, runs: xr.Dataset, name: str, selected: Plan) -> Non
     values, label = responses_grid.shown(runs, name)
     speed = runs["velocity"].values
     for curve in selected.curves:
-        where = selected.held | curve.where
-        y = values.isel(where).values
+        y = values.isel(curve.where).values
         if curves.add(ax, speed, y, curve):
-            outside = (runs["status"].isel(where).values & _OUTSIDE) != 0
+            outside = (runs["status"].isel(curve.where).values & _OUTSIDE) != 0
             hollow = {"linestyle": "", "markerfacecolor": "white", "label": "_open"}
-            look = curves.look(curve, markers=True) | hollow
-            ax.plot(speed[outside], y[outside], **look)
+            ax.plot(speed[outside], y[outside], **(curves.look(curve, markers=True) | hollow))
     ax.set(xlabel=labels.axis("velocity", "m/s"), ylabel=label)
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
@@ -189,8 +185,7 @@ def _law_responses(ax: Axes, runs: xr.Dataset, name: str, selected: Plan) -> Non
 
 def _along(runs: xr.Dataset) -> str | None:
     """Return the first physical parameter with enough values to draw a curve."""
-    found = (name for name in physical(runs) if runs.sizes.get(name, 0) >= _FEWEST)
-    return next(found, None)
+    return next((name for name in physical(runs) if runs.sizes.get(name, 0) >= _FEWEST), None)
 
 
 def _plan_effects(runs: xr.Dataset) -> Plan:
@@ -225,7 +220,7 @@ def response_curves(
     values, label = responses_grid.shown(runs, name)
     x = display(along)(along)
     for curve in selected.curves:
-        y = values.isel(selected.held | curve.where).values
+        y = values.isel(curve.where).values
         curves.add(ax, *curves.broken(x, y), curve)
     scales.fit(ax, "x", x)
     scales.fit(ax, "y", scales.drawn(ax, "y"))
@@ -263,7 +258,7 @@ def shear(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     for at, name in enumerate(_SHEARED):
         above, below = axes[at], axes[at + 2]
         for curve in selected.curves:  # joined by depth: two pushes may reverse the share
-            slenderness, share, change = _shear_curve(runs, name, selected.held | curve.where)
+            slenderness, share, change = _shear_curve(runs, name, curve.where)
             curves.add(above, slenderness, change, curve)
             curves.add(below, share, change, curve)
         for ax in (above, below):
@@ -320,7 +315,7 @@ def _scale_changes(ax: Axes) -> None:
 def _shear_finding(runs: xr.Dataset, name: str) -> str:
     """Return a sentence on the drawn curves: their change, where it matters, and the share."""
     selected = _plan_shear(runs)
-    found = [_shear_curve(runs, name, selected.held | curve.where) for curve in selected.curves]
+    found = [_shear_curve(runs, name, curve.where) for curve in selected.curves]
     slenderness, share, change = (np.concatenate(part) for part in zip(*found, strict=True))
     known = np.isfinite(change + share)
     if not known.any():

@@ -13,8 +13,6 @@ from impactlab.figures.access import usable
 from impactlab.figures.labels import display
 
 COLUMNS = 3
-ROUND_OFF = 1e-9
-"""Relative differences up to this count as none: round-off adds up over the time steps."""
 
 
 def panels(

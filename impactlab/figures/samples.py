@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
+from impactlab.analysis.verdicts import ROUND_OFF
 from impactlab.figures import access, labels, record, responses_grid, scales, style
 from impactlab.figures.access import is_sample, responses, usable, varied
 from impactlab.figures.curves import spread
@@ -66,7 +67,7 @@ def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
 
 
 def _distribution(ax: Axes, values: Floats) -> None:
-    if values.size == 0 or np.ptp(values) <= responses_grid.ROUND_OFF * np.abs(values).max():
+    if values.size == 0 or np.ptp(values) <= ROUND_OFF * np.abs(values).max():
         text = f"constant: {labels.number(float(values[0]))}" if values.size else "no finite values"
         responses_grid.empty(ax, text)
         return

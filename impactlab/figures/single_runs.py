@@ -109,7 +109,7 @@ def _panel_per_run(
         for panel, curve in shown
     ]
     figure, axes = style.titled_panels(titles, columns=columns, height=height, sharex=sharex)
-    places = [(selected.runs(panel, curve), curve) for panel, curve in shown]
+    places = [(panel.where | curve.where, curve) for panel, curve in shown]
     return figure, [(ax, *place) for ax, place in zip(axes, places, strict=True)]
 
 
@@ -222,7 +222,7 @@ def force_indentation_by_law(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     for ax, panel in zip(axes, selected.panels, strict=True):
         ax.set_title(f"At {panel.label}", loc="left")
         for curve in selected.curves:
-            run = valid.isel(selected.runs(panel, curve))
+            run = valid.isel(panel.where | curve.where)
             curves.add(ax, *_loop(run, depth, force), curve, markers=False)
         scales.linear(ax, "xy")
         if ax.lines:

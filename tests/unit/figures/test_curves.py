@@ -42,7 +42,7 @@ def test_two_dimensions_share_the_curves(material_study: Study) -> None:
 def test_every_dimension_gets_a_position(discretisation_study: Study) -> None:
     runs, _ = discretisation_study
     chosen = plan(runs, "peak_force", along=["nodes"], prefer=["velocity", "points"])
-    found = runs["peak_force"].isel(chosen.runs(chosen.panels[0], chosen.curves[0]))
+    found = runs["peak_force"].isel(chosen.panels[0].where | chosen.curves[0].where)
     assert found.dims == ("nodes",)
     assert len({curve.label for curve in chosen.curves}) == len(chosen.curves)
     assert len({curve.place for curve in chosen.curves}) == len(chosen.curves)
