@@ -19,9 +19,9 @@ from impactlab.figures import (
     indices,
     labels,
     measures,
-    one_run,
     responses_grid,
     samples,
+    single_runs,
     style,
 )
 from impactlab.figures.curves import plan
@@ -97,7 +97,7 @@ def run(one: xr.Dataset) -> Any:
     if one.get("contact_force", xr.DataArray()).dims != ("time",) or "deflection" not in one:
         raise ValueError("run: expected the dataset of one impact, from il.simulate")
     with style.interactive():
-        return np.array(one_run.plot(one).axes)
+        return np.array(single_runs.picture(one).axes)
 
 
 def sobol(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
@@ -112,7 +112,7 @@ def sobol(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None 
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
     >>> ax = il.plot.sobol(il.analyse(study.run(workers=1)), "value")
     """
-    return _indices("sobol_indices", measures.SOBOL, analysis, response, ax)
+    return _indices(measures.SOBOL, analysis, response, ax)
 
 
 def delta(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
@@ -123,7 +123,7 @@ def delta(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None 
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
     >>> ax = il.plot.delta(il.analyse(study.run(workers=1)), "value")
     """
-    return _indices("delta_indices", measures.DELTA, analysis, response, ax)
+    return _indices(measures.DELTA, analysis, response, ax)
 
 
 def pawn(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
@@ -134,7 +134,7 @@ def pawn(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None =
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
     >>> ax = il.plot.pawn(il.analyse(study.run(workers=1)), "value")
     """
-    return _indices("pawn_indices", measures.PAWN, analysis, response, ax)
+    return _indices(measures.PAWN, analysis, response, ax)
 
 
 def regression(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
@@ -145,7 +145,7 @@ def regression(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | 
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
     >>> ax = il.plot.regression(il.analyse(study.run(workers=1)), "value")
     """
-    return _indices("regression_indices", measures.REGRESSION, analysis, response, ax)
+    return _indices(measures.REGRESSION, analysis, response, ax)
 
 
 def morris(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
@@ -158,7 +158,7 @@ def morris(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
     >>> ax = il.plot.morris(il.analyse(study.run(workers=1)), "value")
     """
-    return _indices("morris_plane", measures.MORRIS, analysis, response, ax)
+    return _indices(measures.MORRIS, analysis, response, ax)
 
 
 def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> Any:
@@ -182,7 +182,7 @@ def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> A
 
 
 def _indices(
-    name: str, family: measures.Family, analysis: xr.Dataset, response: str | None, ax: Axes | None
+    family: measures.Family, analysis: xr.Dataset, response: str | None, ax: Axes | None
 ) -> Any:
     if not family.given(analysis):
         missing = ", ".join(one.name for one in family.measures if not one.optional)
@@ -194,7 +194,7 @@ def _indices(
     }
     runs = xr.Dataset(stand_ins, attrs={"responses": listed})  # of which names and units are used
     if response is None and ax is None:
-        return figure(name, runs, analysis)
+        return figure(family.figure, runs, analysis)
     if response is None:
         raise ValueError(f"response: is needed with ax, one of {', '.join(listed)}")
     _require("response", response, listed)

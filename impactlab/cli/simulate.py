@@ -72,9 +72,9 @@ def simulate(
         write_netcdf(dataset, output, "impact")
         print(f"Histories and fields: {output}")
     if plot:
-        from impactlab.figures.one_run import save
+        from impactlab.figures.single_runs import save_picture
 
-        save(dataset, plot)
+        save_picture(dataset, plot)
         print(f"Picture: {plot}")
 
 

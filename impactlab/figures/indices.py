@@ -37,7 +37,7 @@ def _missing(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return access.missing_note(runs, analysed(runs, analysis))
 
 
-def index_bars(name: str, family: Family) -> Figure:
+def index_bars(family: Family) -> Figure:
     """Return the figure of one family of measures."""
 
     @record.figure(
@@ -45,7 +45,7 @@ def index_bars(name: str, family: Family) -> Figure:
         family.meaning,
         lambda runs, analysis: family.given(analysis) and bool(analysed(runs, analysis)),
         lambda runs, analysis: (*_bar_sentences(family, analysis), _missing(runs, analysis)),
-        name,
+        family.figure,
     )
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per response, a row per parameter (largest first), a bar per measure."""

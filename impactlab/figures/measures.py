@@ -29,10 +29,11 @@ class Measure:
 class Family:
     """Measures of one method that are shown side by side.
 
-    title: heads the figure and the tables. axis: label of their axis. meaning: of the numbers, in
-    a sentence or two. shares: True for shares of a whole.
+    figure: name of their figure; title: heads it and the tables. axis: label of their axis.
+    meaning: of the numbers, in a sentence or two. shares: True for shares of a whole.
     """
 
+    figure: str
     title: str
     measures: tuple[Measure, ...]
     axis: str
@@ -93,6 +94,7 @@ class Index:
 
 
 SOBOL = Family(
+    "sobol_indices",
     "Sobol indices",
     (Measure("first_order", "first order"), Measure("total_order", "total order")),
     "Share of the variance (–)",
@@ -100,6 +102,7 @@ SOBOL = Family(
     "with all its interactions (total order), over the ranges of this study.",
 )
 SURROGATE = Family(
+    "surrogate_indices",
     "Indices of the surrogate beside the sampled ones",
     (
         Measure("first_order", "first order, sampled", optional=True),
@@ -112,6 +115,7 @@ SURROGATE = Family(
     "where they differ by more than their intervals, trust neither.",
 )
 DELTA = Family(
+    "delta_indices",
     "Delta indices",
     (Measure("delta", "delta"), Measure("delta_first_order", "first order", optional=True)),
     "Index (–)",
@@ -119,6 +123,7 @@ DELTA = Family(
     "parameter is known (Borgonovo); beside it the first-order index from the same runs.",
 )
 PAWN = Family(
+    "pawn_indices",
     "PAWN indices",
     (Measure("pawn", "median"), Measure("pawn_maximum", "largest", optional=True)),
     "Kolmogorov-Smirnov distance (–)",
@@ -126,6 +131,7 @@ PAWN = Family(
     "part of its range: median and largest over the parts (Pianosi and Wagener).",
 )
 REGRESSION = Family(
+    "regression_indices",
     "Regression coefficients",
     (Measure("regression", "of values"), Measure("rank_regression", "of ranks", optional=True)),
     "Standardised coefficient (–)",
@@ -134,6 +140,7 @@ REGRESSION = Family(
     shares=False,
 )
 MORRIS = Family(
+    "morris_plane",
     "Elementary effects (Morris)",
     (Measure("morris_mu_star", "mean of magnitudes"),),
     "Mean of magnitudes µ*",

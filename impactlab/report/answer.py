@@ -15,8 +15,7 @@ from impactlab.figures.labels import display
 from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family, Index, analysed
 from impactlab.report.cautions import beside
 from impactlab.report.convergence import ORDERED, Needs, finest, needed
-from impactlab.report.indices import in_units, uncertainty, with_margin
-from impactlab.report.sensitivity import share
+from impactlab.report.sensitivity import in_units, share, uncertainty, with_margin
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 

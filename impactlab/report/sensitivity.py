@@ -7,26 +7,16 @@ overlap.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
+from itertools import combinations
 
 import numpy as np
 import xarray as xr
 
 from impactlab.figures import access, labels, measures
-from impactlab.figures.measures import (
-    DELTA,
-    MORRIS,
-    PAWN,
-    RANKED,
-    REGRESSION,
-    SOBOL,
-    SURROGATE,
-    Family,
-    Index,
-    analysed,
-)
-from impactlab.report import indices
-from impactlab.report.indices import in_units, named, uncertainty
-from impactlab.report.page import Cell, Row, Section, Table
+from impactlab.figures.labels import display
+from impactlab.figures.measures import MORRIS, RANKED, SOBOL, SURROGATE, Family, Index, analysed
+from impactlab.report.page import Cell, Row, Section, Table, largest
 
 _COARSE = 0.02
 """Smallest half-width of shares given in whole per cent."""
@@ -34,13 +24,32 @@ _SMALL = 0.1
 """Smallest share given in whole per cent."""
 _GOOD = 0.9
 """Smallest predictivity of a surrogate that may replace the runs."""
-_FIGURES = {
-    MORRIS.title: ("morris", "morris_plane"),
-    DELTA.title: ("delta", "delta_indices"),
-    PAWN.title: ("pawn", "pawn_indices"),
-    REGRESSION.title: ("regression", "regression_indices"),
+_FINE = 0.005
+"""Half-width below which a third decimal means something."""
+_LEAST = 0.001
+"""Magnitude below which an index and its half-width are not printed separately."""
+_TINY = 0.001
+"""Share below which an uncertainty is only bounded."""
+_LEAD = (
+    "The runs have a numerical error, which was estimated by refining the discretisation. An index "
+    "that this error could change by as much as its own value is not distinguishable from it, "
+    "however narrow the interval, and no sentence calls it significant."
+)
+_BASES = {
+    "measured": (
+        " The error of the indices was measured where the first runs of the sample were solved "
+        "again on finer grids; a change that is common to all runs changes no index."
+    ),
+    "bound": (
+        " Where it is only a bound, it follows from the errors of corner cases and is usually far "
+        "too large; impactlab refine measures it for a Sobol sample whose runs do not fail."
+    ),
 }
-"""Anchor and figure of the families other than Sobol's."""
+"""What the numerical error rests on, by the flags of `numerical_from`."""
+_OF_RESPONSES = {
+    "numerical_uncertainty": "Numerical uncertainty",
+    "numerical_share": "Share of the variance that could be numerical",
+}
 
 
 def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
@@ -61,10 +70,14 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         found.insert(0, Section("ranking", "Ranking", lead, tables=ranks, file="indices.csv"))
     for family in families:
         if family is not SOBOL:
-            name, figure = _FIGURES[family.title]
-            folded = indices.tables(runs, analysis, family)
             found.append(
-                Section(name, family.title, family.meaning, figures=[figure], folded=folded)
+                Section(
+                    family.figure.partition("_")[0],
+                    family.title,
+                    family.meaning,
+                    figures=[family.figure],
+                    folded=index_tables(runs, analysis, family),
+                )
             )
     return found + ([surrogate(runs, analysis)] if "surrogate_q2" in analysis else [])
 
@@ -78,8 +91,8 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             "A first-order index is the share of the variance that comes from a parameter "
             "alone; a total-order index adds all its interactions. Indices in grey are not "
             "distinguishable from zero.",
-            tables=indices.tables(runs, analysis, SOBOL),
-            figures=["sobol_indices"],
+            tables=index_tables(runs, analysis, SOBOL),
+            figures=[SOBOL.figure],
         )
     if "second_order" in analysis:
         yield Section(
@@ -88,7 +101,7 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             "A second-order index is the share of the variance that comes from two parameters "
             "together, beyond what each contributes alone.",
             figures=["sobol_second_order"],
-            folded=[indices.second_order(runs, analysis)],
+            folded=[second_order(runs, analysis)],
         )
     if "total_order_by_samples" in analysis:
         yield Section(
@@ -124,8 +137,8 @@ def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
         "A surrogate was fitted to the runs and tested on runs that it had not seen.",
         _differences(runs, analysis) if fitted and "first_order" in analysis else [],
         [Table(caption, head, rows)],
-        ["surrogate_validation", "surrogate_indices"],
-        indices.tables(runs, analysis, SURROGATE) if fitted else [],
+        ["surrogate_validation", SURROGATE.figure],
+        index_tables(runs, analysis, SURROGATE) if fitted else [],
     )
 
 
@@ -184,3 +197,113 @@ def share(index: Index, at: int) -> str:
     numerically = f", numerically {uncertainty(error)}" if error else ""
     within = f"± {100 * margin:.{decimals}f}" if margin >= 0.0005 else uncertainty(margin)
     return f"{100 * value:.{decimals}f} % ({within}{numerically})"
+
+
+def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Table]:
+    """Return one table per measure: responses by parameters, index ± half-width; the dummy last."""
+    parameters = [labels.sentence(labels.parameter(name)) for name in measures.parameters(analysis)]
+    found = []
+    for measure in family.measures_in(analysis):
+        dummy = f"dummy_{measure.name}"
+        rows: list[Row] = []
+        for name in analysed(runs, analysis):
+            index = measures.index(analysis, measure.name, name)
+            written = partial(in_units, runs[name]) if family is MORRIS else with_margin
+            row = [named(analysis, name)]
+            for at, (value, margin) in enumerate(zip(index.values, index.margins, strict=True)):
+                text = written(value, margin)
+                detail = "below numerical error" if index.numerically_lost[at] else ""
+                row.append(Cell(text, "number" if index.significant[at] else "muted", detail))
+            if dummy in analysis:
+                row.append(Cell(_index(analysis.sel(response=name), dummy)[0], "muted"))
+            rows.append(row)
+        head = ["Response", *parameters, *["Dummy parameter"] * (dummy in analysis)]
+        found.append(Table(_caption(f"{family.title}, {measure.words}", analysis), head, rows))
+    return found
+
+
+def second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
+    """Return one row per pair of parameters, one column per response; noise is grey."""
+    names, shown = measures.parameters(analysis), analysed(runs, analysis)
+    rows: list[Row] = []
+    for first, second in combinations(range(len(names)), 2):
+        pair = f"{labels.parameter(names[first])} and {labels.parameter(names[second])}"
+        row = [Cell(labels.sentence(pair))]
+        for name in shown:
+            at = analysis.isel(parameter=first, other_parameter=second).sel(response=name)
+            text, significant = _index(at, "second_order")
+            row.append(Cell(text, "number" if significant else "muted"))
+        rows.append(row)
+    head = ["Pair", *(labels.sentence(labels.response(name)) for name in shown)]
+    return Table(_caption("Second-order Sobol indices", analysis), head, rows)
+
+
+def _index(at: xr.Dataset, name: str) -> tuple[str, bool]:
+    """Return one index with its half-width as text, and whether it exceeds that half-width."""
+    value = float(at[name])
+    margin = float(at.get(f"{name}_interval", np.inf))
+    return with_margin(value, margin), abs(value) > margin
+
+
+def _caption(title: str, analysis: xr.Dataset) -> str:
+    return f"{title}, with half-widths of the {access.confidence(analysis)} intervals"
+
+
+def named(analysis: xr.Dataset, response: str) -> Cell:
+    """Return the response, with its verdict where that is a warning."""
+    found = access.verdict(analysis, "sensitivity_verdict", response)
+    detail = found.words if found and not found.sound else ""
+    return Cell(labels.sentence(labels.response(response)), "warning" if detail else "", detail)
+
+
+def with_margin(value: float, margin: float) -> str:
+    """Return a number without unit and the half-width of its interval: "0.71 ± 0.03"."""
+    if not np.isfinite(value):
+        return "undefined"
+    if max(abs(value), margin) < _LEAST:
+        return f"below {_LEAST}"
+    decimals = 3 if margin < _FINE else 2
+    text = f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")
+    return f"{text} ± {margin:.{decimals}f}" if np.isfinite(margin) else text
+
+
+def uncertainty(share: float) -> str:
+    """Return a relative uncertainty in per cent: "± 1.5 %"; a tiny one is only bounded."""
+    return f"± {labels.percent(share)}" if share >= _TINY else f"below {labels.percent(_TINY)}"
+
+
+def in_units(response: xr.DataArray, value: float, margin: float = np.inf) -> str:
+    """Return an effect in the response's display unit: "12.3 kN ± 0.4"."""
+    if not np.isfinite(value):
+        return "undefined"
+    unit = display(response)
+    text = labels.number(float(unit(value)), 3) + labels.unit(response)
+    return f"{text} ± {labels.number(float(unit(margin)), 2)}" if np.isfinite(margin) else text
+
+
+def numerical_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
+    """Return the section on the numerical uncertainty, or none where the analysis has none.
+
+    Its table has one row per response: its uncertainty, and the largest error of an index per
+    order.
+    """
+    based = "numerical_from" in analysis
+    if not based and not any(key in analysis for key in _OF_RESPONSES):
+        return []
+    flags = {each.flag for each in access.occurring(analysis["numerical_from"])} if based else set()
+    lead = _LEAD + "".join(text for flag, text in _BASES.items() if flag in flags)
+    orders = {
+        f"{order.name}_numerical": f"Largest numerical error of the indices of {order.words}"
+        for order in SOBOL.measures
+        if f"{order.name}_numerical" in analysis
+    }
+    rows: list[Row] = []
+    for name in analysed(runs, analysis):
+        found = analysis.sel(response=name)
+        cells = [largest(found, key) for key in _OF_RESPONSES]
+        cells += [largest(found, key, labels.number) for key in orders]
+        basis = access.verdict(analysis, "numerical_from", name)
+        rows.append([named(analysis, name), *cells, *([Cell(basis.words)] if basis else [])])
+    head = ["Response", *_OF_RESPONSES.values(), *orders.values(), *["Basis"] * based]
+    table = Table("Numerical uncertainty of each response", head, rows)
+    return [Section("numerical", "Numerical uncertainty", lead, tables=[table])]

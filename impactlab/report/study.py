@@ -22,7 +22,6 @@ from impactlab.report.answer import entries
 from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
 from impactlab.report.explorer import write_explorer
-from impactlab.report.indices import numerical_sections
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
 from impactlab.variables import attributes
 
@@ -116,7 +115,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     against = "Each response against each parameter"
     return [
         *sensitivity.sections(runs, analysis),
-        *numerical_sections(runs, analysis),
+        *sensitivity.numerical_sections(runs, analysis),
         Section("results", title, tables=[ranges], figures=["response_distributions"]),
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         inputs,

@@ -16,7 +16,7 @@ from impactlab.analysis.verdicts import flagged
 from impactlab.figures.draw import draw_all
 from impactlab.report import sensitivity
 from impactlab.report.answer import answers
-from impactlab.report.indices import with_margin
+from impactlab.report.sensitivity import with_margin
 from impactlab.report.study import write_report
 
 Study = tuple[xr.Dataset, xr.Dataset]
