@@ -82,10 +82,7 @@ def absent(array: xr.DataArray) -> xr.DataArray:
 
 
 def failed(runs: xr.Dataset) -> xr.DataArray:
-    """Return True for each run that failed by its status, or that lacks a response.
-
-    Returns bool on the design dimensions.
-    """
+    """Return True, on the design dimensions, where a run failed or lacks a response."""
     marks = [absent(usable(runs, name)) for name in responses(runs)]
     if "status" in runs:
         marks.append((runs["status"] & FAILED) != 0)

@@ -25,10 +25,7 @@ _MOST = 6
 
 @dataclass(frozen=True)
 class Choice:
-    """Positions on design dimensions, their label, and ordinals (colour, line style) to draw by.
-
-    where: of a curve, on all dimensions but those of the panels and of the axes, for `isel`.
-    """
+    """Positions on design dimensions (for `isel`), their label, and ordinals of colour and line."""
 
     where: dict[str, int]
     label: str

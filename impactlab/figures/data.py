@@ -63,23 +63,17 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         for path in paths:
             path.unlink(missing_ok=True)
         return []
-    columns = {
-        name if name != "curve" else "curve_label": ("curve", [getattr(one, name) for one in found])
-        for name in _LABELS
-    }
-    counts = ("curve", [one.x.size for one in found], {"sample_dimension": "point"})
-    points = {
-        axis: (
-            "point",
-            np.concatenate([getattr(one, axis) for one in found]),
-            {"long_name": long_name},
-        )
-        for axis, long_name in _POINTS.items()
-    }
-    category = ("point", [name for one in found for name in one.category])
-    named = {**columns, "points": counts, **points, "category": category}
-    stored = xr.Dataset(named, attrs={"title": name})
-    of_point = xr.DataArray(np.repeat(np.arange(len(found)), counts[1]), dims="point")
+    sizes = [one.x.size for one in found]
+    stored = xr.Dataset(attrs={"title": name})
+    for key in _LABELS:
+        words = [getattr(one, key) for one in found]
+        stored["curve_label" if key == "curve" else key] = ("curve", words)
+    stored["points"] = ("curve", sizes, {"sample_dimension": "point"})
+    for key, long_name in _POINTS.items():
+        numbers = np.concatenate([getattr(one, key) for one in found])
+        stored[key] = ("point", numbers, {"long_name": long_name})
+    stored["category"] = ("point", [each for one in found for each in one.category])
+    of_point = xr.DataArray(np.repeat(np.arange(len(found)), sizes), dims="point")
     table = stored.isel(curve=of_point).rename(curve_label="curve").to_dataframe()
     header = [*_LABELS, "category", *_POINTS]
     with replaced(paths[0]) as temporary:

@@ -90,34 +90,17 @@ def _bar_sentences(family: Family, analysis: xr.Dataset) -> list[str]:
 
 
 def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
-    """Draw the indices of a response: a row per parameter, its verdict where it is a warning."""
-    _bars(ax, analysis, family, response)
-    if np.isfinite(analysis[family.measures_in(analysis)[0].name].sel(response=response)).any():
-        responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
-    else:
-        verdict = access.verdict(analysis, _VERDICT, response)
-        words = verdict.words if verdict else "no reason is given"
-        style.remark(ax, f"undefined:\n{words}")
-    listed = parameters(analysis)
-    ax.set_yticks(range(len(listed)))
-    ax.yaxis.set_major_formatter(FixedFormatter(list(map(labels.parameter, listed))))
-    ax.tick_params(axis="y", length=0)
-    ax.grid(visible=False, axis="y")
-    ax.set_ylim(len(listed) - 0.5, -0.5)
-    low, high = ax.get_xlim()
-    ax.set_xlim(min(low, 0.0), max(high, 1.0 if family.shares else 0.0))
-    scales.linear(ax, "x")
+    """Draw a row per parameter and a bar per measure, pale within the noise, and the verdict.
 
-
-def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
-    """Draw a bar per measure, pale within the noise; pairs of measures are dark and light."""
-    shown = family.measures_in(analysis)
-    rows, count = np.arange(analysis.sizes["parameter"]), len(shown)
+    Pairs of measures are dark and light; the verdict is drawn where it is a warning.
+    """
+    shown, listed = family.measures_in(analysis), parameters(analysis)
+    rows, count = np.arange(len(listed)), len(shown)
     colours = style.COLOURS if count < 4 else ("#0072B2", "#56B4E9", "#D55E00", "#E69F00")
     for at, (measure, colour) in enumerate(zip(shown, colours[:count], strict=True)):
         found = measures.index(analysis, measure.name, response)
         finite = np.isfinite(found.margins)
-        bars = ax.barh(
+        drawn = ax.barh(
             rows + _THICK * ((at + 0.5) / count - 0.5),
             found.values,
             height=_THICK / count,
@@ -126,13 +109,26 @@ def _bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None
             xerr=np.where(finite, found.margins, 0.0) if finite.any() else None,
             error_kw={"elinewidth": 0.8, "ecolor": "0.15"},
         )
-        for bar, stands in zip(bars.patches, found.significant | ~finite, strict=True):
+        for bar, stands in zip(drawn.patches, found.significant | ~finite, strict=True):
             bar.set_alpha(None if stands else _PALE)
         if found.floor:
             ends = [found.floor] if family.shares else [-found.floor, found.floor]
             dashes = (0, (3, 1.5))
             ax.vlines(ends, len(rows) - 0.5, -0.5, color=colour, linestyle=dashes, linewidth=0.9)
     ax.axvline(0.0, color="0.15", linewidth=0.6)
+    if np.isfinite(analysis[shown[0].name].sel(response=response)).any():
+        responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
+    else:
+        verdict = access.verdict(analysis, _VERDICT, response)
+        style.remark(ax, f"undefined:\n{verdict.words if verdict else 'no reason is given'}")
+    ax.set_yticks(rows)
+    ax.yaxis.set_major_formatter(FixedFormatter(list(map(labels.parameter, listed))))
+    ax.tick_params(axis="y", length=0)
+    ax.grid(visible=False, axis="y")
+    ax.set_ylim(len(rows) - 0.5, -0.5)
+    low, high = ax.get_xlim()
+    ax.set_xlim(min(low, 0.0), max(high, 1.0 if family.shares else 0.0))
+    scales.linear(ax, "x")
 
 
 def index_convergence(measure: Measure) -> Figure:
@@ -165,10 +161,21 @@ def index_convergence(measure: Measure) -> Figure:
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per response, a line with its band per parameter."""
         figure, axes = responses_grid.panels(analysed(runs, analysis), height=44)
+        samples = analysis[_SAMPLES].values
         for name, ax in axes.items():
-            _lines(ax, analysis, variable, name)
+            found = analysis.sel(response=name)
+            for at, parameter in enumerate(parameters(analysis)):
+                y, look = found[variable].isel(parameter=at).values, style.distinct(at)
+                if np.isfinite(y).any():
+                    ax.plot(samples, y, label=labels.parameter(parameter), markersize=2.5, **look)
+                if f"{variable}_interval" in found:
+                    m = found[f"{variable}_interval"].isel(parameter=at).values
+                    band = {"color": look["color"], "alpha": 0.15, "linewidth": 0}
+                    ax.fill_between(samples, y - m, y + m, **band)
+            if not ax.lines:
+                style.remark(ax, "no finite values")
             ax.set_xscale("log", base=2)
-            scales.at(ax, "x", analysis[_SAMPLES].values[::-2])
+            scales.at(ax, "x", samples[::-2])
             low, high = ax.get_ylim()
             ax.set_ylim(max(low, _ENDS[0]), min(high, _ENDS[1]))
             scales.linear(ax, "y")
@@ -179,22 +186,6 @@ def index_convergence(measure: Measure) -> Figure:
         return figure
 
     return plot
-
-
-def _lines(ax: Axes, analysis: xr.Dataset, variable: str, response: str) -> None:
-    values = analysis[variable].sel(response=response)
-    margins = analysis.get(f"{variable}_interval")
-    samples = analysis[_SAMPLES].values
-    for at, name in enumerate(parameters(analysis)):
-        y = values.isel(parameter=at).values
-        look = style.distinct(at)
-        if np.isfinite(y).any():
-            ax.plot(samples, y, label=labels.parameter(name), markersize=2.5, **look)
-        if margins is not None:
-            m = margins.sel(response=response).isel(parameter=at).values
-            ax.fill_between(samples, y - m, y + m, color=look["color"], alpha=0.15, linewidth=0)
-    if not ax.lines:
-        style.remark(ax, "no finite values")
 
 
 def _pair_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:

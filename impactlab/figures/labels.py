@@ -88,10 +88,8 @@ def display(array: xr.DataArray) -> Display:
     units = str(array.attrs.get("units", "1"))
     numbers = array.values if array.dtype.kind in "if" else np.empty(0)
     largest = np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0)
-    for smallest, scale, symbol in _STEPS.get(units, ((0.0, 1.0, units),)):
-        if largest >= smallest:
-            return Display(scale, symbol)
-    return Display(1.0, units)
+    steps = _STEPS.get(units, ((0.0, 1.0, units),))
+    return next(Display(scale, symbol) for least, scale, symbol in steps if largest >= least)
 
 
 def response(name: str) -> str:

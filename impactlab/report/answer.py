@@ -164,8 +164,7 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
             continue
         numbers = unit(array.values[np.isfinite(array.values)])
         numbers[np.abs(numbers) < _NOTHING * np.abs(numbers).max()] = 0.0
-        text += labels.span(numbers, 3)
-        text += f" {unit.symbol}" * bool(unit.symbol)
+        text += labels.span(numbers, 3) + labels.unit(runs[name])
         if "numerical_uncertainty" in analysis and access.known(analysis, name):
             error = float(analysis["numerical_uncertainty"].sel(response=name))
             text += f" (numerically {uncertainty(error)})"

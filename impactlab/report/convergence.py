@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import replace
 from itertools import product
 from typing import NamedTuple
@@ -172,9 +171,8 @@ def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         remarks = [explanation, *_remarks(analysis, axis)]
         meanings: dict[str, str] = {}
         for kind in ("behaviour", "summary", "verdict"):
-            if f"{axis}_{kind}" in analysis:
-                flags = access.occurring(analysis[f"{axis}_{kind}"])
-                meanings |= {flag.words: flag.meaning for flag in flags if flag.meaning}
+            flags = access.occurring(analysis.get(f"{axis}_{kind}", xr.DataArray()))
+            meanings |= {flag.words: flag.meaning for flag in flags if flag.meaning}
         tables.append(Table(caption, head, rows, remarks, sorted(meanings.items())))
     return [Section("convergence", "Convergence", tables=tables)] if tables else []
 
@@ -201,9 +199,8 @@ def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:
     remarks = [str(attrs["comment"])] if attrs.get("comment") else []
     for line in attrs.get("without_limit", "").splitlines():
         name, _, reason = line.partition(": ")
-        if "not convergent by design" in _behaviours(analysis.sel(response=name), axis):
-            response = labels.response(name)
-            remarks.append(f"The {response} is not convergent by design: {reason}.")
+        if "not convergent by design" in _counts(analysis.sel(response=name), f"{axis}_behaviour"):
+            remarks.append(f"The {labels.response(name)} is not convergent by design: {reason}.")
     return remarks
 
 
@@ -231,45 +228,31 @@ def _cells(found: xr.Dataset, axis: str) -> dict[str, Cell]:
 
 def _over_the_grid(found: xr.Dataset, axis: str) -> Cell:
     """Return how often each verdict occurs, and how the three finest grids behave."""
-    verdicts = {}
-    if f"{axis}_tally" in found:
-        tally = found[f"{axis}_tally"]
-        pairs = zip(tally[f"{axis}_outcome"].values, tally.values, strict=True)
-        verdicts = {str(flag).replace("_", " "): int(number) for flag, number in pairs if number}
-    listed, behaviours = (
-        ", ".join(f"{flag} {number}" for flag, number in counts.items())
-        for counts in (verdicts, _behaviours(found, axis))
+    verdicts, behaviours = (
+        ", ".join(f"{flag} {number}" for flag, number in _counts(found, f"{axis}_{kind}").items())
+        for kind in ("verdict", "behaviour")
     )
-    return Cell(listed or "–", detail=f"behaviour: {behaviours}" if behaviours else "")
+    return Cell(verdicts or "–", detail=f"behaviour: {behaviours}" if behaviours else "")
 
 
-def _behaviours(found: xr.Dataset, axis: str) -> Counter[str]:
-    """Count each behaviour, in words, over the rest of the grid."""
-    if f"{axis}_behaviour" not in found:
-        return Counter()
-    flags = found[f"{axis}_behaviour"]
-    return Counter(
-        {flag.words: int((flags == flag.value).sum()) for flag in access.occurring(flags)}
-    )
+def _counts(found: xr.Dataset, variable: str) -> dict[str, int]:
+    """Count each flag, in words, over the rest of the grid."""
+    flags = found.get(variable, xr.DataArray())
+    return {flag.words: int((flags == flag.value).sum()) for flag in access.occurring(flags)}
 
 
 def _spread(found: xr.Dataset, variable: str) -> Cell:
     """Return the range of the finite values over the rest of the grid."""
-    values = found[variable].values if variable in found else np.array([])
+    values = found.get(variable, xr.DataArray()).values
     finite = values[np.isfinite(values)]
-    if not finite.size:
-        return Cell("–", "number")
-    low, high = (labels.number(float(end), digits=3) for end in (finite.min(), finite.max()))
-    return Cell(low if low == high else f"{low} to {high}", "number")
+    return Cell(labels.span(finite, 3) if finite.size else "–", "number")
 
 
 def _needed(needed: Floats) -> Cell:
     """Return the range over the grid; say where not even the second most points stay within 1 %."""
-    if np.isnan(needed).all():
+    given = needed[np.isfinite(needed)]
+    if not given.size:
         return Cell("none below the largest", "warning")
-    text = f"{np.nanmin(needed):.0f}"
-    if np.nanmax(needed) > np.nanmin(needed):
-        text += f" to {np.nanmax(needed):.0f}"
-    gaps = int(np.isnan(needed).sum())
+    gaps = needed.size - given.size
     detail = f"none below the largest at {gaps} of {needed.size} points" if gaps else ""
-    return Cell(text, "number", detail)
+    return Cell(labels.span(given, 4), "number", detail)

@@ -53,10 +53,7 @@ _OF_RESPONSES = {
 
 
 def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
-    """Return the sections that the analysis has data for.
-
-    They are: ranking, indices, second order, convergence, other methods, surrogate.
-    """
+    """Return the sections, from the ranking to the surrogate, that the analysis has data for."""
     if not analysed(runs, analysis):
         return []
     families = [family for family in RANKED if family.given(analysis)]
@@ -124,9 +121,7 @@ def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
         if np.isfinite(q2):
             kind, detail = ("number", "") if q2 >= _GOOD else ("warning", "poor")
             quality = Cell(labels.number(q2, 3), kind, detail)
-        error = "–"
-        if "surrogate_rmse" in found:
-            error = in_units(runs[name], float(found["surrogate_rmse"]))
+        error = in_units(runs[name], float(found["surrogate_rmse"]))
         rows.append([named(analysis, name), quality, Cell(error, "number")])
     caption = "The surrogate on held-out runs (1: perfect, 0: no better than the mean)"
     head = ["Response", "Predictivity Q² on held-out runs", "Root mean square error"]
@@ -181,9 +176,7 @@ def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
         explained += "; numerical: not distinguishable from its numerical error"
     caption = f"Ranks of the parameters by {family.title}, {measure.words} ({explained})"
     names = [labels.sentence(labels.parameter(name)) for name in measures.parameters(analysis)]
-    flags: list[access.Verdict] = []
-    if "sensitivity_verdict" in analysis:
-        flags = access.occurring(analysis["sensitivity_verdict"])
+    flags = access.occurring(analysis.get("sensitivity_verdict", xr.DataArray()))
     meanings = [(flag.words, flag.meaning) for flag in flags if flag.meaning]
     return Table(caption, ["Response", *names], rows, meanings=meanings)
 
@@ -282,16 +275,12 @@ def in_units(response: xr.DataArray, value: float, margin: float = np.inf) -> st
 
 
 def numerical_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
-    """Return the section on the numerical uncertainty, or none where the analysis has none.
-
-    Its table has one row per response: its uncertainty, and the largest error of an index per
-    order.
-    """
+    """Return the section on the numerical uncertainty, or none where the analysis has none."""
     based = "numerical_from" in analysis
     if not based and not any(key in analysis for key in _OF_RESPONSES):
         return []
-    flags = {each.flag for each in access.occurring(analysis["numerical_from"])} if based else set()
-    lead = _LEAD + "".join(text for flag, text in _BASES.items() if flag in flags)
+    occurring = access.occurring(analysis.get("numerical_from", xr.DataArray()))
+    lead = _LEAD + "".join(_BASES.get(each.flag, "") for each in occurring)
     orders = {
         f"{order.name}_numerical": f"Largest numerical error of the indices of {order.words}"
         for order in SOBOL.measures

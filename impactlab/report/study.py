@@ -95,11 +95,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
 
 
 def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
-    """Return the sections on results, inputs and runs, in the order of the page.
-
-    A grid: convergence, results, what a wing adds, how the runs ended, inputs. A sample: ranking,
-    indices, numerical uncertainty, distributions; how the runs ended, inputs, scatters.
-    """
+    """Return the sections on results, inputs and runs, in the order of the page."""
     inputs, ranges = _inputs(runs), _ranges(runs, analysis)
     if not is_sample(runs):
         added = wings.added("sections", runs)
@@ -110,16 +106,15 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             _outcome(runs, analysis),
             inputs,
         ]
-    title = "Distribution of each response"
     scattered = [scatter(name).name for name in responses(runs)]
-    against = "Each response against each parameter"
+    drawn, title = ["response_distributions"], "Each response against each parameter"
     return [
         *sensitivity.sections(runs, analysis),
         *sensitivity.numerical_sections(runs, analysis),
-        Section("results", title, tables=[ranges], figures=["response_distributions"]),
+        Section("results", "Distribution of each response", tables=[ranges], figures=drawn),
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         inputs,
-        Section("scatter", against, _SCATTER, figures=scattered, closed=True),
+        Section("scatter", title, _SCATTER, figures=scattered, closed=True),
     ]
 
 
@@ -179,7 +174,7 @@ def _outcome(runs: xr.Dataset, analysis: xr.Dataset, figures: list[str] | None =
     """Return the section on failed runs, and on values that a surrogate supplied."""
     failed, total = access.failed(runs), count(runs)
     imputed = []
-    for name in analysed(runs, analysis) if "imputed_share" in analysis else ():
+    for name in analysed(runs, analysis, "imputed_share"):
         share = float(np.nan_to_num(analysis["imputed_share"].sel(response=name)))
         if share > 0:
             imputed.append(
@@ -236,8 +231,7 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
         gaps = int(np.isnan(shown).sum())
         cells = [Cell("missing", "warning")] * (2 + len(quantiles))
         if gaps < shown.size:
-            levels = np.nanquantile(shown, list(quantiles.values()))
-            numbers = [np.nanmin(shown), *levels, np.nanmax(shown)]
+            numbers = np.nanquantile(shown, [0.0, *quantiles.values(), 1.0])
             details = [""] * len(numbers) if quantiles else ["in every run"] * 2
             if not quantiles and array.min() < array.max():
                 ends: Any = (array.argmin(...), array.argmax(...))

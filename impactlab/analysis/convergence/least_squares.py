@@ -9,7 +9,6 @@ standard deviation of the fit, delta the data range over n - 1.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from operator import attrgetter
 
 import numpy as np
 import numpy.typing as npt
@@ -56,9 +55,6 @@ class Fit:
     deviation: float
 
 
-_deviation = attrgetter("deviation")
-
-
 def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
     """Fit the expansion of least standard deviation among those that the fitted order allows.
 
@@ -74,12 +70,12 @@ def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
     weights = (np.full(f.size, 1.0 / f.size), (1.0 / h) / np.sum(1.0 / h))
     free = [_fit(f, h, w, (_free_order(f, h, w),)) for w in weights]
     if credible := [found for found in free if ORDERS[0] <= found.order <= ORDERS[1]]:
-        return min(credible, key=_deviation)
-    order = min(free, key=_deviation).order
+        return min(credible, key=lambda found: found.deviation)
+    order = min(free, key=lambda found: found.deviation).order
     fixed = [(Expansion.FIRST, (1.0,)), (Expansion.SECOND, (2.0,)), (Expansion.BOTH, (1.0, 2.0))]
     allowed = fixed if order < ORDERS[0] else fixed[:2]
     found = [_fit(f, h, w, powers, kind, order) for kind, powers in allowed for w in weights]
-    return min(found, key=_deviation)
+    return min(found, key=lambda found: found.deviation)
 
 
 def uncertainty(found: Fit, values: npt.ArrayLike) -> Floats:
