@@ -105,14 +105,8 @@ def _summary(outcomes: Sequence[Outcome]) -> Table:
                 Cell(f"{outcome.seconds:.1f} s", "number"),
             ]
         )
-    head = [
-        "Check",
-        "Verdict",
-        "Passed",
-        "Largest error over tolerance",
-        "Quantity and case of that error",
-        "Time",
-    ]
+    about_error = ["Largest error over tolerance", "Quantity and case of that error"]
+    head = ["Check", "Verdict", "Passed", *about_error, "Time"]
     return Table("All checks, failed ones first", head, rows)
 
 
