@@ -162,10 +162,4 @@ def _read(array: xr.DataArray, value: int) -> Verdict:
 
 def confidence(analysis: xr.Dataset) -> str:
     """Return the confidence level of the intervals of the indices as text: "95 %"."""
-    found = (
-        array.attrs["confidence"]
-        for name, array in analysis.data_vars.items()
-        if str(name).endswith("_interval") and "confidence" in array.attrs
-    )
-    level = next(found, analysis.attrs.get("confidence", 0.95))
-    return f"{100 * float(level):.4g} %"
+    return f"{100 * float(analysis.attrs.get('confidence', 0.95)):.4g} %"

@@ -341,14 +341,12 @@ def failure_map(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     failed = access.failed(runs).values
     kinds = {"good": np.flatnonzero(~failed), "failed": np.flatnonzero(failed)}
     for ax, pair in zip(axes, pairs, strict=True):
-        units = [display(runs[name]) for name in pair]
         for kind, which in kinds.items():
             some = np.random.default_rng(1).permutation(which)[: _DRAWN[kind]]
-            x, y = (unit(runs[name].values[some]) for name, unit in zip(pair, units, strict=True))
+            x, y = (display(runs[name])(runs[name].values[some]) for name in pair)
             ax.plot(x, y, linestyle="", label=kind, rasterized=kind == "good", **_LOOKS[kind])
         across, up = (
-            labels.wrapped_axis(labels.parameter(name), unit.symbol)
-            for name, unit in zip(pair, units, strict=True)
+            labels.wrapped_axis(labels.parameter(name), display(runs[name]).symbol) for name in pair
         )
         ax.set(xlabel=across, ylabel=up)
         scales.linear(ax, "xy", 4)

@@ -21,6 +21,7 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from impactlab.figures import labels
 from impactlab.figures.draw import listed
+from impactlab.figures.measures import RANKED
 from impactlab.files import identity, replaced
 
 _PROVENANCE = {
@@ -39,15 +40,8 @@ _PROVENANCE = {
     "failed_runs": "Policy for failed runs",
 }
 _LEADING = (
-    "sobol_indices",
-    "morris_plane",
-    "delta_indices",
-    "pawn_indices",
-    "regression_indices",
-    "nodes_convergence",
-    "time_step_convergence",
-    "element_size_convergence",
-    "points_convergence",
+    *(family.figure for family in RANKED),
+    *(f"{axis}_convergence" for axis in ("nodes", "time_step", "element_size", "points")),
     "parameter_effects",
 )
 """Figures that answer a question, the first of a study before its others."""

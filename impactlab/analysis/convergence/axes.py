@@ -57,7 +57,7 @@ class Axis:
         spacings = self.spacings[dim](values[dim].values.astype(float))
         finest_first = np.argsort(spacings)
         values, spacings = values.isel({dim: finest_first}), spacings[finest_first]
-        fields = xr.apply_ufunc(
+        judged = xr.apply_ufunc(
             partial(judge, spacings=spacings),
             values,
             input_core_dims=[[dim]],
@@ -65,20 +65,22 @@ class Axis:
             output_dtypes=[np.int8 if name in _FLAGS else float for name in Judgement._fields],
             vectorize=True,
         )
-        mask = without_limit(runs, values, self.name, dim)
+        fields = dict(zip(Judgement._fields, judged, strict=True))
+        limited = ~without_limit(runs, values, self.name, dim)
         found = {
-            name: field.where(~mask, _WITHOUT_LIMIT.get(name, np.nan))
-            for name, field in zip(Judgement._fields, fields, strict=True)
+            name: field.where(limited, _WITHOUT_LIMIT.get(name, np.nan))
+            for name, field in fields.items()
         }
-        found["observed_order"] = fields[Judgement._fields.index("observed_order")]
+        found["observed_order"] = fields["observed_order"]
         comment = self.comment(runs)
         said = {"tolerance": TOLERANCE, "comment": comment}
         if self.name in WITHOUT_LIMIT and _STRAIN in values["response"].values:
-            said["without_limit"] = f"{_STRAIN}: {WITHOUT_LIMIT[self.name][1]}"
+            said["without_limit"] = f"{_STRAIN}: {WITHOUT_LIMIT[self.name]}"
         dataset = xr.Dataset()
-        for key, (long_name, units, about) in _NUMBERS.items():
-            attrs = {"long_name": long_name.format(self.words)}
-            attrs |= {"comment": f"{about} {comment}".strip()} | ({"units": units} if units else {})
+        for key, long_name in _NUMBERS.items():
+            about = f"{_COMMENTS.get(key, '')} {comment}".strip()
+            attrs = {"long_name": long_name.format(self.words), "comment": about}
+            attrs |= {} if key.endswith("extrapolated") else {"units": "1"}
             dataset[f"{self.name}_{key}"] = found[key].assign_attrs(attrs)
         for key, (kind, long_name) in _FLAGS.items():
             dataset[f"{self.name}_{key}"] = flagged(found[key], kind, f"{long_name} {self.words}")
@@ -96,46 +98,28 @@ _FLAGS: dict[str, tuple[type[Verdict], str]] = {
     "verdict": (AxisVerdict, "verdict on convergence with"),
 }
 _NUMBERS = {
-    "observed_order": ("observed order of convergence with {}", "1", ""),
-    "extrapolated": (
-        "Richardson value, extrapolated in {}",
-        "",
-        "In the unit of response_units; given where the order is credible.",
-    ),
-    "gci": (
-        "grid convergence index of the finest grid, {}",
-        "1",
-        "Relative to the finest value, infinite where that is zero.",
-    ),
-    "safety_factor": ("safety factor in the grid convergence index, {}", "1", ""),
-    "asymptotic_ratio": (
-        "ratio of successive grid convergence indices over r^p, {}",
-        "1",
-        "1 in the asymptotic range, but near 1 elsewhere, too: not a proof by itself.",
-    ),
-    "fit_order": (
-        "order of the least-squares fit in {}",
-        "1",
-        "Over four or more grids; assumed, not fitted, where fit_expansion is not `free`.",
-    ),
-    "fit_extrapolated": (
-        "limit of the least-squares fit in {}",
-        "",
-        "In the unit of response_units; over four or more grids.",
-    ),
-    "fit_uncertainty": (
-        "uncertainty of the finest value by the least-squares fit in {}",
-        "1",
-        "Relative to the finest value; Eca and Hoekstra (2014), over four or more grids.",
-    ),
-    "uncertainty": (
-        "numerical uncertainty of the finest value, from {}",
-        "1",
-        "Relative to the finest value; infinite where nothing bounds the error.",
-    ),
+    "observed_order": "observed order of convergence with {}",
+    "extrapolated": "Richardson value, extrapolated in {}",
+    "gci": "grid convergence index of the finest grid, {}",
+    "safety_factor": "safety factor in the grid convergence index, {}",
+    "asymptotic_ratio": "ratio of successive grid convergence indices over r^p, {}",
+    "fit_order": "order of the least-squares fit in {}",
+    "fit_extrapolated": "limit of the least-squares fit in {}",
+    "fit_uncertainty": "uncertainty of the finest value by the least-squares fit in {}",
+    "uncertainty": "numerical uncertainty of the finest value, from {}",
 }
-"""Long name, unit and comment of each number."""
-
+"""Long name of each number; extrapolated ones have the unit of the response, others none."""
+_COMMENTS = {
+    "extrapolated": "In the unit of response_units; given where the order is credible.",
+    "gci": "Relative to the finest value, infinite where that is zero.",
+    "asymptotic_ratio": "1 in the asymptotic range, but near 1 elsewhere, too: not a proof by "
+    "itself.",
+    "fit_order": "Over four or more grids; assumed, not fitted, where fit_expansion is not `free`.",
+    "fit_extrapolated": "In the unit of response_units; over four or more grids.",
+    "fit_uncertainty": "Relative to the finest value; Eca and Hoekstra (2014), over four or more "
+    "grids.",
+    "uncertainty": "Relative to the finest value; infinite where nothing bounds the error.",
+}
 _WITHOUT_LIMIT = {
     "uncertainty": np.inf,
     "fit_expansion": Expansion.NONE,
@@ -146,33 +130,14 @@ _WITHOUT_LIMIT = {
 """What is stored where there is no limit; of other fields, NaN."""
 
 
-def _is_solid(runs: xr.Dataset) -> xr.DataArray:
-    found: xr.DataArray = runs.coords.get("beam_model", xr.DataArray("")) == SOLID
-    return found
-
-
-def _does_not_harden(runs: xr.Dataset) -> xr.DataArray:
-    """Select runs of beams; those without a stated hardening modulus may harden."""
-    found = ~_is_solid(runs)
-    for kind in ("isotropic", "kinematic"):
-        found = found & (runs.get(f"beam_{kind}_hardening_modulus", np.nan) == 0)
-    return found
-
-
 _STRAIN = "peak_plastic_strain"
 WITHOUT_LIMIT = {
-    "nodes": (
-        _does_not_harden,
-        "in a beam that does not harden, plastic strain gathers at the node that is struck: its "
-        "peak grows with the nodes, up to twice as much with each halving of the spacing",
-    ),
-    "element_size": (
-        _is_solid,
-        "in the contact of a solid, plastic strain gathers at the edge of the dent: its peak grows "
-        "as the elements shrink",
-    ),
+    "nodes": "in a beam that does not harden, plastic strain gathers at the node that is struck: "
+    "its peak grows with the nodes, up to twice as much with each halving of the spacing",
+    "element_size": "in the contact of a solid, plastic strain gathers at the edge of the dent: "
+    "its peak grows as the elements shrink",
 }
-"""By axis, where the peak plastic strain of runs that yield has no limit, and why."""
+"""By axis, why the peak plastic strain of runs that yield has no limit."""
 
 
 def without_limit(runs: xr.Dataset, values: xr.DataArray, axis: str, dim: str) -> xr.DataArray:
@@ -183,8 +148,12 @@ def without_limit(runs: xr.Dataset, values: xr.DataArray, axis: str, dim: str) -
     largest = values.max(dim)
     found = xr.zeros_like(largest, dtype=bool)
     if axis in WITHOUT_LIMIT:
-        where, _ = WITHOUT_LIMIT[axis]
-        found = (found["response"] == _STRAIN) & (largest > 0) & where(runs)
+        affected = runs.coords.get("beam_model", xr.DataArray("")) == SOLID
+        if axis == "nodes":
+            affected = ~affected
+            for kind in ("isotropic", "kinematic"):  # without a stated modulus it may harden
+                affected = affected & (runs.get(f"beam_{kind}_hardening_modulus", np.nan) == 0)
+        found = (found["response"] == _STRAIN) & (largest > 0) & affected
     return found.transpose(*largest.dims).reset_coords(drop=True)
 
 

@@ -17,17 +17,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from impactlab.analysis.convergence import least_squares
+from impactlab.analysis.convergence import least_squares, richardson
 from impactlab.analysis.convergence.least_squares import Expansion
-from impactlab.analysis.convergence.richardson import (
-    CREDIBLE_ORDERS,
-    SAFETY_DOUBTFUL,
-    Behaviour,
-    Estimate,
-    estimate,
-    relative,
-    safety,
-)
+from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL, Behaviour, Estimate, relative
 from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict
 from impactlab.types import Floats
 
@@ -76,16 +68,16 @@ def _of_present(f: Floats, h: Floats) -> tuple[Floats, How]:
     if f.size == 2:
         first_order = abs(f[1] - f[0]) / (h[1] / h[0] - 1.0)
         return apart + SAFETY_DOUBTFUL * float(first_order), How.TWO_GRIDS
-    triples = [estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
+    triples = [richardson.estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
     finest, steps = triples[0], np.diff(f)
     fitted = least_squares.fit(f, h) if f.size >= least_squares.FEWEST else None
     # An order above 0.5, of the three finest grids or of all of four or more, slows a drift down.
-    least, monotone = CREDIBLE_ORDERS[0], finest.behaviour is Behaviour.MONOTONE
+    least, monotone = richardson.CREDIBLE_ORDERS[0], finest.behaviour is Behaviour.MONOTONE
     slows_down = (monotone and finest.order >= least) or (fitted and fitted.free_order >= least)
     if not slows_down and ((steps > 0).all() or (steps < 0).all()):
         drift = apart + finest.uncertainty(SAFETY_DOUBTFUL)
         return (drift, How.SLOW_DRIFT) if monotone else nothing
-    by_index = apart + finest.uncertainty(safety(triples))
+    by_index = apart + finest.uncertainty(richardson.safety(triples))
     if fitted is None:
         by_range = apart + SAFETY_DOUBTFUL * float(np.ptp(f))
         return (by_index, How.GCI) if finest.credible else (by_range, How.RANGE)
@@ -153,8 +145,10 @@ def judge(values: Floats, spacings: Floats) -> Judgement:
     and uncertainty (`numerical_uncertainty` of the finest) relative to the finest value. Raises
     ValueError unless the spacings rise.
     """
-    triples = [estimate(values[i : i + 3], spacings[i : i + 3]) for i in range(len(values) - 2)]
-    finest, factor = triples[0], safety(triples)
+    triples = [
+        richardson.estimate(values[i : i + 3], spacings[i : i + 3]) for i in range(len(values) - 2)
+    ]
+    finest, factor = triples[0], richardson.safety(triples)
     amounts, how = numerical_uncertainty(values, spacings)
     uncertainty = relative(amounts[0], values[0])
     complete = len(values) >= least_squares.FEWEST and np.isfinite(values).all()

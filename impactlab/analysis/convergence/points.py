@@ -17,23 +17,10 @@ from impactlab.types import Floats
 SAFETY = 3.0
 """Uncertainty over difference to the most points, valid where these at least halve the error."""
 _COMMENT = "The most points are the reference: their own error is not known."
-_ATTRS = {
-    "points_error": {
-        "long_name": "relative difference to the most integration points",
-        "units": "1",
-        "comment": _COMMENT,
-    },
-    "points_uncertainty": {
-        "long_name": "numerical uncertainty with the most integration points",
-        "units": "1",
-        "comment": f"{SAFETY:g} times the difference to the next fewer, relative to the value.",
-    },
-    "points_needed": {
-        "long_name": "fewest integration points from which on the error stays in tolerance",
-        "units": "1",
-        "tolerance": TOLERANCE,
-        "comment": _COMMENT,
-    },
+_LONG_NAMES = {
+    "points_error": "relative difference to the most integration points",
+    "points_uncertainty": "numerical uncertainty with the most integration points",
+    "points_needed": "fewest integration points from which on the error stays in tolerance",
 }
 
 
@@ -76,9 +63,13 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     }
     words = "convergence with the integration points"
     verdicts = verdict_variables(codes, PointsVerdict, "points", words)
-    dataset = xr.Dataset({key: found[key].assign_attrs(_ATTRS[key]) for key in found} | verdicts)
-    for name in ("points_verdict", "points_summary"):
-        dataset[name].attrs |= {"tolerance": TOLERANCE, "comment": _COMMENT}
+    dataset = xr.Dataset(found | verdicts)
+    for key, long_name in _LONG_NAMES.items():
+        dataset[key].attrs = {"long_name": long_name, "units": "1", "comment": _COMMENT}
+    about = f"{SAFETY:g} times the difference to the next fewer, relative to the value."
+    dataset["points_uncertainty"].attrs["comment"] = about
+    for key in ("points_needed", "points_verdict", "points_summary"):
+        dataset[key].attrs |= {"tolerance": TOLERANCE, "comment": _COMMENT}
     return dataset
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.variables import RESPONSES
@@ -27,14 +26,12 @@ def _list(page: Any, start: str) -> str:
 
 def test_verdicts_are_told_by_response(report: Any, discretisation_study: Study) -> None:
     runs, analysis = discretisation_study
-    tally = xr.DataArray(np.full((len(RESPONSES), 2), 3), dims=("response", "nodes_outcome"))
-    page = report(
-        runs,
-        analysis.assign(nodes_tally=tally).assign_coords(nodes_outcome=["converged", "divergent"]),
-    )
+    coarse = {"response": "peak_force", "points": runs["points"].min().item()}
+    analysis["nodes_verdict"].loc[coarse] = 2
+    page = report(runs, analysis)
     assert _row(page, NODES, "Peak force")[1:] == [
         "converged",
-        "converged 3, divergent 3behaviour: monotone 24",
+        "converged 18, divergent 6behaviour: monotone 24",
         "2",
         "0.1 %",
         "–",
@@ -119,7 +116,7 @@ def test_undefined_indices_are_said(report: Any, sobol_study: Study) -> None:
 
 def test_the_confidence_is_that_of_the_analysis(report: Any, sobol_study: Study) -> None:
     runs, analysis = sobol_study
-    analysis["first_order_interval"].attrs["confidence"] = 0.9
+    analysis.attrs["confidence"] = 0.9
     page = report(runs, analysis)
     assert "Sobol indices, total order, ± the half-width of the 90 % interval." in page.text
     assert "Sobol indices, first order, with half-widths of the 90 % intervals" in page.tables
