@@ -106,11 +106,10 @@ class Plan:
     def problem(self, workers: int) -> str:
         """Return the reason not to start, naming the option that drives it, or ""."""
         option = f"--element-size {1e3 * self.element_size:g} mm"
-        elements = f"{self.cost.elements:,} elements"
-        long = self.seconds(workers)
+        elements, long = f"{self.cost.elements:,} elements", self.seconds(workers)
         if self.cost.memory_bytes > MEMORY_LIMIT:
-            needed = f"{amount(self.cost.memory_bytes)} of memory, of {amount(MEMORY_LIMIT)}"
-            reason = f"{needed}, for {elements}"
+            needed = amount(self.cost.memory_bytes)
+            reason = f"{needed} of memory, of {amount(MEMORY_LIMIT)}, for {elements}"
         elif long > MOST_TIME:
             if self.duration > _LONG * self.usual_duration:
                 option = f"--duration {1e3 * self.duration:g} ms"
@@ -154,7 +153,7 @@ def planned(
     simulated = usual if duration is None else duration
     size = _usual_size(case.impact, patch, simulated) if element_size is None else element_size
     solid, mesh = _cost(case.impact, size, patch, simulated)
-    half = mesh.patch if mesh else checked_patch(case.impact, size, patch)
+    half = checked_patch(case.impact, size, patch)
     grid = replace(case.discretisation, scheme="leapfrog")
     beams = case_table(case.impact, grid, duration=simulated, varied={"beam_model": MODELS})
     beside = float(cost.work(beams).sum() / cost.A_SECOND)
