@@ -43,12 +43,14 @@ def faces(solid: xr.Dataset, axis: int) -> tuple[Floats, NDArray[np.int64]]:
     return 1e3 * np.delete(places, axis, axis=2), element
 
 
-def _draw_faces(ax: Axes, polygons: Floats, **looks: Any) -> PolyCollection:
-    """Draw polygons on axes of equal scale; the caller sets the limits."""
+def _draw_faces(ax: Axes, polygons: Floats, across: str = "height", **looks: Any) -> PolyCollection:
+    """Draw polygons on axes of equal scale in mm; the caller sets the limits."""
     drawn = PolyCollection(list(polygons), **looks)
     ax.add_collection(drawn)
     ax.set_aspect("equal")
     ax.grid(visible=False)
+    ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis(across, "mm"))
+    scales.linear(ax, "xy")
     return drawn
 
 
@@ -89,10 +91,8 @@ def mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
         colours = np.where(full, _COLOURS["fully integrated"], colours)
         shown = slice(None) if axis == 1 else body == BEAM
         look: dict[str, Any] = {"edgecolors": _EDGE, "linewidths": width}
-        _draw_faces(ax, polygons[shown], facecolors=colours[shown], **look)
-        ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis(label, "mm"))
+        _draw_faces(ax, polygons[shown], label, facecolors=colours[shown], **look)
         ax.set_title(title, loc="left")
-        scales.linear(ax, "xy")
         axes.append(ax)
     above, side, top = axes
     above.autoscale_view()
@@ -146,8 +146,6 @@ def plastic_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     reach = 1.6 * max(1e3 * float(solid["patch"]), extent)
     ax.set(xlim=(0.0, reach), ylim=(-0.75 * reach, 0.25 * reach))
     ax.set_title(plastic_strain.title, loc="left")
-    ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis("height", "mm"))
-    scales.linear(ax, "xy")
     if plastic.any():
         shown = _draw_faces(ax, polygons[plastic], edgecolors="0.75", linewidths=0.3)
         percent = 100.0 * strain[plastic]

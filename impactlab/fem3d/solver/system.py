@@ -220,8 +220,7 @@ class System:
         self.v[sphere, 2] = -impact.velocity
         self.pull = np.zeros(len(mesh.nodes))
         self.pull[sphere] = impact.gravity
-        upper, lower = mesh.pairs.T
-        self.approach = np.ascontiguousarray(self.v[lower, 2] - self.v[upper, 2])
+        self.approach = np.full(len(mesh.pairs), impact.velocity, dtype=float)
         self._scratch = [np.zeros(SCRATCH * W) for _ in range(pool.threads)]
 
     def strain(self, dt: float) -> None:
