@@ -7,6 +7,7 @@ import re
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pint
@@ -280,3 +281,8 @@ def test_notebooks_show_tables_and_texts():
     html = small(title="a < b")._repr_html_()
     assert html.startswith("<b>a &lt; b</b><br><code>impactlab.Study a_b: 96 runs, results/a_b<")
     assert "beam_depth: {distribution: uniform, low: 26 mm, high: 29 mm}" in html
+
+
+def test_an_asynchronous_client_is_refused(folder):
+    with pytest.raises(ValueError, match=r"^client: is asynchronous"):
+        small().run(client=SimpleNamespace(asynchronous=True))
