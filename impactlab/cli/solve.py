@@ -98,7 +98,7 @@ def run(
     ] = None,
     batch_seconds: Annotated[
         float, typer.Option(min=0.001, help="Of a task, about; more for hundreds of threads.")
-    ] = 1.0,
+    ] = 2.0,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Tell runs, time, memory and disk, and solve nothing.")
     ] = False,

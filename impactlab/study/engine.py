@@ -53,7 +53,7 @@ class Engine:
     workers: int = 1
     address: str = ""
     profile: Profile | None = None
-    batch_seconds: float = 1.0
+    batch_seconds: float = 2.0
     """Duration of a task, roughly."""
     own: Client | None = None
     """A client that somebody else has made, and closes."""
