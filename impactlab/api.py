@@ -230,9 +230,9 @@ class Study:
 
         With the numerical uncertainty that pilot runs of `auto`, or `refine`, have found.
         """
-        runs = self._runs()
-        known = steps.evidence(self.declared, runs)
-        return steps.analyse_runs(runs, self.folder / "analysis.nc", **known)
+        runs, path = self._runs(), self.folder / "analysis.nc"
+        steps.analyse_runs(runs, path, **steps.evidence(self.declared, runs))
+        return read_netcdf(path, "analysis")  # by which figures know what they were drawn from
 
     def figures(self) -> list[Path]:
         """Draw the figures of the report into folder/figures; return their files."""

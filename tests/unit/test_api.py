@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,6 +12,7 @@ import numpy as np
 import pint
 import pytest
 import xarray as xr
+from command_line import here
 from ruamel.yaml import YAML
 
 import impactlab as il
@@ -76,14 +76,18 @@ def test_nothing_is_solved_twice_here_or_by_the_command(folder, monkeypatch):
     monkeypatch.setattr("impactlab.study.execute.solved", None)  # which solves
     again = il.Study.from_yaml("studies/depth.yaml").run(workers=1)
     xr.testing.assert_identical(again.drop_attrs(), first.drop_attrs())
-    from impactlab.cli import main
-
-    monkeypatch.setattr(sys, "argv", ["impactlab", "run", "studies/depth.yaml", "--workers", "1"])
-    with pytest.raises(SystemExit) as ended:
-        main()
-    assert not ended.value.code
+    assert here("run", "studies/depth.yaml", "--workers", "1") == 0
     again = read_netcdf(folder / "results/depth/runs.nc", "runs")
     xr.testing.assert_identical(again.drop_attrs(), first.drop_attrs())
+
+
+def test_commands_take_over_what_python_has_drawn(folder, monkeypatch):
+    sampling = il.Grid(parameters={"velocity": [1, 2, 3]})
+    study = small(sampling=sampling, responses=["peak_force"])
+    study.run(workers=1)
+    study.report()
+    files = ["results/depth/runs.nc", "results/depth/analysis.nc"]
+    assert here("report", *files) == 0
 
 
 def test_the_tidying_command_keeps_the_runs_of_a_study_without_a_file(folder):
