@@ -52,31 +52,29 @@ _OF_RESPONSES = {
 }
 
 
-def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
-    """Return the sections, from the ranking to the surrogate, that the analysis has data for."""
+def sections(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
+    """Yield the sections, from the ranking to the surrogate, that the analysis has data for."""
     if not analysed(runs, analysis):
-        return []
-    families = [family for family in RANKED if family.given(analysis)]
-    lead = (
-        "A rank is a range where intervals overlap; they are widened by the numerical error where "
-        "it is known."
-    )
-    found = list(_of_sobol(runs, analysis))
-    if families:
+        return
+    if families := [family for family in RANKED if family.given(analysis)]:
+        lead = (
+            "A rank is a range where intervals overlap; they are widened by the numerical error "
+            "where it is known."
+        )
         ranks = [_ranks(runs, analysis, families[0])]
-        found.insert(0, Section("ranking", "Ranking", lead, tables=ranks, file="indices.csv"))
+        yield Section("ranking", "Ranking", lead, tables=ranks, file="indices.csv")
+    yield from _of_sobol(runs, analysis)
     for family in families:
         if family is not SOBOL:
-            found.append(
-                Section(
-                    family.figure.partition("_")[0],
-                    family.title,
-                    family.meaning,
-                    figures=[family.figure],
-                    folded=index_tables(runs, analysis, family),
-                )
+            yield Section(
+                family.figure.partition("_")[0],
+                family.title,
+                family.meaning,
+                figures=[family.figure],
+                folded=index_tables(runs, analysis, family),
             )
-    return found + ([surrogate(runs, analysis)] if "surrogate_q2" in analysis else [])
+    if "surrogate_q2" in analysis:
+        yield surrogate(runs, analysis)
 
 
 def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:

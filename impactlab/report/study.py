@@ -139,8 +139,8 @@ def _inputs(runs: xr.Dataset) -> Section:
             fixed.append([label, text, Cell(name, "muted")])
     head = ["Parameter", "Values", "Number", *["Group"] * bool(groups), "Key"]
     tables = [Table("Varied parameters", head, changed)] if changed else []
-    head, caption = ["Parameter", "Value", "Key"], "Parameters that are the same in every run"
-    folded = [Table(caption, head, fixed)] if fixed else []
+    caption = "Parameters that are the same in every run"
+    folded = [Table(caption, ["Parameter", "Value", "Key"], fixed)] if fixed else []
     return Section("runs", "What was varied", tables=tables, folded=folded)
 
 
