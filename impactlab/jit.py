@@ -46,7 +46,7 @@ except ValueError as _error:
     ) from None
 import llvmlite
 from llvmlite import binding
-from numba.core import serialize
+from numba.core import codegen, serialize
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 
@@ -221,6 +221,8 @@ class Compiler:
             # In a process that compiles one kernel, Python can call that alone, which alone is
             # kept: what makes the others ready for Python would take half of the time.
             called = from_python or os.environ.get(_COMPILES, name) == name
+            if called:
+                _CALLED.add(function.__qualname__)
             dispatcher = jit(
                 nogil=True,
                 error_model="numpy",
@@ -235,6 +237,35 @@ class Compiler:
             return cast(Function, dispatcher)
 
         return compiled
+
+
+_CALLED: set[str] = set()
+"""Functions that Python can call in this process, by qualified name."""
+
+
+def _emit_only_called() -> None:
+    """Make no machine code for the functions within a kernel.
+
+    numba makes it of every function, for a quarter of the time; the kernel has its own copies.
+    """
+    library: Any = codegen.CPUCodeLibrary
+    machine: Any = codegen.JITCPUCodegen
+    finalize, set_env = library._finalize_final_module, machine.set_env
+
+    def finalize_called(self: Any) -> None:
+        if self.name in _CALLED:
+            finalize(self)
+        self._finalized = True
+
+    def set_env_of_called(self: Any, name: str, env: Any) -> None:
+        if self._engine.get_global_value_address(name):
+            set_env(self, name, env)
+
+    library._finalize_final_module, machine.set_env = finalize_called, set_env_of_called
+
+
+if _COMPILES in os.environ:
+    _emit_only_called()
 
 
 @functools.cache
