@@ -26,7 +26,7 @@ _COMMANDS = {
     "status": "impactlab.cli.studies:status",
     "analyse": "impactlab.cli.results:analyse",
     "predict": "impactlab.cli.results:predict",
-    "verify": "impactlab.cli.verify:verify",
+    "verify": "impactlab.cli.solve:verify",
     "figures": "impactlab.cli.results:figures",
     "report": "impactlab.cli.results:report",
     "index": "impactlab.cli.results:index",

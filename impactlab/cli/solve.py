@@ -1,4 +1,4 @@
-"""From a study file to solved runs, or in one command to its report."""
+"""From a study file to solved runs or findings, or in one command to its report."""
 
 from __future__ import annotations
 
@@ -157,13 +157,46 @@ def refine(
     steps.refine(runs, path, Engine("threads", workers), base_samples)
 
 
+def verify(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY", help="A study file of checks, or its findings.nc.")
+    ],
+    output: Annotated[Path | None, new_file(help="Default: results/NAME/findings.nc.")] = None,
+    exit_zero: Annotated[
+        bool, typer.Option("--exit-zero", help="Exit with code 0 even if checks fail.")
+    ] = False,
+) -> None:
+    """Compare the solver with independent solutions.
+
+    The exit code is 1 if a check fails; the findings are written either way. Given a findings.nc,
+    the command prints its verdict again.
+    """
+    from impactlab.files import read_netcdf, write_netcdf
+    from impactlab.report.console import print_outcomes
+    from impactlab.study import steps
+    from impactlab.study.schema.files import read_verification
+    from impactlab.verification.stored import unpacked
+
+    if study.suffix == ".nc":
+        findings = read_netcdf(study, "findings")
+    else:
+        declared = read_verification(study)
+        path = output or results_file(declared.name, "findings.nc")
+        findings = steps.check(declared)
+        write_netcdf(findings, path, "findings")
+    outcomes = unpacked(findings)
+    print_outcomes(outcomes)
+    if said := steps.failure(outcomes):
+        logging.getLogger("impactlab").error("%s", said)
+        raise typer.Exit(code=0 if exit_zero else 1)
+
+
 def go(study: StudyFile, workers: Threads = _ALL, force: Force = False) -> None:
     """Do everything for one study: run, analyse, figures and report.
 
     Of a verification: verify, figures and report. Runs that are solved are not solved again.
     """
     from impactlab.cli import results
-    from impactlab.cli.verify import verify
     from impactlab.study.sampling.samples import Sobol
     from impactlab.study.schema.files import read_any
     from impactlab.study.schema.study import Study, Verification

@@ -13,6 +13,7 @@ import pytest
 import xarray as xr
 
 from impactlab.files import write_netcdf
+from impactlab.variables import provenance
 from impactlab.verification.finding import Finding, Outcome, relative
 from impactlab.verification.stored import packed
 
@@ -127,11 +128,13 @@ def test_a_changed_study_reruns_alone(folder):
 
 def test_failed_checks_come_after_the_report(folder):
     """The findings are put there, as if made: Snakemake takes files newer than their sources."""
-    (folder / "studies" / "bad.yaml").write_text("title: Bad checks\nchecks: [half_space]\n")
+    text = "title: Bad checks\nchecks: [half_space]\n"
+    (folder / "studies" / "bad.yaml").write_text(text)
     results = folder / "results" / "bad"
     entry = relative("peak force", "here", "N", 2.0, 1.0, 0.1)
     outcome = Outcome("half_space", "Half-space", "made up", 0.0, Finding([entry]))
-    write_netcdf(packed([outcome]), results / "findings.nc", "findings")
+    findings = packed([outcome]).assign_attrs(study="bad", study_text=text, **provenance())
+    write_netcdf(findings, results / "findings.nc", "findings")
     done = snakemake(folder, studies="bad")
     assert done.returncode != 0
     assert "half_space: 1 of 1 comparisons" in done.stderr
