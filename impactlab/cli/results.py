@@ -56,7 +56,8 @@ def predict(
     """Predict the responses of one run without solving it.
 
     All parameters that the study varied have to be given. Beside each response stands the
-    surrogate's error on runs that it was not fitted to.
+    surrogate's error on runs that it was not fitted to: on those of the outermost 1 % of a range
+    where a value lies there and the error is more than twice as large.
     """
     from impactlab.analysis.surrogate import load_surrogate
     from impactlab.report.console import print_predictions

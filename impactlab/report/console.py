@@ -61,12 +61,15 @@ def print_predictions(predicted: Any) -> None:
         value, attrs = found.item(), found.attrs
         numbers, verdict = ("none", "–", "–"), attrs["verdict"].replace("_", " ")
         if not math.isnan(value):
-            error = engineering(attrs["rmse"], attrs["units"], digits=2)
+            error = engineering(attrs["error"], attrs["units"], digits=2)
             numbers = (engineering(value, attrs["units"]), error, f"{attrs['q2']:.4f}")
         if verdict == "imprecise":
-            verdict += f": the error is {100 * attrs['rmse'] / abs(value):.0f} % of the prediction"
+            verdict += f": the error is {100 * attrs['error'] / abs(value):.0f} % of the prediction"
+        if attrs["outer"]:
+            ratio = attrs["error"] / attrs["rmse"]
+            verdict += f"; {ratio:.3g} times the usual error, as at the ends of {attrs['outer']}"
         rows.append((str(name), *numbers, verdict))
-    _print_table(("response", "prediction", "rms error", "Q2", "verdict"), rows)
+    _print_table(("response", "prediction", "± rms error", "Q2", "verdict"), rows)
 
 
 def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:

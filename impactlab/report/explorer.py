@@ -13,17 +13,13 @@ import xarray as xr
 
 from impactlab.analysis.surrogate import packed
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
-from impactlab.analysis.surrogate.stored import IMPRECISE
+from impactlab.analysis.surrogate.stored import IMPRECISE, OUTER
 from impactlab.figures import labels
-from impactlab.model.distributions import cumulative
 from impactlab.model.quantities import PREFIXED, symbol
 from impactlab.report.page import described, write_page
 
 _POSITIONS = 200
 """Positions of a slider, about."""
-_OUTER = 0.01
-"""Share of the runs at either end of a parameter's range, where an error may be far larger."""
-_FAR_LARGER = 2.0
 _LOGARITHMIC = ("log_uniform", "lognormal")
 
 
@@ -39,7 +35,6 @@ def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
     if surrogates is None or not any(verdict.sound for verdict in verdicts.values()):
         path.unlink(missing_ok=True)
         return ""
-    outer = _outer_errors(runs, analysis)
     write_page(
         "explorer.html.j2",
         path,
@@ -47,7 +42,7 @@ def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
         report=report.name,
         parameters=[_parameter(runs[name], given) for name, given in _distributions(surrogates)],
         responses=[
-            _response(surrogates.sel(response=name), runs[name], outer[name])
+            _response(surrogates.sel(response=name), runs[name])
             for name, verdict in verdicts.items()
             if verdict.sound
         ],
@@ -58,7 +53,7 @@ def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
         ],
         good=SurrogateVerdict.USABLE.meaning,
         imprecise=IMPRECISE,
-        outer=_OUTER,
+        outer=OUTER,
     )
     return path.name
 
@@ -125,33 +120,11 @@ def _short(value: float) -> float:
     return float(f"{value:.12g}")
 
 
-def _outer_errors(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, list[float]]:
-    """Return how many times larger each response's error is at the ends of each parameter's range.
-
-    The error is that on the runs held out, at either end the share _OUTER of them; 1 where it is
-    not far larger, or where no run held out lies there.
-    """
-    tested = runs.sel(run=analysis["held_out"].values)
-    places = [
-        cumulative(runs[name].attrs, tested[name].values)
-        for name in analysis["surrogate_input"].values
-    ]
-    found = {}
-    for name in map(str, analysis["response"].values):
-        entry = analysis.sel(response=name)
-        square = (entry["surrogate_held_out"].values - tested[name].values) ** 2
-        ends = [square[np.abs(place - 0.5) > 0.5 - _OUTER] for place in places]
-        mean = float(entry["surrogate_rmse"]) ** 2
-        ratios = [np.sqrt(end.mean() / mean) if end.size and mean else 1.0 for end in ends]
-        found[name] = [round(float(x), 1) if x >= _FAR_LARGER else 1.0 for x in ratios]
-    return found
-
-
-def _response(found: xr.Dataset, values: xr.DataArray, outer: list[float]) -> dict[str, Any]:
+def _response(found: xr.Dataset, values: xr.DataArray) -> dict[str, Any]:
     """Return what the page knows of a response; numbers are in its SI unit.
 
     terms: of each its coefficient, and the parameters that it has a polynomial in, by position,
-    with the degree. lowest, highest: of the runs. outer: of _outer_errors.
+    with the degree. lowest, highest: of the runs.
     """
     units, name = str(found["response_units"].item()), str(found["response"].item())
     pairs = zip(found["coefficient"].values.tolist(), found["degree"].values.tolist(), strict=True)
@@ -168,7 +141,7 @@ def _response(found: xr.Dataset, values: xr.DataArray, outer: list[float]) -> di
         "prefixed": units in PREFIXED,
         "terms": terms,
         "rmse": float(found["rmse"]),
-        "outer": outer,
+        "outer": found["outer"].values.tolist(),
         "q2": f"{float(found['q2']):.4f}",
         "lowest": float(values.min()),
         "highest": float(values.max()),

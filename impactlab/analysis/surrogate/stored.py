@@ -9,14 +9,19 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from impactlab.analysis.responses import in_order, usable
 from impactlab.analysis.surrogate.chaos import basis
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
 from impactlab.analysis.verdicts import names
 from impactlab.files import read_netcdf
 from impactlab.model.distributions import arguments, cumulative
+from impactlab.types import Floats
 
 IMPRECISE = 0.1
 """Root mean squared error, relative to a prediction, from which on that prediction is imprecise."""
+OUTER = 0.01
+"""Share of the runs at either end of a parameter's range, where an error may be far larger."""
+_FAR_LARGER = 2.0
 _AT_ONCE = 4096
 """Number of points whose terms about fit in the processor's cache."""
 
@@ -43,9 +48,11 @@ class Surrogate:
 
         values: by name, numbers, arrays of one dimension (`point`) or DataArrays, which are
         broadcast against each other. Returns the responses on the common dimensions, NaN where
-        there is no surrogate, each with units, long_name, rmse and q2 (of runs held out) and
-        verdict: that of the surrogate, or, where this is "usable" but a prediction is smaller than
-        ten times the rmse, "imprecise". The values are its coordinates. Raises ValueError, naming
+        there is no surrogate, each with units, long_name, rmse and q2 (of runs held out), error,
+        outer and verdict. error: the rmse, enlarged where a value lies at an end of the range of
+        the parameter `outer` (see `packed`), the largest over the points. verdict: that of the
+        surrogate, or, where this is "usable" but a prediction is smaller than ten times its
+        error, "imprecise". The values are its coordinates. Raises ValueError, naming
         parameter, value and range, where one is missing, was not varied, or lies outside what the
         surrogate knows.
         """
@@ -63,16 +70,23 @@ class Surrogate:
         degrees, coefficients = self.dataset["degree"].values, self.dataset["coefficient"].values
         batches = [unit[start : start + _AT_ONCE] for start in range(0, len(unit) or 1, _AT_ONCE)]
         found = np.hstack([coefficients @ basis(batch, degrees) for batch in batches])
+        at_end = np.abs(unit - 0.5) > 0.5 - OUTER
         variables = {}
         for name, row in zip(self.responses, found, strict=True):
             entry = self.dataset.sel(response=name)
             verdict, rmse = names(SurrogateVerdict)[int(entry["verdict"])], float(entry["rmse"])
-            if verdict == "usable" and (rmse > IMPRECISE * np.abs(row)).any():
+            ratios = np.where(at_end, entry["outer"].values, 1.0)
+            errors = rmse * ratios.max(axis=1)
+            if verdict == "usable" and (errors > IMPRECISE * np.abs(row)).any():
                 verdict = "imprecise"
+            worst = np.argmax(ratios.max(axis=0, initial=1.0))
+            enlarged = (ratios > 1.0).any()
             attrs = {
                 "long_name": str(entry["response_long_name"].item()),
                 "units": str(entry["response_units"].item()),
                 "rmse": rmse,
+                "error": float(errors.max(initial=rmse)),
+                "outer": self.parameters[worst] if enlarged else "",
                 "q2": float(entry["q2"]),
                 "verdict": verdict,
             }
@@ -114,7 +128,9 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
     """Return the surrogates of a sample as a dataset; None where the analysis has none.
 
     Variables, without the prefix that they have in `analysis`: coefficient (response, term),
-    degree (term, parameter), verdict, q2, rmse and runs (response); on (parameter): distribution
+    degree (term, parameter), verdict, q2, rmse and runs (response); outer (response, parameter):
+    how many times larger the rmse is at the ends of a range, that is, over the runs held out in
+    the share OUTER at either one, 1 where it is not far larger; on (parameter): distribution
     (its name and arguments as JSON, in SI units), lowest and highest (between which it was
     trained: its bounds, or the extreme draws), parameter_units, parameter_long_name. Parameters
     that were not varied are scalar coordinates, as in the runs; so are the attributes.
@@ -138,11 +154,33 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
         "highest": (highest, {"long_name": "highest value trained on, SI"}),
     }
     held = {name: array for name, array in runs.coords.items() if array.ndim == 0}
+    words = {"long_name": "error at the ends of a range, over the rmse", "units": "1"}
+    outer = ("response", "parameter"), _outer_errors(runs, analysis), words
     return (
         dataset.assign({name: ("parameter", *entry) for name, entry in inputs.items()})
+        .assign(outer=outer)
         .assign_coords(held)
         .assign_attrs(runs.attrs)
     )
+
+
+def _outer_errors(runs: xr.Dataset, analysis: xr.Dataset) -> Floats:
+    """Return `outer` (see `packed`), (responses, parameters); 1 where no run is held out there."""
+    ordered = in_order(runs)  # no index of all runs is made
+    tested = ordered.isel(run=np.searchsorted(ordered["run"].values, analysis["held_out"].values))
+    names = map(str, analysis["surrogate_input"].values)
+    places = [cumulative(runs[name].attrs, tested[name].values) for name in names]
+    found = np.ones((analysis.sizes["response"], len(places)))
+    for row, name in zip(found, map(str, analysis["response"].values), strict=True):
+        entry = analysis.sel(response=name)
+        square = (entry["surrogate_held_out"].values - usable(tested, name).values[0]) ** 2
+        mean = float(entry["surrogate_rmse"]) ** 2
+        for at, place in enumerate(places):
+            end = square[np.abs(place - 0.5) > 0.5 - OUTER]
+            end = end[np.isfinite(end)]
+            ratio = np.sqrt(end.mean() / mean) if end.size and mean > 0 else 1.0
+            row[at] = round(float(ratio), 1) if ratio >= _FAR_LARGER else 1.0
+    return found
 
 
 def load_surrogate(path: str | Path) -> Surrogate:
@@ -156,4 +194,7 @@ def load_surrogate(path: str | Path) -> Surrogate:
     >>> surrogate.predict(x1=1.0, x2=0.5, x3=0.0).value.round(1).item()
     2.5
     """
-    return Surrogate(read_netcdf(Path(path), "surrogate"))
+    found = read_netcdf(Path(path), "surrogate")
+    if "outer" not in found:
+        raise ValueError(f"{path}: is of an earlier impactlab: write it anew (impactlab analyse)")
+    return Surrogate(found)

@@ -96,7 +96,7 @@ function plot(response, parameter, moved, x, y) {
   const up = (each) => (182 - (172 * (each - low)) / (high - low)).toFixed(2);
   const point = (each, at) => `${across(values[at])},${up(each)}`;
   const band = [...above.map(point), ...below.map(point).reverse()];
-  const doubtful = curve.map((each) => response.rmse > imprecise * Math.abs(each));
+  const doubtful = curve.map((each, at) => errors[at] > imprecise * Math.abs(each));
   const path = (wanted) =>
     curve.map((each, at) => (doubtful[at] === wanted ? (doubtful[at - 1] === wanted ? "L" : "M") + point(each, at) : "")).join("");
   const p = power(Math.max(Math.abs(low), Math.abs(high)), response), size = 1000 ** p;
@@ -139,11 +139,11 @@ function update() {
       continue;
     }
     const value = predict(response, polynomials);
-    output.textContent = `${engineering(value, response, 4)} ± ${engineering(response.rmse, response, 2)}`;
-    if (response.rmse > imprecise * Math.abs(value))
-      output.textContent += `, imprecise: the error is ${((100 * response.rmse) / Math.abs(value)).toFixed(0)} % of the prediction`;
-    const [ratio, label] = enlarged(response, polynomials);
-    if (ratio > 1) ends.textContent = `The error is ${ratio} times that at the ends of “${label}”.`;
+    const [ratio, label] = enlarged(response, polynomials), error = ratio * response.rmse;
+    output.textContent = `${engineering(value, response, 4)} ± ${engineering(error, response, 2)}`;
+    if (error > imprecise * Math.abs(value))
+      output.textContent += `, imprecise: the error is ${((100 * error) / Math.abs(value)).toFixed(0)} % of the prediction`;
+    if (ratio > 1) ends.textContent = `${ratio} times the usual error, as at the ends of “${label}”.`;
     drawing.innerHTML = plot(response, along, moved, values[at], value);
     drawing.setAttribute("aria-label", `${response.label} against ${along.label}: ${output.textContent} at ${values[at]} ${along.unit}`);
   }

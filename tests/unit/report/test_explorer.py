@@ -126,8 +126,10 @@ def test_moved_sliders_show_what_predict_prints(
         assert table.pop("restitution") == ["none", "–", "–", "constant"]
         for name, (value, error, q2, verdict) in table.items():
             text, remark = shown(explorer, name), ends(explorer, name)
-            rest = "" if verdict == "usable" else f", {verdict}"
+            words, _, enlarged = verdict.partition("; ")
+            rest = "" if words == "usable" else f", {words}"
             assert text == f"{value} ± {error}{rest}"
+            assert remark.partition(",")[0] == enlarged.partition(",")[0]
             assert f"Q² = {q2}" in explorer.locator(f"#response-{name}").inner_text()
             seen |= {verdict[:9], remark.partition(" at the ends of ")[2]}
     assert {"usable", "imprecise"} <= seen

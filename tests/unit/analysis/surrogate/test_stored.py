@@ -88,6 +88,34 @@ def test_a_prediction_smaller_than_its_error_is_not_usable(
     assert loaded.predict(**POINT)["peak_force"].attrs["verdict"] == "usable"
 
 
+def test_the_error_at_the_ends_of_a_range_is_that_of_the_runs_there(
+    runs: xr.Dataset,
+    found: xr.Dataset,
+    loaded: Surrogate,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where it is more than twice as large; the runs held out tell, without the distribution."""
+    tested = runs.sel(run=found["held_out"].values)
+    speed, place = tested["velocity"].values, POINT | {"velocity": 14.99}
+    missed = found["surrogate_held_out"].sel(response="impulse").values - tested["impulse"].values
+    ends = (speed < 5.1) | (speed > 14.9)  # a hundredth of 5 to 15 m/s at either end
+    expected = np.sqrt(np.mean(missed[ends] ** 2) / np.mean(missed**2))
+    at = dict(response="impulse", parameter="velocity")
+    assert loaded.dataset["outer"].sel(at).item() == (
+        round(expected, 1) if expected >= 2 else pytest.approx(1.0)
+    )
+    loaded.dataset["outer"].loc[at] = 4.0
+    inside, outer = (loaded.predict(**each)["impulse"].attrs for each in (POINT, place))
+    assert (inside["error"], inside["outer"]) == (inside["rmse"], "")
+    assert (outer["error"], outer["outer"]) == (4 * outer["rmse"], "velocity")
+    monkeypatch.setenv("COLUMNS", "200")
+    many = loaded.predict(**POINT | {"velocity": [9.0, 14.99]})["impulse"]
+    assert many.attrs["error"] == outer["error"]
+    print_predictions(loaded.predict(**place))
+    assert "4 times the usual error" in capsys.readouterr().out
+
+
 def test_no_surrogate_no_number(loaded: Surrogate) -> None:
     found = loaded.predict(**POINT)["restitution"]
     assert np.isnan(found)
