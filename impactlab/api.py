@@ -20,7 +20,7 @@ from impactlab.study import REFINEMENT, RESOLUTION, steps
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.schema import files, yaml_file
 from impactlab.study.schema.written import _Sampling, text_of
-from impactlab.study.solvers.own import Function, register
+from impactlab.study.solvers.own import Function, register, solver_name
 from impactlab.variables import FLAGS, RESPONSES, VARIABLES
 
 if TYPE_CHECKING:
@@ -222,6 +222,8 @@ class Study:
         `report` then tells noise from numerical error. base_samples: how many; see the command.
         """
         path = self.folder / f"{REFINEMENT}.nc"
+        if self.declared.python:
+            solver_name(self.declared)  # from then on its functions are known
         steps.refine(self._runs(), path, _engine(workers), base_samples)
         return read_netcdf(path, "refinement")
 

@@ -17,6 +17,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import product
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
@@ -288,6 +289,8 @@ def solve_along(
         "profiles": 0,
         "history_samples": study.store.samples,
     }
+    if study.python:
+        attrs["solver"] = resolve_name("impactlab.study.solvers.own:solver_name")(study)
     runs = execute(described(xr.Dataset(coords=scalars | varied, attrs=attrs)), folder, engine)
     values = usable(runs).transpose("response", "case", axis)
     others = set(values.coords) - {*values.dims, "response_units", "response_long_name"}

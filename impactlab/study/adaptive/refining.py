@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from impactlab import wings
 from impactlab.analysis.responses import in_order, listed
 from impactlab.study.solvers import solver_of
 
@@ -37,8 +38,8 @@ def refine_cases(runs: xr.Dataset, solve: Solve, count: int | None = None) -> xr
             f"study {study!r}: its runs are of method {method}, but only those of sobol can be "
             "refined"
         )
-    if solver_of(runs) != "impact":
-        raise ValueError(f"study {study!r}: its runs are not impacts, so they have no grid")
+    if "function" in runs.attrs or solver_of(runs) in wings.SOLVERS:
+        raise ValueError(f"study {study!r}: its runs are not of a beam model, so they have no grid")
     names, first = listed(runs, "varied"), _first(in_order(runs), count).compute()
     nodes, points = int(runs["nodes"]), int(runs["points"])
     grids = {

@@ -127,7 +127,7 @@ _STAND_INS: dict[str, Any] = {
 def _study(source: Source) -> Study:
     """Return a study of impacts. Raises StudyError with every problem of the file."""
     path = str(source.path)
-    data, requested, python = _python_responses(source.data, path)
+    data, requested, python, limited = _python_responses(source.data, path)
     problems: list[Problem] = []
     try:
         file = validated(StudyFile, data, path)
@@ -148,6 +148,7 @@ def _study(source: Source) -> Study:
     if python and has_solid_runs(file):
         reason = f"are not possible with beam_model: {SOLID}"
         raise StudyError(Problem(path, "python_responses", reason))
+    auto = auto.model_copy(update={"responses": limited}) if auto and limited else auto
     own: dict[str, Any] = {"discretisation": grid, "auto": auto}
     own |= {"analysis": file.analysis or Analysis(), "python": python}
     own |= {"responses": requested} if python else {}
@@ -156,13 +157,15 @@ def _study(source: Source) -> Study:
 
 def _python_responses(
     data: dict[str, Any], path: str
-) -> tuple[dict[str, Any], tuple[str, ...], dict[str, str]]:
-    """Return the data without Python functions, all names of responses, and the functions' keys.
+) -> tuple[dict[str, Any], tuple[str, ...], dict[str, str], tuple[str, ...]]:
+    """Return the data without Python functions, and what names them.
 
-    Raises StudyError for functions that this process does not know, or that do not fit the study.
+    That is the names of all responses, the keys of the functions, and the names of the responses
+    that `auto` limits, where it lists any. Raises StudyError for functions that this process does
+    not know, and where `auto` lists a response that the study does not have.
     """
     if "python_responses" not in data:
-        return data, (), {}
+        return data, (), {}, ()
     from impactlab.study.solvers.own import KNOWN
 
     python, rest = data["python_responses"], dict(data)
@@ -174,11 +177,20 @@ def _python_responses(
     rest |= {"responses": ours} if ours else {}
     if not ours:
         del rest["responses"]
+    limited: tuple[str, ...] = ()
     section = data.get("discretisation")
-    if section == "auto" or (isinstance(section, dict) and "auto" in section):
-        reason = "is not possible with Python functions as responses: state the discretisation"
-        raise StudyError(Problem(path, "discretisation.auto", reason))
-    return rest, requested, {str(name): str(key) for name, key in python.items()}
+    auto = section.get("auto") if isinstance(section, dict) else None
+    listed = auto.get("responses") if isinstance(auto, dict) else None
+    if isinstance(section, dict) and isinstance(auto, dict) and isinstance(listed, list):
+        limited = tuple(map(str, listed))
+        if missing := [name for name in limited if name not in requested]:
+            reason = f"names {', '.join(missing)}, which `responses` of the study leaves out"
+            raise StudyError(Problem(path, "discretisation.auto.responses", reason))
+        theirs = [name for name in limited if name not in python]
+        others = {key: value for key, value in auto.items() if key != "responses"}
+        others |= {"responses": theirs} if theirs else {}
+        rest["discretisation"] = section | {"auto": others}
+    return rest, requested, {str(name): str(key) for name, key in python.items()}, limited
 
 
 _NOT_KNOWN = "holds a Python function, which is in no file: build the study in Python"

@@ -139,7 +139,7 @@ def test_how_many_are_solved_again(whole, count):
 
 @pytest.mark.parametrize(
     ("attrs", "reason"),
-    [({"method": "fast"}, "are of method fast"), ({"solver": "function"}, "are not impacts")],
+    [({"method": "fast"}, "are of method fast"), ({"function": "ishigami"}, "are not of a beam")],
 )
 def test_what_cannot_be_refined_is_refused(attrs, reason):
     runs = design(study_of_text("some", text(21))).assign_attrs(attrs)

@@ -11,6 +11,7 @@ import pytest
 import impactlab as il
 from impactlab.study import steps
 from impactlab.study.solvers.fingerprint import fingerprint
+from impactlab.study.solvers.own import TASKS
 
 SCALE = 1.0
 TABLE = object()
@@ -71,6 +72,62 @@ def test_a_response_of_ones_own_is_that_of_each_run():
     alone = il.simulate(impact, grid, duration=1e-3, samples=1000)
     assert one.work.item() == work(alone)
     assert set(il.analyse(runs).response.values) == set(given)
+
+
+def peak(run):
+    return SCALE * run.peak_force
+
+
+def test_the_discretisation_is_found_for_own_responses_as_for_ours():
+    """One that returns the peak force has its values, uncertainty and recommendation."""
+    found = {}
+    for name, given in {"own": {"peak": peak}, "ours": ["peak_force"]}.items():
+        auto = {"tolerance": "5 %", "responses": list(given)}
+        study = impacts(
+            title=name,
+            responses=given,
+            duration="0.3 ms",
+            sampling=il.Grid(parameters={"velocity": [1, 2]}),
+            discretisation={"auto": auto, "scheme": "modal"},
+        )
+        found[name] = study.run(workers=1), study.recommend(workers=1)
+    (own, evidence), (ours, known) = found["own"], found["ours"]
+    for axis in ("nodes", "points", "courant"):
+        assert own[axis].item() == ours[axis].item()
+    assert own.peak.values.tobytes() == ours.peak_force.values.tobytes()
+    for name in ("nodes_value", "nodes_uncertainty", "grid_uncertainty", "check_difference"):
+        np.testing.assert_array_equal(evidence[name].values, known[name].values)
+
+
+def test_own_responses_are_refined_as_ours():
+    given = {"own": {"peak": peak}, "ours": ["peak_force"]}
+    studies = [
+        impacts(title=name, responses=each, duration="0.3 ms") for name, each in given.items()
+    ]
+    for study in studies:
+        study.run(workers=1)
+    TASKS.clear()  # as in another process
+    own, ours = (study.refine(workers=1, base_samples=4) for study in studies)
+    assert {"used", "finer", "more_points"} <= set(own.grid.values)
+    np.testing.assert_array_equal(own.peak.values, ours.peak_force.values)
+    changes = [study.analyse().total_order_change.values for study in studies]
+    np.testing.assert_allclose(*changes, rtol=1e-12)
+
+
+def test_only_runs_of_a_beam_are_refined_and_only_responses_of_the_study_limited():
+    model = il.Study(title="Product", function=product, sampling=PLANE)
+    model.run(workers=1)
+    with pytest.raises(ValueError, match="its runs are not of a beam model"):
+        model.refine(workers=1)
+    auto = {"auto": {"responses": ["peak_force"]}}
+    with pytest.raises(il.StudyError, match=r"auto.responses: names peak_force, which `responses`"):
+        impacts(responses={"peak": peak}, discretisation=auto)
+    with pytest.raises(il.StudyError, match="python_responses: are not possible with beam_model"):
+        impacts(
+            responses={"peak": peak, "impulse": "impulse"},
+            discretisation={"element_size": "1 mm"},
+            sampling=il.Grid(parameters={"beam_model": ["timoshenko", "solid"]}),
+        )
 
 
 def test_a_model_of_ones_own_has_its_known_indices():
@@ -205,8 +262,6 @@ def test_a_study_of_functions_is_in_no_file():
     study = impacts(responses={"momentum": momentum})
     with pytest.raises(il.StudyError, match="cannot be written to a file"):
         study.to_yaml("own.yaml")
-    with pytest.raises(il.StudyError, match=r"^Study: discretisation.auto: is not"):
-        impacts(responses={"momentum": momentum}, discretisation="auto")
     (folder := study.folder).mkdir(parents=True)
     (folder / "forged.yaml").write_text(study.declared.text.replace("momentum@", "momentum@0"))
     with pytest.raises(il.StudyError, match="python_responses: holds a Python function"):
