@@ -200,6 +200,20 @@ _REGISTRY = (
         flaws="Stiff, and elastic too long: nothing yields before full plasticity.",
         yield_pressure=3.0 * 2.8,
     ),
+    ContactLaw(
+        name="stronge_consistent",
+        title="Stronge, loading capped by Hertz",
+        source=(
+            "stronge, its loading at most Hertz's force; unloading with force continuity after "
+            "Wang et al."
+        ),
+        holds_for=f"{_CIRCLE} (indentation up to half its radius)",
+        unconfirmed=(
+            "the cap, which is no paper's: it is put there because Stronge's loading exceeds "
+            "Hertz's up to 15.416 times the indentation of first yield"
+        ),
+        yield_pressure=1.65,
+    ),
 )
 CONTACT_LAWS: dict[str, ContactLaw] = {law.name: law for law in _REGISTRY}
 """The laws by name."""

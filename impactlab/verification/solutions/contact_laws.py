@@ -38,6 +38,11 @@ def stronge(d: float, E: float, R: float, S: float, nu: float) -> float:
     return math.pi * R * (2.0 * d - d_y) * pressure
 
 
+def stronge_consistent(d: float, E: float, R: float, S: float, nu: float) -> float:
+    """Return Stronge's force, at most that of Hertz."""
+    return min(stronge(d, E, R, S, nu), hertz(d, E, R, S, nu))
+
+
 def jackson_green(
     d: float, E: float, R: float, S: float, nu: float, modified: bool = False
 ) -> float:
@@ -161,6 +166,7 @@ LAWS: dict[str, tuple[Callable[..., float], Callable[..., Unloading]]] = {
     "thornton": (thornton, thornton_unloading),
     "kogut_etsion": (kogut_etsion, etsion_unloading),
     "brake": (mjg, brake_unloading),
+    "stronge_consistent": (stronge_consistent, wang_unloading),
 }
 """Loading and unloading of each law, by name."""
 
@@ -172,7 +178,12 @@ def joints(E: float, R: float, S: float, nu: float) -> list[float]:
     thornton_y = R * (0.8 * math.pi * S / E) ** 2
     kogut_c = R * (1.4 * math.pi * (0.454 + 0.41 * nu) * S / E) ** 2
     plastic = 0.5 * (math.exp(5.1) + 1.0)
-    steps = (stronge_y, (1.0, plastic)), (jackson_c, (1.0, 1.9)), (kogut_c, (1.0, 6.0, 110.0))
+    capped = 15.415907653904072  # where x^1.5 = (2 x - 1) (1 + ln(2 x - 1)/3.3)
+    steps = (
+        (stronge_y, (1.0, capped, plastic)),
+        (jackson_c, (1.0, 1.9)),
+        (kogut_c, (1.0, 6.0, 110.0)),
+    )
     return sorted([thornton_y, *(d * x for d, shares in steps for x in shares)])
 
 

@@ -23,7 +23,9 @@ def test_a_number_gives_the_law_of_that_name(law):
 
 
 def test_laws_differ():
-    curves = [curve(number, *ARGS) for number in range(len(LAWS))]
+    """At one of two depths: some begin as another one, others end so."""
+    depths = ARGS[0], 0.1 * ARGS[0]
+    curves = [tuple(curve(law, d, *ARGS[1:]) for d in depths) for law in range(len(LAWS))]
     assert len(set(curves)) == len(LAWS)
 
 
@@ -38,9 +40,10 @@ from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, Pair, load
 
 for law in range(len(LAWS)):
-    contact = np.zeros(1, CONTACT)
-    load(contact[0], Pair(law, 1e11, 0.03, 3e8, 0.3), 5e-5)
-    print(contact[0].F_m, contact[0].delta_r)
+    contact = np.zeros(2, CONTACT)
+    for i in range(2):
+        load(contact[i], Pair(law, 1e11, 0.03, 3e8, 0.3), (1e-5, 1e-4)[i])
+    print(contact["F_m"], contact["delta_r"])
 """
 
 
