@@ -116,5 +116,5 @@ def test_balances_of_hundreds_of_impacts(scheme, nodes, cases):
 
     for law in LAWS:
         check(law)
-    assert min(seen["yields"], seen["stays elastic"]) >= cases // 15, seen
+    assert min(seen["yields"], seen["stays elastic"]) >= cases // 6, seen
     assert seen["no answer"] < cases // 10, seen
