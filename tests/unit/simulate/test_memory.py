@@ -17,7 +17,10 @@ import pytest
 
 from impactlab.solver.jit import compiled
 
-pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled"),
+]
 
 STUDY = """
 title: Small sample
