@@ -1,21 +1,44 @@
-"""impactlab: a sphere strikes an elastic-plastic beam.
-
-One impact: Impact (of Sphere, Beam and Material, or paper_impact), Discretisation, simulate.
-Many: simulate_many; or a Study of a Grid, Sobol, Morris, Fast, Delta, Pawn or Regression sample of
-Uniform, LogUniform, Normal, TruncatedNormal, Lognormal and Triangular parameters.
-Responses or a model of your own: Function. What they say: analyse, answers, plot, load_surrogate.
-What is wrong with a study: StudyError.
+"""A sphere strikes an elastic-plastic beam: one impact, or studies of many.
 
 >>> import impactlab as il
 >>> run = il.simulate(il.paper_impact("5 m/s"), duration="1 ms")
+
+One impact
+    paper_impact    the source paper's sphere and beam, at a velocity
+    Impact          any other one, of Sphere, Beam and Material
+    Discretisation  nodes, points and scheme in time
+    simulate        solve it: an xarray.Dataset
+    simulate_many   solve lists of parameters, in pairs or all combinations
+
+A study
+    Study           sample, solve, resume, analyse and report many impacts
+    Function        a response, or a model, of your own
+    StudyError      all mistakes of a study, by key and value
+
+Its sampling
+    Grid                           all combinations of values
+    Sobol, Fast                    shares of the variance
+    Morris                         elementary effects
+    Delta, Pawn, Regression        from one Latin hypercube
+    Uniform, LogUniform, Normal, TruncatedNormal, Lognormal, Triangular
+
+What the runs say
+    analyse         convergence and sensitivity, with verdicts
+    answers         the same in sentences
+    plot            figures: plot.run, plot.response, plot.sobol, ...
+    load_surrogate  predictions without solving
+
+Quantities are SI numbers, strings with a unit or quantities of pint. `help(il.Study)` and so on
+tell more, each with an example.
 """
 
 from typing import Any
 
 import lazy_loader
 
-# Names load on first use, so that the command line answers at once.
-_load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+# Names load on first use, so that the command line answers at once. They are not in an `__all__`,
+# for which help() would print all of their methods.
+_load, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> Any:

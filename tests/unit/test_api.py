@@ -114,7 +114,7 @@ def test_shipped_studies_are_the_same_from_python(path, folder):
 
 
 def test_every_method_and_distribution_has_its_class():
-    classes = [getattr(il, name) for name in il.__all__ if isinstance(getattr(il, name), type)]
+    classes = [getattr(il, name) for name in dir(il) if isinstance(getattr(il, name), type)]
     for base, names in ((_Sampling, METHODS), (_Distribution, ARGUMENTS)):
         found = [each for each in classes if issubclass(each, base)]
         given = [{each.name: {} for each in dataclasses.fields(one)} for one in found]

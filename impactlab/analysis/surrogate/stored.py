@@ -166,14 +166,15 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
 
 def _outer_errors(runs: xr.Dataset, analysis: xr.Dataset) -> Floats:
     """Return `outer` (see `packed`), (responses, parameters); 1 where no run is held out there."""
-    ordered = in_order(runs)  # no index of all runs is made
-    tested = ordered.isel(run=np.searchsorted(ordered["run"].values, analysis["held_out"].values))
-    names = map(str, analysis["surrogate_input"].values)
-    places = [cumulative(runs[name].attrs, tested[name].values) for name in names]
+    ordered = in_order(runs)  # no index of all runs is made, and columns are read one at a time
+    rows = np.searchsorted(ordered["run"].values, analysis["held_out"].values)
+    columns = [ordered[str(name)] for name in analysis["surrogate_input"].values]
+    places = [cumulative(column.attrs, column.values[rows]) for column in columns]
     found = np.ones((analysis.sizes["response"], len(places)))
     for row, name in zip(found, map(str, analysis["response"].values), strict=True):
         entry = analysis.sel(response=name)
-        square = (entry["surrogate_held_out"].values - usable(tested, name).values[0]) ** 2
+        values = usable(ordered, name).values[0][rows]
+        square = (entry["surrogate_held_out"].values - values) ** 2
         mean = float(entry["surrogate_rmse"]) ** 2
         for at, place in enumerate(places):
             end = square[np.abs(place - 0.5) > 0.5 - OUTER]

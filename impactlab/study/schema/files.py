@@ -146,7 +146,7 @@ def _study(source: Source) -> Study:
     models = values_of(file.sampling, "beam_model", file.impact.beam_model)
     grid = grid.resolved(map(str, models))
     if python and has_solid_runs(file):
-        reason = f"are not possible with beam_model: {SOLID}"
+        reason = f"are given beam runs, which those with beam_model: {SOLID} are not"
         raise StudyError(Problem(path, "python_responses", reason))
     auto = auto.model_copy(update={"responses": limited}) if auto and limited else auto
     own: dict[str, Any] = {"discretisation": grid, "auto": auto}

@@ -6,6 +6,7 @@ is counted on the parsed graph, in a time that grows with the text alone, before
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -39,7 +40,8 @@ class Source:
 def read_source(path: str | Path) -> Source:
     """Read a study file. Raises StudyError, naming it; also unless its name is that of a folder."""
     path = Path(path)
-    check_path(path)
+    if path.suffix == ".yaml" or os.path.lexists(path):
+        check_path(path)
     text = read_text(path)
     return Source(path.stem, path, text, read_mapping(text, str(path)))
 
@@ -62,11 +64,18 @@ def check_name(name: str, file: str) -> None:
         raise StudyError(Problem(file, "", reason))
 
 
+def _missing(path: Path) -> str:
+    """Return that there is no such file, and the study of that name, if there is one."""
+    near = (f"{path}.yaml", f"studies/{path.name}", f"studies/{path.name}.yaml")
+    found = next((each for each in near if Path(each).is_file()), "")
+    return "there is no such file" + (f"; did you mean {found}?" if found else "")
+
+
 def read_text(path: Path) -> str:
     """Return the file's text. Raises StudyError when it cannot be read, or is too large."""
     try:
         if not path.is_file():
-            reason = "is not a file" if path.exists() else "there is no such file"
+            reason = "is not a file" if path.exists() else _missing(path)
         else:
             with path.open("rb") as file:
                 raw = file.read(LARGEST + 1)

@@ -54,6 +54,17 @@ def test_a_file_that_is_not_there(tmp_path):
         read_study(tmp_path / "nothing.yaml")
 
 
+@pytest.mark.parametrize("given", ["large", "large.yaml", "elsewhere/large.yaml", "studies/large"])
+def test_a_name_leads_to_the_study_of_that_name(given, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(StudyError, match=rf"^{given}: there is no such file$"):
+        read_study(given)
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies" / "large.yaml").touch()
+    with pytest.raises(StudyError, match=r"no such file; did you mean studies/large\.yaml\?$"):
+        read_study(given)
+
+
 def test_a_folder_is_no_study(tmp_path):
     (tmp_path / "folder.yaml").mkdir()
     with pytest.raises(StudyError, match=r"folder\.yaml: is not a file"):

@@ -122,7 +122,7 @@ def test_only_runs_of_a_beam_are_refined_and_only_responses_of_the_study_limited
     auto = {"auto": {"responses": ["peak_force"]}}
     with pytest.raises(il.StudyError, match=r"auto.responses: names peak_force, which `responses`"):
         impacts(responses={"peak": peak}, discretisation=auto)
-    with pytest.raises(il.StudyError, match="python_responses: are not possible with beam_model"):
+    with pytest.raises(il.StudyError, match="python_responses: are given beam runs, which"):
         impacts(
             responses={"peak": peak, "impulse": "impulse"},
             discretisation={"element_size": "1 mm"},
