@@ -17,10 +17,7 @@ import pytest
 
 from impactlab.solver.jit import compiled
 
-pytestmark = [
-    pytest.mark.long,
-    pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled"),
-]
+pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
 
 STUDY = """
 title: Small sample
@@ -119,7 +116,7 @@ def digests(folder: Path, settings: dict[str, str]) -> dict[str, str]:
     return found
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_freed_is_not_read(tmp_path: Path) -> None:
     (tmp_path / "plain").mkdir()
     plain = digests(tmp_path / "plain", {})
