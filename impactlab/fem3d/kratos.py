@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.solver import Mesh, PatchTooSmallError, quarter_mesh
+from impactlab.fem3d.solver import Mesh, PatchTooSmallError
 from impactlab.fem3d.solver.march import History, Moment, Progress
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Integers, nodal_masses, sphere_density
 from impactlab.fem3d.solver.responses import history_responses, plastic_responses
@@ -40,14 +40,6 @@ class KratosMissingError(ImportError):
     """Kratos Multiphysics, or a part of it, is not installed."""
 
 
-def solve(
-    impact: Impact, *, element_size: float, patch: float | None = None, **options: Any
-) -> xr.Dataset:
-    """Solve one impact as solve_on, on the mesh of quarter_mesh; element_size, patch: in m."""
-    mesh = quarter_mesh(impact, element_size=element_size, patch=patch)
-    return solve_on(mesh, impact, **options)
-
-
 def solve_on(
     mesh: Mesh,
     impact: Impact,
@@ -60,9 +52,9 @@ def solve_on(
 ) -> xr.Dataset:
     """Solve one impact on `mesh` with Kratos Multiphysics; strains and rotations are small.
 
-    duration, time_step: in s. penalty: of the contact in N/m3, pressure over penetration.
-    threads: they pay on an idle machine only. progress: called after each step with the simulated
-    time (s) and the share done.
+    mesh: of solver.quarter_mesh. duration, time_step: in s. penalty: of the contact in N/m3,
+    pressure over penetration. threads: they pay on an idle machine only. progress: called after
+    each step with the simulated time (s) and the share done.
 
     Returns a Dataset with the names of impactlab.fem3d: histories on `time` (one per step),
     responses (NaN where the run ends before they do), and plastic strains on `element`;

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -47,17 +48,8 @@ _BESIDE: dict[str, Any] = {
 }
 """Legend of the orders, to the right of a panel."""
 _DASHED: dict[str, Any] = {"linestyle": (0, (2, 1.5)), "linewidth": 0.6}
-_INPUTS = (
-    "beam_span",
-    "beam_depth",
-    "beam_density",
-    "beam_youngs_modulus",
-    "beam_model",
-    "scheme",
-    "nodes",
-    "courant",
-    "duration",
-)
+_BEAM = ("beam_span", "beam_depth", "beam_density", "beam_youngs_modulus", "beam_model")
+_INPUTS = (*_BEAM, "scheme", "nodes", "courant", "duration")
 
 
 @dataclass(frozen=True)
@@ -178,10 +170,9 @@ def _draw(
         orders = []
         for curve, errors in _above_round_off(difference, selected):
             curves.add(ax, spacing, errors, curve)
-            order, uncertainty, text = _trend(analysis, axis, name, curve.where)
-            if np.isfinite(order):
-                orders.append((ax.lines[-1], text))
-            _draw_trend(ax, spacing, errors, order, uncertainty)
+            line, read = ax.lines[-1], partial(_read, analysis, axis.name, name, curve.where)
+            if text := _draw_trend(ax, spacing, errors, read):
+                orders.append((line, text))
         if orders:
             ax.legend(*zip(*orders, strict=True), **_BESIDE)
         if not ax.lines:
@@ -288,29 +279,20 @@ def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray:
     return analysis[variable].sel(response=name, drop=True)
 
 
-def _trend(
-    analysis: xr.Dataset, axis: Refined, name: str, where: dict[str, int]
-) -> tuple[float, float, str]:
-    """Return the order of one curve by the analysis, the uncertainty of its finest value, a label.
+def _read(analysis: xr.Dataset, axis: str, name: str, where: dict[str, int], key: str) -> float:
+    """Return a number of the analysis of one curve; NaN where there is none."""
+    found = _of(analysis, f"{axis}_{key}", name)
+    return float(found.isel(where, missing_dims="ignore"))
 
-    NaN where there is none. Brackets mark an order that is assumed, not observed.
+
+def _draw_trend(ax: Axes, spacing: Floats, errors: Floats, read: Callable[[str], float]) -> str:
+    """Draw the order through the errors of the three finest values, and the bar of the finest.
+
+    Returns the label of the order, "" without one; brackets mark one that is not observed.
     """
-
-    def read(key: str) -> float:
-        found = _of(analysis, f"{axis.name}_{key}", name)
-        return float(found.isel(where, missing_dims="ignore"))
-
     richardson = bool(np.isfinite(read("extrapolated")))
     order = read("observed_order" if richardson else "fit_order")
-    observed = richardson or read("fit_expansion") == 0
-    return order, read("uncertainty"), f"p = {order:.2f}" if observed else f"[p = {order:g}]"
-
-
-def _draw_trend(
-    ax: Axes, spacing: Floats, errors: Floats, order: float, uncertainty: float
-) -> None:
-    """Draw the order through the errors of the three finest values, and the bar of the finest."""
-    near, line = np.argsort(spacing)[:_FEWEST], ax.lines[-1]
+    near, line, uncertainty = np.argsort(spacing)[:_FEWEST], ax.lines[-1], read("uncertainty")
     colour, marker = line.get_color(), line.get_marker()
     scale = np.log(errors[near]) - order * np.log(spacing[near])
     if np.isfinite(scale).any():
@@ -325,6 +307,10 @@ def _draw_trend(
         else:  # no cap without its marker
             look = {"marker": marker, "markerfacecolor": "white"}
         ax.plot(at, uncertainty, color=colour, linestyle="", label="_bar", **look)
+    if not np.isfinite(order):
+        return ""
+    observed = richardson or read("fit_expansion") == 0
+    return f"p = {order:.2f}" if observed else f"[p = {order:g}]"
 
 
 def _scale_spacing(ax: Axes, spacing: Floats) -> None:

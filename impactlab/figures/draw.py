@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import xarray as xr
 from matplotlib import rcParams
@@ -28,66 +27,30 @@ OVERVIEW = "overview"
 """Name of the figure of all comparisons; the others are named for their checks."""
 
 
-class Drawing(NamedTuple):
-    """A figure that is drawn only when its turn comes, as figures are large."""
-
-    name: str
-    title: str
-    plot: Callable[[], Figure]
-    caption: Callable[[], str]
-    attrs: Mapping[Any, Any]
-    """Attributes of the dataset that it shows: they name the study."""
+Drawing = tuple[record.Figure, tuple[xr.Dataset, xr.Dataset]]
+"""A figure with the datasets that it shows; attributes of the first one name the study."""
 
 
 def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]:
     """Draw each figure of the catalogue that applies to a study of runs; see `draw`."""
-    found, study = applicable(runs, analysis).values(), str(runs.attrs.get("study"))
-    return draw_figures(found, (runs, analysis), folder, study, made_from=analysis)
-
-
-def draw_figures(
-    figures: Iterable[record.Figure],
-    pair: tuple[xr.Dataset, xr.Dataset],
-    folder: Path,
-    study: str,
-    made_from: xr.Dataset | None = None,
-) -> list[Path]:
-    """Draw each of the figures of two datasets; see `draw`."""
-    drawings = (
-        Drawing(
-            each.name,
-            each.title,
-            partial(each.plot, *pair),
-            partial(each.caption, *pair),
-            pair[0].attrs,
-        )
-        for each in figures
-    )
-    return draw(drawings, folder, study, made_from)
+    drawings = [(each, (runs, analysis)) for each in applicable(runs, analysis).values()]
+    return draw(drawings, folder, str(runs.attrs.get("study")), made_from=analysis)
 
 
 def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
     """Draw the overview of a verification, and the curves of each check; see `draw`."""
     outcomes = gravest_first(unpacked(stored))
-    drawings = [
-        Drawing(
-            OVERVIEW,
-            "All comparisons",
-            partial(findings.plot_overview, outcomes),
-            partial(findings.overview_caption, outcomes),
-            stored.attrs,
-        )
-    ]
+
+    def figure(name: str, title: str, plot: Any, caption: Any, shown: Any) -> Drawing:
+        drawer, words = (lambda *_: plot(shown)), (lambda *_: caption(shown))
+        return record.Figure(name, title, lambda *_: True, drawer, words), (stored, stored)
+
+    overview = findings.plot_overview, findings.overview_caption
+    drawings = [figure(OVERVIEW, "All comparisons", *overview, outcomes)]
     drawings += [
-        Drawing(
-            outcome.name,
-            outcome.title,
-            partial(findings.plot_curves, outcome),
-            partial(findings.curves_caption, outcome),
-            stored.attrs,
-        )
-        for outcome in outcomes
-        if any(panel.curves for panel in outcome.finding.panels)
+        figure(each.name, each.title, findings.plot_curves, findings.curves_caption, each)
+        for each in outcomes
+        if any(panel.curves for panel in each.finding.panels)
     ]
     return draw(drawings, folder, study=str(stored.attrs.get("study")), made_from=stored)
 
@@ -110,23 +73,22 @@ def draw(
         before.update(listed(folder))
     written: list[Path] = []
     captions: dict[str, dict[str, str]] = {}
-    for drawing in drawings:
+    for each, pair in drawings:
         try:
-            figure = drawing.plot()
-            source = f"study {drawing.attrs.get('study', study)}"
-            if digest := drawing.attrs.get("study_sha256"):
+            figure = each.plot(*pair)
+            source = f"study {pair[0].attrs.get('study', study)}"
+            if digest := pair[0].attrs.get("study_sha256"):
                 source += f", SHA-256 of its file: {digest}"
-            about = {"Title": drawing.title, "Source": source}
-            written += save(figure, folder, drawing.name, about)
-            written += data.save(figure, folder, drawing.name)
-            captions[drawing.name] = {
-                "title": drawing.title,
-                "caption": drawing.caption(),
+            written += save(figure, folder, each.name, {"Title": each.title, "Source": source})
+            written += data.save(figure, folder, each.name)
+            captions[each.name] = {
+                "title": each.title,
+                "caption": each.caption(*pair),
                 "alt": data.alt(figure),
                 "made_from": identity(made_from),
             }
         except Exception as error:
-            error.add_note(f"while drawing the figure {drawing.name} of study {study}")
+            error.add_note(f"while drawing the figure {each.name} of study {study}")
             raise
     with replaced(folder / CAPTIONS) as path:
         path.write_text(json.dumps(captions, indent=2, ensure_ascii=False) + "\n", "utf-8")

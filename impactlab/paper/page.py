@@ -6,6 +6,7 @@ import csv
 import logging
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -15,7 +16,7 @@ import xarray as xr
 from impactlab.figures import labels
 from impactlab.figures.access import count
 from impactlab.figures.catalogue import applicable
-from impactlab.figures.draw import Drawing, draw
+from impactlab.figures.draw import draw
 from impactlab.figures.labels import Display, display
 from impactlab.figures.record import Figure
 from impactlab.files import check_source, read_netcdf, replaced
@@ -66,10 +67,9 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
         figure = applicable(*stored[study]).get(name) if study in stored else None
         if figure:
             title = f"{number.lstrip('0')}. {figure.title}"
-            plot = partial(figure.plot, *stored[study])
-            caption = partial(_caption, study, figure, *stored[study])
-            attrs = stored[study][0].attrs
-            drawings.append(Drawing(f"figure_{number}", title, plot, caption, attrs))
+            caption = partial(_caption, study, figure)
+            ours = replace(figure, name=f"figure_{number}", title=title, caption=caption)
+            drawings.append((ours, stored[study]))
     draw(drawings, output / "figures", study="paper")
     _write_tables(judged, output)
     write_page(

@@ -93,9 +93,10 @@ def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
                 runs = runs.isel({dim: 0})
     kinds = [dim for dim in _KINDS if dim in runs.dims]
     tried = []
-    for kind in product(*(runs[dim].values.tolist() for dim in kinds)) if axes else ():
+    names = analysed(runs, analysis) if axes else []
+    for kind in product(*(runs[dim].values.tolist() for dim in kinds)) if names else ():
         here = runs.sel({dim: [value] for dim, value in zip(kinds, kind, strict=True)})
-        tried.append(_least(here, analysis, axes))
+        tried.append(_least(here, analysis.sel(response=names), axes))
     return max(tried, key=lambda one: len(one.grids), default=None)  # the first of equals
 
 
@@ -103,25 +104,25 @@ def _least(runs: xr.Dataset, analysis: xr.Dataset, axes: list[str]) -> Needs:
     cost = xr.ones_like(runs[axes[0]], float)
     for dim in axes:
         cost = cost * runs[dim].astype(float) ** _COSTS[dim]
-    grids, errors = {}, {}
-    for name in analysed(runs, analysis):
-        values = usable(runs, name)
-        limit = values.isel(dict.fromkeys(axes, 0))
-        error = abs(values - limit) / abs(limit)
-        for dim in axes:
-            bound = analysis[f"{REFINED[dim]}_uncertainty"].sel(response=name)
-            error = error + finest(bound, runs)
-        same = (values == limit).all(axes)  # as is a plastic strain that is zero everywhere
-        error = error.fillna(np.inf).where(~same, 0.0)
-        error = error.max([dim for dim in error.dims if dim not in axes])
-        within = (error <= TOLERANCE).astype(int)
-        for dim in axes:
-            within = within.cumprod(dim)
-        errors[name] = error.transpose(*axes)
-        if within.any():
-            best = cost.where(within == 1).transpose(*axes).argmin(...)
-            grids[name] = tuple(int(best[dim]) for dim in axes)
-    return Needs(runs, axes, grids, errors)
+    names = analysis["response"].values.tolist()
+    values = xr.Dataset({name: usable(runs, name) for name in names}).to_array("response")
+    limit = values.isel(dict.fromkeys(axes, 0))
+    error = abs(values - limit) / abs(limit)
+    for dim in axes:
+        error = error + finest(analysis[f"{REFINED[dim]}_uncertainty"], runs)
+    same = (values == limit).all(axes)  # as is a plastic strain that is zero everywhere
+    error = error.fillna(np.inf).where(~same, 0.0).transpose("response", *axes, ...)
+    error = error.max(error.dims[1 + len(axes) :])
+    within = (error <= TOLERANCE).astype(int)
+    for dim in axes:
+        within = within.cumprod(dim)
+    best = cost.where(within == 1, np.inf).transpose(*error.dims).argmin(axes)
+    grids = {
+        name: tuple(int(best[dim].sel(response=name)) for dim in axes)
+        for name, found in zip(names, within.any(axes).values, strict=True)
+        if found
+    }
+    return Needs(runs, axes, grids, {name: error.sel(response=name) for name in names})
 
 
 def finest(array: xr.DataArray, runs: xr.Dataset) -> xr.DataArray:

@@ -40,7 +40,10 @@ def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
         path,
         **described(runs),
         report=report.name,
-        parameters=[_parameter(runs[name], given) for name, given in _distributions(surrogates)],
+        parameters=[
+            _parameter(runs[str(name)], surrogates.sel(parameter=name))
+            for name in surrogates["parameter"].values
+        ],
         responses=[
             _response(surrogates.sel(response=name), runs[name])
             for name, verdict in verdicts.items()
@@ -64,17 +67,10 @@ def _verdicts(surrogates: xr.Dataset) -> dict[str, SurrogateVerdict]:
     return {str(name): kinds[int(code)] for name, code in pairs}
 
 
-def _distributions(surrogates: xr.Dataset) -> list[tuple[str, dict[str, Any]]]:
-    """Return the parameters, each with its distribution and the ends of its range, in SI units."""
-    columns = (surrogates[key].values for key in ("parameter", "distribution", "lowest", "highest"))
-    return [
-        (str(name), json.loads(text) | {"lowest": float(lowest), "highest": float(highest)})
-        for name, text, lowest, highest in zip(*columns, strict=True)
-    ]
-
-
-def _parameter(column: xr.DataArray, given: dict[str, Any]) -> dict[str, Any]:
+def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
     """Return what the page knows of a parameter; all numbers are in its display unit."""
+    given = json.loads(str(entry["distribution"].item()))
+    given |= {key: entry[key].item() for key in ("lowest", "highest")}
     unit, distribution = labels.display(column), given["distribution"]
     numbers = {
         key: _short(value if "geometric" in key else value * unit.scale)

@@ -40,13 +40,7 @@ def _make(case: Record, section: Section, grid: Grid) -> Array:
 
 @inlined
 def _step(state: State, now: int, F: float) -> None:
-    beam, plastic, section, grid, front = (
-        state.beam,
-        state.plastic,
-        state.section,
-        state.grid,
-        state.own,
-    )
+    _, section, grid, beam, plastic, front = state
     w, u = beam.w, beam.u
     if plastic.on_tangent[0] > 0 and follow_tangents(
         w, now, None, beam.plastic, plastic.M_0, plastic.on_tangent, plastic.tangent, grid

@@ -69,13 +69,7 @@ def _make(case: Record, section: Section, grid: Grid) -> Shear:
 
 @inlined
 def _step(state: State, now: int, F: float) -> None:
-    beam, plastic, section, grid, shear = (
-        state.beam,
-        state.plastic,
-        state.section,
-        state.grid,
-        state.own,
-    )
+    _, section, grid, beam, plastic, shear = state
     psi, Q, mid = shear.psi, shear.Q, grid.mid
     if plastic.on_tangent[0] > 0 and follow_tangents(
         beam.w, now, psi, beam.plastic, plastic.M_0, plastic.on_tangent, plastic.tangent, grid

@@ -42,18 +42,19 @@ _VELOCITY, _RESTITUTION = ("velocity", "m s-1"), ("coefficient of restitution", 
 def half_space() -> Finding:
     """Compare peak force, largest indentation, contact duration and restitution."""
     impact = rigid_backed(0.99, "hertz")
-    args = hertz.arguments(impact)
     run = simulate(impact, _GRID, duration=0.4e-3)
-    where = "the paper's sphere at 0.99 m/s"
-    found = []
-    for quantity, units, ours, expected in (
-        ("peak force", "N", run.peak_force, hertz.peak_force(*args)),
-        ("contact duration", "s", run.contact_duration, hertz.contact_duration(*args)),
-        ("largest indentation", "m", run.maximum_indentation, hertz.maximum_indentation(*args)),
-        ("restitution", "1", run.restitution, 1.0),
-    ):
-        found.append(relative(quantity, where, units, ours.item(), expected, 2e-5))
-    return Finding(found)
+    return Finding(responses(run, "the paper's sphere at 0.99 m/s", _hertzian(impact), 2e-5))
+
+
+def _hertzian(impact: Impact) -> dict[str, float]:
+    """Return the responses by Hertz's closed forms."""
+    args = hertz.arguments(impact)
+    return {
+        "peak_force": hertz.peak_force(*args),
+        "contact_duration": hertz.contact_duration(*args),
+        "maximum_indentation": hertz.maximum_indentation(*args),
+        "restitution": 1.0,
+    }
 
 
 def _compare_law(
@@ -277,16 +278,10 @@ def rigid_beam() -> Finding:
     hertzian, plastic = [], []
     for velocity in (0.1, 0.99, 5.0, 20.0):
         impact = replace(paper_impact(velocity, "hertz"), gravity=0.0)
-        args = hertz.arguments(impact)
-        expected = {
-            "peak_force": hertz.peak_force(*args),
-            "contact_duration": hertz.contact_duration(*args),
-            "maximum_indentation": hertz.maximum_indentation(*args),
-            "restitution": 1.0,
-        }
         where, run = f"Hertz contact, {velocity:g} m/s", _run_rigid_beam(impact)
         deflection = absolute("deflection", where, "m", run.maximum_deflection.item(), 0.0, 0.0)
-        hertzian.append([*responses(run, where, expected, RIGID_TOLERANCE), deflection])
+        found = responses(run, where, _hertzian(impact), RIGID_TOLERANCE)
+        hertzian.append([*found, deflection])
 
         impact = replace(impact, contact="stronge")
         law, mass = stronge_impact(impact), impact.sphere.total_mass

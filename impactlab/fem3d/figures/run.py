@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from impactlab.fem3d.solver.mesh import BEAM
 from impactlab.figures import labels, record, scales, style
-from impactlab.figures.draw import draw_figures
+from impactlab.figures.draw import draw
 from impactlab.figures.labels import display
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.types import Floats
@@ -210,4 +210,5 @@ def draw_witness(solid: xr.Dataset, beams: xr.Dataset, folder: Path, study: str)
     solid: a dataset of fem3d.solver. beams: the answers of the beam models to the same impact, on
     `beam_model`.
     """
-    return draw_figures((mesh, plastic_strain, histories), (solid, beams), folder, study)
+    figures = (mesh, plastic_strain, histories)
+    return draw([(each, (solid, beams)) for each in figures], folder, study)

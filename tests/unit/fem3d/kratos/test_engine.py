@@ -8,16 +8,19 @@ import sys
 import pytest
 
 from impactlab.fem3d import kratos
-from impactlab.model.impact import paper_impact
+from impactlab.fem3d.solver import Mesh
+from impactlab.model.impact import Impact
 
 
 @pytest.mark.parametrize(
     "missing", ["KratosMultiphysics", "KratosMultiphysics.ConstitutiveLawsApplication"]
 )
-def test_what_is_missing_is_told(missing: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_missing_is_told(
+    missing: str, monkeypatch: pytest.MonkeyPatch, mesh: Mesh, impact: Impact
+) -> None:
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(kratos.KratosMissingError, match=r"pip install 'impactlab\[kratos\]'"):
-        kratos.solve(paper_impact(), element_size=4e-3, duration=1e-5)
+        kratos.solve_on(mesh, impact, duration=1e-5)
 
 
 def test_nothing_imports_it_beforehand() -> None:
@@ -27,6 +30,8 @@ def test_nothing_imports_it_beforehand() -> None:
 
 
 @pytest.mark.parametrize("wrong", [{"duration": 0.0}, {"time_step": -1e-6}, {"penalty": 0.0}])
-def test_numbers_that_make_no_sense_are_refused(wrong: dict[str, float]) -> None:
+def test_numbers_that_make_no_sense_are_refused(
+    wrong: dict[str, float], mesh: Mesh, impact: Impact
+) -> None:
     with pytest.raises(ValueError, match=next(iter(wrong))):
-        kratos.solve(paper_impact(), element_size=4e-3, **({"duration": 1e-5} | wrong))
+        kratos.solve_on(mesh, impact, **({"duration": 1e-5} | wrong))
