@@ -211,6 +211,11 @@ class LawOnHalfSpace:
         """Return the unloading after `indentation` (m)."""
         return LAWS[self.law][1](indentation, self.loading_force(indentation), *self.pair)
 
+    def unloading_force(self, indentation: float, deepest: float) -> float:
+        """Return F in N on the way back from `deepest` to `indentation` (both in m)."""
+        force, end, exponent = self.unloading(deepest)
+        return force * math.pow(max(indentation - end, 0.0) / (deepest - end), exponent)
+
     def residual_indentation(self, indentation: float) -> float:
         """Return the residual of `indentation`, in m."""
         return self.unloading(indentation)[1]

@@ -12,7 +12,6 @@ support's deflection and mid-span's slope; then the sphere. All are of half the 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -121,12 +120,11 @@ def _padded(entries: Floats, size: int) -> Floats:
 
 def _contact(law: LawOnHalfSpace, delta: float, deepest: float) -> tuple[float, float]:
     """Return the force (N) at an indentation (m) after a deepest one, and its slope (N/m)."""
-    start, end, exponent = law.unloading(deepest) if deepest > 0.0 else (0.0, 0.0, 1.5)
 
     def force(d: float) -> float:
         if d >= deepest:
             return law.loading_force(d) if d > 0.0 else 0.0
-        return start * math.pow(max(d - end, 0.0) / (deepest - end), exponent)
+        return law.unloading_force(d, deepest) if deepest > 0.0 else 0.0
 
     apart = 1e-7 * max(abs(delta), 1e-9)
     here = force(delta)

@@ -1,8 +1,12 @@
-"""Restitution of a sphere on a rigidly backed half-space under the Stronge law, in closed form.
+"""Stronge's law on a rigidly backed half-space: the work of loading in closed form.
 
 Loading in three phases (elastic, elastic-plastic, fully plastic), unloading with force continuity.
 Sources: W. J. Stronge, Impact Mechanics (2000), section 6.4, for loading; Wang et al., as the paper
 takes it (its Table 1 and Eqs. 15 to 17), for unloading. No gravity, no waves in the half-space.
+
+Unloading leaves a bulge and not a dent for 1 < x < 1.998, and gives back more than was put in for
+1 < x < 2.673 (a restitution of at most 1.101, at x = 1.415), whatever the bodies: there the law
+itself creates energy.
 
 Symbols: delta_y (m) and F_y (N), indentation and force at first yield; x = delta/delta_y,
 u = 2 x - 1.
@@ -11,12 +15,12 @@ u = 2 x - 1.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
 from impactlab.model.impact import Impact
 from impactlab.verification.solutions import hertz
+from impactlab.verification.solutions.contact_laws import LawOnHalfSpace
 
 CONSTRAINT = 1.1
 """th: mean contact pressure over yield stress at first yield."""
@@ -26,13 +30,12 @@ U_PLASTIC = math.exp(3.0 * (HARDNESS - CONSTRAINT))
 """u = 164.02 (x = 82.511), where the two plastic branches meet without a jump."""
 
 
-@dataclass(frozen=True)
-class StrongeImpact:
-    """Closed forms for one pair of bodies: E* and sigma_y (of the softer body) in Pa, R* in m."""
+class StrongeImpact(LawOnHalfSpace):
+    """Stronge's law of two bodies: E* and sigma_y (of the softer body) in Pa, R* in m."""
 
-    effective_modulus: float
-    effective_radius: float
-    yield_stress: float
+    def __init__(self, modulus: float, radius: float, yield_stress: float) -> None:
+        """Take the bodies; the law does not depend on Poisson's ratio."""
+        super().__init__("stronge", modulus, radius, yield_stress, math.nan)
 
     @property
     def yield_indentation(self) -> float:
@@ -45,16 +48,6 @@ class StrongeImpact:
         """F_y = (4/3) E* sqrt(R*) delta_y^1.5 in N."""
         stiffness = hertz.stiffness(self.effective_modulus, self.effective_radius)
         return stiffness * math.pow(self.yield_indentation, 1.5)
-
-    def loading_force(self, indentation: float) -> float:
-        """Return the force in N at a monotonically reached `indentation` (m, zero or more)."""
-        x = indentation / self.yield_indentation
-        if x <= 1.0:
-            return self.yield_force * math.pow(x, 1.5)
-        u = 2.0 * x - 1.0
-        if u <= U_PLASTIC:
-            return self.yield_force * (u * (1.0 + math.log(u) / (3.0 * CONSTRAINT)))
-        return self.yield_force * (HARDNESS * u / CONSTRAINT)
 
     def loading_work(self, indentation: float) -> float:
         """Return the energy in J put in up to a monotonically reached `indentation` (m)."""
@@ -71,44 +64,6 @@ class StrongeImpact:
         limit = 0.5 + 0.5 * math.sqrt(1.0 + 4.0 * scaled)
         root = brentq(lambda x: _work(x) - scaled, 1.0, limit, xtol=1e-13, rtol=1e-14)
         return self.yield_indentation * float(root)
-
-    def unloading_radius(self, maximum_indentation: float) -> float:
-        """Return R_e in m, from R_e/R* = sqrt(F_m/F_y); R* while elastic."""
-        force = self.loading_force(maximum_indentation)
-        if maximum_indentation <= self.yield_indentation:
-            return self.effective_radius
-        return self.effective_radius * math.sqrt(force / self.yield_force)
-
-    def residual_indentation(self, maximum_indentation: float) -> float:
-        """Return delta_r = delta_m - delta_y R_e/R* in m; 0 while elastic.
-
-        Negative for 1 < x < 1.998: there the law leaves a bulge and not a dent.
-        """
-        radius = self.unloading_radius(maximum_indentation)
-        if maximum_indentation <= self.yield_indentation:
-            return 0.0
-        return maximum_indentation - self.yield_indentation * radius / self.effective_radius
-
-    def unloading_force(self, indentation: float, maximum_indentation: float) -> float:
-        """Return the force in N on the way back from `maximum_indentation` (both in m)."""
-        radius = self.unloading_radius(maximum_indentation)
-        recovered = indentation - self.residual_indentation(maximum_indentation)
-        return hertz.stiffness(self.effective_modulus, radius) * math.pow(max(recovered, 0.0), 1.5)
-
-    def released_work(self, maximum_indentation: float) -> float:
-        """Return the energy in J given back: 0.4 F_m (delta_m - delta_r)."""
-        recovered = maximum_indentation - self.residual_indentation(maximum_indentation)
-        return 0.4 * self.loading_force(maximum_indentation) * recovered
-
-    def restitution(self, velocity: float, mass: float) -> float:
-        """Return sqrt(released/put in), the restitution of `mass` (kg) at `velocity` (m/s).
-
-        1 while elastic. Above 1 for 1 < x < 2.673 (at most 1.101, at x = 1.415), whatever the
-        bodies: there the law itself creates energy.
-        """
-        if (deepest := self.maximum_indentation(velocity, mass)) <= self.yield_indentation:
-            return 1.0
-        return math.sqrt(self.released_work(deepest) / self.loading_work(deepest))
 
 
 def stronge_impact(impact: Impact) -> StrongeImpact:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -108,6 +109,26 @@ def browser() -> Iterator[Any]:
         chromium = driver.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
         yield chromium
         chromium.close()
+
+
+@pytest.fixture
+def visit(browser: Any) -> Callable[[str, int], AbstractContextManager[tuple[Any, list[str]]]]:
+    """Open a page as a context, with the addresses it asks for; it must complain of nothing."""
+
+    @contextmanager
+    def visiting(address: str, width: int) -> Iterator[tuple[Any, list[str]]]:
+        page = browser.new_page(viewport={"width": width, "height": 900})
+        asked: list[str] = []
+        complaints: list[str] = []
+        page.on("request", lambda request: asked.append(request.url))
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.goto(address)
+        yield page, asked
+        page.close()
+        assert complaints == []
+
+    return visiting
 
 
 @pytest.fixture(scope="session")

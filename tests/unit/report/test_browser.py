@@ -33,19 +33,11 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture
-def page(browser: Any, address: str) -> Iterator[Page]:
-    """The report, opened; at the end it must have asked for nothing and complained of nothing."""
-    page = browser.new_page(viewport={"width": 1280, "height": 900})
-    asked: list[str] = []
-    complaints: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
-    page.on("console", lambda message: complaints.append(message.text))
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto(address)
-    yield page
-    page.close()
+def page(visit: Any, address: str) -> Iterator[Page]:
+    """The report, opened; at the end it must have asked for nothing."""
+    with visit(address, 1280) as (page, asked):
+        yield page
     assert [url for url in asked if not url.startswith(("data:", address))] == []
-    assert complaints == []
 
 
 def test_the_keyboard_reaches_everything_in_the_order_of_the_page(page: Page) -> None:

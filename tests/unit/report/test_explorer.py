@@ -72,20 +72,12 @@ def folder(sample: tuple[xr.Dataset, xr.Dataset], tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def explorer(browser: Any, folder: Path) -> Iterator[Page]:
-    """The page, reached from its report; it must ask for no other and complain of nothing."""
-    page = browser.new_page(viewport={"width": 1300, "height": 900})
-    asked: list[str] = []
-    complaints: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
-    page.on("console", lambda message: complaints.append(message.text))
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto((folder / "report.html").as_uri())
-    page.click("text=The explorer")
-    yield page
-    page.close()
+def explorer(visit: Any, folder: Path) -> Iterator[Page]:
+    """The page, reached from its report; it must ask for no other."""
+    with visit((folder / "report.html").as_uri(), 1300) as (page, asked):
+        page.click("text=The explorer")
+        yield page
     assert asked == [(folder / name).as_uri() for name in ("report.html", "report_explorer.html")]
-    assert complaints == []
 
 
 def move(page: Page, name: str, share: float) -> None:

@@ -34,8 +34,6 @@ def test_stronge_by_quadrature_is_stronge_in_closed_form(velocity):
     assert ours.restitution(velocity, MASS) == pytest.approx(
         closed.restitution(velocity, MASS), rel=1e-8
     )
-    left = closed.residual_indentation(deepest)
-    assert ours.residual_indentation(deepest) == pytest.approx(left, abs=1e-9 * deepest)
 
 
 @pytest.mark.parametrize("velocity", VELOCITIES)
