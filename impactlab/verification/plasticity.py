@@ -189,10 +189,10 @@ def static_collapse() -> Finding:
         curves.append(Curve(f"{label}, static", points, _static(beam, points), independent=True))
     limit = bending.collapse_load(perfect)
     found.append(relative("collapse load", "40 layers; 4 M_p/L", "N", _plateau(run), limit, 5e-4))
-    far = 1e3 * bending.yield_curvature(perfect)
+    far = np.array([1e3 * bending.yield_curvature(perfect)])
     for number in (3, 9):
         rule = quadrature.rule("lobatto", number)
-        own = 4.0 / perfect.span * float(bending.rule_moment(perfect, far, *rule))
+        own = 4.0 / perfect.span * bending.path_moments(perfect, far, *rule).item()
         plateau = _plateau(_run_collapse(perfect, "lobatto", number))
         where = f"{number} Lobatto points; 4/L times the rule's own plastic moment"
         found.append(relative("collapse load", where, "N", plateau, own, 5e-4))

@@ -174,7 +174,7 @@ def few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> 
     # At a thousand times that of first yield every fibre but one on the axis has yielded.
     curvature = np.array([1e-6, 1e3]) * bending.yield_curvature(beam)
     exact = np.array([beam.bending_stiffness * curvature[0], bending.plastic_moment(beam)])
-    moments = bending.rule_moment(beam, curvature, *quadrature.rule(rule, points))
+    moments = bending.path_moments(beam, curvature, *quadrature.rule(rule, points))
     ratios = dict(zip(("stiffness", "full plastic moment"), moments / exact, strict=True))
     numbers = tuple(
         Number(f"{name} over the exact one", float(ratio), "1") for name, ratio in ratios.items()

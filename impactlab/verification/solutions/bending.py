@@ -63,26 +63,6 @@ def moment(beam: Beam, curvature: ArrayLike) -> Floats:
     return np.asarray(share * elastic + (1.0 - share) * perfect)
 
 
-def rule_moment(beam: Beam, curvature: ArrayLike, positions: Floats, weights: Floats) -> Floats:
-    """Return the moment in N m at each `curvature` (1/m, any shape) that an integration rule gives.
-
-    positions, weights: the rule's points on [-1, 1] over the depth, shape (points,); the weights
-    of a consistent rule add up to 2.
-    """
-    z = 0.5 * beam.depth * positions
-    strain = np.asarray(curvature, dtype=np.float64)[..., np.newaxis] * z
-    sigma = fibre_stress(beam.material, strain)
-    return np.asarray(beam.width * 0.5 * beam.depth * (sigma * z) @ weights)
-
-
-def fibre_stress(material: Material, strain: Floats) -> Floats:
-    """Return the stress in Pa at each monotonically reached `strain` (any shape)."""
-    elastic = material.youngs_modulus * strain
-    perfect = np.clip(elastic, -material.yield_stress, material.yield_stress)
-    share = _elastic_share(material)
-    return np.asarray(share * elastic + (1.0 - share) * perfect)
-
-
 def _elastic_share(material: Material) -> float:
     """Return the tangent modulus beyond yield over Young's modulus: h/(E + h)."""
     hardening = material.isotropic_hardening_modulus + material.kinematic_hardening_modulus
