@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
+import pytest
 import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
@@ -22,6 +24,14 @@ ATTRIBUTES = {
     "source_revision": "0123456789ab",
     "processor": "a processor, 2 cores",
 }
+
+
+def made_once(build: Callable[[], tuple[xr.Dataset, xr.Dataset]]) -> Any:
+    """Make a fixture: a study that is made once per process, and copied for each test."""
+    made = cache(build)
+    return pytest.fixture(name=build.__name__)(
+        lambda: tuple(each.copy(deep=True) for each in made())
+    )
 
 
 def _fixed(varied: Mapping[str, Any]) -> dict[str, Any]:

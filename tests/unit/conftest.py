@@ -14,6 +14,7 @@ from made_runs import (
     design_of,
     flags,
     indices,
+    made_once,
     surrogates,
     with_answers,
     with_histories,
@@ -36,7 +37,7 @@ from impactlab.verification.stored import packed
 Study = tuple[xr.Dataset, xr.Dataset]
 
 
-@pytest.fixture
+@made_once
 def velocity_study() -> Study:
     """Eight velocities by two contact laws, with histories and profiles."""
     varied = {
@@ -48,7 +49,7 @@ def velocity_study() -> Study:
     return runs, xr.Dataset(attrs=runs.attrs)
 
 
-@pytest.fixture
+@made_once
 def laws_study() -> Study:
     """Three velocities by eight contact laws, with histories; some runs beyond a law's range."""
     varied = {"velocity": [0.1, 1.0, 10.0], "contact": list(LAWS)}
@@ -58,7 +59,7 @@ def laws_study() -> Study:
     return runs, xr.Dataset(attrs=runs.attrs)
 
 
-@pytest.fixture
+@made_once
 def shear_study() -> Study:
     """Two velocities by four depths, with and without shear: changes of 0.3 to 19 %."""
     varied = {
@@ -74,7 +75,7 @@ def shear_study() -> Study:
     return described(runs), xr.Dataset(attrs=runs.attrs)
 
 
-@pytest.fixture
+@made_once
 def material_study() -> Study:
     """Yield stress by hardening by Young's modulus, responses alone."""
     varied = {
@@ -87,7 +88,7 @@ def material_study() -> Study:
     return runs, xr.Dataset(attrs=runs.attrs)
 
 
-@pytest.fixture
+@made_once
 def discretisation_study() -> Study:
     """Nodes by points by rule at two velocities, with the verdicts of both convergences."""
     varied = {
@@ -123,7 +124,7 @@ def discretisation_study() -> Study:
     return runs, analysis
 
 
-@pytest.fixture
+@made_once
 def time_step_study() -> Study:
     """Courant by scheme by nodes: errors of second order in the time step about each limit."""
     varied = {
@@ -149,7 +150,7 @@ def time_step_study() -> Study:
     return described(runs), analysis
 
 
-@pytest.fixture
+@made_once
 def sobol_study() -> Study:
     """A sample of 256 runs in four parameters; number_of_contacts is constant."""
     random = np.random.default_rng(1)

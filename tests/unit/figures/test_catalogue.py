@@ -10,6 +10,7 @@ import pytest
 import samples
 import witnesses
 import xarray as xr
+from made_runs import made_once
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as MplFigure
@@ -108,13 +109,13 @@ def sample_study() -> tuple[xr.Dataset, xr.Dataset]:
     return runs, samples.indices(runs)
 
 
-@pytest.fixture
+@made_once
 def witness_study() -> tuple[xr.Dataset, xr.Dataset]:
     """Beam models beside a 3-D witness at three velocities."""
     return witnesses.against_velocity()
 
 
-@pytest.fixture
+@made_once
 def parts_study() -> tuple[xr.Dataset, xr.Dataset]:
     """The same with and without yielding."""
     return witnesses.taken_apart()
@@ -136,8 +137,9 @@ def _figure(name: str, runs: xr.Dataset) -> Figure:
 
 
 def _laid_out(figure: MplFigure) -> MplFigure:
+    FigureCanvasAgg(figure)
     with style.applied():
-        FigureCanvasAgg(figure).draw()
+        figure.draw_without_rendering()
     return figure
 
 
