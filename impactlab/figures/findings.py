@@ -97,17 +97,8 @@ def _draw_row(axes: Axes, row: int, outcome: Outcome) -> None:
     text = f"{failed} of {total} failed" if failed else f"all {total}"
     if outcome.verdict == "error" or not total:
         text, failed = ("error" if outcome.reason else "nothing"), 1
-    axes.annotate(
-        text,
-        (1.0, row),
-        (3, 0),
-        xycoords=axes.get_yaxis_transform(),
-        textcoords="offset points",
-        va="center",
-        fontsize=7,
-        fontweight="bold" if failed else "normal",
-        color=style.COLOURS[1] if failed else style.MUTED,
-    )
+    beside = {"xycoords": axes.get_yaxis_transform(), "va": "center"}
+    style.note(axes, text, (1.0, row), (3, 0), warning=bool(failed), **beside)
 
 
 def _ratios(outcome: Outcome) -> Floats:

@@ -46,16 +46,8 @@ def write_verdict(
     if found is None or (found.sound and not sound):
         return
     ax.set_title(labels.sentence(labels.response(name)), loc="left", pad=12)
-    ax.annotate(
-        found.words,
-        (0.0, 1.0),
-        (0, 3),
-        xycoords="axes fraction",
-        textcoords="offset points",
-        fontsize=7,
-        fontweight="normal" if found.sound else "bold",
-        color=style.MUTED if found.sound else style.COLOURS[1],
-    )
+    where = {"xycoords": "axes fraction", "warning": not found.sound}
+    style.note(ax, found.words, (0.0, 1.0), (0, 3), **where)
 
 
 def empty(ax: Axes, text: str) -> None:

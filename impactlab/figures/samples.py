@@ -211,15 +211,10 @@ def surrogate_validation(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
             continue
         text = f"Q² = {labels.number(float(analysis['surrogate_q2'].sel(response=name)))}"
         warning = verdict is not None and not verdict.sound
-        ax.annotate(  # in the corner that agreement leaves empty
-            f"{text}\n{verdict.words}" if verdict and warning else text,
-            (0.04, 0.96),
-            xycoords="axes fraction",
-            va="top",
-            fontsize=7,
-            fontweight="bold" if warning else "normal",
-            color=_WARNING if warning else style.MUTED,
-        )
+        if verdict and warning:
+            text += f"\n{verdict.words}"
+        corner = {"xycoords": "axes fraction", "va": "top"}  # which agreement leaves empty
+        style.note(ax, text, (0.04, 0.96), (0, 0), warning=warning, **corner)
     figure.supxlabel("Computed by the solver")
     figure.supylabel("Predicted by the surrogate")
     style.legend(figure)

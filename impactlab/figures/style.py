@@ -191,6 +191,21 @@ def distinct(at: int) -> dict[str, Any]:
     }
 
 
+def note(
+    axes: Axes,
+    text: str,
+    place: tuple[float, float],
+    offset: tuple[float, float],
+    *,
+    warning: bool,
+    **where: Any,
+) -> None:
+    """Write small print `offset` points from a place, bold where it is a warning."""
+    look: dict[str, Any] = {"fontweight": "normal", "color": MUTED, "fontsize": 7}
+    look |= {"fontweight": "bold", "color": COLOURS[1]} if warning else {}
+    axes.annotate(text, place, offset, textcoords="offset points", **look, **where)
+
+
 def remark(axes: Axes, text: str) -> None:
     """Write words in place of data, in the middle of empty axes."""
     axes.grid(visible=False)

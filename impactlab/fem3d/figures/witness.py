@@ -176,7 +176,7 @@ def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
     if not ax.lines:
         style.remark(ax, "no finite values")
         return
-    shown = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
+    shown = scales.drawn(ax, "y")
     if np.nanmin(shown) > 0:
         scales.logarithmic(ax, "y", shown)
 
@@ -202,8 +202,7 @@ def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) ->
         return
     ax.axhline(0.0, label="_guide", **style.GUIDE)
     scales.linear(ax, "y")
-    middle = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
-    room = _ROOM * max(_LEAST, float(np.nanmax(abs(middle))))
+    room = _ROOM * max(_LEAST, float(np.nanmax(abs(scales.drawn(ax, "y")))))
     low, high = float(np.nanmin([0.0, *ends])), float(np.nanmax([0.0, *ends]))
     ax.set_ylim(max(1.1 * low, -room), min(1.1 * high, room))
 
