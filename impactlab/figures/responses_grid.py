@@ -46,8 +46,8 @@ def write_verdict(
     if found is None or (found.sound and not sound):
         return
     ax.set_title(labels.sentence(labels.response(name)), loc="left", pad=12)
-    where = {"xycoords": "axes fraction", "warning": not found.sound}
-    style.note(ax, found.words, (0.0, 1.0), (0, 3), **where)
+    place, warning = (0.0, 1.0), not found.sound
+    style.note(ax, found.words, place, (0, 3), warning=warning, xycoords="axes fraction")
 
 
 def empty(ax: Axes, text: str) -> None:

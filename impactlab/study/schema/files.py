@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any
@@ -127,16 +127,17 @@ _STAND_INS: dict[str, Any] = {
 def _study(source: Source) -> Study:
     """Return a study of impacts. Raises StudyError with every problem of the file."""
     path = str(source.path)
-    data, requested, python, limited = _python_responses(source.data, path)
+    python = _python_responses(source.data, path)
+    data = {key: value for key, value in source.data.items() if key != "python_responses"}
     problems: list[Problem] = []
     try:
-        file = validated(StudyFile, data, path)
+        file = validated(StudyFile, data, path, responses=python)
     except StudyError as error:
         problems = list(error.args)
     wrong = {problem.key.split(".")[0] for problem in problems}
     if problems:
         valid = {key: data[key] for key in StudyFile.model_fields if key in data.keys() - wrong}
-        file = validated(StudyFile, _STAND_INS | valid, path)
+        file = validated(StudyFile, _STAND_INS | valid, path, responses=python)
     for check, sections in CHECKS:
         if not sections & wrong:
             problems += [Problem(path, key, reason) for key, reason in check(file)]
@@ -148,49 +149,24 @@ def _study(source: Source) -> Study:
     if python and has_solid_runs(file):
         reason = f"are given beam runs, which those with beam_model: {SOLID} are not"
         raise StudyError(Problem(path, "python_responses", reason))
-    auto = auto.model_copy(update={"responses": limited}) if auto and limited else auto
     own: dict[str, Any] = {"discretisation": grid, "auto": auto}
     own |= {"analysis": file.analysis or Analysis(), "python": python}
-    own |= {"responses": requested} if python else {}
     return Study(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 
 
-def _python_responses(
-    data: dict[str, Any], path: str
-) -> tuple[dict[str, Any], tuple[str, ...], dict[str, str], tuple[str, ...]]:
-    """Return the data without Python functions, and what names them.
+def _python_responses(data: Mapping[str, Any], path: str) -> dict[str, str]:
+    """Return the keys of the responses that are Python functions.
 
-    That is the names of all responses, the keys of the functions, and the names of the responses
-    that `auto` limits, where it lists any. Raises StudyError for functions that this process does
-    not know, and where `auto` lists a response that the study does not have.
+    Raises StudyError for functions that this process does not know.
     """
     if "python_responses" not in data:
-        return data, (), {}, ()
+        return {}
     from impactlab.study.solvers.own import KNOWN
 
-    python, rest = data["python_responses"], dict(data)
-    del rest["python_responses"]
+    python = data["python_responses"]
     if not isinstance(python, dict) or not {*map(str, python.values())} <= KNOWN.keys():
         raise StudyError(Problem(path, "python_responses", _NOT_KNOWN))
-    requested = tuple(map(str, data.get("responses", ())))
-    ours = [name for name in requested if name not in python]
-    rest |= {"responses": ours} if ours else {}
-    if not ours:
-        del rest["responses"]
-    limited: tuple[str, ...] = ()
-    section = data.get("discretisation")
-    auto = section.get("auto") if isinstance(section, dict) else None
-    listed = auto.get("responses") if isinstance(auto, dict) else None
-    if isinstance(section, dict) and isinstance(auto, dict) and isinstance(listed, list):
-        limited = tuple(map(str, listed))
-        if missing := [name for name in limited if name not in requested]:
-            reason = f"names {', '.join(missing)}, which `responses` of the study leaves out"
-            raise StudyError(Problem(path, "discretisation.auto.responses", reason))
-        theirs = [name for name in limited if name not in python]
-        others = {key: value for key, value in auto.items() if key != "responses"}
-        others |= {"responses": theirs} if theirs else {}
-        rest["discretisation"] = section | {"auto": others}
-    return rest, requested, {str(name): str(key) for name, key in python.items()}, limited
+    return {str(name): str(key) for name, key in python.items()}
 
 
 _NOT_KNOWN = "holds a Python function, which is in no file: build the study in Python"

@@ -32,7 +32,7 @@ class Section(BaseModel):
 
     The context of the validation takes the allowed keys under "keys", by the id of the mapping, so
     that a message about an unknown key can list them; it holds the parameters that the study can
-    vary under "parameters".
+    vary under "parameters", and names of responses of its own under "responses".
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -67,16 +67,15 @@ def one_of(kind: str, choices: Collection[str]) -> BeforeValidator:
 
 
 def names(kind: str, choices: Collection[str]) -> PlainValidator:
-    """Return the reader of `all`, or of a list of some of the choices."""
-    words: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of(kind, choices)]])
+    """Return the reader of `all`, or of a list of some of the choices (and of the study's own)."""
 
-    def read(data: Any) -> tuple[str, ...]:
+    def read(data: Any, info: ValidationInfo) -> tuple[str, ...]:
+        every = [*choices, *(info.context or {}).get(f"{kind}s", ())]
+        words: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of(kind, every)]])
         if data == "all":
             return tuple(choices)
         if not isinstance(data, list) or not data:
-            raise ValueError(
-                f"expected `all`, or a list of names: choose from {', '.join(choices)}"
-            )
+            raise ValueError(f"expected `all`, or a list of names: choose from {', '.join(every)}")
         found = words.validate_python(data)
         if twice := [name for at, name in enumerate(found) if name in found[:at]]:
             raise ValueError(f"names {twice[0]} more than once: name each {kind} once")
@@ -167,12 +166,20 @@ S = TypeVar("S", bound=Section)
 
 
 def validated(
-    kind: type[S], data: Any, file: str, parameters: Mapping[str, Parameter] = PARAMETERS
+    kind: type[S],
+    data: Any,
+    file: str,
+    parameters: Mapping[str, Parameter] = PARAMETERS,
+    responses: Collection[str] = (),
 ) -> S:
-    """Return the content of a file as a section. Raises StudyError with every problem of it."""
+    """Return the content of a file as a section. Raises StudyError with every problem of it.
+
+    parameters: those that it can vary. responses: names of its own, beside those of all studies.
+    """
     keys: dict[int, tuple[str, ...]] = {}
+    context = {"keys": keys, "parameters": parameters, "responses": responses}
     try:
-        return kind.model_validate(data, context={"keys": keys, "parameters": parameters})
+        return kind.model_validate(data, context=context)
     except ValidationError as error:
         lines = error.errors(include_url=False)
     raise StudyError(*(_problem(line, data, file, keys) for line in lines))
