@@ -18,7 +18,7 @@ from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
 from impactlab.model.plausibility import ImplausibleWarning, implausibilities, numbers
 from impactlab.model.quantities import Quantity, as_text, in_si
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LOADS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import FOLDER
@@ -222,6 +222,15 @@ def case_table(
             f"{f'run {first_run + wrong[0]}: ' if varied else ''}scheme = "
             f"{SCHEMES[case.scheme]!r}: beam_model = {BEAM_MODELS[case.beam_model]!r} has "
             "'leapfrog' alone"
+        )
+    lumped = cases["beam_model"] >= BEAM_MODELS.index("spring_mass")
+    wrong = np.flatnonzero(lumped & (cases["load"] != LOADS.index("point")))
+    if wrong.size:
+        case = cases[wrong[0]]
+        raise ValueError(
+            f"{f'run {first_run + wrong[0]}: ' if varied else ''}load = {LOADS[case.load]!r}: "
+            f"beam_model = {BEAM_MODELS[case.beam_model]!r} has 'point' alone, because it moves as "
+            "one mass"
         )
     return cases
 

@@ -51,6 +51,7 @@ _FIXED = (
     "velocity",
     "contact",
     "beam_model",
+    "load",
     "sphere_radius",
     "beam_span",
     "beam_width",

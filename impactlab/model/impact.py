@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.model.quantities import SI, Quantity, engineering
-from impactlab.solver import BEAM_MODELS
+from impactlab.solver import BEAM_MODELS, LOADS
 from impactlab.solver.contact import LAWS
 
 SOLID = "solid"
@@ -145,7 +145,8 @@ class Impact:
     "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
     "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one degree
     of freedom), "rigid" (the beam does not move) or "solid" (3-D finite elements of both bodies,
-    in which `contact` plays no part).
+    in which `contact` and `load` play no part). load: "point" (the contact force acts at mid-span) or
+    "contact_patch" (over the contact circle, see solver/contact_patch.py; not on a lumped beam).
 
     Raises ValueError naming the field when a value is not physical or a name is unknown.
 
@@ -164,6 +165,7 @@ class Impact:
     contact: str = "stronge"
     gravity: SI[float] = SI("m s-2", 9.81)
     beam_model: str = "euler_bernoulli"
+    load: str = "point"
 
     def __post_init__(self) -> None:
         instance("Impact", "sphere", self.sphere, Sphere)
@@ -173,6 +175,7 @@ class Impact:
         require(gravity >= 0, "Impact", "gravity", gravity, "must not be negative")
         one_of("Impact", "contact", self.contact, LAWS)
         one_of("Impact", "beam_model", self.beam_model, MODELS)
+        one_of("Impact", "load", self.load, LOADS)
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

@@ -14,7 +14,7 @@ from typing import Any
 from impactlab.model.checks import Column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
-from impactlab.solver import RULES, SCHEMES
+from impactlab.solver import LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 
 Value = float | int | str
@@ -49,6 +49,7 @@ _ROWS = (
     ("gravity", "m s-2", "gravity on the sphere", "impact.gravity"),
     ("contact", "1", "contact law", "impact.contact"),
     ("beam_model", "1", "model of the beam", "impact.beam_model"),
+    ("load", "1", "place of the contact force on the beam", "impact.load"),
     ("sphere_radius", "m", "radius of the sphere", "impact.sphere.radius"),
     ("sphere_mass", "kg", "mass of the sphere", "impact.sphere.mass"),
     *(
@@ -81,7 +82,13 @@ _ROWS = (
         "discretisation.elements_per_radius",
     ),
 )
-_CHOICES = {"contact": LAWS, "beam_model": MODELS, "rule": RULES, "scheme": SCHEMES}
+_CHOICES = {
+    "contact": LAWS,
+    "beam_model": MODELS,
+    "load": LOADS,
+    "rule": RULES,
+    "scheme": SCHEMES,
+}
 _WHOLE = ("nodes", "points")
 PARAMETERS: dict[str, Parameter] = {
     name: Parameter(

@@ -9,5 +9,7 @@ SCHEMES = ("leapfrog", "modal")
 """Names of the schemes in time; the index is the kernels' switch."""
 BEAM_MODELS = ("euler_bernoulli", "elastic", "timoshenko", "spring_mass", "rigid")
 """Names of the models of the beam; the index is the kernels' switch."""
+LOADS = ("point", "contact_patch")
+"""Where the contact force acts on the beam; the index is the kernels' switch."""
 BENDING_MODELS = BEAM_MODELS[:2]
 """Those that have every scheme in time; the others have leapfrog alone."""

@@ -17,6 +17,7 @@ from impactlab.solver.beam import (
     reach,
     strike,
 )
+from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.fibre_plasticity import (
     begin_tangents,
     curvature,
@@ -74,4 +75,13 @@ def deflected(state: State, now: int) -> None:
     """Leave the deflections as they are: the step has set them all."""
 
 
-MODEL = Model(_make, _step, _curvature, _energy, deflected)
+@compiled
+def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
+    ahead, work, pushed = spread_over_nodes(state.beam, state.grid, now, F, a)
+    front, first = state.own, max(state.grid.mid - pushed - 2, 2)
+    if first < front[0]:
+        front[0] = first
+    return ahead, -work
+
+
+MODEL = Model(_make, _step, _curvature, _energy, deflected, _spread)

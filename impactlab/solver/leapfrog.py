@@ -1,6 +1,7 @@
 """The time loop: leapfrog (central differences), velocities at half steps.
 
-m_s w_s'' = -F + m_s g, w_s(0) = 0, w_s'(0) = v0; indentation delta = w_s - w(L/2).
+m_s w_s'' = -F + m_s g, w_s(0) = 0, w_s'(0) = v0; indentation delta = w_s - w(L/2), or against the
+mean under the contact's pressure (contact_patch.py).
 
 Each model of the beam has a kernel of its own, so that a study compiles only what it needs.
 """
@@ -24,13 +25,14 @@ from impactlab.solver import (
 from impactlab.solver.beam import make_beam
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact.history import Pair, make_pair
+from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import catch_up, make_plastic_state, plastic_energy
 from impactlab.solver.jit import allocating, compiled
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
 from impactlab.solver.state import Model, State
-from impactlab.solver.types import MODAL, Array, Record
+from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
 
 _AUDITS = 500
 _LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
@@ -73,7 +75,7 @@ def contact_force(
 
 def _time_loop(model: Model) -> Callable[..., int]:
     """Return the time loop of a model of the beam."""
-    _, move_beam, mid_curvature, beam_energy, _, flight_stride = model
+    _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride = model
 
     @compiled
     def imbalance(
@@ -84,16 +86,18 @@ def _time_loop(model: Model) -> Callable[..., int]:
         sphere: tuple[float, float, float, float],
         F: float,
         u_mid: float,
+        excess: float,
     ) -> float:
         """Return the energy missing or in excess, over the initial kinetic energy.
 
         After a step, of its beginning. sphere: its displacement (m), velocity before and after the
-        step (m/s), indentation (m). u_mid (m): u at mid-span before the step.
+        step (m/s), indentation (m). u_mid (m): u at mid-span before the step. excess (J): see
+        Model.spread.
         """
         w_s, v_before, v_after, delta = sphere
         start = 0.5 * case.sphere_mass * case.velocity**2
         falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
-        in_beam = beam_energy(state, now, F, u_mid)
+        in_beam = beam_energy(state, now, F, u_mid) + excess
         kept, lost = contact_history.energies(contact, state.pair, delta)
         return abs(falling + in_beam + kept + lost - start) / start
 
@@ -113,11 +117,12 @@ def _time_loop(model: Model) -> Callable[..., int]:
         now = int(np.int64(0))  # a plain 0 would be a type of its own, its callees compiled twice
         to_audit = stride
         here = (0.0, 0.0, 0.0, 0.0, 0.0)
+        patch, ahead = case.load == CONTACT_PATCH, 0.0  # the mean under the pressure, of mid-span
         contact.n = 1.5
         event_tracker.start(events)
         for step in range(steps + 1):
             w_mid, u_mid = w[now, mid], u[mid]
-            delta = w_s - w_mid
+            delta = w_s - w_mid - ahead
             F = contact_force(contact, events, pair, delta, step * dt, dt)
             v_after = v_s + dt * (case.gravity - F * per_mass)
             event_tracker.update_events(
@@ -128,6 +133,10 @@ def _time_loop(model: Model) -> Callable[..., int]:
                 _sample(samples, step, steps, before, here)
 
             move_beam(state, now, F)
+            excess = 0.0
+            if patch and F > 0.0:
+                change, excess = spread(state, now, F, contact_radius(contact, pair, F))
+                ahead += change
 
             to_audit = min(to_audit - 1, stride) if F > 0.0 else to_audit - 1
             if to_audit == 0 or step == steps:
@@ -135,7 +144,7 @@ def _time_loop(model: Model) -> Callable[..., int]:
                 catch_up(plastic, section)
                 events.v_s, events.v_mid = v_s, u_mid / dt
                 sphere = (w_s, v_s, v_after, delta)
-                error = imbalance(case, state, contact, now, sphere, F, u_mid)
+                error = imbalance(case, state, contact, now, sphere, F, u_mid, excess)
                 events.energy_error = max(events.energy_error, error)
                 if not error < 1.0:
                     return -1

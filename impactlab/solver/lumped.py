@@ -80,4 +80,10 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     return 0.5 * (moving + lumped.stiffness * w * w)
 
 
-MODEL = Model(_make, _step, EULER_BERNOULLI.curvature, _energy, deflected)
+@compiled
+def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
+    """Leave the force at mid-span: there is no other place."""
+    return 0.0, 0.0
+
+
+MODEL = Model(_make, _step, EULER_BERNOULLI.curvature, _energy, deflected, _spread)

@@ -31,6 +31,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import Grid
+from impactlab.solver.contact_patch import wave_share
 from impactlab.solver.fibre_plasticity import PlasticState, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
 from impactlab.solver.section import Section, bend
@@ -228,4 +229,22 @@ def _deflect(state: State, now: int) -> None:
     deflect(state.own, state.beam.w, now, state.grid.mid)
 
 
-MODEL = Model(_make, _step, _curvature, _energy, _deflect, flight_stride=64)
+@compiled
+def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
+    q, u, k2, push = state.own.q, state.own.u, state.own.k2, state.own.push
+    w, mean, moved, change = state.beam.w[1 - now], 0.0, 0.0, 0.0
+    for p in range(q.size):
+        share = wave_share(math.sqrt(k2[p]) * a)
+        back = push[p] * F * (1.0 - share)
+        u[p] -= back
+        q[p] -= back
+        moved += u[p]
+        mean += share * u[p]
+        change += k2[p] * abs(q[p] - state.own.seen[p])
+    state.own.slack[1] = change
+    w[state.grid.mid] += moved - state.beam.u[state.grid.mid]
+    state.beam.u[state.grid.mid] = moved
+    return mean - moved, 0.5 * F * (moved - mean)
+
+
+MODEL = Model(_make, _step, _curvature, _energy, _deflect, _spread, flight_stride=64)

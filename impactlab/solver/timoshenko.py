@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import Beam, Grid, mirror
+from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.fibre_plasticity import (
     PlasticState,
@@ -160,4 +161,10 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     return stored + dissipated + elastic
 
 
-MODEL = Model(_make, _step, _curvature, _energy, deflected)
+@compiled
+def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
+    ahead, _, _ = spread_over_nodes(state.beam, state.grid, now, F, a)
+    return ahead, 0.0
+
+
+MODEL = Model(_make, _step, _curvature, _energy, deflected, _spread)

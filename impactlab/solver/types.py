@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.solver import BEAM_MODELS, SCHEMES
+from impactlab.solver import BEAM_MODELS, LOADS, SCHEMES
 
 Array = np.ndarray[Any, Any]
 """An array; the docstring gives shape and unit."""
@@ -25,6 +25,7 @@ TIMOSHENKO = BEAM_MODELS.index("timoshenko")
 SPRING_MASS = BEAM_MODELS.index("spring_mass")
 RIGID = BEAM_MODELS.index("rigid")
 MODAL = SCHEMES.index("modal")
+CONTACT_PATCH = LOADS.index("contact_patch")
 
 
 def record(real: str, whole: str = "") -> np.dtype[Any]:
@@ -41,11 +42,11 @@ CASE = record(
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus courant
     """,
-    whole="contact beam_model nodes points rule scheme",
+    whole="contact beam_model load nodes points rule scheme",
 )
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 
-The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, rule and
-scheme as numbers (their places in contact.LAWS, BEAM_MODELS, RULES and SCHEMES) and the sphere's
+The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, load,
+rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS, RULES and SCHEMES) and the sphere's
 mass resolved; and the duration in s.
 """

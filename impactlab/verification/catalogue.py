@@ -5,6 +5,7 @@ from __future__ import annotations
 from impactlab.verification import (
     beam_limits,
     contact,
+    contact_patch,
     energy,
     modal_series,
     plasticity,
@@ -33,6 +34,7 @@ _CHECKS = (
     beam_limits.slender_limit,
     contact.spring_mass,
     contact.rigid_beam,
+    contact_patch.contact_patch,
     energy.balances,
 )
 CATALOGUE: dict[str, Check] = {check.name: check for check in _CHECKS}

@@ -106,7 +106,8 @@ _COMMENTS = {
 IMPACT_PARAMETERS = [
     name
     for name, entry in PARAMETERS.items()
-    if entry.path[0] == "impact" and name not in ("contact", "beam_model", "shear_coefficient")
+    if entry.path[0] == "impact"
+    and name not in ("contact", "beam_model", "load", "shear_coefficient")
 ]
 """Parameters of an impact, without those of the beam models alone."""
 

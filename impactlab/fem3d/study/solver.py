@@ -47,7 +47,7 @@ SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
 SOLID_MODEL = len(BEAM_MODELS)
 """Number of the 3-D FE model, after those of the kernels."""
 _BEAM_MODELS_ONLY = (
-    *("contact", "shear_coefficient"),
+    *("contact", "load", "shear_coefficient"),
     *("nodes", "points", "rule", "scheme", "courant"),
 )
 """Fields that the 3-D FE model does not use."""

@@ -34,3 +34,13 @@ def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
     """Return the indentation (m) at which the circle's radius, sqrt(2 R delta), reaches R."""
     return 0.5 * R
+
+
+@compiled
+def radius(delta: float, E: float, R: float, S_y: float, nu: float) -> float:
+    """Return the radius (m) of the contact circle: Hertz's, or that of the truncated sphere.
+
+    It grows by the factor sqrt(2) where the one becomes the other.
+    """
+    plastic = delta > (1.5 * math.pi * HARDNESS * S_y / E) ** 2 * R
+    return math.sqrt(R * delta * (2.0 if plastic else 1.0))

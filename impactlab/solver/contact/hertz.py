@@ -2,11 +2,12 @@
 
 Source: Hertz 1881; Johnson, Contact Mechanics, eq. 4.23.
 
-Every law is two functions of this form. In: indentation delta (m), effective modulus E (Pa),
+Every law is three functions of this form. In: indentation delta (m), effective modulus E (Pa),
 effective radius R (m), the softer body's yield stress S_y (Pa) and Poisson's ratio nu.
 `curve` gives (F, K, delta_r, n), the loading force (N) at delta, and the curve on which the contact
 unloads from there, K (d - delta_r)^n. `limit` gives the indentation (m) up to which the law holds;
-why, and what of the law is not confirmed, is in the registry (__init__.py).
+why, and what of the law is not confirmed, is in the registry (__init__.py). `radius` gives the
+radius (m) of the contact circle while the contact is loaded.
 """
 
 from __future__ import annotations
@@ -28,3 +29,9 @@ def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
     """Return the indentation (m) at which a = sqrt(R delta) reaches R."""
     return R
+
+
+@compiled
+def radius(delta: float, E: float, R: float, S_y: float, nu: float) -> float:
+    """Return the radius (m) of the contact circle of Hertz, a = sqrt(R delta)."""
+    return math.sqrt(R * delta)

@@ -98,3 +98,11 @@ def limit(E: float, R: float, S_y: float, nu: float) -> float:
     """Return where (m) a/R reaches 0.41, or the fit of the residual indentation ends."""
     end = LARGEST_INDENTATION * critical_indentation(E, R, S_y, nu)
     return min(indentation_at(LARGEST_RADIUS, E, R, S_y, nu), end)
+
+
+@compiled
+def radius(delta: float, E: float, R: float, S_y: float, nu: float) -> float:
+    """Return the radius (m) of the contact circle, beyond the onset that of contact_radius."""
+    delta_c = critical_indentation(E, R, S_y, nu)
+    wider = contact_radius(delta, delta_c, E, R, S_y) if delta > ONSET * delta_c else 0.0
+    return max(math.sqrt(R * delta), R * wider)

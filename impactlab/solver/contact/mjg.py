@@ -21,6 +21,7 @@ from impactlab.solver.contact.jackson_green import (
     indentation_at,
     residual,
 )
+from impactlab.solver.contact.jackson_green import radius as radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.types import Unloading
 

@@ -54,3 +54,9 @@ def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
     """Return the indentation (m) at which a = sqrt(R (2 delta - delta_y)) reaches R."""
     return 0.5 * (R + yield_indentation(E, R, S_y))
+
+
+@compiled
+def radius(delta: float, E: float, R: float, S_y: float, nu: float) -> float:
+    """Return the radius (m) of the contact circle, beyond yield a = sqrt(R (2 delta - delta_y))."""
+    return math.sqrt(R * max(delta, 2.0 * delta - yield_indentation(E, R, S_y)))

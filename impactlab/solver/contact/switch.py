@@ -26,8 +26,13 @@ def _no_limit(law: int, *of: float) -> float:
     return np.nan
 
 
+@compiled
+def _no_radius(law: int, *of: float) -> float:
+    return np.nan
+
+
 def _link(what: str, number: int, others: Any) -> Any:
-    """Return a function that asks law `number` for its curve or limit, or else `others`."""
+    """Return a function that asks law `number` for its curve, limit or radius, or else `others`."""
     chosen = getattr(import_module(f"impactlab.solver.contact.{LAWS[number]}"), what)
 
     def ask(law: int, *of: float) -> Any:
@@ -40,8 +45,9 @@ def _link(what: str, number: int, others: Any) -> Any:
     return linked(ask)
 
 
-curve, limit = _no_curve, _no_limit
+curve, limit, radius = _no_curve, _no_limit, _no_radius
 for _number in reversed(range(len(LAWS))):  # the first laws are asked for first
     curve, limit = _link("curve", _number, curve), _link("limit", _number, limit)
-"""curve(law, delta, E, R, S_y, nu) -> (F, K, delta_r, n); limit(law, E, R, S_y, nu) -> m: those of
-law number `law`, NaN for a number that no law has."""
+    radius = _link("radius", _number, radius)
+"""curve(law, delta, E, R, S_y, nu) -> (F, K, delta_r, n); limit(law, E, R, S_y, nu) and
+radius(law, delta, E, R, S_y, nu) -> m: those of law number `law`, NaN for a number that no law has."""

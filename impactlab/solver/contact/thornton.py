@@ -38,3 +38,9 @@ def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
     """Return the indentation (m) at which a = sqrt(R delta) reaches R."""
     return R
+
+
+@compiled
+def radius(delta: float, E: float, R: float, S_y: float, nu: float) -> float:
+    """Return the radius (m) of the contact circle, a = sqrt(R delta), beyond yield, too."""
+    return math.sqrt(R * delta)

@@ -152,6 +152,10 @@ def _impacts(file: StudyFile) -> Reasons:
             "leapfrog alone: set scheme: leapfrog, or take out the beam model"
         )
         yield key_of("scheme", sampling), reason
+    lumped = [name for name in BEAM_MODELS[BEAM_MODELS.index("spring_mass") :] if name in models]
+    if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
+        reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
+        yield key_of("load", sampling), f"{reason}, or take out the beam model"
 
 
 def _solid(file: StudyFile) -> Reasons:

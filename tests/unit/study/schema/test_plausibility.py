@@ -98,6 +98,14 @@ def test_a_scheme_that_a_model_has_not_is_refused_before_the_run(problems, read,
     read(grid({"sampling.parameters": fixed, "discretisation": {"scheme": "modal"}}))
 
 
+@pytest.mark.parametrize("model", ["spring_mass", "rigid"])
+def test_a_lumped_beam_has_no_contact_patch(problems, grid, model):
+    varied = {"sampling.parameters": {"beam_model": ["elastic", model]}}
+    ((where, said),) = problems(grid(varied | {"impact.load": "contact_patch"}))
+    assert where == "impact.load"
+    assert model in said
+
+
 def test_auto_stands_for_the_fastest_scheme_of_every_beam_model_of_the_study(read, grid):
     def scheme(*models):
         varied = {"sampling.parameters": {"beam_model": [*models], "velocity": [1]}}
