@@ -145,8 +145,8 @@ class Impact:
     "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
     "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one degree
     of freedom), "rigid" (the beam does not move) or "solid" (3-D finite elements of both bodies,
-    in which `contact` and `load` play no part). load: "point" (the contact force acts at mid-span) or
-    "contact_patch" (over the contact circle, see solver/contact_patch.py; not on a lumped beam).
+    in which `contact` and `load` play no part). load: "point" (the contact force acts at mid-span)
+    or "contact_patch" (over the contact circle, see solver/contact_patch.py; not on lumped beams).
 
     Raises ValueError naming the field when a value is not physical or a name is unknown.
 

@@ -14,7 +14,7 @@ The sphere indents the beam by what does the pressure's work: the indentation ch
 
 of the deflection's mean under the present pressure. Then F delta' is the power that sphere and beam
 lose, however the circle grows and shrinks, so the contact laws and the audit of the energy hold as
-they are; in time steps but for the change of phi within one. What the form neglects: the pressure is
+they are; in time steps but for the change of phi within one. What the form neglects: pressure is
 flatter than Hertz's where the contact yields (uniform, it takes 13 % more off the moment), the
 beam's curvature is nothing beside the sphere's, and its depth spreads no load.
 
@@ -37,7 +37,7 @@ from impactlab.solver.types import Record
 def contact_radius(contact: Record, pair: Pair, F: float) -> float:
     """Return the radius (m) of the circle of contact under the force F (N)."""
     a = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
-    return a if F >= contact.F_m else a * (F / contact.F_m) ** (1.0 / 3.0)
+    return float(a * min(F / contact.F_m, 1.0) ** (1.0 / 3.0))
 
 
 @compiled

@@ -28,13 +28,13 @@ class State(NamedTuple):
 class Model(NamedTuple):
     """A model of the beam in one scheme: compiled functions, from which leapfrog.py makes a kernel.
 
-        make(case, section, grid): State.own at rest. step(state, now, F): move the beam under the
-        contact force F (N). curvature(state, now): at mid-span, 1/m. energy(state, now, F, u_mid): the
-        beam's in J, plastic strains' included, after a step, at its beginning; u_mid: u at mid-span
-        before it (m). deflect(state, now): set all of beam.w[now] in the end. spread(state, now, F, a):
-    spread the force of a step just made over the contact radius a (contact_patch.py); return how far the
-    mean under it has moved beyond mid-span (m) and what `energy` of this step then lacks (J). flight_stride: steps
-        between two audits of the energy without contact, at least.
+    make(case, section, grid): State.own at rest. step(state, now, F): move the beam under the
+    contact force F (N). curvature(state, now): at mid-span, 1/m. energy(state, now, F, u_mid): the
+    beam's in J, plastic strains' included, after a step, at its beginning; u_mid: u at mid-span
+    before it (m). deflect(state, now): set all of beam.w[now] in the end. spread(state, now, F, a):
+    spread the force of a step just made over the contact radius a (contact_patch.py); return how
+    far the mean under it has moved beyond mid-span (m), and what `energy` lacks (J). flight_stride:
+    steps between two audits of the energy without contact, at least.
     """
 
     make: Callable[..., Any]

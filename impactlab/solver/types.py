@@ -47,6 +47,6 @@ CASE = record(
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 
 The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, load,
-rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS, RULES and SCHEMES) and the sphere's
-mass resolved; and the duration in s.
+rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS, RULES and SCHEMES) and
+the sphere's mass resolved; and the duration in s.
 """

@@ -37,8 +37,8 @@ GRIDS = {
     ("euler_bernoulli", "modal"): (401, 0.01),
     ("timoshenko", "leapfrog"): (801, 0.15),
 }
-"""By beam model and scheme: nodes, and the tolerance of the mean ahead. Between nodes leapfrog's mean
-is that of chords, which errs in the order of (dx/a)^2."""
+"""By beam model and scheme: nodes, and the tolerance of the mean ahead. Leapfrog's mean is that of
+chords between the nodes, which errs in the order of (dx/a)^2."""
 
 
 @check(

@@ -1,7 +1,8 @@
 """Contact laws: the registry. The equations of a law are in the file of its name.
 
-A new law takes a file with the functions `curve`, `limit` and `radius` (see hertz.py) and an entry at the end
-of the registry. This file stays free of numba, so that laws can be listed without compiling any.
+A new law takes a file with the functions `curve`, `limit` and `radius` (see hertz.py) and an entry
+at the end of the registry. This file stays free of numba, so that laws can be listed without
+compiling any.
 """
 
 from __future__ import annotations

@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.contact.jackson_green import ONSET, critical_indentation, indentation_at
-from impactlab.solver.contact.mjg import loading
 from impactlab.solver.contact.jackson_green import radius as radius
+from impactlab.solver.contact.mjg import loading
 from impactlab.solver.jit import compiled
 from impactlab.solver.types import Unloading
 

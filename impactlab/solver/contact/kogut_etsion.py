@@ -59,13 +59,13 @@ def limit(E: float, R: float, S_y: float, nu: float) -> float:
 def radius(delta: float, E: float, R: float, S_y: float, nu: float) -> float:
     """Return the radius (m) of the contact circle, from its area over that of first yield.
 
-    0.93 y^1.136 up to y = 6, 0.94 y^1.146 up to 110 (remembered), beyond that the truncated
-    sphere's, 2 y.
+    0.93 y^1.136 up to y = 6, 0.94 y^1.146 up to 110 (remembered), but no less than Hertz's, y;
+    beyond that the truncated sphere's, 2 y.
     """
     y = delta / _critical_indentation(E, R, S_y, nu)
     area = y
     if y > FULLY_PLASTIC:
         area = 2.0 * y
     elif y > 1.0:
-        area = 0.93 * y**1.136 if y <= ELASTIC_PLASTIC else 0.94 * y**1.146
+        area = max(y, 0.93 * y**1.136 if y <= ELASTIC_PLASTIC else 0.94 * y**1.146)
     return math.sqrt(R * delta * area / y)

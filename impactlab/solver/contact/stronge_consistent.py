@@ -14,6 +14,7 @@ import math
 
 from impactlab.solver.contact.stronge import force_ratio, yield_indentation
 from impactlab.solver.contact.stronge import limit as limit
+from impactlab.solver.contact.stronge import radius as radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.types import Unloading
 

@@ -50,4 +50,4 @@ for _number in reversed(range(len(LAWS))):  # the first laws are asked for first
     curve, limit = _link("curve", _number, curve), _link("limit", _number, limit)
     radius = _link("radius", _number, radius)
 """curve(law, delta, E, R, S_y, nu) -> (F, K, delta_r, n); limit(law, E, R, S_y, nu) and
-radius(law, delta, E, R, S_y, nu) -> m: those of law number `law`, NaN for a number that no law has."""
+radius(law, delta, E, R, S_y, nu) -> m: those of law number `law`, NaN for a number of no law."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from impactlab.model.parameters import ELEMENTS, PARAMETERS
-from impactlab.solver import BEAM_MODELS, RULES, SCHEMES
+from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.types import CASE
 
@@ -19,7 +19,7 @@ def test_fields_are_the_parameters_and_the_duration():
 
 def test_a_record_has_every_value_in_its_place(make_case):
     names = {"contact": "hertz", "beam_model": "elastic", "rule": "layers"}
-    names |= {"scheme": "modal"}
+    names |= {"scheme": "modal", "load": "contact_patch"}
     numbers = {
         name: 0.5 + number / 100
         for number, (name, entry) in enumerate(OF_KERNELS.items())
@@ -32,6 +32,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
     numbers_of_names = {
         "contact": LAWS.index("hertz"),
         "beam_model": BEAM_MODELS.index("elastic"),
+        "load": LOADS.index("contact_patch"),
         "rule": RULES.index("layers"),
         "scheme": SCHEMES.index("modal"),
     }

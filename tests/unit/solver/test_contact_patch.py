@@ -43,15 +43,15 @@ def test_the_share_of_a_mode_is_the_transform_of_the_load(z):
 
 @pytest.mark.parametrize("law", LAWS)
 def test_the_circle_is_that_of_hertz_until_first_yield_and_wider_beyond(law):
-    E, R, S_y, nu = STEEL
+    E, R, S_y, _ = STEEL
     number, deepest = LAWS.index(law), limit(LAWS.index(law), *STEEL)
     early = np.geomspace(1e-9, 0.9, 5) * (0.5 * np.pi * 1.6 * S_y / E) ** 2 * R
     assert [radius(number, d, *STEEL) for d in early] == pytest.approx(np.sqrt(R * early))
     deltas = np.geomspace(1e-6 * R, deepest, 400)
     radii = np.array([radius(number, delta, *STEEL) for delta in deltas])
     assert np.all(np.diff(radii) > 0)
-    ratio = radii**2 / (R * deltas)  # from the sphere's to twice it, the truncated sphere's
-    assert np.all((ratio > 0.92) & (ratio < 2.01))
+    ratio = radii**2 / (R * deltas)  # 2: the truncated sphere; fits to finite elements go beyond
+    assert np.all((ratio > 0.999) & (ratio < 4.0))
 
 
 def test_the_range_of_stronge_ends_where_the_circle_is_as_wide_as_the_sphere():
