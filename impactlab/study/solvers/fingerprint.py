@@ -11,7 +11,7 @@ import dis
 import sys
 import sysconfig
 from collections.abc import Iterator
-from functools import partial, singledispatch
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
@@ -46,74 +46,51 @@ def _tokens(value: Any, name: str, seen: set[int]) -> Iterator[str]:
         yield from _content(value if compiled is None else compiled, name, seen)
 
 
-@singledispatch
 def _content(value: Any, name: str, seen: set[int]) -> Iterator[str]:
-    raise ValueError(
-        f"{name} is of type {type(value).__name__}, which cannot be identified, so that answers of "
-        "another function could be taken for its own: give il.Function(..., version='1'), and "
-        "change the version whenever its answers change"
-    )
+    match value:
+        case tuple() | list():
+            for each in value:
+                yield from _tokens(each, name, seen)
+        case set() | frozenset():
+            yield from sorted(" ".join(_tokens(each, name, seen)) for each in value)
+        case dict():
+            yield from _tokens([*value.items()], name, seen)
+        case np.ndarray() if value.dtype.kind == "O":
+            yield from _tokens(value.tolist(), name, seen)
+        case np.ndarray():
+            content = sha256(np.ascontiguousarray(value).data).hexdigest()
+            yield f"{value.dtype} {value.shape} {content}"
+        case partial():
+            yield from _tokens((value.func, value.args, value.keywords), name, seen)
+        case _:
+            yield from _code(value, name, seen)
 
 
-@_content.register(tuple)
-@_content.register(list)
-def _(value: Any, name: str, seen: set[int]) -> Iterator[str]:
-    for each in value:
-        yield from _tokens(each, name, seen)
-
-
-@_content.register(set)
-@_content.register(frozenset)
-def _(value: Any, name: str, seen: set[int]) -> Iterator[str]:
-    yield from sorted(" ".join(_tokens(each, name, seen)) for each in value)
-
-
-@_content.register
-def _(value: dict, name: str, seen: set[int]) -> Iterator[str]:  # type: ignore[type-arg]
-    yield from _tokens([*value.items()], name, seen)
-
-
-@_content.register
-def _(value: np.ndarray, name: str, seen: set[int]) -> Iterator[str]:
-    if value.dtype.kind == "O":
-        yield from _tokens(value.tolist(), name, seen)
-    else:
-        content = sha256(np.ascontiguousarray(value).data).hexdigest()
-        yield f"{value.dtype} {value.shape} {content}"
-
-
-@_content.register
-def _(value: CodeType, name: str, seen: set[int]) -> Iterator[str]:
-    yield f"{value.co_code.hex()} {value.co_names} {value.co_varnames} {value.co_flags}"
-    yield from _tokens(value.co_consts, name, seen)
-
-
-@_content.register
-def _(value: FunctionType, name: str, seen: set[int]) -> Iterator[str]:
-    code = value.__code__
-    yield from _tokens(code, name, seen)
-    yield from _tokens((value.__defaults__, value.__kwdefaults__), "a default", seen)
-    for variable, cell in zip(code.co_freevars, value.__closure__ or (), strict=True):
-        yield from _tokens(cell.cell_contents, f"its variable {variable}", seen)
-    for variable in sorted(_globals(code) & value.__globals__.keys()):
-        yield variable
-        yield from _tokens(value.__globals__[variable], f"its global {variable}", seen)
-
-
-@_content.register
-def _(value: partial, name: str, seen: set[int]) -> Iterator[str]:  # type: ignore[type-arg]
-    yield from _tokens((value.func, value.args, value.keywords), name, seen)
-
-
-@_content.register
-def _(value: ModuleType, name: str, seen: set[int]) -> Iterator[str]:
-    yield sha256(Path(str(value.__file__)).read_bytes()).hexdigest()
-
-
-@_content.register
-def _(value: type, name: str, seen: set[int]) -> Iterator[str]:
-    own = {key: each for key, each in vars(value).items() if isinstance(each, FunctionType)}
-    yield from _tokens((value.__bases__, own), name, seen)
+def _code(value: Any, name: str, seen: set[int]) -> Iterator[str]:
+    match value:
+        case CodeType():
+            yield f"{value.co_code.hex()} {value.co_names} {value.co_varnames} {value.co_flags}"
+            yield from _tokens(value.co_consts, name, seen)
+        case FunctionType():
+            code = value.__code__
+            yield from _tokens(code, name, seen)
+            yield from _tokens((value.__defaults__, value.__kwdefaults__), "a default", seen)
+            for variable, cell in zip(code.co_freevars, value.__closure__ or (), strict=True):
+                yield from _tokens(cell.cell_contents, f"its variable {variable}", seen)
+            for variable in sorted(_globals(code) & value.__globals__.keys()):
+                yield variable
+                yield from _tokens(value.__globals__[variable], f"its global {variable}", seen)
+        case ModuleType():
+            yield sha256(Path(str(value.__file__)).read_bytes()).hexdigest()
+        case type():
+            own = {key: each for key, each in vars(value).items() if isinstance(each, FunctionType)}
+            yield from _tokens((value.__bases__, own), name, seen)
+        case _:
+            raise ValueError(
+                f"{name} is of type {type(value).__name__}, which cannot be identified, so that "
+                "answers of another function could be taken for its own: give "
+                "il.Function(..., version='1'), and change the version whenever its answers change"
+            )
 
 
 def _globals(code: CodeType) -> set[str]:
