@@ -143,7 +143,21 @@ WITNESS = _table(
         "m",
         "distance from the centre of the impact to which the struck surface has a PEEQ above 0.2 %",
         comment="of the 3-D model alone: NaN for models of the beam",
-    )
+    ),
+    Variable(
+        "plastic_zone_depth",
+        (),
+        "m",
+        "depth below the centre of the impact to which the beam has a PEEQ above 0.2 %",
+        comment="of the 3-D model alone: NaN for models of the beam",
+    ),
+    Variable(
+        "processor_time",
+        (),
+        "s",
+        "processor time of the run, meshing included",
+        comment="of the 3-D model alone: NaN for models of the beam; differs from run to run",
+    ),
 )
 """What comes with the runs of the 3-D model beside the responses, by name."""
 HISTORIES = _table(

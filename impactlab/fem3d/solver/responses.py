@@ -166,22 +166,41 @@ LIMIT = 0.002
 def surface_reach(run: xr.Dataset, limit: float = LIMIT) -> float:
     """Return the distance in m along the beam from the impact's centre to where PEEQ is `limit`.
 
-    run: as solve gives it. On the struck surface at mid-width, in the shape before the impact: the
-    outermost place where the line through the means of the top elements comes down to the limit; 0
-    where none is above it.
+    run: as solve gives it. On the struck surface at mid-width, see _outermost.
+    """
+    return _outermost(run, limit, along=0)
+
+
+def depth_reach(run: xr.Dataset, limit: float = LIMIT) -> float:
+    """Return the depth in m below the centre of the impact at which PEEQ falls to `limit`.
+
+    run: as solve gives it. At mid-width and mid-span, see _outermost.
+    """
+    return _outermost(run, limit, along=2)
+
+
+def _outermost(run: xr.Dataset, limit: float, along: int) -> float:
+    """Return how far from the centre a row of beam elements has a PEEQ above `limit`, in m.
+
+    along: the axis of the row, 0 (the beam's) or 2 (depth). In the shape before the impact: the
+    outermost place where the line through the means of the elements comes down to the limit; 0
+    where none is above it, the last element's middle where all are.
     """
     points = run["node_position"].values[run["element_nodes"].values]
     edge = 1e-6 * float(run["element_size"])
-    top = (run["body"].values == BEAM) & (points[:, :, 2].max(axis=1) > -edge)
-    row = top & (points[:, :, 1].min(axis=1) < edge)
-    x = points[row, :, 0].mean(axis=1)
-    order = np.argsort(x)
-    x, strain = x[order], run["equivalent_plastic_strain"].values[row][order]
+    row = (run["body"].values == BEAM) & (points[:, :, 1].min(axis=1) < edge)
+    if along == 0:
+        row &= points[:, :, 2].max(axis=1) > -edge
+    else:
+        row &= points[:, :, 0].min(axis=1) < edge
+    reach = np.abs(points[row, :, along].mean(axis=1))
+    order = np.argsort(reach)
+    reach, strain = reach[order], run["equivalent_plastic_strain"].values[row][order]
     above = np.flatnonzero(strain > limit)
     if not above.size:
         return 0.0
     last = int(above[-1])
-    if last + 1 == x.size:
-        return float(x[last])
+    if last + 1 == reach.size:
+        return float(reach[last])
     share = (strain[last] - limit) / (strain[last] - strain[last + 1])
-    return float(x[last] + share * (x[last + 1] - x[last]))
+    return float(reach[last] + share * (reach[last + 1] - reach[last]))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import logging
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
@@ -23,7 +24,7 @@ from impactlab.fem3d.solver import Cost, estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver import solve as solve_alone
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.jit import COMPILER
-from impactlab.fem3d.solver.responses import surface_reach
+from impactlab.fem3d.solver.responses import depth_reach, surface_reach
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.model import cost
 from impactlab.model.checks import column, positive
@@ -149,12 +150,15 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
     answers: dict[str, Any] = {"status": stopped, "remarks": 0}
     given, size, duration = _impact_of(case), case["element_size"].item(), case["duration"].item()
     options: dict[str, Any] = {"element_size": size, "duration": duration, "samples": _STEPS}
+    begun = time.thread_time()
     try:
         patch = quarter_mesh(given, element_size=size).patch
         while "patch_needed" in (run := solve_alone(given, patch=patch, **options)).attrs:
             patch = 1.5 * patch
             again = "a 3-D run begins again with a patch of %.3g mm: %s"
             log.info(again, 1e3 * patch, run.attrs["stopped"])
+            begun = time.thread_time()
+        taken = time.thread_time() - begun
     except ValueError as error:  # no mesh of this size, or no larger patch
         log.warning("a 3-D run was not possible: %s", error)
         return answers
@@ -169,7 +173,8 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
         for name in HISTORIES:
             if name in run:
                 answers[name] = np.interp(times, run["time"].values, run[name].values)
-    return answers | {"plastic_zone_radius": surface_reach(run), "status": int(run["status"])}
+    zone = {"plastic_zone_radius": surface_reach(run), "plastic_zone_depth": depth_reach(run)}
+    return answers | zone | {"processor_time": taken, "status": int(run["status"])}
 
 
 def cases(design: xr.Dataset, runs: Array) -> Array:
