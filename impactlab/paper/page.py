@@ -21,12 +21,27 @@ from impactlab.figures.labels import Display, display
 from impactlab.figures.record import Figure
 from impactlab.files import check_source, read_netcdf, replaced
 from impactlab.paper.statements import judge_all
-from impactlab.paper.statements.statement import Judgement, Statement, Verdict
+from impactlab.paper.statements.statement import Judgement, Kind, Statement, Verdict
 from impactlab.report.page import Cell, Row, Table, pictures, provenance, write_page
 from impactlab.variables import provenance as made_now
 
 log = logging.getLogger(__name__)
 
+MIXED = "depends on the reading"
+"""What is said of a statement whose cases differ."""
+SECTIONS = {
+    Kind.STATEMENT: ("Statements", "Each entry has a test, and a row per case or reading."),
+    Kind.MISPRINT: (
+        "Misprints",
+        "Each entry has what is printed, what holds instead, and the test that shows it.",
+    ),
+    Kind.OBSERVATION: (
+        "Observations of ours",
+        "The paper leaves these open, and does not state them: what a reader who repeats its work "
+        "meets.",
+    ),
+}
+"""Title and first paragraph of each section of judgements."""
 Judged = Sequence[tuple[Statement, list[Judgement]]]
 FIGURES = (
     ("05a", "fig05", "first_contact"),
@@ -59,9 +74,10 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
             log.warning("%s holds no runs.nc with an analysis.nc: it is left out", folder)
     runs = {name: pair[0] for name, pair in stored.items()}
     judged = judge_all(runs)
-    statements = [entry for entry in judged if not entry[0].holds]
-    misprints = [entry for entry in judged if entry[0].holds]
-    tally = Counter(each.verdict for _, judgements in statements for each in judgements)
+    groups = {kind: [entry for entry in judged if entry[0].kind is kind] for kind in Kind}
+    statements = groups[Kind.STATEMENT]
+    tally = Counter(_summary(judgements) for _, judgements in statements)
+    cases = Counter(each.verdict for _, judgements in statements for each in judgements)
     drawings = []
     for number, study, name in FIGURES:
         figure = applicable(*stored[study]).get(name) if study in stored else None
@@ -76,10 +92,17 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
         "statements.html.j2",
         output / "claims.html",
         package="impactlab.paper",
-        tally=[(tally[verdict], str(verdict)) for verdict in Verdict],
-        overviews=[_overview(statements), _misprints(misprints)],
-        statements=[(statement, _cases(judgements)) for statement, judgements in statements],
-        misprints=[(statement, _cases(judgements)) for statement, judgements in misprints],
+        tally=[(tally[words], words) for words in (*Verdict, MIXED) if tally[words]],
+        cases=[(cases[verdict], verdict) for verdict in Verdict],
+        overviews=[
+            _overview(statements),
+            _misprints("Misprints", groups[Kind.MISPRINT], "Printed", "Verdict on the print"),
+            _misprints("Observations of ours", groups[Kind.OBSERVATION], "Test", "Verdict"),
+        ],
+        groups=[
+            (kind.name.lower(), title, lead, [(one, _cases(found)) for one, found in groups[kind]])
+            for kind, (title, lead) in SECTIONS.items()
+        ],
         pictures=pictures(output / "figures").values(),
         solved=_solved(runs),
         provenance=provenance(xr.Dataset(attrs=made_now()), "page"),
@@ -93,25 +116,43 @@ def _caption(study: str, figure: Figure, runs: xr.Dataset, analysis: xr.Dataset)
     return " ".join(filter(None, (shown, labels.fixed(runs), why, f"Study: {study}.")))
 
 
+def _summary(judgements: Iterable[Judgement]) -> str:
+    """Return the verdict of all cases; "holds" where some need a reading; MIXED where they differ.
+
+    Cases that cannot be judged count where all are such.
+    """
+    found = {judgement.verdict for judgement in judgements}
+    if len(found) > 1:
+        found.discard(Verdict.UNKNOWN)
+    if found == {Verdict.HOLDS, Verdict.READING}:
+        return str(Verdict.HOLDS)
+    return MIXED if len(found) > 1 else str(found.pop())
+
+
 def _overview(judged: Judged) -> Table:
-    """Return one row per statement: the number of its cases with each verdict."""
-    head = ["Statement of the paper", *(labels.sentence(verdict) for verdict in Verdict)]
+    """Return one row per statement: the verdict, its first case, and the numbers of its cases."""
     rows: list[Row] = []
     for statement, judgements in judged:
         counts = Counter(judgement.verdict for judgement in judgements)
-        cells = [Cell(str(counts[verdict] or "–"), "number") for verdict in Verdict]
-        rows.append([statement.text, *cells])
-    return Table("Statements: number of cases or readings with each verdict", head, rows)
+        first, verdict = judgements[0], _summary(judgements)
+        stands = verdict in (Verdict.HOLDS, Verdict.READING)
+        cells = [Cell(str(counts[each] or "–"), "number") for each in Verdict]
+        answer = f"{labels.sentence(first.case)}: {first.why}"
+        rows.append([statement.text, Cell(verdict, "" if stands else "warning"), answer, *cells])
+    head = ["Statement of the paper", "Verdict", "First case or reading"]
+    head += ["Cases: hold", "under a reading", "do not", "unknown"]
+    return Table(
+        "Statements: the verdict, and the number of cases or readings with each", head, rows
+    )
 
 
-def _misprints(judged: Judged) -> Table:
-    """Return one row per misprint: the print, what holds, and the verdict on the print."""
-    head = ["Printed, or left open", "What holds", "Verdict on the print"]
+def _misprints(caption: str, judged: Judged, what: str, verdict: str) -> Table:
+    """Return one row per misprint or observation: what is tested, what holds, and the verdict."""
     rows: list[Row] = [
         [statement.text, statement.holds, Cell(first.verdict, detail=statement.name)]
         for statement, (first, *_) in judged
     ]
-    return Table("Misprints and open points of the paper", head, rows)
+    return Table(caption, [what, "What holds", verdict], rows)
 
 
 def _cases(judgements: Iterable[Judgement]) -> Table:
@@ -142,11 +183,12 @@ def _solved(data: Mapping[str, xr.Dataset]) -> Table:
 
 def _write_tables(judged: Judged, output: Path) -> None:
     """Write one row per judgement, and one row per number in SI units."""
-    claims = [["claim", "statement", "case", "test", "numbers", "verdict", "why"]]
+    claims = [["claim", "kind", "statement", "case", "test", "numbers", "verdict", "why"]]
     numbers = [["claim", "case", "number", "value", "uncertainty", "units"]]
     for statement, judgements in judged:
         for each in judgements:
-            about = [statement.name, statement.text, each.case, statement.test]
+            about = [statement.name, statement.kind.name.lower(), statement.text]
+            about += [each.case, statement.test]
             claims.append([*about, _numbers(each), str(each.verdict), each.why])
             for one in each.numbers:
                 values = [f"{one.value:.9g}", f"{one.uncertainty:.3g}"]
@@ -158,7 +200,10 @@ def _write_tables(judged: Judged, output: Path) -> None:
 
 
 def _numbers(judgement: Judgement) -> str:
-    """Return "peak force: 12.34 ± 0.11 kN", with the digits that the uncertainty leaves."""
+    """Return "peak force: 12.34 ± 0.11 kN", with the digits that the uncertainty leaves.
+
+    An uncertainty below the fifth digit is left out.
+    """
     texts = []
     for number in judgement.numbers:
         unit = display(xr.DataArray([number.value], attrs={"units": number.units}))
@@ -170,7 +215,7 @@ def _numbers(judgement: Judgement) -> str:
             value_power, width_power = np.floor(np.log10([abs(value), width]))
             digits = int(np.clip(value_power - width_power + 2, 2, 5))
         text = labels.number(value, digits)
-        if width:
+        if not width <= 0.5e-5 * abs(value):
             text = f"{text} ± {labels.number(width, 2) if np.isfinite(width) else 'unknown'}"
         texts.append(f"{number.name}: {text} {unit.symbol}".strip())
     return "; ".join(texts)

@@ -1,16 +1,23 @@
-"""The paper's statements and misprints, tested on solved studies.
+"""The paper's statements and misprints, and observations of ours, tested on solved studies.
 
 A new statement is a function marked `@statement` in the module of its subject.
 """
 
 from __future__ import annotations
 
-from impactlab.paper.statements import beam, misprints, three_d
+from impactlab.paper.statements import (
+    convergence,
+    misprints,
+    omissions,
+    plastic_strain,
+    three_d,
+    velocity,
+)
 from impactlab.paper.statements.statement import Data, Judgement, Statement
 
 STATEMENTS: list[Statement] = [
     entry
-    for module in (beam, three_d, misprints)
+    for module in (three_d, convergence, velocity, plastic_strain, omissions, misprints)
     for entry in vars(module).values()
     if isinstance(entry, Statement)
 ]

@@ -22,6 +22,10 @@ Data = Mapping[str, xr.Dataset]
 Case = tuple[Any, ...]
 BEAM = "euler_bernoulli"
 """The paper's beam, among `beam_model`."""
+VELOCITY = 0.99
+"""The paper's impact velocity, m/s."""
+PRINTED_DIFFERENCE = 0.024
+"""What the paper says of its force against finite elements; its scale where it says "small"."""
 
 
 class Verdict(StrEnum):
@@ -31,6 +35,14 @@ class Verdict(StrEnum):
     READING = "holds under the stated reading"
     FAILS = "does not hold"
     UNKNOWN = "cannot be judged"
+
+
+class Kind(StrEnum):
+    """What a test is about."""
+
+    STATEMENT = "statement of the paper"
+    MISPRINT = "misprint"
+    OBSERVATION = "observation of ours, of something that the paper leaves open"
 
 
 class UnknownError(Exception):
@@ -74,7 +86,7 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Statement:
-    """A statement of the paper, or a misprint, with its test.
+    """A statement of the paper, a misprint, or an observation of ours, with its test.
 
     name: identifies it in the CSV files and in links.
     judge_case: a function (words of the case, data, the rest of the case) that judges one case; it
@@ -82,7 +94,8 @@ class Statement:
     text: the paper's words in short. test: the formula in words.
     cases: tuples that begin with their words, or a function that returns them for the data.
     studies: names of the studies that it is judged on; empty where closed forms suffice.
-    holds: what holds in place of a misprint; empty for a statement.
+    holds: what holds in place of a misprint, or instead of what may be expected; empty for a
+        statement.
     """
 
     name: str
@@ -92,6 +105,7 @@ class Statement:
     cases: tuple[Case, ...] | Callable[[Data], Iterable[Case]]
     studies: tuple[str, ...] = ()
     holds: str = ""
+    kind: Kind = Kind.STATEMENT
 
     def judge(self, data: Data) -> Iterator[Judgement]:
         """Yield one judgement per case: UNKNOWN, with the reason, where a run is missing."""
@@ -124,6 +138,23 @@ def judged(
     if not stands:
         return Judgement(case, numbers, Verdict.FAILS, otherwise or why)
     return Judgement(case, numbers, Verdict.HOLDS if literal else Verdict.READING, why)
+
+
+def within(gap: Number, limit: float) -> bool:
+    """Return whether a difference may be as small as `limit`: |gap| - U <= limit.
+
+    Raises UnknownError where its uncertainty is not known.
+    """
+    if not np.isfinite(gap.uncertainty):
+        raise UnknownError(f"nothing bounds the numerical error of the {gap.name}")
+    return abs(gap.value) - gap.uncertainty <= limit
+
+
+def relative(ours: Number, other: Number, name: str) -> Number:
+    """Return ours/other - 1 in %, with the uncertainties of both."""
+    ratio = ours.value / other.value
+    share = ours.uncertainty / abs(ours.value) + other.uncertainty / abs(other.value)
+    return Number(name, ratio - 1.0, "1", abs(ratio) * share, percent=True)
 
 
 def runs_of(data: Data, study: str) -> xr.Dataset:
@@ -164,14 +195,21 @@ def finest_grid(runs: xr.Dataset, response: str, **where: Any) -> Number:
         study = runs.attrs.get("study", "?")
         raise UnknownError(f"the study {study} does not vary the nodes: no uncertainty is known")
     by_grid = select_response(runs, response, **where).sortby("nodes", ascending=False)
-    values = by_grid.values.astype(float)
-    uncertainty = float("nan")
-    if len(values) >= 3:
-        index = judge(values, 1.0 / (by_grid["nodes"].values - 1.0)).gci
-        scatter = SAFETY_DOUBTFUL * float(np.ptp(values[:3]))
-        uncertainty = float(index * abs(values[0])) if np.isfinite(index) else scatter
     entry = RESPONSES[response]
-    return Number(entry.long_name, float(values[0]), entry.units, uncertainty)
+    return Number(entry.long_name, float(by_grid[0]), entry.units, uncertain(by_grid))
+
+
+def uncertain(by_grid: xr.DataArray) -> float:
+    """Return the uncertainty of the finest grid; by_grid: on `nodes`, the finest first.
+
+    See finest_grid; NaN where there are fewer than three grids.
+    """
+    values = by_grid.values.astype(float)
+    if len(values) < 3:
+        return float("nan")
+    index = judge(values, 1.0 / (by_grid["nodes"].values - 1.0)).gci
+    scatter = SAFETY_DOUBTFUL * float(np.ptp(values[:3]))
+    return float(index * abs(values[0])) if np.isfinite(index) else scatter
 
 
 def response_curve(data: Data, study: str, response: str, **where: Any) -> dict[float, Number]:

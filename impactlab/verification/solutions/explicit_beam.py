@@ -37,19 +37,22 @@ def highest_frequency(beam: Beam, nodes: int) -> float:
     return 4.0 / dx**2 * math.sqrt(beam.bending_stiffness / beam.mass_per_length)
 
 
-def growth(frequency: float, dt: float) -> float:
-    """Return |lambda|, the larger root of lambda^2 - (2 - (omega dt)^2) lambda + 1 = 0."""
-    half = 0.5 * (frequency * dt) ** 2 - 1.0
+def growth(frequency: float, dt: float, sign: float = 1.0) -> float:
+    """Return |lambda|, the larger root of lambda^2 - (2 - sign (omega dt)^2) lambda + 1 = 0.
+
+    sign: -1 for w_tt = +(EI/mu) w_xxxx, the moment's sign turned round.
+    """
+    half = abs(0.5 * sign * (frequency * dt) ** 2 - 1.0)
     return 1.0 if half <= 1.0 else half + math.sqrt(half**2 - 1.0)
 
 
-def march(beam: Beam, nodes: int, dt: float, steps: int) -> Floats:
+def march(beam: Beam, nodes: int, dt: float, steps: int, sign: float = 1.0) -> Floats:
     """Return the largest |w| in m after each of `steps` steps of dt, from 1 m/s at mid-span.
 
-    Steps after an overflow hold infinity.
+    sign: see growth. Steps after an overflow hold infinity.
     """
     dx = beam.span / (nodes - 1)
-    stiffness = beam.bending_stiffness / beam.mass_per_length
+    stiffness = sign * beam.bending_stiffness / beam.mass_per_length
     w, v = np.zeros(nodes), np.zeros(nodes)
     v[nodes // 2] = 1.0
     largest = np.full(steps, np.inf)
