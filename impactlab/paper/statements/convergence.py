@@ -96,8 +96,11 @@ def _nodes_error(data: Data, velocity: float, name: str) -> tuple[Number, float]
     where = {"velocity": velocity, "points": int(runs["points"].max())}
     values = select_response(runs, name, **where).sortby("nodes", ascending=False)
     finest = finest_grid(runs, name, **where)
-    limit = judge_convergence(values.values.astype(float), 1.0 / (values["nodes"].values - 1.0))
-    reference = limit.extrapolated if np.isfinite(limit.extrapolated) else finest.value
+    reference = finest.value
+    if values.size >= 3:
+        spacings = 1.0 / (values["nodes"].values - 1.0)
+        limit = judge_convergence(values.values.astype(float), spacings).extrapolated
+        reference = limit if np.isfinite(limit) else reference
     share = finest.uncertainty / abs(reference) if reference else 0.0 if not finest.high else np.inf
     error = abs(values - reference) / (abs(reference) or 1.0)
     within = (error + share <= TOLERANCE).values

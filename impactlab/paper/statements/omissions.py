@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import sqrt
 
 import numpy as np
 
+from impactlab.figures import labels
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, paper_impact
 from impactlab.paper.statements.statement import (
@@ -65,9 +67,17 @@ def shear(case: str, data: Data, velocity: float, limit: float) -> Judgement:
             for model in ("timoshenko", BEAM)
         )
         gaps.append(relative(with_shear, without, f"change of the {words}"))
+    return _judge_changes(case, (), gaps, limit)
+
+
+def _judge_changes(
+    case: str, numbers: Iterable[Number], gaps: Sequence[Number], limit: float
+) -> Judgement:
+    """Judge changes of responses against the limit of a reading."""
     small = all(within(gap, limit) for gap in gaps)
-    why = "No change is larger."
-    return judged(case, tuple(gaps), small, why, "A change is larger.", literal=not limit)
+    worst = max(gaps, key=lambda gap: abs(gap.value))
+    why = f"The largest {worst.name}: {labels.number(100 * worst.value, 2)} %."
+    return judged(case, (*numbers, *gaps), small, why, literal=not limit)
 
 
 RATE_CONSTANTS = {"mild steel": (40.4, 5.0), "high-tensile steel": (3200.0, 5.0)}
@@ -116,10 +126,7 @@ def strain_rate(case: str, data: Data, velocity: float, limit: float) -> Judgeme
         ends = np.interp(static * np.array(factors), stresses, changes)
         both = width + 0.5 * float(np.ptp(ends))
         gaps.append(Number(f"change of the {words}", float(ends.mean()), "1", both, percent=True))
-    small = all(within(gap, limit) for gap in gaps)
-    larger = "A change is larger with any of the constants."
-    why = "No change need be larger."
-    return judged(case, (*numbers, *gaps), small, why, larger, literal=not limit)
+    return _judge_changes(case, numbers, gaps, limit)
 
 
 @statement(

@@ -168,7 +168,8 @@ def _judge_limit(
         why += "under a point load the strain has no limit in the nodes; a load spread over the "
         why += "contact has one, and would decide."
         return Judgement(case, (strain,), Verdict.UNKNOWN, why)
-    why = f"It lies {'below' if under else 'above'} the limit by more than its uncertainty."
+    side = "below" if under else "above"
+    why = f"{100 * strain.value:.2g} % lies {side} the limit by more than its uncertainty."
     return judged(case, (strain,), under is below, why, literal=literal)
 
 

@@ -38,7 +38,7 @@ class Verdict(StrEnum):
 
 
 class Kind(StrEnum):
-    """What a test is about."""
+    """The subject of a test."""
 
     STATEMENT = "statement of the paper"
     MISPRINT = "misprint"

@@ -9,6 +9,7 @@ import xarray as xr
 
 from impactlab.analysis.convergence.axes import ELEMENT_SIZE
 from impactlab.analysis.convergence.judgement import numerical_uncertainty
+from impactlab.figures import labels
 from impactlab.model.impact import SOLID, paper_impact
 from impactlab.model.parameters import ELEMENTS
 from impactlab.paper.statements.statement import (
@@ -124,7 +125,7 @@ def _distance(data: Data, variable: str, norm: Norm, shifted: bool = False) -> N
     best = int(np.argmin(gaps))
     name = "difference over the 3-D model's"
     if shifted:
-        name += f" (the beam's later by {1e6 * delays[best]:.0f} µs)"
+        name += f" (the beam's shifted by {labels.number(1e6 * delays[best], 2)} µs)"
     return Number(name, gaps[best] / scale, "1", width, percent=True)
 
 
@@ -135,6 +136,12 @@ def _gap(data: Data, velocity: float, response: str) -> tuple[Number, ...]:
     ours = _bounded(finest_grid(runs, response, velocity=velocity, beam_model=BEAM))
     theirs = _solid_response(data, response, velocity)
     return ours, theirs, relative(ours, theirs, "difference, relative to the 3-D model")
+
+
+def _spelled(gap: Number) -> str:
+    """Return "They differ by −5.3 ± 0.1 %"."""
+    value, width = labels.number(100 * gap.value, 2), labels.number(100 * gap.uncertainty, 2)
+    return f"They differ by {value} ± {width} %"
 
 
 def _impulses(data: Data) -> tuple[Number, ...]:
@@ -174,8 +181,7 @@ def force_history(case: str, data: Data, measure: str) -> Judgement:
         numbers = (_distance(data, "contact_force", _norm, measure == "shifted"),)
     gap = numbers[-1]
     stands = within(gap, PRINTED_DIFFERENCE)
-    why = f"The difference is {100 * gap.value:.1f} ± {100 * gap.uncertainty:.1f} %: "
-    why += "compatible with 2.4 %." if stands else "larger than 2.4 %."
+    why = f"{_spelled(gap)}: {'compatible with' if stands else 'more than'} 2.4 %."
     return judged(case, numbers, stands, why, literal=measure == "L2")
 
 
@@ -196,7 +202,7 @@ def deflection_history(case: str, data: Data, limit: float) -> Judgement:
     """Judge the histories of the deflection at mid-span."""
     gap = _distance(data, "midspan_deflection", _largest)
     stands = within(gap, limit)
-    why = f"They differ by up to {100 * gap.value:.1f} % of the largest deflection."
+    why = f"{_spelled(gap)} of the largest deflection."
     return judged(case, (gap,), stands, why, literal=False)
 
 
@@ -221,9 +227,9 @@ def duration_of_witness(case: str, data: Data, velocity: float) -> Judgement:
     """Judge the durations of the first contact."""
     numbers = _gap(data, velocity, "contact_duration")
     gap = numbers[-1]
-    why = f"The beam's is {100 * abs(gap.value):.1f} % {'shorter' if gap.value < 0 else 'longer'}."
-    same = "The difference is within the uncertainty."
-    return judged(case, numbers, within(gap, 0.0), same, why)
+    stands = within(gap, 0.0)
+    why = f"{_spelled(gap)}: {'compatible' if stands else 'more than the uncertainty'}."
+    return judged(case, numbers, stands, why)
 
 
 PRINTED_EXTENT = 1.52e-3

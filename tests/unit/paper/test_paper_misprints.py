@@ -7,14 +7,16 @@ import pytest
 from impactlab.paper.statements import misprints
 from impactlab.paper.statements.statement import Statement, Verdict
 
-HOLDS, READING, FAILS, UNKNOWN = Verdict
+HOLDS, _, FAILS, _ = Verdict
 
 
 @pytest.mark.parametrize(
     ("statement", "expected"),
     [
         (misprints.time_step, [FAILS, HOLDS]),
-        (misprints.unloading_radius, [UNKNOWN, HOLDS, FAILS]),
+        (misprints.moment_sign, [FAILS, HOLDS]),
+        (misprints.acceleration_time, [FAILS, FAILS, HOLDS]),
+        (misprints.unloading_radius, [FAILS, FAILS, HOLDS]),
         (misprints.elastic_phase, [FAILS, HOLDS]),
         (misprints.fully_plastic, [FAILS, HOLDS]),
         (misprints.beam_mass, [FAILS]),
@@ -37,8 +39,15 @@ def test_numbers() -> None:
     assert numbers["time_step", "ω dt"] > 20.0
 
 
+def test_forces_of_the_printed_radii() -> None:
+    """Unloading over loading force at 65 µm, of Eq. 17, Table 1 and the derived form."""
+    found = [entry.numbers[0].value for entry in misprints.unloading_radius.judge({})]
+    assert found == pytest.approx([0.064, 0.00069, 1.0], rel=0.01)
+
+
 def test_a_right_mass_would_pass() -> None:
     assert misprints.beam_mass.judge_case("", {}, 10.15).verdict == HOLDS
+    assert misprints.beam_mass.judge_case("", {}, 10.40).verdict == FAILS
 
 
 def test_one_contact_would_pass(grid_runs) -> None:  # type: ignore[no-untyped-def]

@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from impactlab.files import read_netcdf, write_netcdf
-from impactlab.paper.page import write_paper
+from impactlab.paper.page import _summary, write_paper
+from impactlab.paper.statements.statement import Judgement, Verdict
 
 Study = Any
 
@@ -35,8 +36,8 @@ def test_page_tables_and_figures(velocity_study: Study, tmp_path: Path) -> None:
     claims = _rows(folder / "claims.csv")
     assert {"nodes_suffice", "time_step"} < {row["claim"] for row in claims}
     (mass,) = (row for row in claims if row["claim"] == "beam_mass")
-    assert mass["verdict"] == "does not hold"
-    assert "ρ B H L: 10.148 kg" in mass["numbers"]
+    assert (mass["verdict"], mass["kind"]) == ("does not hold", "misprint")
+    assert "ρ B H L: 10.15 ± 0.17 kg" in mass["numbers"]
     falls = next(row for row in claims if row["claim"] == "duration_falls")
     assert "nodes" in falls["why"] or falls["verdict"] == "cannot be judged"
 
@@ -44,6 +45,18 @@ def test_page_tables_and_figures(velocity_study: Study, tmp_path: Path) -> None:
     (span,) = (row for row in numbers if row["number"] == "span of the printed mass")
     assert float(span["value"]) == pytest.approx(0.84, abs=1e-3)
     assert span["units"] == "m"
+
+
+def test_a_statement_holds_as_a_whole_where_its_cases_do() -> None:
+    verdicts = {
+        (Verdict.HOLDS, Verdict.READING): "holds",
+        (Verdict.READING, Verdict.UNKNOWN): "holds under the stated reading",
+        (Verdict.HOLDS, Verdict.FAILS): "depends on the reading",
+        (Verdict.UNKNOWN, Verdict.FAILS): "does not hold",
+        (Verdict.UNKNOWN, Verdict.UNKNOWN): "cannot be judged",
+    }
+    for found, expected in verdicts.items():
+        assert _summary(Judgement("", (), each, "") for each in found) == expected
 
 
 def _rows(path: Path) -> list[dict[str, str]]:
