@@ -21,6 +21,7 @@ from impactlab.fem3d.solver.march import History, Moment, Progress
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Integers, nodal_masses, sphere_density
 from impactlab.fem3d.solver.responses import history_responses, plastic_responses
 from impactlab.fem3d.solver.solve import OWN, histories, named
+from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import integer, positive
 from impactlab.model.impact import Impact, Material
 from impactlab.variables import provenance
@@ -343,6 +344,7 @@ def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
 
 def _steel(engine: Engine, part: Any, number: int, material: Material, density: float) -> Any:
     """Return Kratos' properties of a material; density in kg/m3."""
+    refuse_rate(material)
     if material.kinematic_hardening_modulus > 0.0:
         raise ValueError(
             f"kinematic_hardening_modulus = {material.kinematic_hardening_modulus!r}: {LAW} of "

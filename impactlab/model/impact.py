@@ -27,7 +27,10 @@ class Material:
     density in kg/m3; youngs_modulus, yield_stress and the two hardening moduli in Pa
     (slope of the uniaxial yield stress, or of the back stress, against plastic strain);
     poissons_ratio without unit, 0 <= nu < 0.5. Hardening acts in the beam's fibres only: the
-    contact laws know the initial yield stress alone.
+    contact laws know the initial yield stress alone. rate_coefficient D (1/s) and rate_exponent q
+    (at least 1): at the plastic strain rate p' the yield stress is 1 + (p'/D)^(1/q) times the
+    static one, after Cowper and Symonds, in the beam's fibres and its contact
+    (solver/strain_rate.py); D = 0, the default, leaves it static.
 
     Raises ValueError naming the field when a value is not physical.
 
@@ -43,6 +46,8 @@ class Material:
     yield_stress: SI[float] = SI("Pa")
     isotropic_hardening_modulus: SI[float] = SI("Pa", 0.0)
     kinematic_hardening_modulus: SI[float] = SI("Pa", 0.0)
+    rate_coefficient: SI[float] = SI("s-1", 0.0)
+    rate_exponent: SI[float] = SI("1", 5.0)
 
     def __post_init__(self) -> None:
         for field in ("density", "youngs_modulus", "yield_stress"):
@@ -50,6 +55,12 @@ class Material:
         for field in ("isotropic_hardening_modulus", "kinematic_hardening_modulus"):
             modulus = number("Material", field, getattr(self, field))
             require(modulus >= 0, "Material", field, modulus, "must not be negative")
+        rate = number("Material", "rate_coefficient", self.rate_coefficient)
+        words = "must be above zero, or 0 for no dependence on the strain rate"
+        require(rate >= 0, "Material", "rate_coefficient", self.rate_coefficient, words)
+        exponent = number("Material", "rate_exponent", self.rate_exponent)
+        words = "must be at least 1"
+        require(exponent >= 1, "Material", "rate_exponent", self.rate_exponent, words)
         ratio = number("Material", "poissons_ratio", self.poissons_ratio)
         sound = (ratio >= 0) & (ratio < 0.5)
         require(sound, "Material", "poissons_ratio", ratio, "must be from 0 to below 0.5")

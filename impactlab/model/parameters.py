@@ -43,6 +43,8 @@ _MATERIAL = (
     ("yield_stress", "Pa", "yield stress"),
     ("isotropic_hardening_modulus", "Pa", "isotropic hardening modulus"),
     ("kinematic_hardening_modulus", "Pa", "kinematic hardening modulus"),
+    ("rate_coefficient", "s-1", "Cowper-Symonds coefficient"),
+    ("rate_exponent", "1", "Cowper-Symonds exponent"),
 )
 _ROWS = (
     ("velocity", "m s-1", "impact velocity", "impact.velocity"),
@@ -54,7 +56,7 @@ _ROWS = (
     ("sphere_mass", "kg", "mass of the sphere", "impact.sphere.mass"),
     *(
         (f"sphere_{field}", units, f"{words} of the sphere", f"impact.sphere.material.{field}")
-        for field, units, words in _MATERIAL[:4]  # a sphere does not harden
+        for field, units, words in _MATERIAL[:4]  # a sphere does not harden, nor by rate
     ),
     ("beam_span", "m", "span of the beam", "impact.beam.span"),
     ("beam_width", "m", "width of the beam", "impact.beam.width"),

@@ -24,6 +24,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "kg m-3": ("a density", "7.8 g/cm3"),
     "Pa": ("a stress", "345 MPa"),
     "s": ("a time", "12 ms"),
+    "s-1": ("a rate", "40.4 s-1"),
     "1": ("a pure number", "0.3"),
 }
 """SI units (UDUNITS spelling), with the kind of quantity and an example."""

@@ -5,6 +5,9 @@ follows a straight line, the tangent, and its fibres need not be touched: they a
 when the section turns back, when a further fibre begins to yield, or when they are asked for.
 Return mapping with linear hardening does not depend on the number of steps taken in one
 direction, so nothing is lost.
+
+Sections that yield by the rate (strain_rate.py) are on no tangent: they flow a little in every step
+in which they are outside their static interval.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from impactlab.solver.section import (
     FAR,
     Section,
     bend,
+    bend_at_rate,
     dissipated_energy,
     stored_energy,
     tangent,
@@ -33,7 +37,8 @@ class PlasticState(NamedTuple):
     section on its tangent. on_tangent: the number of these, then which they are, (n + 5,).
     tangent: (n + 4, 4), of these the direction (1 or -1), the growth of M_0 with kappa (N m2), the
     curvature at which a further fibre yields, and the present one (1/m). plastic_strain and peeq
-    of the fibres, (n + 4, P // 2).
+    of the fibres, (n + 4, P // 2). flowed: where the yield stress depends on the rate, a section's
+    curvature after its last flow (1/m) and the work of the overstress (J/m), (n + 4, 2).
     """
 
     M_0: Array
@@ -43,6 +48,7 @@ class PlasticState(NamedTuple):
     tangent: Array
     plastic_strain: Array
     peeq: Array
+    flowed: Array
 
 
 @allocating
@@ -57,6 +63,7 @@ def make_plastic_state(grid: Grid, section: Section) -> PlasticState:
         np.zeros((size, 4)),
         np.zeros((size, fibres)),
         np.zeros((size, fibres)),
+        np.zeros((size, 2)),
     )
 
 
@@ -163,15 +170,36 @@ def begin_tangents(
         if kappa > plastic_state.kappa_max[i] or kappa < plastic_state.kappa_min[i]:
             outside -= 1.0
             near = (beam.plastic[i - ONE], beam.plastic[i], beam.plastic[i + ONE])
-            _begin_tangent(beam, plastic_state, section, grid, i, kappa)
+            if section.rate.D > 0.0:
+                M_0 = flow(plastic_state, section, i, kappa, grid.dt)
+                _add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
+            else:
+                _begin_tangent(beam, plastic_state, section, grid, i, kappa)
+                plastic_state.on_tangent[0] += ONE
+                plastic_state.on_tangent[plastic_state.on_tangent[0]] = i
             for j in range(max(i - ONE, TWO), i + TWO):  # the support does not move
                 change = beam.plastic[j] - near[j + ONE - i]
                 u[j] += change
                 if w.size > 0:
                     w[j] += change
-            plastic_state.on_tangent[0] += ONE
-            plastic_state.on_tangent[plastic_state.on_tangent[0]] = i
     return int(i)
+
+
+@compiled
+def flow(plastic_state: PlasticState, section: Section, i: Index, kappa: float, dt: float) -> float:
+    """Let section i flow to kappa (1/m) in the time dt (s); return its new M_0 (N m)."""
+    M_0, plastic_state.kappa_min[i], plastic_state.kappa_max[i], work = bend_at_rate(
+        section,
+        kappa,
+        plastic_state.flowed[i, 0],
+        dt,
+        plastic_state.plastic_strain,
+        plastic_state.peeq,
+        i,
+    )
+    plastic_state.flowed[i, 0] = kappa
+    plastic_state.flowed[i, 1] += work
+    return float(M_0)
 
 
 @compiled
@@ -217,7 +245,7 @@ def plastic_energy(
             )
             times = 1.0 if i == grid.mid else 2.0
             stored += times * kept
-            dissipated += times * lost
+            dissipated += times * (lost + plastic_state.flowed[i, 1])
     return stored * grid.dx, dissipated * grid.dx
 
 

@@ -32,7 +32,7 @@ import numpy as np
 
 from impactlab.solver.beam import Grid
 from impactlab.solver.contact_patch import wave_share
-from impactlab.solver.fibre_plasticity import PlasticState, plastic_energy
+from impactlab.solver.fibre_plasticity import PlasticState, flow, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
 from impactlab.solver.section import Section, bend
 from impactlab.solver.state import Model, State
@@ -166,9 +166,12 @@ def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: G
         i = modes.near[k]
         kappa = mode_curvature(modes.q, modes.bent, i)
         if kappa > plastic.kappa_max[i] or kappa < plastic.kappa_min[i]:
-            M_0, plastic.kappa_min[i], plastic.kappa_max[i] = bend(
-                section, kappa, plastic.plastic_strain, plastic.peeq, i
-            )
+            if section.rate.D > 0.0:
+                M_0 = flow(plastic, section, i, kappa, grid.dt)
+            else:
+                M_0, plastic.kappa_min[i], plastic.kappa_max[i] = bend(
+                    section, kappa, plastic.plastic_strain, plastic.peeq, i
+                )
             length = grid.dx if i == grid.mid else 2.0 * grid.dx
             _add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
             plastic.M_0[i] = M_0

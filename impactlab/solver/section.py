@@ -24,6 +24,7 @@ import numpy as np
 
 from impactlab.solver import RULES
 from impactlab.solver.jit import allocating, called_from_python, compiled, vectorised
+from impactlab.solver.strain_rate import CowperSymonds, overstress_ratio
 from impactlab.solver.types import ELASTIC, Array, Record
 
 _LOBATTO = RULES.index("lobatto")
@@ -51,7 +52,8 @@ class Section(NamedTuple):
 
     z: distance from the axis, m, outermost first; area: twice B times the rule's weight, m2;
     lever: E area z, N m; each of shape (P // 2,). stiffness: (EI)_q = sum(E area z^2), N m2, the
-    rule's own. yield_curvature: where the outermost fibre first yields, 1/m.
+    rule's own. yield_curvature: where the outermost fibre first yields, 1/m. rate: see
+    strain_rate.py.
     """
 
     z: Array
@@ -60,6 +62,7 @@ class Section(NamedTuple):
     stiffness: float
     yield_curvature: float
     moduli: Moduli
+    rate: CowperSymonds
 
 
 @compiled
@@ -135,6 +138,7 @@ def make_section(case: Record) -> Section:
             case.beam_isotropic_hardening_modulus,
             case.beam_kinematic_hardening_modulus,
         ),
+        CowperSymonds(case.beam_rate_coefficient, case.beam_rate_exponent),
     )
 
 
@@ -195,6 +199,41 @@ def bend(
         kappa_min = max(kappa_min, -largest / z[j])
         kappa_max = min(kappa_max, -least / z[j])
     return M_0, kappa_min, kappa_max
+
+
+@compiled
+def bend_at_rate(
+    section: Section,
+    kappa: float,
+    before: float,
+    dt: float,
+    plastic_strain: Array,
+    peeq: Array,
+    i: int,
+) -> tuple[float, float, float, float]:
+    """Take the fibres of section i from the curvature `before` to kappa (1/m) in the time dt (s).
+
+    Returns as `bend`, and the work of the overstress (J/m). The new elastic interval is the static
+    one, which does not hold kappa as long as the section flows.
+    """
+    z, lever, (D, q) = section.z, section.lever, section.rate
+    E, S_y, H_i, H_k = section.moduli
+    M_0, kappa_min, kappa_max, work = 0.0, -FAR, FAR, 0.0
+    for j in range(z.size):
+        strain, slipped = plastic_strain[i, j], peeq[i, j]
+        Y, trial = S_y + H_i * slipped, -E * z[j] * kappa - (E + H_k) * strain
+        if abs(trial) > Y * (1.0 + _ROUND_OFF):
+            s = overstress_ratio(abs(trial), Y, H_i, E + H_k, D * dt, q)
+            slip = D * dt * s**q
+            over = max(abs(trial + E * z[j] * (kappa - before)) - Y, 0.0)
+            work += 0.5 * (over + s * (Y + H_i * slip)) * slip * section.area[j]
+            strain, slipped = strain + math.copysign(slip, trial), slipped + slip
+            plastic_strain[i, j], peeq[i, j] = strain, slipped
+        M_0 -= lever[j] * strain
+        least, largest = elastic_range(strain, slipped, E, S_y, H_i, H_k)
+        kappa_min = max(kappa_min, -largest / z[j])
+        kappa_max = min(kappa_max, -least / z[j])
+    return M_0, kappa_min, kappa_max, work
 
 
 @compiled

@@ -40,7 +40,8 @@ CASE = record(
     sphere_density sphere_youngs_modulus sphere_poissons_ratio sphere_yield_stress
     beam_span beam_width beam_depth shear_coefficient
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
-    beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus courant
+    beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
+    beam_rate_coefficient beam_rate_exponent courant
     """,
     whole="contact beam_model load nodes points rule scheme",
 )

@@ -10,6 +10,7 @@ from impactlab.verification import (
     modal_series,
     plasticity,
     schemes,
+    strain_rate,
     symmetry,
 )
 from impactlab.verification.finding import Check
@@ -35,6 +36,7 @@ _CHECKS = (
     contact.spring_mass,
     contact.rigid_beam,
     contact_patch.contact_patch,
+    strain_rate.strain_rate,
     energy.balances,
 )
 CATALOGUE: dict[str, Check] = {check.name: check for check in _CHECKS}

@@ -31,7 +31,7 @@ from impactlab.verification.solutions.beam_modes import (
     timoshenko_odd_modes,
 )
 
-VELOCITY, DURATION, STEPS, MODES = 10.0, 0.2e-3, 2000, 250
+VELOCITY, DURATION, STEPS, MODES = 10.0, 0.2e-3, 1000, 150
 GRIDS = {
     ("euler_bernoulli", "leapfrog"): (801, 0.15),
     ("euler_bernoulli", "modal"): (401, 0.01),

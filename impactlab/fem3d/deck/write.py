@@ -15,6 +15,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Integers, Mesh, sphere_density
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
+from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import instance, one_of, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, Material
@@ -113,6 +114,7 @@ def write_deck(
     _check_mesh(mesh, impact)
     beam, ball = impact.beam.material, impact.sphere.material
     for material in (beam, ball):
+        refuse_rate(material)
         if plastic and material.kinematic_hardening_modulus > 0.0 and not chosen.kinematic:
             raise ValueError(
                 f"deck: kinematic_hardening_modulus = {material.kinematic_hardening_modulus!r} Pa, "

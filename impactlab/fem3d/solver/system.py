@@ -53,8 +53,21 @@ class Group:
         return values.reshape(-1)[: self.elements.size]
 
 
+def refuse_rate(material: Material) -> None:
+    """Raise ValueError where the yield stress depends on the strain rate, which 3-D models lack."""
+    if material.rate_coefficient > 0.0:
+        raise ValueError(
+            f"Material.rate_coefficient = {material.rate_coefficient!r}: the beam models alone "
+            "have a strain rate: set it to 0"
+        )
+
+
 def metal(material: Material) -> Metal:
-    """Return E, nu, G, K, sigma_y, H_i, H_k."""
+    """Return E, nu, G, K, sigma_y, H_i, H_k.
+
+    Raises ValueError where the yield stress depends on the strain rate.
+    """
+    refuse_rate(material)
     E, nu = material.youngs_modulus, material.poissons_ratio
     return (
         E,

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from impactlab.solver.contact.switch import curve
 from impactlab.solver.jit import compiled
+from impactlab.solver.strain_rate import contact_rate, rate_factor
 from impactlab.solver.types import Record, record
 
 
@@ -44,13 +45,20 @@ _GAUSS = (
 
 @compiled
 def make_pair(case: Record) -> Pair:
-    """Return sphere against flat beam: 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b, R* = R_s."""
+    """Return sphere against flat beam: 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b, R* = R_s.
+
+    The beam's yield stress is that at its strain rate under the contact (strain_rate.py).
+    """
     compliance = (1.0 - case.sphere_poissons_ratio**2) / case.sphere_youngs_modulus + (
         1.0 - case.beam_poissons_ratio**2
     ) / case.beam_youngs_modulus
     E, R = 1.0 / compliance, case.sphere_radius
-    if case.beam_yield_stress <= case.sphere_yield_stress:
-        return Pair(case.contact, E, R, case.beam_yield_stress, case.beam_poissons_ratio)
+    factor = rate_factor(
+        contact_rate(case, E, R), case.beam_rate_coefficient, case.beam_rate_exponent
+    )
+    S_y = case.beam_yield_stress * factor
+    if S_y <= case.sphere_yield_stress:
+        return Pair(case.contact, E, R, S_y, case.beam_poissons_ratio)
     return Pair(case.contact, E, R, case.sphere_yield_stress, case.sphere_poissons_ratio)
 
 

@@ -192,6 +192,16 @@ def _solid(file: StudyFile) -> Reasons:
             yield "responses", reason
 
 
+def _solid_rate(file: StudyFile) -> Reasons:
+    """Check that runs of the 3-D model have no strain rate."""
+    name = "beam_rate_coefficient"
+    if has_solid_runs(file) and any(
+        values_of(file.sampling, name, file.impact.beam.material.rate_coefficient)
+    ):
+        reason = f"must be 0 with beam_model: {SOLID}: the beam models alone have a strain rate"
+        yield key_of(name, file.sampling), reason
+
+
 CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (_mass_and_density, {"impact", "sampling"}),
     (_one_mesh_for_profiles, {"store", "sampling"}),
@@ -200,5 +210,6 @@ CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (_indices_to_grow_by, {"analyses", "responses", "sampling"}),
     (_impacts, {"impact", "discretisation", "sampling"}),
     (_solid, {"impact", "discretisation", "sampling", "responses", "store"}),
+    (_solid_rate, {"impact", "sampling"}),
 )
 """The checks, and the sections that each reads: without errors of their own, or it is left out."""

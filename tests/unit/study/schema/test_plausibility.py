@@ -106,6 +106,13 @@ def test_a_lumped_beam_has_no_contact_patch(problems, grid, model):
     assert model in said
 
 
+def test_the_three_dimensional_model_has_no_strain_rate(problems, grid):
+    varied = {"beam_model": ["timoshenko", "solid"], "beam_rate_coefficient": [0, "40.4 s-1"]}
+    given = {"sampling.parameters": varied, "discretisation": {"element_size": "1 mm"}}
+    found = dict(problems(grid(given)))
+    assert "beam_model: solid" in found["sampling.parameters.beam_rate_coefficient"]
+
+
 def test_auto_stands_for_the_fastest_scheme_of_every_beam_model_of_the_study(read, grid):
     def scheme(*models):
         varied = {"sampling.parameters": {"beam_model": [*models], "velocity": [1]}}

@@ -1,0 +1,94 @@
+"""Yielding at a strain rate: closed forms of section and contact, and both schemes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact, paper_impact
+from impactlab.simulate import case_table, simulate
+from impactlab.solver.section import bend_at_rate, make_section
+from impactlab.types import Floats
+from impactlab.verification.cases import with_beam_material
+from impactlab.verification.finding import Comparison, Curve, Finding, Panel, check, relative
+from impactlab.verification.solutions import hertz
+
+D, Q = 40.4, 5.0
+_RATES = np.array([0.1, 10.0, 1000.0])
+"""Strain rates of the outermost fibre, 1/s."""
+
+
+@check(
+    "Strain rate",
+    "closed form of the moment at a constant curvature rate; yield stress under the contact from "
+    "Hertz's impact; both schemes",
+)
+def strain_rate() -> Finding:
+    """Compare moments, contacts and impacts after Cowper and Symonds.
+
+    Moments: the paper's section at 60 times its yield curvature, where the elastic core holds less
+    than 1e-4. Contacts: at a yield stress raised by hand. Impacts: 20 m/s on 201 nodes, 1 ms.
+    """
+    impact = with_beam_material(paper_impact(20.0), rate_coefficient=D, rate_exponent=Q)
+    beam, static = impact.beam, impact.beam.material.yield_stress
+    plastic = 0.25 * static * beam.width * beam.depth**2
+    closed = plastic * (1.0 + 2.0 * Q / (2.0 * Q + 1.0) * (_RATES / D) ** (1.0 / Q))
+    ours = _moments(impact, _RATES)
+    found: list[Comparison] = [
+        relative("moment", f"{rate:g} 1/s at the surface", "N m", mine, exact, 1e-3)
+        for rate, mine, exact in zip(_RATES, ours, closed, strict=True)
+    ]
+    found += _contacts(impact)
+    leapfrog, modal = (_run(impact, scheme) for scheme in ("leapfrog", "modal"))
+    for name, tolerance in (("peak_plastic_strain", 0.02), ("plastic_dissipation", 0.02)):
+        label, units = f"{name.replace('_', ' ')}, leapfrog beside modal", leapfrog[name].units
+        values = leapfrog[name].item(), modal[name].item()
+        found.append(relative(label, "20 m/s, contact patch", units, *values, tolerance))
+    curves = [Curve("solver", _RATES, ours), Curve("closed form", _RATES, closed, independent=True)]
+    axes = ("strain rate at the surface", "s-1"), ("moment", "N m")
+    return Finding(found, [Panel("bent at a constant rate", *axes, curves, log=True)])
+
+
+def _moments(impact: Impact, rates: Floats) -> Floats:
+    """Return the moments (N m) of the solver's section, bent at these rates of the surface."""
+    cut = make_section(
+        case_table(impact, Discretisation(rule="layers", points=64), duration=1.0)[0]
+    )
+    found, steps, last = [], 200, 60.0 * cut.yield_curvature
+    for rate in rates:
+        dt = 0.5 * impact.beam.depth * last / steps / rate
+        strain, peeq, before = np.zeros((1, 32)), np.zeros((1, 32)), 0.0
+        moment = np.nan
+        for kappa in np.linspace(0.0, last, steps + 1)[1:]:
+            plastic, _, _, _ = bend_at_rate(cut, float(kappa), before, dt, strain, peeq, 0)
+            moment, before = cut.stiffness * kappa - plastic, float(kappa)
+        found.append(moment)
+    return np.array(found)
+
+
+def _contacts(impact: Impact) -> list[Comparison]:
+    """Compare contacts of the rate with those of the yield stress at the rate that Hertz gives."""
+    found = []
+    for velocity in (0.99, 10.0):
+        dynamic = replace(impact, velocity=velocity, beam_model="elastic")
+        mass, radius = dynamic.sphere.total_mass, dynamic.sphere.radius
+        bodies = (mass, velocity, hertz.effective_modulus(dynamic), radius)
+        circle = np.sqrt(hertz.maximum_indentation(*bodies) / radius)
+        rate = 0.2 * circle / (0.5 * hertz.contact_duration(*bodies))
+        raised = 345e6 * (1.0 + float(rate / D) ** (1.0 / Q))
+        still = with_beam_material(dynamic, rate_coefficient=0.0, yield_stress=raised)
+        one, other = (_run(each, "modal") for each in (dynamic, still))
+        for name in ("peak_force", "maximum_indentation"):
+            values = one[name].item(), other[name].item()
+            where = f"{velocity:g} m/s, {rate:.0f} 1/s under the contact"
+            label = name.replace("_", " ")
+            found.append(relative(label, where, one[name].units, *values, 1e-5))
+    return found
+
+
+def _run(impact: Impact, scheme: str) -> xr.Dataset:
+    grid = Discretisation(nodes=201, points=9, scheme=scheme)
+    return simulate(replace(impact, load="contact_patch"), grid, duration=1e-3, samples=2)
