@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from math import sqrt
 
 import numpy as np
@@ -151,9 +150,9 @@ def run_time(case: str, data: Data) -> Judgement:
     numbers = [Number("beam", beam, "s")]
     for at in (0, -1):
         size = f"{1e3 * float(taken['element_size'][at]):g} mm"
-        solid = Number(f"3-D, elements of {size}", float(taken[at]), "s")
-        numbers += [solid, replace(solid, name=f"times the beam's ({size})", units="1")]
-        numbers[-1] = replace(numbers[-1], value=solid.value / beam)
+        solid = float(taken[at])
+        numbers.append(Number(f"3-D, elements of {size}", solid / 60.0, "min"))
+        numbers.append(Number(f"times the beam's ({size})", solid / beam, "1"))
     why = "Finite elements take many times as long, on every mesh."
     return judged(case, tuple(numbers), beam < float(taken.min()), why, "The beam takes longer.")
 

@@ -17,6 +17,7 @@ from impactlab.paper.statements.statement import (
     Statement,
     UnknownError,
     Verdict,
+    finest_grid,
     judged,
     response_curve,
     runs_of,
@@ -147,26 +148,30 @@ def _judge_limit(
     case: str,
     data: Data,
     velocity: float,
-    depths: float | None,
+    place: float | tuple[str, str],
     literal: bool,
     below: bool,
 ) -> Judgement:
     """Judge the strain below the limit, or above it; unknown where U encloses the limit.
 
-    depths: beyond so many, after all contacts; None: beyond one depth, after 1 ms.
+    place: beyond so many beam depths, after all contacts; or a study and its response.
     """
-    if depths is None:
-        curve = response_curve(data, EARLY, "remote_plastic_strain")
-        if velocity not in curve:
-            raise UnknownError(f"the study {EARLY} has no run at {velocity:g} m/s")
-        strain = replace(curve[velocity], name="PEEQ", percent=True)
+    if isinstance(place, tuple):
+        study, response = place
+        found = finest_grid(runs_of(data, study), response, velocity=velocity)
+        strain = replace(found, name="PEEQ", percent=True)
     else:
-        strain = _strain_beyond(data, velocity, depths)
+        strain = _strain_beyond(data, velocity, place)
+    if not np.isfinite(strain.uncertainty):
+        raise UnknownError("fewer than three grids give no uncertainty")
     under, over = strain.high < LIMIT, strain.low > LIMIT
     if not (under or over):
-        why = "The limit lies within the uncertainty: "
-        why += "under a point load the strain has no limit in the nodes; a load spread over the "
-        why += "contact has one, and would decide."
+        why = (
+            "The limit lies within the uncertainty: a perfectly plastic hinge has no limit in the "
+        )
+        why += (
+            "nodes. Runs with the steel's hardening, which the paper does not give, would decide."
+        )
         return Judgement(case, (strain,), Verdict.UNKNOWN, why)
     side = "below" if under else "above"
     why = f"{100 * strain.value:.2g} % lies {side} the limit by more than its uncertainty."
@@ -175,14 +180,16 @@ def _judge_limit(
 
 def _limit_cases(velocity: float, below: bool, everywhere: bool) -> tuple[Case, ...]:
     """Return the cases of a velocity; everywhere: the paper's words include the place under it."""
-    rows: list[Case] = []
+    rows: list[tuple[str, Any, bool]] = []
     if everywhere:
-        rows.append((f"{velocity:g} m/s, anywhere in the beam", velocity, 0.0, True, below))
+        early = EARLY, "peak_plastic_strain"
+        rows.append(("anywhere in the beam", 0.0, True))
+        rows.append(("anywhere in the beam, 1 ms after first touch", early, False))
     for depths in DISTANCES:
-        words = f"{velocity:g} m/s, beyond {depths:g} H from the impact"
-        rows.append((words, velocity, depths, False, below))
-    words = f"{velocity:g} m/s, beyond 1 H, 1 ms after first touch"
-    return (*rows, (words, velocity, None, False, below))
+        rows.append((f"beyond {depths:g} H from the impact", depths, False))
+    early = EARLY, "remote_plastic_strain"
+    rows.append(("beyond 1 H, 1 ms after first touch", early, False))
+    return tuple((f"{velocity:g} m/s, {words}", velocity, *row, below) for words, *row in rows)
 
 
 def _strain_statement(name: str, text: str, words: str, cases: tuple[Case, ...]) -> Statement:
