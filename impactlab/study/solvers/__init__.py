@@ -14,6 +14,7 @@ from impactlab import wings
 from impactlab.analysis.responses import listed
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.store import OutputSpec
+from impactlab.variables import described, provenance
 
 
 def run_shape(design: xr.Dataset) -> tuple[tuple[str, ...], tuple[int, ...]]:
@@ -35,7 +36,16 @@ def flattened(design: xr.Dataset, name: str, runs: Array) -> Array:
     return values
 
 
-@dataclass(frozen=True)
+def on_design(
+    design: xr.Dataset, answers: Mapping[str, Any], attrs: Mapping[str, Mapping[str, str]]
+) -> xr.Dataset:
+    """Return answers of one number per run in the design's order; attrs: of each response."""
+    dims, shape = run_shape(design)
+    values = {name: (dims, each.reshape(shape), attrs.get(name)) for name, each in answers.items()}
+    return described(design.assign(values).assign_attrs(provenance()))
+
+
+@dataclass(frozen=True, kw_only=True)
 class Solver:
     """A solver of runs. Its cases are structured arrays, one record per run."""
 
@@ -43,8 +53,6 @@ class Solver:
     """A hash that changes with the answers: answers of another version are not reused."""
     columns: Callable[[xr.Dataset], tuple[str, ...]]
     """Return the names of the answers to a design that `labelled` takes."""
-    failures: Callable[[xr.Dataset], int]
-    """Return the bits of the answer `status` with which a run lacks a requested response."""
     cases: Callable[[xr.Dataset, Array], Array]
     """Return all that the runs of a design depend on, by number, dimensions flattened.
 
@@ -56,13 +64,15 @@ class Solver:
     """Return how many numbers are kept of each case."""
     solve: Callable[[Array, OutputSpec], Columns]
     """Return the answers by name, with `status`, one row per case: the same bits in any batch."""
-    prepare: Callable[[xr.Dataset], object]
-    """Compile what the runs of a design need, before threads ask for it at once."""
     labelled: Callable[[xr.Dataset, Mapping[str, Any]], xr.Dataset]
     """Return the answers in the design's order, under its labels and with provenance.
 
     Answers are those of `solve`, as arrays of NumPy or, not read yet, of dask.
     """
+    failures: Callable[[xr.Dataset], int] = lambda design: 0
+    """Return the bits of the answer `status` with which a run lacks a requested response."""
+    prepare: Callable[[xr.Dataset], object] = lambda design: None
+    """Compile what the runs of a design need, before threads ask for it at once."""
 
 
 SOLVERS = {

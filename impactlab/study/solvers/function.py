@@ -9,9 +9,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab.study.netcdf import Array, Columns
-from impactlab.study.solvers import Solver, flattened, run_shape
+from impactlab.study.solvers import Solver, flattened, on_design
 from impactlab.study.store import OutputSpec
-from impactlab.variables import described, provenance
 from impactlab.verification.functions import FUNCTIONS, sources_hash
 
 VALUE = "value"
@@ -42,22 +41,17 @@ def solve(cases: Array, output: OutputSpec) -> Columns:
 
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """Return `value` and `status` on the design's dimensions."""
-    dims, shape = run_shape(design)
     title = FUNCTIONS[str(design.attrs["function"])].title
-    value, status = (answers[name].reshape(shape) for name in (VALUE, "status"))
-    attrs = {"long_name": f"value of the {title}", "units": "1"}
-    dataset = design.assign({VALUE: (dims, value, attrs), "status": (dims, status)})
-    return described(dataset.assign_attrs(provenance()))
+    attrs = {VALUE: {"long_name": f"value of the {title}", "units": "1"}}
+    return on_design(design, {name: answers[name] for name in (VALUE, "status")}, attrs)
 
 
 SOLVER = Solver(
     version=sources_hash(),
     columns=lambda design: (VALUE, "status"),
-    failures=lambda design: 0,
     cases=cases,
     cost=lambda cases: np.full(cases.size, 100.0),
     values=lambda cases, output: 2,
     solve=solve,
-    prepare=lambda design: None,
     labelled=labelled,
 )

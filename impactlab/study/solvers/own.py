@@ -24,11 +24,11 @@ from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import simulate
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.schema.study import FunctionStudy, Study
-from impactlab.study.solvers import Solver, flattened, run_shape
+from impactlab.study.solvers import Solver, flattened, on_design
 from impactlab.study.solvers.fingerprint import fingerprint
 from impactlab.study.solvers.impact import SOLVER as IMPACT
 from impactlab.study.store import OutputSpec
-from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES, described, provenance
+from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES
 
 _COST = 3e6
 """Cost of calling functions once, about 10 ms."""
@@ -123,12 +123,10 @@ def solver(name: str) -> Solver:
         return Solver(
             version=name,
             columns=lambda design: (*task.responses, "status"),
-            failures=lambda design: 0,
             cases=partial(_points, task),
             cost=lambda cases: np.full(cases.size, _COST),
             values=lambda cases, output: len(task.responses) + 1,
             solve=partial(_model, task),
-            prepare=lambda design: None,
             labelled=partial(_labelled_model, task),
         )
     return replace(
@@ -215,8 +213,5 @@ def _model(task: Task, cases: Array, output: OutputSpec) -> Columns:
 
 
 def _labelled_model(task: Task, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
-    dims, shape = run_shape(design)
-    runs = design.assign({name: (dims, each.reshape(shape)) for name, each in answers.items()})
-    for name in task.responses:
-        runs[name].attrs = _attributes(task.functions[""], name)
-    return described(runs.assign_attrs(provenance()))
+    attrs = {name: _attributes(task.functions[""], name) for name in task.responses}
+    return on_design(design, answers, attrs)
