@@ -209,8 +209,12 @@ def _grid_options(found: xr.Dataset, study: Study, tolerance: float) -> dict[str
     """
     levels = np.array(list(product(*(found[axis].values for axis in AXES))), dtype=float)
     own = study.discretisation
-    price = np.array([_cost(study, *level) for level in levels.tolist()])
-    price /= _cost(study, own.nodes, own.points, own.courant)
+    varied = dict(
+        zip(AXES, np.vstack([levels, [own.nodes, own.points, own.courant]]).T, strict=True)
+    )
+    cases = case_table(study.impact, own, duration=study.duration, varied=varied)
+    *prices, ours = node_steps(cases) * (1.0 + _POINT_COST * cases["points"])
+    price = np.array(prices) / ours
     order = np.argsort(price, kind="stable")
     sorted_levels = zip(AXES, levels[order].T, strict=True)
     columns = {axis: xr.DataArray(column, dims="candidate") for axis, column in sorted_levels}
@@ -226,12 +230,6 @@ def _grid_options(found: xr.Dataset, study: Study, tolerance: float) -> dict[str
 def _worst(found: xr.Dataset, axis: str) -> xr.DataArray:
     reference = found["nodes_value"].isel(nodes=-1, drop=True)
     return relative(found[f"{axis}_uncertainty"], reference).max("case")
-
-
-def _cost(study: Study, nodes: float, points: float, courant: float) -> float:
-    grid = replace(study.discretisation, nodes=int(nodes), points=int(points), courant=courant)
-    steps = float(node_steps(case_table(study.impact, grid, duration=study.duration)[0]))
-    return steps * (1.0 + _POINT_COST * points)
 
 
 def apply_recommendation(study: Study, found: xr.Dataset) -> Study:
