@@ -6,7 +6,9 @@
 # make long    the tests that take longer: the 3-D model and its decks on finer meshes
 # make chaos   what crashes, full disks, lost workers and hostile files must not do (20 minutes)
 # make kratos  the 3-D model against Kratos Multiphysics, in a coarse case (2 minutes)
-# make docs    the site, in site/index.html: its notebooks and small studies are solved (4 minutes)
+# make docs    the site, in site/index.html: its notebooks and small studies are solved (6 minutes)
+# make stored  answers and pictures of the gallery's large studies, in docs/stored: those without any
+#              that are current (a minute to half an hour each), or STORED='sobol_large witness'
 # make site    the same, then its pages, links and code blocks are tested
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings; both schemes' cost and error;
@@ -20,6 +22,7 @@ CORES ?= all
 STUDIES ?= velocity discretisation material ishigami sobol_slow sobol sobol_fast verification
 PYTEST_ARGS ?=
 SCALING_ARGS ?=
+STORED ?=
 UV ?= uv
 VENV ?= .venv
 
@@ -35,7 +38,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete \
   --max-jobs-per-timespan 100/5s
 
-.PHONY: study paper all test lint pytest long chaos kratos docs site bench scaling mutants coverage constraints unlock clean
+.PHONY: study paper all test lint pytest long chaos kratos docs stored site bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -78,6 +81,9 @@ kratos: $(MADE)-dev $(MADE)-kratos
 docs: $(MADE)-docs
 	$(IN_VENV) python -m sphinx -W --keep-going --quiet -d build/docs docs site
 	@echo 'Done. Open site/index.html'
+
+stored: $(MADE)-docs
+	$(IN_VENV) python docs/made.py $(STORED)
 
 site: docs $(MADE)-dev
 	$(IN_VENV) python -m pytest -m site $(PYTEST_ARGS)

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
+import sys
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from itertools import islice
 from multiprocessing import get_context
 from pathlib import Path
+from typing import NamedTuple
+
+from PIL import Image
 
 import impactlab as il
 from impactlab.figures.draw import OVERVIEW, listed
@@ -21,13 +28,25 @@ from impactlab.verification.stored import unpacked
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent
 GALLERY = DOCS / "gallery"
-SECONDS = 8.0
-"""Estimated core-seconds up to which a study is solved for the site."""
-ALWAYS = ("sobol",)
-"""Solved whatever its estimate, which is half a minute too high."""
+STORED = DOCS / "stored"
+"""Answers and pictures of DEAR studies; `make stored` renews them."""
+DEAR = ("fig10_nodes", "sobol_large", "witness", "witness_mesh", "witness_parts", "witness_swing")
+"""Studies of more than half a minute of one core, which the site does not solve."""
+MOST = 6
+"""Figures stored of a study, the first ones of its report."""
 WORKERS = min(4, os.cpu_count() or 1)
 SHOWN = ("velocity", "contact_laws", "shear", "material", "sobol_slow", "sobol", "sobol_fast",
          "sobol_large", "discretisation", "time_step", "ishigami", "smoke")  # fmt: skip
+FIRST = {
+    "contact_laws": "contact_laws",
+    "fig05": "force_history",
+    "fig07": "force_indentation",
+    "fig08": "contact_duration",
+    "fig10": "plastic_strain",
+    "shear": "shear",
+    "velocity": "contact_duration",
+}
+"""Figures that come first on a page, where the report begins with another one."""
 GROUPS = {
     "Impacts, tolerances and grids": lambda name: not name.startswith(("fig", "witness")),
     "The figures of the source paper": lambda name: name.startswith("fig"),
@@ -52,43 +71,39 @@ def _current(made: Path, *files: Path) -> bool:
     return made.exists() and made.stat().st_mtime > max(each.stat().st_mtime for each in used)
 
 
+class Shown(NamedTuple):
+    """The part of a page that comes from runs: sentences, captions by figure, their folder."""
+
+    answers: list[str]
+    captions: dict[str, dict[str, str]]
+    pictures: Path
+    remark: str = ""
+
+
 def _study(path: Path) -> tuple[str, tuple[str, str]]:
     """Write the page of a study; return its name, title, and picture for its card ("": none)."""
     study, page = il.Study.from_yaml(path, results=ROOT / "results"), GALLERY / f"{path.stem}.md"
-    if _current(page, path, *study.folder.glob("runs.nc")):
+    if _current(page, path, *study.folder.glob("runs.nc"), *STORED.glob(f"{path.stem}/*")):
         pictures = re.findall(r"{figure} (.*)", page.read_text(encoding="utf-8"))
         return path.stem, (study.title, pictures[0] if pictures else "")
-    done = study.status()
-    there = done is not None and done.done + done.failed == done.runs
+    done = study.status() if path.stem in DEAR else None
+    dear = path.stem in DEAR and (done is None or done.done < done.runs)
+    shown = _stored(study) if dear else _solved(study)
     lines = [f"# {study.title}", study.declared.description or "", ""]
-    picture = ""
-    if there or path.stem in ALWAYS or study.estimate(workers=1).seconds <= SECONDS:
-        runs = study.run(workers=1)
-        study.figures()
-        analysis = read_netcdf(study.folder / "analysis.nc", "analysis")
-        lines += ["**The answer**\n", *(f"- {each}" for each in il.answers(runs, analysis)), ""]
-        captions = listed(study.folder / "figures")
-        first = leading(captions)
-        picture = f"{path.stem}/{first}.png"
-        for name in [first, *(each for each in captions if each != first)]:
-            target = GALLERY / path.stem / f"{name}.png"
-            target.parent.mkdir(exist_ok=True)
-            shutil.copyfile(study.folder / "figures" / f"{name}.png", target)
-            folded = [f"::::{{dropdown}} {captions[name]['title']}"] if name != first else []
-            lines += [
-                *folded,
-                f":::{{figure}} {path.stem}/{name}.png",
-                f":alt: {captions[name]['alt']}\n",
-                captions[name]["caption"],
-                ":::\n",
-                "::::\n" if folded else "",
-            ]
-    else:
-        lines.append(
-            f":::{{note}}\nIt takes longer to solve than this site takes to build. "
-            f"`make study STUDIES={path.stem}` solves it; build the site again, and its answer "
-            "and figures are here.\n:::\n"
-        )
+    lines += ["**The answer**\n"] * bool(shown.answers)
+    lines += [*(f"- {each}" for each in shown.answers), "", shown.remark, ""]
+    for at, (name, caption) in enumerate(shown.captions.items()):
+        target = GALLERY / path.stem / f"{name}.png"
+        target.parent.mkdir(exist_ok=True)
+        shutil.copyfile(shown.pictures / f"{name}.png", target)
+        lines += [
+            *([f"::::{{dropdown}} {caption['title']}"] if at else []),
+            f":::{{figure}} {path.stem}/{name}.png",
+            f":alt: {caption['alt']}\n",
+            caption["caption"],
+            ":::\n",
+            "::::\n" if at else "",
+        ]
     lines += [
         "## The file behind it\n",
         f"`impactlab go studies/{path.name}` solves it and writes its report, with every figure, "
@@ -96,7 +111,65 @@ def _study(path: Path) -> tuple[str, tuple[str, str]]:
         f"```{{literalinclude}} ../../studies/{path.name}\n:language: yaml\n```\n",
     ]
     page.write_text("\n".join(lines), encoding="utf-8")
-    return path.stem, (study.title, picture)
+    first = next(iter(shown.captions), None)
+    return path.stem, (study.title, f"{path.stem}/{first}.png" if first else "")
+
+
+def _solved(study: il.Study, workers: int = 1) -> Shown:
+    """Solve and draw a study; its leading figure, or that of FIRST, comes first."""
+    runs = study.run(workers=workers)
+    study.figures()
+    analysis = read_netcdf(study.folder / "analysis.nc", "analysis")
+    captions = listed(study.folder / "figures")
+    first = FIRST.get(study.name) or leading(captions)
+    return Shown(
+        il.answers(runs, analysis),
+        {first: captions[first]} | captions,
+        study.folder / "figures",
+    )
+
+
+def _stored(study: il.Study) -> Shown:
+    """Return what is stored of a study: nothing where the file has changed since."""
+    again = f"`make stored STORED={study.name}`"
+    file = STORED / study.name / "shown.json"
+    kept = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    if kept.get("study_sha256") != study.declared.sha256:
+        remark = (
+            f":::{{note}}\nIt takes longer to solve than this site takes to build. {again} solves "
+            "it; build the site again, and its answer and figures are here.\n:::\n"
+        )
+        return Shown([], {}, file.parent, remark)
+    remark = (
+        f"Solved on {kept['solved']} by impactlab {kept['impactlab']}, not with this site: "
+        f"it takes longer. {again} renews it.\n"
+    )
+    return Shown(kept["answers"], kept["figures"], file.parent, remark)
+
+
+def store(names: Sequence[str]) -> None:
+    """Solve studies and keep what is shown of them; by default DEAR ones that are not current."""
+    for name in names or DEAR:
+        study = il.Study.from_yaml(ROOT / "studies" / f"{name}.yaml", results=ROOT / "results")
+        if not names and _stored(study).captions:
+            continue
+        shown, folder = _solved(study, WORKERS), STORED / name
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        captions = dict(islice(shown.captions.items(), MOST))
+        for each in captions:
+            with Image.open(shown.pictures / f"{each}.png") as picture:
+                half = picture.convert("RGB").reduce(2)
+                half.quantize(64, dither=Image.Dither.NONE).save(folder / f"{each}.png")
+        kept = {
+            "study_sha256": study.declared.sha256,
+            "solved": read_netcdf(study.folder / "runs.nc", "runs").attrs["created"][:10],
+            "impactlab": il.__version__,
+            "answers": shown.answers,
+            "figures": captions,
+        }
+        text = json.dumps(kept, indent=1, ensure_ascii=False) + "\n"
+        (folder / "shown.json").write_text(text, encoding="utf-8")
 
 
 def _index(cards: dict[str, tuple[str, str]]) -> None:
@@ -104,7 +177,7 @@ def _index(cards: dict[str, tuple[str, str]]) -> None:
     lines = [
         "# Gallery\n",
         "Each study in `studies/` with its answer, its figures and the file behind it. "
-        "What you see was solved when this site was built.\n",
+        "What you see was solved when this site was built, or on the day that its page states.\n",
     ]
     for heading, belongs in GROUPS.items():
         lines += [f"## {heading}\n", "::::{grid} 1 2 2 3", ":gutter: 3\n"]
@@ -153,3 +226,7 @@ def _verification() -> None:
     lines += ["", ":::{dropdown} Where the independent values come from"]
     lines += [*(f"- {each.title}: {each.source}" for each in outcomes), ":::"]
     page.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    store(sys.argv[1:])

@@ -95,7 +95,7 @@ def test_the_error_at_the_ends_of_a_range_is_that_of_the_runs_there(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Where it is more than twice as large; the runs held out tell, without the distribution."""
+    """It counts from twice the usual one on; the ends of a uniform velocity are counted by hand."""
     tested = runs.sel(run=found["held_out"].values)
     speed, place = tested["velocity"].values, POINT | {"velocity": 14.99}
     missed = found["surrogate_held_out"].sel(response="impulse").values - tested["impulse"].values
