@@ -30,8 +30,8 @@ ROOT = DOCS.parent
 GALLERY = DOCS / "gallery"
 STORED = DOCS / "stored"
 """Answers and pictures of DEAR studies; `make stored` renews them."""
-DEAR = ("fig10_nodes", "sobol_large", "witness", "witness_mesh", "witness_parts", "witness_swing")
-"""Studies of more than half a minute of one core, which the site does not solve."""
+DEAR = ("sobol_large", "witness", "witness_mesh", "witness_parts", "witness_swing")
+"""Studies of more than a minute of one core, which the site does not solve."""
 MOST = 6
 """Figures stored of a study, the first ones of its report."""
 WORKERS = min(4, os.cpu_count() or 1)
