@@ -116,17 +116,16 @@ def _caption(study: str, figure: Figure, runs: xr.Dataset, analysis: xr.Dataset)
     return " ".join(filter(None, (shown, labels.fixed(runs), why, f"Study: {study}.")))
 
 
-def _summary(judgements: Iterable[Judgement]) -> str:
-    """Return the verdict of all cases; "holds" where some need a reading; MIXED where they differ.
+def _summary(judgements: Sequence[Judgement]) -> str:
+    """Return the verdict of all cases; that of the first where others need a reading.
 
-    Cases that cannot be judged count where all are such.
+    MIXED where some hold and some do not. Cases that cannot be judged count where all are such.
     """
-    found = {judgement.verdict for judgement in judgements}
-    if len(found) > 1:
-        found.discard(Verdict.UNKNOWN)
-    if found == {Verdict.HOLDS, Verdict.READING}:
-        return str(Verdict.HOLDS)
-    return MIXED if len(found) > 1 else str(found.pop())
+    known = [each.verdict for each in judgements if each.verdict != Verdict.UNKNOWN]
+    if not known:
+        return str(Verdict.UNKNOWN)
+    stand = {verdict != Verdict.FAILS for verdict in known}
+    return MIXED if len(stand) > 1 else str(known[0])
 
 
 def _overview(judged: Judged) -> Table:

@@ -72,7 +72,7 @@ def _judge_changes(case: str, gaps: Sequence[Number], limit: float) -> Judgement
     """Judge changes of responses against the limit of a reading."""
     small = all(within(gap, limit) for gap in gaps)
     worst = max(gaps, key=lambda gap: abs(gap.value))
-    why = f"The largest {worst.name}: {labels.number(100 * worst.value, 2)} %."
+    why = f"The largest is the {worst.name}, {labels.number(100 * worst.value, 2)} %."
     return judged(case, tuple(gaps), small, why, literal=not limit)
 
 

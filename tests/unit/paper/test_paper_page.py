@@ -47,16 +47,17 @@ def test_page_tables_and_figures(velocity_study: Study, tmp_path: Path) -> None:
     assert span["units"] == "m"
 
 
-def test_a_statement_holds_as_a_whole_where_its_cases_do() -> None:
+def test_a_statement_is_summed_up_from_its_cases() -> None:
     verdicts = {
         (Verdict.HOLDS, Verdict.READING): "holds",
+        (Verdict.READING, Verdict.HOLDS): "holds under the stated reading",
         (Verdict.READING, Verdict.UNKNOWN): "holds under the stated reading",
         (Verdict.HOLDS, Verdict.FAILS): "depends on the reading",
         (Verdict.UNKNOWN, Verdict.FAILS): "does not hold",
         (Verdict.UNKNOWN, Verdict.UNKNOWN): "cannot be judged",
     }
     for found, expected in verdicts.items():
-        assert _summary(Judgement("", (), each, "") for each in found) == expected
+        assert _summary([Judgement("", (), each, "") for each in found]) == expected
 
 
 def _rows(path: Path) -> list[dict[str, str]]:
