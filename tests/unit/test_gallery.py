@@ -1,4 +1,4 @@
-"""What docs/stored keeps of studies that take longer than the site belongs to their files."""
+"""Files in docs/stored, of studies that take longer than the site, belong to their study files."""
 
 import json
 from pathlib import Path

@@ -172,7 +172,7 @@ def validated(
     parameters: Mapping[str, Parameter] = PARAMETERS,
     responses: Collection[str] = (),
 ) -> S:
-    """Return the content of a file as a section. Raises StudyError with every problem of it.
+    """Return the content of a file as a section. Raises StudyError with all of its problems.
 
     parameters: those that it can vary. responses: names of its own, beside those of all studies.
     """

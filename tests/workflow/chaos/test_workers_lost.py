@@ -1,5 +1,7 @@
 """Workers killed while they solve: the others go on, or the study ends in words and resumes."""
 
+from contextlib import contextmanager
+
 import pytest
 from chaos import (
     SMALL,
@@ -37,11 +39,18 @@ def test_every_process_killed_again_and_again(folder, undisturbed):
     goes_on(folder, undisturbed)
 
 
-def test_a_worker_of_a_cluster_killed(folder, undisturbed):
+@contextmanager
+def at_work(folder):
+    """A cluster of three workers, and a command that has solved some batches on it."""
     with Cluster(folder) as cluster:
         cluster.add(3)
         command = run(folder, "--scheduler", cluster.address, *SMALL)
         command.wait_for_shards(3)
+        yield cluster, command
+
+
+def test_a_worker_of_a_cluster_killed(folder, undisturbed):
+    with at_work(folder) as (cluster, command):
         cluster.workers[0].kill()
         assert command.end() == 0, command.said
     assert_same_bits(stored(folder), undisturbed)
@@ -49,10 +58,7 @@ def test_a_worker_of_a_cluster_killed(folder, undisturbed):
 
 def test_every_worker_of_a_cluster_killed(folder, undisturbed):
     """It says so, and goes on with a worker that comes later."""
-    with Cluster(folder) as cluster:
-        cluster.add(3)
-        command = run(folder, "--scheduler", cluster.address, *SMALL)
-        command.wait_for_shards(3)
+    with at_work(folder) as (cluster, command):
         for worker in cluster.workers:
             worker.kill()
         command.wait_until(lambda: "no worker" in command.said)
@@ -62,10 +68,7 @@ def test_every_worker_of_a_cluster_killed(folder, undisturbed):
 
 
 def test_the_scheduler_killed(folder, undisturbed):
-    with Cluster(folder) as cluster:
-        cluster.add(3)
-        command = run(folder, "--scheduler", cluster.address, *SMALL)
-        command.wait_for_shards(3)
+    with at_work(folder) as (cluster, command):
         cluster.scheduler.kill()
         assert command.end() == 1, command.said
     assert "scheduler" in complaint(command.said)
