@@ -13,6 +13,7 @@ import numpy as np
 
 from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
+from impactlab.model.contact_compliance import contact_compliance
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
@@ -352,6 +353,7 @@ def _table(
         if entry.choices:
             numbered = enumerate(entry.choices)
             values[name] = sum(at * (values[name] == word) for at, word in numbered)
+    values["compliance"], values["bending_compliance"] = contact_compliance(impact)
     cases = np.zeros(runs, dtype=CASE)
     for name in CASE.names or ():
         cases[name] = values[name]

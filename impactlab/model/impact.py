@@ -9,9 +9,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.model.quantities import SI, Quantity, engineering
-from impactlab.solver import BEAM_MODELS, LOADS
+from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS
 from impactlab.solver.contact import LAWS
 
 SOLID = "solid"
@@ -158,6 +160,8 @@ class Impact:
     of freedom), "rigid" (the beam does not move) or "solid" (3-D finite elements of both bodies,
     in which `contact` and `load` play no part). load: "point" (the contact force acts at mid-span)
     or "contact_patch" (over the contact circle, see solver/contact_patch.py; not on lumped beams).
+    contact_compliance: of the contact law's "half_space", or of this "beam" and sphere (Timoshenko's
+    beam alone; see model/contact_compliance.py).
 
     Raises ValueError naming the field when a value is not physical or a name is unknown.
 
@@ -177,6 +181,7 @@ class Impact:
     gravity: SI[float] = SI("m s-2", 9.81)
     beam_model: str = "euler_bernoulli"
     load: str = "point"
+    contact_compliance: str = "half_space"
 
     def __post_init__(self) -> None:
         instance("Impact", "sphere", self.sphere, Sphere)
@@ -187,6 +192,11 @@ class Impact:
         one_of("Impact", "contact", self.contact, LAWS)
         one_of("Impact", "beam_model", self.beam_model, MODELS)
         one_of("Impact", "load", self.load, LOADS)
+        one_of("Impact", "contact_compliance", self.contact_compliance, COMPLIANCES)
+        half_space = np.equal(self.contact_compliance, "half_space")
+        fits = half_space | np.isin(self.beam_model, ("timoshenko", SOLID))
+        words = "is what a beam adds to Timoshenko's deflection: set beam_model: timoshenko"
+        require(fits, "Impact", "contact_compliance", self.contact_compliance, words)
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

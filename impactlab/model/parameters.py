@@ -14,7 +14,7 @@ from typing import Any
 from impactlab.model.checks import Column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
-from impactlab.solver import LOADS, RULES, SCHEMES
+from impactlab.solver import COMPLIANCES, LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 
 Value = float | int | str
@@ -52,6 +52,7 @@ _ROWS = (
     ("contact", "1", "contact law", "impact.contact"),
     ("beam_model", "1", "model of the beam", "impact.beam_model"),
     ("load", "1", "place of the contact force on the beam", "impact.load"),
+    ("contact_compliance", "1", "bodies of the local compliance", "impact.contact_compliance"),
     ("sphere_radius", "m", "radius of the sphere", "impact.sphere.radius"),
     ("sphere_mass", "kg", "mass of the sphere", "impact.sphere.mass"),
     *(
@@ -88,6 +89,7 @@ _CHOICES = {
     "contact": LAWS,
     "beam_model": MODELS,
     "load": LOADS,
+    "contact_compliance": COMPLIANCES,
     "rule": RULES,
     "scheme": SCHEMES,
 }

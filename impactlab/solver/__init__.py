@@ -11,5 +11,7 @@ BEAM_MODELS = ("euler_bernoulli", "elastic", "timoshenko", "spring_mass", "rigid
 """Names of the models of the beam; the index is the kernels' switch."""
 LOADS = ("point", "contact_patch")
 """Where the contact force acts on the beam; the index is the kernels' switch."""
+COMPLIANCES = ("half_space", "beam")
+"""What the contact laws' half-spaces stand for (model/contact_compliance.py)."""
 BENDING_MODELS = BEAM_MODELS[:2]
 """Those that have every scheme in time; the others have leapfrog alone."""

@@ -66,9 +66,9 @@ def contact_force(
 ) -> float:
     """Return the contact force (N) at time t; a peak just passed is taken between the steps."""
     falls = delta < events.delta and events.delta >= events.delta_before
-    if falls and events.delta == contact.delta_m:
+    if falls and events.delta == contact.approach_m:
         offset, peak = event_tracker.vertex(events.delta_before, events.delta, delta)
-        contact_history.load(contact, pair, peak)
+        contact_history.load_to(contact, pair, peak)
         events.t_peak = t + (offset - 1.0) * dt
     return contact_history.force(contact, pair, delta)
 
@@ -91,14 +91,14 @@ def _time_loop(model: Model) -> Callable[..., int]:
         """Return the energy missing or in excess, over the initial kinetic energy.
 
         After a step, of its beginning. sphere: its displacement (m), velocity before and after the
-        step (m/s), indentation (m). u_mid (m): u at mid-span before the step. excess (J): see
+        step (m/s), approach (m). u_mid (m): u at mid-span before the step. excess (J): see
         Model.spread.
         """
-        w_s, v_before, v_after, delta = sphere
+        w_s, v_before, v_after, approach = sphere
         start = 0.5 * case.sphere_mass * case.velocity**2
         falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
         in_beam = beam_energy(state, now, F, u_mid) + excess
-        kept, lost = contact_history.energies(contact, state.pair, delta)
+        kept, lost = contact_history.energies(contact, state.pair, approach)
         return abs(falling + in_beam + kept + lost - start) / start
 
     @compiled
@@ -123,10 +123,20 @@ def _time_loop(model: Model) -> Callable[..., int]:
         for step in range(steps + 1):
             w_mid, u_mid = w[now, mid], u[mid]
             delta = w_s - w_mid - ahead
-            F = contact_force(contact, events, pair, delta, step * dt, dt)
+            approach = delta
+            if pair.bending != 0.0:
+                contact.shift_before = contact.shift
+                kappa = mid_curvature(state, now)
+                contact.shift = pair.bending * (plastic.M_0[mid] / section.stiffness - kappa)
+                approach = delta - contact.shift
+                contact.largest = max(contact.largest, delta)
+            F = contact_force(contact, events, pair, approach, step * dt, dt)
+            if pair.bending != 0.0:
+                grown = contact.shift - contact.shift_before
+                contact.bending_work += 0.5 * (F + events.F) * grown
             v_after = v_s + dt * (case.gravity - F * per_mass)
             event_tracker.update_events(
-                events, delta, contact.delta_r, w_mid, F, v_s, step * dt, dt
+                events, approach, contact.delta_r, w_mid, F, v_s, step * dt, dt
             )
             if samples.shape[1] > 0:
                 before, here = here, (F, w_mid, mid_curvature(state, now), w_s, delta)
@@ -143,7 +153,7 @@ def _time_loop(model: Model) -> Callable[..., int]:
                 to_audit = max(stride, flight_stride)
                 catch_up(plastic, section)
                 events.v_s, events.v_mid = v_s, u_mid / dt
-                sphere = (w_s, v_s, v_after, delta)
+                sphere = (w_s, v_s, v_after, approach)
                 error = imbalance(case, state, contact, now, sphere, F, u_mid, excess)
                 events.energy_error = max(events.energy_error, error)
                 if not error < 1.0:

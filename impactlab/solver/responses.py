@@ -26,6 +26,9 @@ from impactlab.solver.types import Array, Record
 
 PLASTIC_ZONE_STRAIN = 1e-5
 """PEEQ from which on a section counts as plastic."""
+LARGEST_COMPLIANCE = 0.5
+"""Of the contact, over that of its law, taken back by the bodies' ends: beyond it the circle is not
+small beside them."""
 _ROUNDING = 1e-9
 """Share of the loading work below which the contact has created no energy."""
 
@@ -33,14 +36,19 @@ _ROUNDING = 1e-9
 @compiled
 def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) -> None:
     """Fill in force, indentation and contact times; flag those beyond the contact law's range."""
-    if contact.delta_m > limit(pair.law, pair.E, pair.R, pair.S_y, pair.nu):
+    recovers = LARGEST_COMPLIANCE * (contact.delta_m - contact.delta_r)
+    if (
+        contact.delta_m > limit(pair.law, pair.E, pair.R, pair.S_y, pair.nu)
+        or -pair.compliance * contact.n * contact.F_m > recovers
+    ):
         answer.status |= OUTSIDE_CONTACT_LAW
-    if events.delta == contact.delta_m:
+    if events.delta == contact.approach_m:
         answer.status |= INDENTATION_STILL_GROWING
     else:
         answer.peak_force = contact.F_m
         answer.time_of_peak_force = events.t_peak
-        answer.maximum_indentation = contact.delta_m
+        bends = pair.bending != 0.0
+        answer.maximum_indentation = contact.largest if bends else contact.approach_m
     answer.number_of_contacts = events.contacts
     answer.contact_duration = events.t_first_end
     if np.isnan(events.t_first_end):

@@ -20,6 +20,7 @@ from impactlab.solver.contact.history import Pair, loading_work
 from impactlab.solver.contact.switch import curve
 from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
+from impactlab.solver.responses import LARGEST_COMPLIANCE
 from impactlab.solver.section import Section
 from impactlab.solver.timoshenko import shear_stiffness
 from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, Record
@@ -64,8 +65,13 @@ def stiffest_contact(case: Record, pair: Pair) -> float:
     while work < energy + case.sphere_mass * case.gravity * delta and delta < pair.R:
         k_c = max(k_c, _stiffness(pair, delta))
         work += loading_work(pair, delta, _GROWTH * delta)
+        if pair.compliance != 0.0:  # of the spring in series
+            F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+            F_next, _, _, _ = curve(pair.law, _GROWTH * delta, pair.E, pair.R, pair.S_y, pair.nu)
+            work += 0.5 * pair.compliance * (F_next * F_next - F * F)
         delta *= _GROWTH
-    return max(k_c, _stiffness(pair, delta))
+    k_c = max(k_c, _stiffness(pair, delta))
+    return k_c / max(1.0 + pair.compliance * k_c, 1.0 - LARGEST_COMPLIANCE)
 
 
 @compiled

@@ -42,6 +42,7 @@ CASE = record(
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent courant
+    compliance bending_compliance
     """,
     whole="contact beam_model load nodes points rule scheme",
 )

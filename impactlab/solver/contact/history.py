@@ -2,12 +2,18 @@
 
 Loading follows the law; below the largest indentation so far, delta_m, the force is
 K (delta - delta_r)^n in both directions (reloading retraces unloading, then loading goes on).
+
+The approach is what the bodies' motion gives, delta the law's indentation. They differ where the
+bodies are no half-spaces (model/contact_compliance.py): approach = delta + compliance F. That spring
+stores compliance F^2/2, below zero where it takes back what law and beam both count.
 """
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
+
+import numpy as np
 
 from impactlab.solver.contact.switch import curve
 from impactlab.solver.jit import compiled
@@ -19,7 +25,8 @@ class Pair(NamedTuple):
     """Two bodies in contact.
 
     law: its number; E, R: effective modulus (Pa) and radius (m); S_y, nu: the softer body's yield
-    stress (Pa) and Poisson's ratio.
+    stress (Pa) and Poisson's ratio. compliance (m/N), bending (m2): approach of the bodies beyond
+    that of half-spaces, per force and per M/(EI) at mid-span; zero for half-spaces.
     """
 
     law: int
@@ -27,13 +34,20 @@ class Pair(NamedTuple):
     R: float
     S_y: float
     nu: float
+    compliance: float = 0.0
+    bending: float = 0.0
 
 
-CONTACT = record("delta_m F_m K delta_r n work delta_w")
+CONTACT = record(
+    "delta_m F_m K delta_r n work delta_w approach_m largest shift shift_before bending_work"
+)
 """delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
-unloading curve from there. work (J): integral of the loading force from 0 to delta_w (m)."""
+unloading curve from there. work (J): integral of the loading force from 0 to delta_w (m).
+approach_m (m): the approach at delta_m. Where bending counts, shift (m): what it adds to the approach,
+now and a step before; bending_work (J): of the force on it; largest (m): approach and shift."""
 
 _PANELS = 8
+_ITERATIONS, _ROUNDING = 60, 1e-14
 # Gauss-Legendre on [0, 1], 4 points
 _GAUSS = (
     (0.06943184420297371, 0.17392742256872693),
@@ -56,30 +70,73 @@ def make_pair(case: Record) -> Pair:
     factor = rate_factor(
         contact_rate(case, E, R), case.beam_rate_coefficient, case.beam_rate_exponent
     )
-    S_y = case.beam_yield_stress * factor
-    if S_y <= case.sphere_yield_stress:
-        return Pair(case.contact, E, R, S_y, case.beam_poissons_ratio)
-    return Pair(case.contact, E, R, case.sphere_yield_stress, case.sphere_poissons_ratio)
+    S_y, nu = case.beam_yield_stress * factor, case.beam_poissons_ratio
+    if S_y > case.sphere_yield_stress:
+        S_y, nu = case.sphere_yield_stress, case.sphere_poissons_ratio
+    return Pair(case.contact, E, R, S_y, nu, case.compliance, case.bending_compliance)
 
 
 @compiled
 def load(contact: Record, pair: Pair, delta: float) -> None:
     """Move the furthest point of loading on to delta."""
-    contact.delta_m = delta
+    contact.delta_m = contact.approach_m = delta
     contact.F_m, contact.K, contact.delta_r, contact.n = curve(
         pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu
     )
 
 
 @compiled
-def force(contact: Record, pair: Pair, delta: float) -> float:
-    """Return the contact force (N) at delta (m); load further where delta exceeds delta_m."""
-    if delta > contact.delta_m:
-        load(contact, pair, delta)
-        return contact.F_m
-    over = delta - contact.delta_r
+def load_to(contact: Record, pair: Pair, approach: float) -> None:
+    """Move the furthest point of loading on to where the approach is `approach`.
+
+    By secants. NaN where there is none: the spring gives way faster than the law stiffens.
+    """
+    if pair.compliance == 0.0:
+        load(contact, pair, approach)
+        return
+    before, F_before = contact.delta_m, contact.F_m
+    missed_before = before + pair.compliance * F_before - approach
+    delta, step = approach - pair.compliance * F_before, 1.0
+    for _ in range(_ITERATIONS):
+        F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+        missed = delta + pair.compliance * F - approach
+        step = missed * (delta - before) / (missed - missed_before) if missed != 0.0 else 0.0
+        if abs(step) <= _ROUNDING * approach:
+            break
+        before, missed_before = delta, missed
+        delta = max(delta - step, contact.delta_m)
+    load(contact, pair, delta if abs(step) <= _ROUNDING * approach else np.nan)
+    contact.approach_m = approach
+
+
+@compiled
+def recovered(contact: Record, pair: Pair, approach: float) -> float:
+    """Return delta - delta_r (m) on the unloading curve, zero or more: Newton, from above."""
+    over = approach - contact.delta_r
     if over <= 0.0:
         return 0.0
+    gap, softness = over, pair.compliance * contact.K
+    over = min(over, contact.delta_m - contact.delta_r) if softness < 0.0 else over
+    for _ in range(_ITERATIONS):
+        slope = softness * over ** (contact.n - 1.0)
+        step = (over * (1.0 + slope) - gap) / (1.0 + contact.n * slope)
+        over -= step
+        if abs(step) <= _ROUNDING * gap:
+            return over
+    return np.nan
+
+
+@compiled
+def force(contact: Record, pair: Pair, approach: float) -> float:
+    """Return the contact force (N) at `approach` (m); load further where it exceeds approach_m."""
+    if approach > contact.approach_m:
+        load_to(contact, pair, approach)
+        return contact.F_m
+    over = approach - contact.delta_r
+    if over <= 0.0:
+        return 0.0
+    if pair.compliance != 0.0:
+        over = recovered(contact, pair, approach)
     if contact.n == 1.5:
         return contact.K * over * math.sqrt(over)
     return contact.K * over**contact.n
@@ -103,8 +160,8 @@ def loading_work(pair: Pair, start: float, stop: float) -> float:
 
 
 @compiled
-def energies(contact: Record, pair: Pair, delta: float) -> tuple[float, float]:
-    """Return (stored, dissipated) energy of the contact at delta, J.
+def energies(contact: Record, pair: Pair, approach: float) -> tuple[float, float]:
+    """Return (stored, dissipated) energy of the contact at `approach` (m), J.
 
     Dissipated is what loading took less what the unloading curve would give back; negative
     where a law creates energy.
@@ -113,6 +170,11 @@ def energies(contact: Record, pair: Pair, delta: float) -> tuple[float, float]:
         contact.work += loading_work(pair, contact.delta_w, contact.delta_m)
         contact.delta_w = contact.delta_m
     whole = contact.K * (contact.delta_m - contact.delta_r) ** (contact.n + 1.0) / (contact.n + 1.0)
-    over = max(delta - contact.delta_r, 0.0)
+    over = max(approach - contact.delta_r, 0.0)
+    if pair.compliance != 0.0:
+        over = recovered(contact, pair, approach)
     stored = contact.K * over ** (contact.n + 1.0) / (contact.n + 1.0)
+    if pair.compliance != 0.0:
+        F = contact.K * over**contact.n
+        stored += 0.5 * pair.compliance * F * F + contact.bending_work
     return stored, contact.work - whole

@@ -9,12 +9,17 @@ from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.types import CASE
 
-OF_KERNELS = {name: entry for name, entry in PARAMETERS.items() if name not in ELEMENTS}
-"""The others are of the 3-D model alone."""
+OF_KERNELS = {
+    name: entry
+    for name, entry in PARAMETERS.items()
+    if name not in (*ELEMENTS, "contact_compliance")
+}
+"""Without those of the 3-D model alone, and that which becomes two numbers."""
+DERIVED = ("compliance", "bending_compliance")
 
 
 def test_fields_are_the_parameters_and_the_duration():
-    assert sorted(CASE.names) == sorted([*OF_KERNELS, "duration"])
+    assert sorted(CASE.names) == sorted([*OF_KERNELS, *DERIVED, "duration"])
 
 
 def test_a_record_has_every_value_in_its_place(make_case):
@@ -37,7 +42,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
         "rule": RULES.index("layers"),
         "scheme": SCHEMES.index("modal"),
     }
-    expected = values | numbers_of_names | {"duration": 0.7}
+    expected = values | numbers_of_names | {"duration": 0.7} | dict.fromkeys(DERIVED, 0.0)
     assert {name: case[name] for name in CASE.names} == expected
 
 
