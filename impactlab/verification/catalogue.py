@@ -5,6 +5,7 @@ from __future__ import annotations
 from impactlab.verification import (
     beam_limits,
     contact,
+    contact_compliance,
     contact_patch,
     energy,
     modal_series,
@@ -37,6 +38,7 @@ _CHECKS = (
     contact.rigid_beam,
     contact_patch.contact_patch,
     strain_rate.strain_rate,
+    contact_compliance.contact_compliance,
     energy.balances,
 )
 CATALOGUE: dict[str, Check] = {check.name: check for check in _CHECKS}

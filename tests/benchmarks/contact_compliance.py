@@ -1,14 +1,15 @@
-"""Make the table of `contact_compliance: beam` by 3-D elastic statics (scikit-fem, not a dependency).
+"""Make the table of `contact_compliance: beam` by 3-D elastic statics (scikit-fem, no dependency).
 
     pip install scikit-fem
     python tests/benchmarks/contact_compliance.py            # prints the table, some 20 minutes
 
-Beam: a quarter of a beam under a unit point force on its upper face, its ends held by the parabolic
-shear of beam theory. Boussinesq's half-space is taken out before the solve: the finite elements see
-what its tractions on the beam's other faces leave, which is smooth, and give the surface under the
-force less the half-space's displacement. From that the deflection of Timoshenko's beam is subtracted,
-L^3/(48 EI) + L/(4 k G A) with k = 5/6, measured from the ends, each weighted with its shear. The rest
-is straight in L: c + gamma M/(EI) with M = L/4. Two spans give both, in c E H and gamma/H^2.
+Beam: a quarter of a beam under a unit point force on its upper face, its ends held by the
+parabolic shear of beam theory. Boussinesq's half-space is taken out before the solve: the finite
+elements see what its tractions on the beam's other faces leave, which is smooth, and give the
+surface under the force less the half-space's displacement. From that the deflection of
+Timoshenko's beam is subtracted, L^3/(48 EI) + L/(4 k G A) with k = 5/6, measured from the ends,
+each weighted with its shear. The rest is straight in L: c + gamma M/(EI) with M = L/4. Two spans
+give both, in c E H and gamma/H^2.
 
 Sphere: Hertz's pressure on its pole, balanced by an even deceleration: the patch's displacement,
 weighted with the pressure, from the centre of mass, less the half-space's; c E R.
@@ -76,7 +77,7 @@ def stress(at: Array, nu: float, step: float = 1e-4) -> Array:
 
 
 def beam(B: float, L: float, nu: float, n: int = 4) -> float:
-    """Return surface less half-space less Timoshenko for H = E = F = 1; n elements over the depth."""
+    """Return surface less half-space less Timoshenko for H = E = F = 1; n elements over H."""
     most = 1.5 / n * max(1.0, 0.5 * B)
     width = np.linspace(0, B / 2, max(int(np.ceil(n * B / 2)), 3) + 1)
     if len(width) > 9:
@@ -113,7 +114,7 @@ def beam(B: float, L: float, nu: float, n: int = 4) -> float:
 
 
 def sphere(nu: float, a: float = 0.06, n: int = 12) -> float:
-    """Return the patch's displacement less the half-space's for R = E = F = 1, patch of radius a."""
+    """Return the patch's displacement less the half-space's for R = E = F = 1, radius a."""
     rim = np.arcsin(a)
     outer = rim + graded(rim / n, np.pi - rim, 1.12, np.pi / 30)
     angle = np.concatenate([np.linspace(0, rim, n + 1)[:-1], outer])

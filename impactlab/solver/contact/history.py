@@ -4,8 +4,8 @@ Loading follows the law; below the largest indentation so far, delta_m, the forc
 K (delta - delta_r)^n in both directions (reloading retraces unloading, then loading goes on).
 
 The approach is what the bodies' motion gives, delta the law's indentation. They differ where the
-bodies are no half-spaces (model/contact_compliance.py): approach = delta + compliance F. That spring
-stores compliance F^2/2, below zero where it takes back what law and beam both count.
+bodies are no half-spaces (model/contact_compliance.py): approach = delta + compliance F. That
+spring stores compliance F^2/2, below zero where it takes back what law and beam both count.
 """
 
 from __future__ import annotations
@@ -43,8 +43,9 @@ CONTACT = record(
 )
 """delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
 unloading curve from there. work (J): integral of the loading force from 0 to delta_w (m).
-approach_m (m): the approach at delta_m. Where bending counts, shift (m): what it adds to the approach,
-now and a step before; bending_work (J): of the force on it; largest (m): approach and shift."""
+approach_m (m): the approach at delta_m. Where bending counts, shift (m): what it adds to the
+approach, now and a step before; bending_work (J): of the force on it; largest (m): approach and
+shift."""
 
 _PANELS = 8
 _ITERATIONS, _ROUNDING = 60, 1e-14

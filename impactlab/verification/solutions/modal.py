@@ -93,18 +93,26 @@ def solve_timoshenko(
 
 
 def solve_with(
-    modes: BeamModes, impact: Impact, duration: float, step: float | None, compliance: float = 0.0
+    modes: BeamModes,
+    impact: Impact,
+    duration: float,
+    step: float | None,
+    compliance: float = 0.0,
+    bending: float = 0.0,
 ) -> ModalSolution:
     """Solve the impact on the beam that has these modes; the rest as in solve.
 
-    compliance: of the contact, in m/N, beyond Hertz's half-spaces; negative where the bodies end.
+    compliance (m/N), bending (m2): approach of sphere and axis beyond Hertz's half-spaces per force
+    and per -w_xx at mid-span; negative where the bodies end.
     """
     if impact.contact != "hertz":
         raise ValueError(f"Impact.contact = {impact.contact!r}: the modal series needs 'hertz'")
     if step is None:
         step = hertz.contact_duration(*hertz.arguments(impact)) / 1000.0
     steps = max(math.ceil(duration / step), 4)
-    force, depth, y, v = _march(impact, modes, duration / steps, steps, compliance)
+    local = compliance, bending
+    force, depth, y, v = _march(impact, modes, duration / steps, steps, local)
+    curvature = modes.residual_curvature * force + y[:, 1:] @ modes.curvatures
     time = np.linspace(0.0, duration, steps + 1)
     delta, amplitudes = CubicSpline(time, depth), y[:, 1:]
     turns = np.append(delta.derivative().roots(extrapolate=False), time[-1])
@@ -112,13 +120,13 @@ def solve_with(
     roots = delta.roots(extrapolate=False)
     roots = roots[roots > 0.5 * time[1]]  # the first touch is at 0
     ends = np.concatenate(([0.0], roots, [np.nan] * ((roots.size + 1) % 2)))
-    approach = depth + compliance * force
+    approach = depth + compliance * force - bending * curvature
     return ModalSolution(
         modes=modes,
         time=time,
         contact_force=force,
         midspan_deflection=y[:, 0] - approach,
-        midspan_curvature=modes.residual_curvature * force + amplitudes @ modes.curvatures,
+        midspan_curvature=curvature,
         sphere_displacement=y[:, 0],
         sphere_velocity=v[:, 0],
         indentation=approach,
@@ -131,7 +139,7 @@ def solve_with(
 
 
 def _march(
-    impact: Impact, modes: BeamModes, h: float, steps: int, compliance: float
+    impact: Impact, modes: BeamModes, h: float, steps: int, local: tuple[float, float]
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Return F, delta (time,) and y, v (time, bodies) over `steps` steps of `h` (s).
 
@@ -149,8 +157,10 @@ def _march(
     bodies = modes.frequencies.size + 1
     weight = np.eye(1, bodies)[0] * impact.gravity
     fall, gain = 0.5 * h * h * weight, h * weight
-    approach = np.concatenate(([1.0], -np.ones(bodies - 1)))
-    flexibility = modes.residual_flexibility + compliance - float(approach @ position[3])
+    compliance, bending = local
+    approach = np.concatenate(([1.0], bending * modes.curvatures - 1.0))
+    flexibility = modes.residual_flexibility + compliance - bending * modes.residual_curvature
+    flexibility -= float(approach @ position[3])
     force, depth = np.zeros(steps + 1), np.zeros(steps + 1)
     y, v = np.zeros((steps + 1, bodies)), np.zeros((steps + 1, bodies))
     v[0, 0] = impact.velocity

@@ -1,0 +1,125 @@
+"""The compliance of the bodies in series with the contact law, and where its numbers come from."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab.model.contact_compliance import contact_compliance
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.history import CONTACT, Pair, energies, force, load_to
+
+E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
+DEEP = 60e-6
+
+every_law = pytest.mark.parametrize("law", [law for law in LAWS if law != "stronge_original"])
+"""Without the one whose force jumps at the turn."""
+either_sign = pytest.mark.parametrize("compliance", [-3e-10, 3e-10])
+TIMOSHENKO = replace(il.paper_impact(), beam_model="timoshenko", contact_compliance="beam")
+
+
+def untouched():
+    contact = np.zeros(1, CONTACT)[0]
+    contact.n = 1.5
+    return contact
+
+
+@every_law
+@either_sign
+def test_approach_is_that_of_the_law_and_of_the_spring(law, compliance):
+    """Loading, unloading, reloading: the force of half-spaces at what the spring leaves."""
+    half_space, series = (Pair(LAWS.index(law), E, R, S_y, nu, c) for c in (0.0, compliance))
+    plain, sprung = untouched(), untouched()
+    path = np.concatenate(
+        [
+            np.linspace(0, DEEP, 40),
+            np.linspace(DEEP, 0.8 * DEEP, 10),
+            np.linspace(0.8, 1.2, 20) * DEEP,
+        ]
+    )
+    for delta in path:
+        F = force(plain, half_space, delta)
+        ours = force(sprung, series, delta + compliance * F)
+        assert ours == pytest.approx(F, rel=1e-9, abs=1e-3)
+    assert sprung.delta_r == pytest.approx(plain.delta_r, rel=1e-9)
+
+
+@every_law
+@either_sign
+def test_work_on_the_approach_is_stored_or_dissipated(law, compliance):
+    pair, contact = Pair(LAWS.index(law), E, R, S_y, nu, compliance), untouched()
+    loading = np.linspace(0, DEEP, 4001)
+    forces = [force(contact, pair, approach) for approach in loading]
+    back = np.linspace(DEEP, contact.delta_r, 4001)
+    start = sum(energies(contact, pair, DEEP))
+    released = [force(contact, pair, approach) for approach in back]
+    assert np.trapezoid(forces, loading) == pytest.approx(start, rel=1e-3)
+    end = start + np.trapezoid(released, back)
+    assert energies(contact, pair, contact.delta_r)[1] == pytest.approx(end, abs=1e-3 * start)
+
+
+def test_a_spring_that_gives_way_faster_than_the_law_stiffens_leaves_no_number():
+    contact = untouched()
+    load_to(contact, Pair(0, E, R, S_y, nu, -1e-8), DEEP)
+    assert np.isnan(contact.F_m)
+
+
+def test_without_poissons_effect_bending_adds_nothing():
+    """Saint-Venant: a bent section keeps its shape. Timoshenko's shear with k = 5/6 is exact."""
+    steel = replace(TIMOSHENKO.beam.material, poissons_ratio=0.0)
+    for width in (0.01, 0.03, 0.06):
+        beam = replace(TIMOSHENKO.beam, width=width, material=steel)
+        _, gamma = contact_compliance(replace(TIMOSHENKO, beam=beam))
+        assert abs(gamma) < 1e-3 * beam.depth**2
+
+
+def test_bending_of_a_narrow_beam_is_saint_venants():
+    """Plane stress: the surface thickens by nu M H^2/(8 EI), and so does it work on the moment."""
+    beam = replace(TIMOSHENKO.beam, width=TIMOSHENKO.beam.depth / 4.0)
+    _, gamma = contact_compliance(replace(TIMOSHENKO, beam=beam))
+    # energy: twice nu H^2/8, less the mean over the section, and Cowper's shear of plane stress
+    assert -0.07 < gamma / beam.depth**2 < -0.05
+
+
+def test_another_shear_coefficient_moves_only_its_own_deflection():
+    """gamma M/(EI) takes on what L/(4 k G A) loses, M = L/4."""
+    beam = TIMOSHENKO.beam
+    gammas = [
+        contact_compliance(replace(TIMOSHENKO, beam=replace(beam, shear_coefficient=k)))[1]
+        for k in (5.0 / 6.0, 0.7)
+    ]
+    G, A = beam.material.youngs_modulus / 2.6, beam.width * beam.depth
+    deflections = [beam.span / (4.0 * k * G * A) for k in (5.0 / 6.0, 0.7)]
+    moment = 0.25 * beam.span / beam.bending_stiffness
+    assert np.diff(gammas) * moment == pytest.approx(-np.diff(deflections), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"beam_model": "euler_bernoulli"}, "beam_model: timoshenko"),
+        ({"beam_width": 0.15}, "depth over width from 0.2 to 4"),
+        ({"beam_span": 0.1}, "span of 3 depths and widths"),
+    ],
+)
+def test_refusals(change, words):
+    values = {"beam_model": "timoshenko", "contact_compliance": "beam"} | change
+    with pytest.raises(ValueError, match=words):
+        il.simulate_many(
+            il.paper_impact(), duration=1e-6, varied={key: [each] for key, each in values.items()}
+        )
+
+
+def test_a_factor_of_a_study_as_any_other():
+    both = il.simulate_many(
+        replace(il.paper_impact(contact="hertz"), beam_model="timoshenko"),
+        il.Discretisation(nodes=41),
+        duration="0.3 ms",
+        varied={"contact_compliance": ["half_space", "beam"]},
+    )
+    assert both.peak_force[1] / both.peak_force[0] == pytest.approx(1.04, abs=0.01)
+    assert both.contact_duration[1] / both.contact_duration[0] == pytest.approx(0.97, abs=0.01)
+    assert both.energy_error.max() < 1e-3
