@@ -58,6 +58,7 @@ MOMENT = np.array(
 """g = gamma/H^2 at these."""
 SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
+TIMOSHENKO_ALONE = "is what a beam adds to Timoshenko's deflection: set beam_model: timoshenko"
 LEAST_SPAN = 3.0
 """Of the beam, over the larger of depth and width: the table's shortest."""
 
@@ -75,13 +76,15 @@ def _at_ratio(nu: Floats, values: Floats) -> Floats:
 def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     """Return c (m/N) and gamma (m2) of an impact, or of many; zero for half-spaces.
 
-    Raises ValueError where the beam is outside the table.
+    Raises ValueError where the beam is none of Timoshenko's, or outside the table.
     """
     asked = np.equal(impact.contact_compliance, "beam")
     if not np.any(asked):
         return np.zeros(()), np.zeros(())
     beam, sphere, steel = impact.beam, impact.sphere, impact.beam.material
     refused = "Impact.contact_compliance = 'beam': "
+    if np.any(asked & np.not_equal(impact.beam_model, "timoshenko")):
+        raise ValueError(f"{refused}{TIMOSHENKO_ALONE}")
     shape = np.asarray(beam.depth / beam.width)
     if np.any(asked & ((shape < DEPTHS[0]) | (shape > DEPTHS[-1]))):
         raise ValueError(

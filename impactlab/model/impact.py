@@ -9,8 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS
@@ -193,10 +191,6 @@ class Impact:
         one_of("Impact", "beam_model", self.beam_model, MODELS)
         one_of("Impact", "load", self.load, LOADS)
         one_of("Impact", "contact_compliance", self.contact_compliance, COMPLIANCES)
-        half_space = np.equal(self.contact_compliance, "half_space")
-        fits = half_space | np.isin(self.beam_model, ("timoshenko", SOLID))
-        words = "is what a beam adds to Timoshenko's deflection: set beam_model: timoshenko"
-        require(fits, "Impact", "contact_compliance", self.contact_compliance, words)
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

@@ -3,16 +3,18 @@
     python tests/benchmarks/sphere_indentation.py OUT.csv --depth 30 --elements 60
 
 An axisymmetric quasi-static finite-element solve, load and unload, frictionless. Four-node
-quadrilaterals with the mean dilatation (Hughes 1980, B-bar), J2 plasticity by radial return with the
-consistent tangent (Simo and Taylor 1985), and, unless --small, an updated Lagrangian formulation with
-the rotation of Hughes and Winget (1980): strains of a step on the geometry at its middle, equilibrium
-on that at its end. The sphere, a rigid or an elastic half-space with the profile of a sphere, touches
-the nodes of the surface from above, by an active set; its elastic compliance is that of the same mesh.
+quadrilaterals with the mean dilatation (Hughes 1980, B-bar), J2 plasticity by radial return with
+the consistent tangent (Simo and Taylor 1985), and, unless --small, an updated Lagrangian
+formulation with the rotation of Hughes and Winget (1980): strains of a step on the geometry at its
+middle, equilibrium on that at its end. The sphere, a rigid or an elastic half-space with the
+profile of a sphere, touches the nodes of the surface from above, by an active set; its elastic
+compliance is that of the same mesh.
 
-Lengths are in radii of the sphere, stresses in yield stresses, nu = 0.3. x = delta/delta_y and F/F_y
-are those of the contact laws, for first yield at a mean pressure of 1.1 yield stresses (stronge).
-Output: one row per equilibrium: elastic sphere or rigid, small strains or not, E*/S_y, elements over
-the largest radius, largest x so far, x, F/F_y, contact radius over that of the sphere.
+Lengths are in radii of the sphere, stresses in yield stresses, nu = 0.3. x = delta/delta_y and
+F/F_y are those of the contact laws, for first yield at a mean pressure of 1.1 yield stresses
+(stronge). Output: one row per equilibrium: elastic sphere or rigid, small strains or not, E*/S_y,
+elements over the largest radius, largest x so far, x, F/F_y, contact radius over that of the
+sphere.
 """
 
 from __future__ import annotations
@@ -31,11 +33,12 @@ from scipy.sparse.linalg import splu
 
 NU = 0.3
 Array = np.ndarray[Any, Any]
+COLUMNS = ("sphere", "strains", "E_over_S", "elements", "x_max", "x", "F", "a_over_R")
 _G = 1.0 / math.sqrt(3.0)
 
 
 def spacing(first: float, uniform: float, a: float) -> Array:
-    """Return positions from 0 to about 400 a: even up to `uniform`, then growing, faster from 3 a."""
+    """Return positions from 0 to about 400 a: even up to `uniform`, then growing."""
     places = list(np.arange(0.0, uniform + 0.5 * first, first))
     step = first
     while places[-1] < 400.0 * a:
@@ -93,7 +96,7 @@ def _strain_matrices(x: Array) -> tuple[Array, Array, Array]:
 
 
 @numba.njit(cache=True)  # type: ignore[untyped-decorator]
-def assemble(
+def assemble(  # noqa: C901 one loop over elements and points
     X: Array, elements: Array, u: Array, du: Array, stress: Array, E: float, S: float, large: bool
 ) -> tuple[Array, Array, Array]:
     """Return internal forces (2 n,), element stiffnesses (e, 8, 8), new stresses (e, 4, 4).
@@ -285,7 +288,7 @@ def run(args: argparse.Namespace) -> None:
     with Path(args.output).open("a", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         if new:
-            table.writerow("sphere strains E_over_S elements x_max x F a_over_R".split())
+            table.writerow(COLUMNS)
         table.writerows(rows)
     print(*kind, args.depth, len(solve.X), f"{time.process_time() - begun:.0f} s", flush=True)
 

@@ -107,7 +107,7 @@ IMPACT_PARAMETERS = [
     name
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
-    and name not in ("contact", "beam_model", "load", "shear_coefficient")
+    and name not in ("contact", "contact_compliance", "beam_model", "load", "shear_coefficient")
 ]
 """Parameters of an impact, without those of the beam models alone."""
 

@@ -48,7 +48,7 @@ SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
 SOLID_MODEL = len(BEAM_MODELS)
 """Number of the 3-D FE model, after those of the kernels."""
 _BEAM_MODELS_ONLY = (
-    *("contact", "load", "shear_coefficient"),
+    *("contact", "load", "shear_coefficient", "compliance", "bending_compliance"),
     *("nodes", "points", "rule", "scheme", "courant"),
 )
 """Fields that the 3-D FE model does not use."""
@@ -66,6 +66,11 @@ def table(
     """
     models = np.asarray(varied.get("beam_model", [impact.beam_model]))
     plain = dict(varied)
+    if {"beam_model", "contact_compliance"} & plain.keys():  # the bodies are what they are in 3-D
+        asked = np.asarray(varied.get("contact_compliance", [impact.contact_compliance]))
+        plain["contact_compliance"] = np.where(models == SOLID, "half_space", asked)
+    elif impact.beam_model == SOLID:
+        impact = replace(impact, contact_compliance="half_space")
     if "beam_model" in plain:
         plain["beam_model"] = np.where(models == SOLID, BEAM_MODELS[0], models)
     elif impact.beam_model == SOLID:

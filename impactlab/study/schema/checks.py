@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from impactlab.model.contact_compliance import TIMOSHENKO_ALONE
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
@@ -156,6 +157,11 @@ def _impacts(file: StudyFile) -> Reasons:
     if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
         yield key_of("load", sampling), f"{reason}, or take out the beam model"
+    given = file.impact.contact_compliance
+    if set(models) - {"timoshenko", SOLID} and "beam" in values_of(
+        sampling, "contact_compliance", given
+    ):
+        yield key_of("contact_compliance", sampling), f"beam {TIMOSHENKO_ALONE}"
 
 
 def _solid(file: StudyFile) -> Reasons:

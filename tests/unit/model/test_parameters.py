@@ -13,6 +13,7 @@ BASE = (il.paper_impact(), il.Discretisation())
 OTHER_NAMES = {
     "contact": "hertz",
     "beam_model": "elastic",
+    "contact_compliance": "beam",
     "load": "contact_patch",
     "rule": "layers",
     "scheme": "modal",
