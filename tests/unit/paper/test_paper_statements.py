@@ -20,6 +20,7 @@ from impactlab.paper.statements import (
 )
 from impactlab.paper.statements.statement import Kind, Verdict
 from impactlab.solver import outputs
+from impactlab.verification.solutions.stronge import stronge_impact
 
 Build = Callable[..., xr.Dataset]
 HOLDS, READING, FAILS, UNKNOWN = Verdict
@@ -87,7 +88,12 @@ def test_above_spring_mass(fig08: Any) -> None:
 
 def test_the_indentation_grows(fig08: Any) -> None:
     data = fig08(laws=("stronge", "mjg"))
-    assert verdicts(velocity.indentation_grows.judge(data)) == [HOLDS, HOLDS, READING]
+    found = list(velocity.indentation_grows.judge(data))
+    assert verdicts(found) == [HOLDS, HOLDS, READING]
+    law, deepest = stronge_impact(paper_impact()), found[0].numbers[1].value
+    unloaded = law.unloading_force(found[1].numbers[1].value, deepest)
+    assert abs(unloaded) <= 1e-6 * law.unloading_force(deepest, deepest)
+    assert found[1].numbers[1].value > 0.8 * deepest
     data["fig08"]["maximum_indentation"].loc[{"velocity": 20.0, "contact": "stronge"}] = 1e-6
     found = list(velocity.indentation_grows.judge(data))
     assert verdicts(found) == [FAILS, FAILS, READING]
@@ -164,6 +170,8 @@ def test_the_place_is_found_between_nodes(fig10: Any) -> None:
         found = plastic_strain._strain_beyond(fig10(), 10.0, depths)
         assert found.value == pytest.approx(share * 8e-4, rel=5e-3)
         assert 0.0 < found.uncertainty < 2e-5
+    rising = plastic_strain._strain_beyond(fig10(far=2.0), 10.0, 1.0)
+    assert rising.value == pytest.approx(2.0 * 8e-4, rel=1e-3)
 
 
 def test_a_peak_needs_plastic_strain(fig10: Any, grid_runs: Build) -> None:
@@ -214,7 +222,9 @@ def effects(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
 
 
 def test_shear(effects: Any) -> None:
-    assert verdicts(omissions.shear.judge(effects())) == [FAILS, READING] * 3
+    found = list(omissions.shear.judge(effects()))
+    assert verdicts(found) == [FAILS, READING] * 3
+    assert found[0].numbers[0].value == pytest.approx(0.01)
     assert verdicts(omissions.shear.judge(effects(shear=0.0))) == [HOLDS, READING] * 3
     assert verdicts(omissions.shear.judge(effects(shear=-0.05))) == [FAILS] * 6
 
