@@ -18,7 +18,7 @@ import xarray as xr
 
 from impactlab.fem3d.solver import Mesh, PatchTooSmallError
 from impactlab.fem3d.solver.march import History, Moment, Progress
-from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Integers, nodal_masses, sphere_density
+from impactlab.fem3d.solver.mesh import BEAM, SPHERE, nodal_masses, sphere_density
 from impactlab.fem3d.solver.responses import history_responses, plastic_responses
 from impactlab.fem3d.solver.solve import OWN, histories, named
 from impactlab.fem3d.solver.system import refuse_rate
@@ -332,8 +332,8 @@ def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
         part.CreateNewElement(ELEMENT, number, nodes, steels[body])
     first = 1
     for name, quads, body in (
-        (SPHERE_BOTTOM, _quads(mesh.pairs[:, 0])[:, ::-1], SPHERE),
-        (BEAM_TOP, _quads(mesh.pairs[:, 1]), BEAM),
+        (SPHERE_BOTTOM, mesh.pairs[mesh.faces, 0][:, ::-1], SPHERE),
+        (BEAM_TOP, mesh.pairs[mesh.faces, 1], BEAM),
     ):
         surface = part.CreateSubModelPart(name)
         surface.AddNodes(np.unique(quads + 1).tolist())
@@ -366,14 +366,6 @@ def _steel(engine: Engine, part: Any, number: int, material: Material, density: 
     law = engine.core.KratosGlobals.GetConstitutiveLaw(LAW)
     result[engine.core.CONSTITUTIVE_LAW] = law.Clone()
     return result
-
-
-def _quads(patch: Integers) -> Integers:
-    """Return the faces (f, 4) of a square patch of nodes, y fastest; normals point upwards."""
-    side = round(np.sqrt(patch.size))
-    place = patch.reshape(side, side)
-    corners = (place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:])
-    return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
 def constrain(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:

@@ -2,9 +2,9 @@
 
 A quarter of beam and sphere in hexahedra (mesh), which answer motions with forces
 (elements, material); masses move under these by central differences (system, march), and matched
-nodes are kept from passing through each other. Displacements and rotations may be large:
+faces are kept from passing through each other (contact). Displacements and rotations may be large:
 strains are rates of the current shape, stresses turn with the material (Jaumann). The contact takes
-matched nodes to stay above each other, which holds while they slide by less than an element.
+matched faces to stay above each other, which holds while they slide by less than an element.
 """
 
 from impactlab.fem3d.solver.estimates import Cost as Cost

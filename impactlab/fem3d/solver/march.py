@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from impactlab.fem3d.solver.contact import PARTS
 from impactlab.fem3d.solver.elements import DISSIPATED, HOURGLASS_WORK, WORK
 from impactlab.fem3d.solver.estimates import largest_patch
 from impactlab.fem3d.solver.system import System, corner_volumes, critical_step
@@ -19,9 +20,9 @@ from impactlab.types import Floats
 class Moment(NamedTuple):
     """At the beginning of a step: time in s, contact force of all four quarters in N.
 
-    Displacements in m, positive downwards: of the sphere's centre of mass and of its pole, of the
-    beam's axis and of its top below the impact. velocity: of the sphere's centre of mass in m/s,
-    downwards, at the middle of the step that begins.
+    Displacements in m, positive downwards: of the sphere's centre of mass and of its pole (from as
+    high as its faces bulge), of the beam's axis and of its top below the impact. velocity: of the
+    sphere's centre of mass in m/s, downwards, at the middle of the step that begins.
     """
 
     time: float
@@ -37,7 +38,7 @@ class Energies(NamedTuple):
     """At a checkpoint, of all four quarters, in J (time in s), by the names in datasets.
 
     strain_work: of the stresses in the elements, kept and dissipated. plastic_work: dissipated of
-    it. hourglass_work: against hourglassing. contact_loss: in closing gaps.
+    it. hourglass_work: against hourglassing. contact_work: on pairs that overlap, kept and lost.
     """
 
     time: float
@@ -45,14 +46,14 @@ class Energies(NamedTuple):
     strain_work: float
     plastic_work: float
     hourglass_work: float
-    contact_loss: float
+    contact_work: float
     gravity_work: float
 
     @property
     def balance(self) -> float:
         """Return the energy that stays constant."""
         kept = self.kinetic_energy + self.strain_work + self.hourglass_work
-        return kept + self.contact_loss - self.gravity_work
+        return kept + self.contact_work - self.gravity_work
 
 
 @dataclass
@@ -107,8 +108,10 @@ class March:
         self._shortest = corner_volumes(system.mesh.elements, system.x, self._volumes)
         self._dt = self._step
         self._velocity_dt = 0.5 * self._step  # from rest at time 0 to the middle of the first step
-        self._time, self._lost = 0.0, 0.0
+        self._time, self._pushed, self._pushing = 0.0, 0.0, 0.0
         self._sphere, self._velocity = 0.0, impact.velocity
+        # Where beam and sphere touch, the sphere's node is above by this.
+        self._bulge = float(PARTS[:, 0] @ system.mesh.bulge[0])
 
     def run(self, duration: float, progress: Progress | None = None) -> History:
         """March on to `duration` (s), or until something is wrong or Ctrl-C is pressed.
@@ -151,12 +154,12 @@ class March:
         kinetic = 2.0 * float(np.sum(system.mass[:, None] * before * system.v))
         gravity = self.impact.sphere.total_mass * self.impact.gravity * moment.sphere
         work, plastic, hourglass = worked.tolist()
-        lost = 4.0 * self._lost
+        contact = 4.0 * self._pushed
         history.energies.append(
-            Energies(moment.time, kinetic, work, plastic, hourglass, lost, gravity)
+            Energies(moment.time, kinetic, work, plastic, hourglass, contact, gravity)
         )
         apart = system.x[mesh.pairs[:, 0]] - system.x[mesh.pairs[:, 1]]
-        slid = np.hypot(*apart[apart[:, 2] <= 0.0, :2].T)
+        slid = np.hypot(*apart[system.closing > 0.0, :2].T)
         slide = float(np.max(slid, initial=0.0)) / mesh.element_size
         history.offset = max(history.offset, slide)
         history.stopped = self._wrong()
@@ -166,7 +169,8 @@ class March:
         system, mesh = self.system, self.system.mesh
         at = (mesh.pole, mesh.axis_node, mesh.top_node)
         pole, axis, top = mesh.nodes[at, 2] - system.x[at, 2]
-        impulse, lost, beyond = system.move(self._velocity_dt, self._dt)
+        pole += self._bulge
+        impulse, before, after, beyond = system.move(self._velocity_dt, self._dt)
         if beyond:  # for the patch needed, work grows with radius**4 at least (plastic)
             first = self.impact.velocity**2
             left = min(self._velocity, 0.999 * first**0.5) ** 2
@@ -183,7 +187,7 @@ class March:
         self._velocity += self._velocity_dt * (self.impact.gravity - force / mass)
         moment = Moment(self._time, force, self._sphere, pole, axis, top, self._velocity)
         self.history.moments.append(moment)
-        self._lost += lost
+        self._pushed, self._pushing = self._pushed + self._pushing + before, after
         self._sphere += self._dt * self._velocity
         self._time += self._dt
         system.strain(self._dt)

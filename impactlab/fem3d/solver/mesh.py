@@ -11,11 +11,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from impactlab.fem3d.solver.contact import bulges
 from impactlab.fem3d.solver.estimates import bending_yields, checked_patch, checked_size, uniform
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
@@ -48,8 +50,9 @@ class Mesh:
 
     nodes: (n, 3). elements: (e, 8) node numbers in VTK's order of a hexahedron. body: (e,), BEAM or
     SPHERE. full: (e,), whether fully integrated. pairs: (p, 2) nodes (of the sphere, of the beam)
-    with the same x and y. gaps: (p,) initial distances in m. rim: (p,), pairs on the border of the
-    matched patch. symmetry_x, symmetry_y: nodes that keep their x (y). support: nodes that keep
+    with the same x and y, in a square, y fastest. gaps: (p,) initial distances in m. rim: (p,),
+    pairs on the border of the matched patch. bulge: (f, points) in m of the sphere's faces, see
+    contact.bulges. symmetry_x, symmetry_y: nodes that keep their x (y). support: nodes that keep
     their z. axis_node: on the beam's axis at mid-span. element_size: of the patch, in m.
     patch: half the side of the square of matched nodes, in m.
 
@@ -63,6 +66,7 @@ class Mesh:
     pairs: Integers
     gaps: Floats
     rim: NDArray[np.bool_]
+    bulge: Floats
     symmetry_x: Integers
     symmetry_y: Integers
     support: Integers
@@ -90,6 +94,11 @@ class Mesh:
             if np.any(chosen := (self.body == body) & (self.full == full))
         ]
 
+    @cached_property
+    def faces(self) -> Integers:
+        """Return the faces that may touch: four rows of pairs each, (f, 4)."""
+        return _faces(len(self.pairs))
+
     @property
     def pole(self) -> int:
         """Return the sphere's node at the origin."""
@@ -99,6 +108,13 @@ class Mesh:
     def top_node(self) -> int:
         """Return the beam's node at the origin."""
         return int(self.pairs[np.argmin(self.gaps), 1])
+
+
+def _faces(pairs: int) -> Integers:
+    """Return the faces of a square of that many pairs, right-handed about z."""
+    number = np.arange(pairs, dtype=np.int32).reshape(math.isqrt(pairs), -1)
+    corners = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
+    return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
 def nodal_masses(mesh: Mesh, impact: Impact) -> Floats:
@@ -192,6 +208,7 @@ def quarter_mesh(
         pairs=pairs,
         gaps=nodes[pairs[:, 0], 2] - nodes[pairs[:, 1], 2],
         rim=rim.ravel(),
+        bulge=bulges(nodes[pairs[_faces(len(pairs)), 0]], impact.sphere.radius),
         symmetry_x=symmetry_x,
         symmetry_y=symmetry_y,
         support=place[-1, :, axis],

@@ -84,7 +84,7 @@ OWN = {
     "strain_work": ("J", "work of the stresses, kept and dissipated"),
     "plastic_work": ("J", "work dissipated by plastic flow"),
     "hourglass_work": ("J", "work against hourglassing"),
-    "contact_loss": ("J", "energy lost in closing gaps between nodes"),
+    "contact_work": ("J", "work against overlaps in the contact, kept and lost"),
     "gravity_work": ("J", "work of gravity on the sphere"),
     "element_size": ("m", "size of the elements about the contact"),
     "patch": ("m", "half the side of the square in which nodes are matched"),

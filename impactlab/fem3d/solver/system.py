@@ -1,4 +1,4 @@
-"""The quarter model in motion: elements in SIMD blocks, one step on threads, contact, bounds.
+"""The quarter model in motion: elements in SIMD blocks, one step on threads, bounds.
 
 Each node has one row of forces per piece of a group of elements that it belongs to. Two threads
 never add to the same row, and the order of all sums is that of the mesh: a group is cut into the
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
+from impactlab.fem3d.solver.contact import RULE, close_gaps
 from impactlab.fem3d.solver.elements import FULL_ROWS, ONE_POINT_ROWS, add_forces
 from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
 from impactlab.fem3d.solver.jit import Array, compiled, inlined
@@ -172,46 +173,11 @@ def integrate(
         x[node, 2] += dt * v[node, 2]
 
 
-@compiled
-def close_gaps(
-    pairs: Array, rim: Array, inverse_mass: Array, x: Array, v: Array, dt: float, approach: Array
-) -> tuple[float, float, bool]:
-    """Correct x (m, at the step's end) and v (m/s, at its middle) of pairs that would overlap.
-
-    A step's motion is predicted without contact. Where a pair's gap would be below zero at its end,
-    an impulse on both nodes makes it exactly zero: N. J. Carpenter, R. L. Taylor and M. G. Katona,
-    Int. J. Numer. Meth. Engng. 32 (1991) 103, for matched nodes and diagonal masses. Impulses only
-    push. Momentum is kept; a closing pair loses the energy of its approach, as in a perfectly
-    plastic impact of two nodes, which vanishes with the nodes' mass.
-
-    pairs: (p, 2) nodes, of the upper and the lower body. approach: (p,) their relative velocity in
-    m/s in the step before, replaced by this one's. Returns the sum of the impulses in N s, the
-    energy lost in J, and whether a pair on the rim touches.
-    """
-    impulse, lost, beyond = 0.0, 0.0, False
-    for p in range(pairs.shape[0]):
-        upper, lower = pairs[p]
-        gap = x[upper, 2] - x[lower, 2]
-        push = 0.0
-        if gap < 0.0:
-            up, down = inverse_mass[upper, 2], inverse_mass[lower, 2]
-            push = -gap / (dt * (up + down))
-            v[upper, 2] += push * up
-            v[lower, 2] -= push * down
-            x[upper, 2] += dt * push * up
-            x[lower, 2] = x[upper, 2]
-            beyond = beyond or rim[p]
-        moving = v[lower, 2] - v[upper, 2]
-        impulse += push
-        lost += 0.5 * push * (approach[p] + moving)
-        approach[p] = moving
-    return impulse, lost, beyond
-
-
 class System:
     """Nodes with positions x (n, 3) in m and velocities v (n, 3) in m/s, half a step apart.
 
-    groups: the elements. mass: (n,) in kg. All arrays are changed in place.
+    groups: the elements. mass: (n,) in kg. closing: (p,) distances in m by which the last step
+    parted pairs, 0 where they do not touch. All arrays are changed in place.
     """
 
     def __init__(self, mesh: Mesh, impact: Impact, pool: ThreadPool) -> None:
@@ -234,6 +200,8 @@ class System:
         self.pull = np.zeros(len(mesh.nodes))
         self.pull[sphere] = impact.gravity
         self.approach = np.full(len(mesh.pairs), impact.velocity, dtype=float)
+        self.closing = np.zeros(len(mesh.pairs))
+        self._share = 1.0 / np.bincount(mesh.faces.ravel())
         self._scratch = [np.zeros(SCRATCH * W) for _ in range(pool.threads)]
 
     def strain(self, dt: float) -> None:
@@ -247,13 +215,14 @@ class System:
 
         self.pool.run(work, MOST_THREADS)
 
-    def move(self, velocity_dt: float, dt: float) -> tuple[float, float, bool]:
+    def move(self, velocity_dt: float, dt: float) -> tuple[float, float, float, bool]:
         """Apply the elements' forces for velocity_dt (s), move the nodes by dt; see close_gaps."""
         rows = (self.assembly.starts, self.assembly.slots, self.forces)
-        own = (*rows, self.inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
-        self.pool.run(lambda part, first, end: integrate((first, end), *own), len(self.x))
-        pairs = (self.mesh.pairs, self.mesh.rim, self.inverse_mass)
-        return close_gaps(*pairs, self.x, self.v, dt, self.approach)
+        moved = (*rows, self.inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
+        self.pool.run(lambda part, first, end: integrate((first, end), *moved), len(self.x))
+        mesh = self.mesh
+        own = (mesh.faces, mesh.bulge, self._share, mesh.pairs, mesh.rim, self.inverse_mass)
+        return close_gaps(RULE, *own, self.x, self.v, dt, self.approach, self.closing)
 
 
 _TINY = 1e-12

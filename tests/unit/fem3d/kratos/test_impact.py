@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -22,7 +25,11 @@ def theirs(mesh: Mesh, impact: Impact) -> xr.Dataset:
 
 @pytest.fixture(scope="module")
 def ours(mesh: Mesh, impact: Impact) -> xr.Dataset:
-    return solid.solve_on(mesh, impact, duration=1.02 * DURATION)
+    """With a contact of pairs of nodes: where nodes match, Kratos' dual multipliers make it one."""
+    flat = replace(mesh, bulge=np.zeros_like(mesh.bulge))
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("impactlab.fem3d.solver.system.RULE", (np.eye(4), np.eye(4)))
+        return solid.solve_on(flat, impact, duration=1.02 * DURATION)
 
 
 def test_forces_agree(ours: xr.Dataset, theirs: xr.Dataset) -> None:

@@ -1,66 +1,108 @@
-"""Impulses between matched nodes: gaps closed, momentum kept, losses counted."""
+"""Impulses integrated over faces: overlaps closed, momentum kept, work counted."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.system import close_gaps
+from impactlab.fem3d.solver.contact import PARTS, RULE, SHAPE, bulges, close_gaps
+from impactlab.fem3d.solver.mesh import _faces
 
-DT = 0.1
-
-
-@pytest.fixture
-def two():
-    """Two pairs after a predicted step: the first overlaps by 0.02, the second is apart by 0.01."""
-    mass = np.array([2.0, 3.0, 5.0, 7.0])
-    x = np.array([[0, 0, -0.01], [0, 0, 0.01], [1, 0, 0.02], [1, 0, 0.01]], dtype=float)
-    v = np.zeros((4, 3))
-    v[:, 2] = [-1.0, 0.5, -2.0, 0.0]
-    return np.array([[0, 1], [2, 3]], np.int32), mass, x, v
+DT, SIDE = 0.1, 3
+"""Seconds of a step; pairs along a side of the patch, whose faces are squares of 1 m."""
+X, Y = (place.ravel() for place in np.meshgrid(range(SIDE), range(SIDE), indexing="ij"))
 
 
-def closed(pairs, mass, x, v, approach, rim=(False, False)):
-    inverse = np.repeat(1.0 / mass[:, None], 3, axis=1)
-    return close_gaps(pairs, np.array(rim), inverse, x, v, DT, approach)
+class Patch:
+    """Four faces of nine pairs of 2 and 3 kg, apart by `gap` (9,) in m after a predicted step."""
+
+    def __init__(self, gap, bulge=0.0, rim=False):
+        count = SIDE**2
+        self.pairs = np.arange(2 * count, dtype=np.int32).reshape(2, count).T.copy()
+        self.mass = np.repeat([2.0, 3.0], count)
+        self.x, self.v = np.zeros((2 * count, 3)), np.zeros((2 * count, 3))
+        self.x[:count, 2] = gap
+        self.v[:count, 2] = -1.0
+        self.faces, self.approach = _faces(count), np.ones(count)
+        self.bulge, self.closing = np.full((4, len(SHAPE)), bulge), np.zeros(count)
+        self.rim = np.full(count, rim)
+
+    def close(self):
+        share = 1.0 / np.bincount(self.faces.ravel())
+        inverse = np.repeat(1.0 / self.mass[:, None], 3, axis=1)
+        surfaces = (self.faces, self.bulge, share, self.pairs, self.rim, inverse)
+        return close_gaps(RULE, *surfaces, self.x, self.v, DT, self.approach, self.closing)
+
+    @property
+    def gap(self):
+        return self.x[self.pairs[:, 0], 2] - self.x[self.pairs[:, 1], 2]
+
+    @property
+    def kinetic(self):
+        return 0.5 * np.sum(self.mass * self.v[:, 2] ** 2)
 
 
-def test_an_overlap_is_closed_to_zero_and_momentum_stays(two):
-    pairs, mass, x, v = two
-    before, momentum = v.copy(), np.sum(mass * v[:, 2])
-    impulse, _, beyond = closed(pairs, mass, x, v, np.zeros(2))
-    assert x[0, 2] == x[1, 2]
-    assert np.sum(mass * v[:, 2]) == pytest.approx(momentum, rel=1e-14)
-    assert impulse == pytest.approx(mass[0] * (v[0, 2] - before[0, 2]), rel=1e-14)
-    assert impulse > 0.0
+def test_an_even_overlap_is_closed_to_zero_and_momentum_stays():
+    patch = Patch(-0.02)
+    before = patch.v.copy()
+    impulse, *_, beyond = patch.close()
+    np.testing.assert_allclose(patch.gap, 0.0, atol=1e-15)
+    upper, lower = (patch.mass * (patch.v - before)[:, 2]).reshape(2, -1).sum(axis=1)
+    assert impulse == pytest.approx(upper, rel=1e-14)
+    assert lower == pytest.approx(-upper, rel=1e-14)
+    assert impulse == pytest.approx(9 * 0.02 / DT * 2 * 3 / 5, rel=1e-12)
     assert not beyond
 
 
-def test_a_gap_is_left_alone(two):
-    pairs, mass, x, v = two
-    closed(pairs, mass, x, v, np.zeros(2))
-    assert np.array_equal(x[2:, 2], [0.02, 0.01])
-    assert np.array_equal(v[2:, 2], [-2.0, 0.0])
+def test_a_gap_is_left_alone():
+    patch = Patch(0.01)
+    before = patch.x.copy()
+    assert patch.close()[:3] == (0.0, 0.0, 0.0)
+    assert np.array_equal(patch.x, before)
+    assert not patch.closing.any()
 
 
-def test_what_two_nodes_lose_when_they_meet_is_counted(two):
-    """They touch at the step's end and stay together in the next: a perfectly plastic impact."""
-    pairs, mass, x, v = two
-    pairs = pairs[:1]
-    approach = np.array([1.5])
-    start = 0.5 * np.sum(mass[:2] * v[:2, 2] ** 2)
-    lost = 0.0
-    for _ in range(2):
-        lost += closed(pairs, mass, x, v, approach, (False,))[1]
-        x[:, 2] += DT * v[:, 2]
-    assert v[0, 2] == pytest.approx(v[1, 2])
-    plastic = 0.5 * 2.0 * 3.0 / 5.0 * 1.5**2
-    assert lost == pytest.approx(plastic, rel=1e-12)
-    assert start - 0.5 * np.sum(mass[:2] * v[:2, 2] ** 2) == pytest.approx(plastic, rel=1e-12)
+@pytest.mark.parametrize("edge", [0.3, 0.7, 1.0, 1.45, 1.9])
+def test_the_force_grows_with_the_part_of_a_face_that_touches(edge):
+    """Overlap rises from the line x = edge towards x = 0: its integral is that of a triangle.
+
+    Nodes on the patch's border stand for half a face: as heavy as others, they count double.
+    """
+    patch = Patch(0.01 * (X - edge))
+    patch.close()
+    area = np.where(X == 1, 1.0, 0.5) * np.where(Y == 1, 1.0, 0.5)
+    assert np.sum(area * patch.closing) == pytest.approx(0.01 * edge**2, abs=2e-4)
 
 
-def test_a_pair_on_the_rim_is_told_of_when_it_touches(two):
-    pairs, mass, x, v = two
-    assert not closed(pairs, mass, x.copy(), v.copy(), np.zeros(2), (False, True))[2]
-    x[2, 2] = 0.0  # both overlap
-    assert closed(pairs, mass, x, v, np.zeros(2), (True, False))[2]
+def test_a_bulge_touches_before_the_nodes():
+    patch = Patch(0.001, bulge=0.003)
+    patch.close()
+    np.testing.assert_allclose(patch.gap, 0.003, rtol=1e-12)
+
+
+def test_bulges_are_what_a_sphere_has_below_its_faces():
+    """h^2/(6 R) is the mean of a face of side h at the pole."""
+    radius, h = 35.0, 0.5
+    x = h * np.array([0.0, 1.0, 1.0, 0.0])
+    y = h * np.array([0.0, 0.0, 1.0, 1.0])
+    z = radius - np.sqrt(radius**2 - x**2 - y**2)
+    found = bulges(np.stack([x, y, z], axis=-1)[None], radius)
+    assert found.min() > 0.0
+    assert found[0] @ PARTS.sum(axis=1) / 4 == pytest.approx(h**2 / (6 * radius), rel=1e-3)
+
+
+@pytest.mark.parametrize("edge", [0.6, 5.0])
+def test_the_work_is_what_the_bodies_lose(edge):
+    patch = Patch(0.01 * (X - edge))
+    start, work = patch.kinetic, 0.0
+    for _ in range(3):
+        work += sum(patch.close()[1:3])
+        patch.x += DT * patch.v
+    assert work == pytest.approx(start - patch.kinetic, rel=1e-12)
+    assert work > 0.0
+
+
+def test_a_rim_is_told_of_when_its_nodes_meet():
+    assert Patch(-0.01, rim=True).close()[3]
+    assert not Patch(0.01, bulge=0.02, rim=True).close()[3]  # their faces only
+    assert not Patch(-0.01).close()[3]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from impactlab.fem3d.solver.contact import SHAPE
 from impactlab.fem3d.solver.hexahedron import W
 from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh, brick
@@ -93,6 +94,7 @@ def bars(full):
         pairs=pairs.astype(np.int32),
         gaps=np.zeros(4),
         rim=np.zeros(4, dtype=bool),
+        bulge=np.zeros((1, len(SHAPE))),
         symmetry_x=none,
         symmetry_y=none,
         support=none,
