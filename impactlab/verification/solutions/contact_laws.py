@@ -43,6 +43,16 @@ def stronge_consistent(d: float, E: float, R: float, S: float, nu: float) -> flo
     return min(stronge(d, E, R, S, nu), hertz(d, E, R, S, nu))
 
 
+def finite_element(d: float, E: float, R: float, S: float, nu: float) -> float:
+    """Return the fit to finite elements: Hertz less a share of ln(x)^2; linear from x = 320 on."""
+    x = d / (R * (0.825 * math.pi * S / E) ** 2)
+    if x <= 1.0:
+        return hertz(d, E, R, S, nu)
+    end = min(x, 320.0)
+    exponent = -0.03758957 * math.log(end) ** 2 + 0.00053654 * math.log(end) ** 3
+    return hertz(d * end / x, E, R, S, nu) * math.exp(exponent) * x / end
+
+
 def jackson_green(
     d: float, E: float, R: float, S: float, nu: float, modified: bool = False
 ) -> float:
@@ -130,6 +140,19 @@ def jackson_unloading(d: float, F: float, E: float, R: float, S: float, nu: floa
     return F, d * min(share, 0.99), 1.5
 
 
+def finite_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
+    """Return the fit to finite elements: quartics in ln(x), x up to 320."""
+    d_y = R * (0.825 * math.pi * S / E) ** 2
+    if d <= d_y:
+        return F, 0.0, 1.5
+    log = math.log(min(d / d_y, 320.0))
+    shares = (1.0, 0.21531196, -0.0794761, 0.0160753, -0.00114565)
+    exponents = (1.5, -0.05867637, -0.03159603, 0.01221572, -0.00095182)
+    share = sum(c * log**k for k, c in enumerate(shares))
+    recovered = share * math.sqrt(d_y * F / hertz(d_y, E, R, S, nu) * d_y)
+    return F, d - recovered, sum(c * log**k for k, c in enumerate(exponents))
+
+
 def thornton_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
     """Follow Hertz on R_p = (4 E/(3 F)) ((2 F + F_y)/(2 pi p_y))^1.5 (Thornton 1997)."""
     p_y = 1.6 * S
@@ -167,6 +190,7 @@ LAWS: dict[str, tuple[Callable[..., float], Callable[..., Unloading]]] = {
     "kogut_etsion": (kogut_etsion, etsion_unloading),
     "brake": (mjg, brake_unloading),
     "stronge_consistent": (stronge_consistent, wang_unloading),
+    "finite_element": (finite_element, finite_unloading),
 }
 """Loading and unloading of each law, by name."""
 
@@ -180,7 +204,7 @@ def joints(E: float, R: float, S: float, nu: float) -> list[float]:
     plastic = 0.5 * (math.exp(5.1) + 1.0)
     capped = 15.415907653904072  # where x^1.5 = (2 x - 1) (1 + ln(2 x - 1)/3.3)
     steps = (
-        (stronge_y, (1.0, capped, plastic)),
+        (stronge_y, (1.0, capped, plastic, 320.0)),
         (jackson_c, (1.0, 1.9)),
         (kogut_c, (1.0, 6.0, 110.0)),
     )

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from impactlab.solver.contact import hertz
+from impactlab.solver.contact import finite_element, hertz
 from impactlab.solver.contact.stronge import MEAN_PRESSURE, THETA, U_PLASTIC, curve
 from impactlab.verification.solutions import hertz as closed_form
 from impactlab.verification.solutions.stronge import StrongeImpact
@@ -83,3 +85,24 @@ def test_force_and_a_way_back_that_is_the_way_there(delta):
 
 def test_nothing_without_indentation():
     assert hertz.curve(0.0, E, R, S_y, nu)[0] == 0.0
+
+
+def test_the_fit_is_that_of_the_finite_elements():
+    """Forces while loading, in the resolved upper tenth of each run; what unloading recovers."""
+    file = Path(finite_element.__file__).with_suffix(".csv")
+    rows = pd.read_csv(file).query("sphere == 'elastic' and strains == 'large' and E_over_S < 400")
+    begins = (rows["x_max"].diff() < 0) & (rows["x_max"] < 0.5 * rows["x_max"].shift())
+    loading, recovered = [], []
+    for _, run in rows.groupby(begins.cumsum()):
+        for x, F, top in run[["x", "F", "x_max"]].to_numpy():
+            ours, K, delta_r, n = finite_element.curve(top * LAW.yield_indentation, E, R, S_y, nu)
+            if abs(x - top) < 1e-4 * top and top > max(0.1 * run["x_max"].max(), 1.2):
+                loading.append(ours / LAW.yield_force / F - 1)
+            elif x < top:
+                left = K * max(x * LAW.yield_indentation - delta_r, 0.0) ** n
+                recovered.append((left / LAW.yield_force - F) / (ours / LAW.yield_force))
+    assert len(loading) > 50
+    assert len(recovered) > 80
+    assert np.abs(loading).max() < 0.036
+    assert np.sqrt(np.mean(np.square(loading))) < 0.012
+    assert np.sqrt(np.mean(np.square(recovered))) < 0.02

@@ -1,0 +1,65 @@
+"""Elastic-perfectly plastic contact fitted to finite elements, loading and unloading.
+
+Source: tests/benchmarks/sphere_indentation.py, an axisymmetric quasi-static solve of an elastic
+sphere (profile and compliance of the half-space's material) on a half-space, without friction, with
+finite strains, E*/S_y = 333, nu = 0.3; its data are in finite_element.csv. x = delta/delta_y with
+Stronge's delta_y and F_y (th = 1.1), log = ln x:
+    x <= 1     Hertz
+    loading    F = F_y x^1.5 exp(a_2 log^2 + a_3 log^3)
+    unloading  F = F_m ((delta - delta_r)/(delta_m - delta_r))^n,
+               delta_m - delta_r = delta_y sqrt(F_m/F_y) (1 + r_1 log + ... + r_4 log^4),
+               n = 1.5 + n_1 log + ... + n_4 log^4
+The fit is within 3.5 % of every point of loading, 1.1 % in the mean (nodes that touch one by
+one make the points scatter by as much), and within 0.6 % of what is recovered. From 28 to 48
+elements over the radius the force at x = 320 changes by 0.6 %, the residual by 0.1 %. E*/S_y =
+600 or small strains lower the force by 2 % in the mean, a rigid sphere of the same E* by 8 %.
+"""
+
+from __future__ import annotations
+
+import math
+
+from impactlab.solver.contact.stronge import yield_indentation
+from impactlab.solver.jit import compiled
+from impactlab.solver.types import Unloading
+
+LARGEST_INDENTATION = 320.0
+"""x at which the data end."""
+LARGEST_DEPTH = 0.0194
+"""delta/R at which they do."""
+
+
+@compiled
+def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
+    """Return force and unloading curve of the fit (see contact/hertz.py for the form).
+
+    Beyond the data the force grows with the indentation, and the unloading keeps its shape.
+    """
+    K = 4.0 / 3.0 * E * math.sqrt(R)
+    delta_y = yield_indentation(E, R, S_y)
+    if delta <= delta_y:
+        return K * delta * math.sqrt(delta), K, 0.0, 1.5
+    x = min(delta / delta_y, LARGEST_INDENTATION)
+    log = math.log(x)
+    ratio = x * math.sqrt(x) * math.exp(log * log * (-0.03758957 + 0.00053654 * log))
+    ratio *= max(delta / (LARGEST_INDENTATION * delta_y), 1.0)
+    F = ratio * K * delta_y * math.sqrt(delta_y)
+    share = 0.0160753 - 0.00114565 * log
+    share = 1.0 + log * (0.21531196 + log * (-0.0794761 + log * share))
+    n = 0.01221572 - 0.00095182 * log
+    n = 1.5 + log * (-0.05867637 + log * (-0.03159603 + log * n))
+    recovered = delta_y * math.sqrt(ratio) * share
+    return F, F / recovered**n, delta - recovered, n
+
+
+@compiled
+def limit(E: float, R: float, S_y: float, nu: float) -> float:
+    """Return the indentation (m) at which the data end, in first yields or in radii."""
+    return min(LARGEST_INDENTATION * yield_indentation(E, R, S_y), LARGEST_DEPTH * R)
+
+
+@compiled
+def radius(delta: float, E: float, R: float, S_y: float, nu: float) -> float:
+    """Return the radius (m) of the contact circle, fitted to within half an element."""
+    log = math.log(max(min(delta / yield_indentation(E, R, S_y), LARGEST_INDENTATION), 1.0))
+    return math.sqrt(R * delta * (1.0 + 0.04 * log * log))
