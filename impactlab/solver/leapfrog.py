@@ -27,11 +27,11 @@ from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact.history import Pair, make_pair
 from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import catch_up, make_plastic_state, plastic_energy
-from impactlab.solver.jit import allocating, compiled
+from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
-from impactlab.solver.state import Model, State
+from impactlab.solver.state import Flight, Model, State
 from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
 
 _AUDITS = 500
@@ -42,13 +42,17 @@ WORST_ENERGY_ERROR = 0.05
 """Imbalance over the initial kinetic energy beyond which a run gives no other answer."""
 
 
+Point = tuple[float, float, float, float, float]
+"""Force, mid-span deflection and curvature, sphere displacement and indentation at a step."""
+
+
 @compiled
 def _sample(
     out: Array,
     step: int,
     steps: int,
-    before: tuple[float, float, float, float, float],
-    here: tuple[float, float, float, float, float],
+    before: Point,
+    here: Point,
 ) -> None:
     """Fill the samples of `out`, shape (5, samples), that fall into the step that ends here."""
     per_step = (out.shape[1] - 1) / steps
@@ -73,9 +77,44 @@ def contact_force(
     return contact_history.force(contact, pair, delta)
 
 
-def _time_loop(model: Model) -> Callable[..., int]:
+def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
+    """Return a function that leaps over steps without contact, if it can, and samples them."""
+    leap, retrace, _ = flight
+
+    @inlined
+    def fly(
+        state: State,
+        now: int,
+        contact: Record,
+        events: Record,
+        samples: Array,
+        sphere: tuple[float, float, float, float],
+        step: int,
+        steps: int,
+        here: Point,
+    ) -> tuple[int, Point]:
+        """Return (number of steps, what was sampled last).
+
+        sphere: its displacement, its last step, how much each grows by, and indentation (m).
+        """
+        w_s, last, fall, delta = sphere
+        w_mid = state.beam.w[now, state.grid.mid]
+        gap = contact.delta_r - delta
+        leapt = leap(state, now, gap, (last, fall), events.w_max, steps - step)
+        for j in range(1, leapt if samples.shape[1] > 0 else 0):
+            w, kappa = retrace(state)
+            moved = j * (last + 0.5 * (j + 1) * fall)
+            before, here = here, (0.0, w, kappa, w_s + moved, delta + moved - (w - w_mid))
+            _sample(samples, step + j, steps, before, here)
+        return leapt, here
+
+    return fly
+
+
+def _time_loop(model: Model) -> Callable[..., int]:  # noqa: C901 one loop over the steps
     """Return the time loop of a model of the beam."""
-    _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride = model
+    _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight = model
+    fly = None if flight is None else _leaps(flight)
 
     @compiled
     def imbalance(
@@ -120,7 +159,8 @@ def _time_loop(model: Model) -> Callable[..., int]:
         patch, ahead = case.load == CONTACT_PATCH, 0.0  # the mean under the pressure, of mid-span
         contact.n = 1.5
         event_tracker.start(events)
-        for step in range(steps + 1):
+        step = 0
+        while step <= steps:
             w_mid, u_mid = w[now, mid], u[mid]
             delta = w_s - w_mid - ahead
             approach = delta
@@ -142,6 +182,18 @@ def _time_loop(model: Model) -> Callable[..., int]:
                 before, here = here, (F, w_mid, mid_curvature(state, now), w_s, delta)
                 _sample(samples, step, steps, before, here)
 
+            if fly is not None and events.touching == 0.0 and F == 0.0 and pair.bending == 0.0:
+                sphere = (w_s, dt * v_s, dt * dt * case.gravity, delta)
+                leapt, here = fly(state, now, contact, events, samples, sphere, step, steps, here)
+                if leapt > 0:
+                    w_s += leapt * (sphere[1] + 0.5 * (leapt + 1) * sphere[2])
+                    v_s += leapt * dt * case.gravity
+                    step += leapt
+                    to_audit = max(to_audit - leapt, 1)
+                    events.w = events.w_before = w[now, mid] - u[mid]
+                    events.delta = events.delta_before = w_s - dt * v_s - events.w - ahead
+                    continue
+
             move_beam(state, now, F)
             excess = 0.0
             if patch and F > 0.0:
@@ -159,6 +211,7 @@ def _time_loop(model: Model) -> Callable[..., int]:
                 if not error < 1.0:
                     return -1
             w_s, v_s, now = w_s + dt * v_after, v_after, 1 - now
+            step += 1
         return 1 - now
 
     return march
@@ -178,6 +231,7 @@ def _kernel(name: str, model: Model) -> Callable[..., None]:
     those of all runs are the caller's, who holds them until this returns.
     """
     make, deflect, march = model.make, model.deflect, _time_loop(model)
+    largest_deflection = None if model.flight is None else model.flight.largest
 
     def kernel(
         cases: Array,
@@ -196,6 +250,8 @@ def _kernel(name: str, model: Model) -> Callable[..., None]:
             beam, plastic = make_beam(grid), make_plastic_state(grid, section)
             state = State(pair, section, grid, beam, plastic, make(case, section, grid))
             now = march(case, state, contacts[r], events[r], samples[r], steps)
+            if largest_deflection is not None:
+                events[r].w_max = largest_deflection(state, events[r].w_max)
             if now < 0:
                 answer.status = DIVERGED
                 samples[r] = np.nan

@@ -33,13 +33,38 @@ import numpy as np
 from impactlab.solver.beam import Grid
 from impactlab.solver.contact_patch import wave_share
 from impactlab.solver.fibre_plasticity import PlasticState, flow, plastic_energy
-from impactlab.solver.jit import allocating, compiled, inlined, vectorised
+from impactlab.solver.flight import (
+    BEND_W,
+    BENT,
+    FRESH,
+    LEAST,
+    LEVEL,
+    MOST,
+    MOST_KAPPA,
+    MOST_SLOPE,
+    NOISE_W,
+    PATIENCE,
+    WAIT,
+    Leaps,
+    bound_swing,
+    exchange,
+    largest_deflection,
+    leap_modes,
+    lowest,
+    make_leaps,
+    make_tables,
+    note_leap,
+    section_swing,
+)
+from impactlab.solver.jit import allocating, compiled, fused, inlined, vectorised
 from impactlab.solver.section import Section, bend
-from impactlab.solver.state import Model, State
+from impactlab.solver.state import Flight, Model, State
 from impactlab.solver.types import Array, Record
 
 _STEPS_UNSEEN = 8.0
 """Steps, at the present pace, for which sections far from yielding are left alone."""
+_PATIENCE = 14
+"""The most steps to wait after leaps have failed, before one is tried again."""
 
 
 class Modes(NamedTuple):
@@ -50,7 +75,7 @@ class Modes(NamedTuple):
     curvature of node i per amplitude, (n + 4, n), 1/m2; nodes as in beam.py. seen: q when all
     sections were last looked at, (n,). near: the number of sections that could yield before the
     next such look, then which they are, (n + 1,). slack: what the curvature of any other may have
-    changed by until that look, and can have changed by now (1/m), (2,).
+    changed by until that look, and can have changed by now (1/m), (2,). leaps: see flight.py.
     """
 
     q: Array
@@ -63,6 +88,7 @@ class Modes(NamedTuple):
     seen: Array
     near: Array
     slack: Array
+    leaps: Leaps
 
 
 @allocating
@@ -75,9 +101,12 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
         turn = grid.dt * k2[p] * math.sqrt(EI / grid.mu)
         D[p] = 4.0 * math.sin(0.5 * min(turn, 0.5 * math.pi)) ** 2
         push[p] = D[p] / (EI * k2[p] ** 2 * n * grid.dx)
-    cosine = np.empty(4 * n)
-    for i in range(4 * n):
+    cosine = np.zeros(4 * n)
+    for i in range(n):
         cosine[i] = math.cos(0.5 * math.pi * i / n)
+        cosine[2 * n - i] = -cosine[i]
+    for i in range(2 * n + 1, 4 * n):
+        cosine[i] = cosine[4 * n - i]
     for i in range(n):
         for p in range(n):
             bent[grid.mid - i, p] = -k2[p] * cosine[(2 * p + 1) * i % (4 * n)]
@@ -94,10 +123,11 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
         np.zeros(n),
         np.zeros(n + 1, dtype=np.int64),
         slack,
+        make_leaps(n),
     )
 
 
-@vectorised
+@fused
 def mode_curvature(q: Array, bent: Array, i: int) -> float:
     """Return the curvature of section i (1/m)."""
     kappa = 0.0
@@ -112,7 +142,7 @@ def _add_moment(source: Array, bent: Array, i: int, moment: float) -> None:
         source[p] += bent[i, p] * moment
 
 
-@vectorised
+@fused
 def move_modes(
     q: Array,
     u: Array,
@@ -138,7 +168,7 @@ def move_modes(
     return w
 
 
-@compiled
+@inlined
 def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
     """Find the sections that could yield in the next steps, and how long that holds."""
     near, pace = 0, 0.0
@@ -157,7 +187,7 @@ def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
     modes.near[0] = near
 
 
-@compiled
+@inlined
 def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: Grid) -> None:
     """Bend the sections that yield, and bring their moments to the modes."""
     if modes.slack[1] >= modes.slack[0]:
@@ -174,6 +204,7 @@ def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: G
                 )
             length = grid.dx if i == grid.mid else 2.0 * grid.dx
             _add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
+            modes.leaps.memory[FRESH] = 0
             plastic.M_0[i] = M_0
 
 
@@ -207,12 +238,14 @@ def _make(case: Record, section: Section, grid: Grid) -> Modes:
 
 @inlined
 def _step(state: State, now: int, F: float) -> None:
-    q, u, k2, D, push, source, _, seen, near, slack = state.own
+    q, u, k2, D, push, source, _, seen, near, slack, leaps = state.own
     w, mid = state.beam.w, state.grid.mid
     if near[0] > 0 or slack[1] >= slack[0]:
         bend_sections(state.own, state.plastic, state.section, state.grid)
     w[1 - now, mid] = move_modes(q, u, D, push, source, k2, seen, slack, F)
     state.beam.u[mid] = w[1 - now, mid] - w[now, mid]
+    if F > 0.0:
+        leaps.memory[FRESH] = 0
 
 
 @compiled
@@ -250,4 +283,133 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     return mean - moved, 0.5 * F * (moved - mean)
 
 
-MODEL = Model(_make, _step, _curvature, _energy, _deflect, _spread, flight_stride=64)
+@inlined
+def _begin_flight(modes: Modes, plastic: PlasticState, EI: float, grid: Grid) -> None:
+    """Bound the free motion from here on, and list the sections that could yield in it.
+
+    A simply supported beam at rest without a force has no moment: its curvature is M_0/EI.
+    """
+    leaps = modes.leaps
+    swing, watched = leaps.swing, leaps.watched
+    bound_swing(
+        modes.q,
+        modes.u,
+        modes.k2,
+        modes.D,
+        modes.push,
+        modes.source,
+        leaps.rest,
+        leaps.A,
+        swing,
+    )
+    watched[0] = 0
+    for i in range(2, grid.mid + 1):
+        kappa = plastic.M_0[i] / EI
+        left = min(plastic.kappa_max[i] - kappa, kappa - plastic.kappa_min[i])
+        if min(swing[MOST_KAPPA], (i - 1) * grid.dx * swing[MOST_SLOPE]) < left:
+            continue
+        most, bend, noise = section_swing(leaps.A, modes.D, modes.bent, i)
+        if not most < left:
+            watched[0] += 1
+            k = watched[0]
+            watched[k], leaps.kappa[2, k], leaps.kappa[3, k] = i, bend, noise
+    leaps.memory[FRESH], leaps.memory[BENT] = 1, 0
+
+
+@inlined
+def _stays_elastic(modes: Modes, plastic: PlasticState, level: int) -> bool:
+    """Return whether no section can yield in a leap that is tried."""
+    leaps, steps = modes.leaps, 1 << level
+    watched, kappa = leaps.watched, leaps.kappa
+    if leaps.memory[BENT] == 0:
+        for k in range(1, watched[0] + 1):
+            kappa[0, k] = mode_curvature(modes.q, modes.bent, watched[k])
+        leaps.memory[BENT] = 1
+    for k in range(1, watched[0] + 1):
+        i, bend, noise = watched[k], kappa[2, k], kappa[3, k]
+        sag = 0.125 * bend * steps * steps + noise
+        kappa[1, k] = mode_curvature(leaps.trial[0], modes.bent, i)
+        low, high = min(kappa[0, k], kappa[1, k]), max(kappa[0, k], kappa[1, k])
+        if low - sag < plastic.kappa_min[i] or high + sag > plastic.kappa_max[i]:
+            low = lowest(kappa[0, k], kappa[1, k], steps, bend) - noise
+            high = noise - lowest(-kappa[0, k], -kappa[1, k], steps, bend)
+            if low < plastic.kappa_min[i] or high > plastic.kappa_max[i]:
+                return False
+    return True
+
+
+@inlined
+def _leap(
+    state: State, now: int, gap: float, sphere: tuple[float, float], w_max: float, room: int
+) -> int:
+    """Leap as far as nothing can happen; return the number of steps, 0 for none.
+
+    gap (m): between sphere and beam. sphere: its last step, and how much each grows by (m).
+    w_max (m): the largest deflection so far. room: the most steps.
+    """
+    modes, beam, mid = state.own, state.beam, state.grid.mid
+    leaps, memory = modes.leaps, modes.leaps.memory
+    if memory[WAIT] > 0:
+        memory[WAIT] -= 1
+        return 0
+    if memory[FRESH] == 0:
+        _begin_flight(modes, state.plastic, state.section.stiffness, state.grid)
+    w = beam.w[now, mid]
+    first = memory[LEVEL]
+    for level in range(first, LEAST - 1, -1):
+        steps = 1 << level
+        if steps > room:
+            continue
+        make_tables(leaps, modes.D, level)
+        w_after, U_after = leap_modes(
+            modes.q,
+            modes.u,
+            modes.D,
+            leaps.rest,
+            leaps.D,
+            leaps.S,
+            level,
+            leaps.trial[0],
+            leaps.trial[1],
+        )
+        gap_after = gap + w_after - w - steps * (sphere[0] + 0.5 * (steps + 1) * sphere[1])
+        least = lowest(gap, gap_after, steps, leaps.swing[BEND_W] + sphere[1])
+        if least > leaps.swing[NOISE_W] and _stays_elastic(modes, state.plastic, level):
+            note_leap(leaps, modes.q, modes.u, modes.D, w, w_after, level, w_max)
+            modes.slack[1] = exchange(modes.q, modes.u, leaps.trial, modes.k2, modes.seen)
+            for k in range(1, leaps.watched[0] + 1):
+                leaps.kappa[0, k] = leaps.kappa[1, k]
+            beam.w[now, mid], beam.u[mid] = w_after, U_after
+            memory[LEVEL] = min(level + 1, MOST) if level == first else level
+            memory[PATIENCE] = 0
+            return steps
+    memory[LEVEL], memory[BENT] = LEAST, 0
+    memory[PATIENCE] = min(2 * memory[PATIENCE] + 2, _PATIENCE)
+    memory[WAIT] = memory[PATIENCE]
+    return 0
+
+
+@compiled
+def _retrace(state: State) -> tuple[float, float]:
+    """Make a step of the last leap once more; return deflection and curvature of mid-span."""
+    leaps = state.own.leaps
+    q, u = leaps.trial[0], leaps.trial[1]
+    w, _ = leap_modes(q, u, state.own.D, leaps.rest, leaps.D, leaps.S, 0, q, u)
+    return w, mode_curvature(q, state.own.bent, state.grid.mid)
+
+
+@compiled
+def _largest(state: State, w_max: float) -> float:
+    return largest_deflection(state.own.leaps, state.own.D, w_max)
+
+
+MODEL = Model(
+    _make,
+    _step,
+    _curvature,
+    _energy,
+    _deflect,
+    _spread,
+    flight_stride=64,
+    flight=Flight(_leap, _retrace, _largest),
+)

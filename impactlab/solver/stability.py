@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.beam import Grid, make_grid
-from impactlab.solver.contact.history import Pair, loading_work
+from impactlab.solver.contact.history import PANELS, Pair, loading_work
 from impactlab.solver.contact.switch import curve
 from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
@@ -61,10 +61,10 @@ def stiffest_contact(case: Record, pair: Pair) -> float:
     energy = 0.5 * case.sphere_mass * case.velocity**2
     hertz = 4.0 / 3.0 * pair.E * math.sqrt(pair.R)
     delta = 0.1 * (2.5 * energy / hertz) ** 0.4
-    work, k_c = 0.0, 0.0
+    work, k_c, panels = 0.0, 0.0, 1 if case.scheme == MODAL else PANELS
     while work < energy + case.sphere_mass * case.gravity * delta and delta < pair.R:
         k_c = max(k_c, _stiffness(pair, delta))
-        work += loading_work(pair, delta, _GROWTH * delta)
+        work += loading_work(pair, delta, _GROWTH * delta, panels)
         if pair.compliance != 0.0:  # of the spring in series
             F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
             F_next, _, _, _ = curve(pair.law, _GROWTH * delta, pair.E, pair.R, pair.S_y, pair.nu)

@@ -25,6 +25,20 @@ class State(NamedTuple):
     own: Any
 
 
+class Flight(NamedTuple):
+    """Compiled functions with which a model leaps over steps without contact.
+
+    leap(state, now, gap, sphere, w_max, room): make many steps at once; return how many, 0 where an
+    event may be near. beam.w and beam.u at mid-span follow. retrace(state): make the steps of the
+    last leap one by one, aside; return deflection (m) and curvature (1/m) of mid-span after the
+    next. largest(state, w_max): the largest deflection, of the leaps, too (m).
+    """
+
+    leap: Callable[..., int]
+    retrace: Callable[..., tuple[float, float]]
+    largest: Callable[..., float]
+
+
 class Model(NamedTuple):
     """A model of the beam in one scheme: compiled functions, from which leapfrog.py makes a kernel.
 
@@ -34,7 +48,7 @@ class Model(NamedTuple):
     before it (m). deflect(state, now): set all of beam.w[now] in the end. spread(state, now, F, a):
     spread the force of a step just made over the contact radius a (contact_patch.py); return how
     far the mean under it has moved beyond mid-span (m), and what `energy` lacks (J). flight_stride:
-    steps between two audits of the energy without contact, at least.
+    steps between two audits of the energy without contact, at least. flight: see above.
     """
 
     make: Callable[..., Any]
@@ -44,3 +58,4 @@ class Model(NamedTuple):
     deflect: Callable[..., None]
     spread: Callable[..., tuple[float, float]]
     flight_stride: int = 1
+    flight: Flight | None = None

@@ -231,7 +231,7 @@ class _ModalMarch(_March):
         self.w, self.u = self.modes.q, self.modes.u
 
     def move(self, newtons: float) -> None:
-        q, u, k2, d, push, source, _, seen, _, slack = self.modes
+        q, u, k2, d, push, source, _, seen, _, slack = self.modes[:10]
         self.midspan = move_modes(q, u, d, push, source, k2, seen, slack, newtons)
 
     def undo(self) -> None:

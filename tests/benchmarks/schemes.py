@@ -12,6 +12,7 @@ A time is the least of several, of a batch of equal runs on one thread; all take
 from __future__ import annotations
 
 import argparse
+import functools
 import math
 import sys
 import time
@@ -70,12 +71,17 @@ Run = Callable[[int], np.ndarray]
 """Solve so many copies of a run (the kernels alone), and return the RESPONSES of one."""
 
 
-def kernel(impact: il.Impact, scheme: str, nodes: int, copies: int = 1) -> np.ndarray:
-    """Our solver."""
+@functools.cache
+def table(impact: il.Impact, scheme: str, nodes: int) -> np.ndarray:
+    """The case of a run."""
     if scheme == "timoshenko":
         impact, scheme = replace(impact, beam_model="timoshenko"), "leapfrog"
-    grid = il.Discretisation(nodes=nodes, scheme=scheme)
-    answers = solve(np.repeat(case_table(impact, grid, duration=DURATION), copies))
+    return case_table(impact, il.Discretisation(nodes=nodes, scheme=scheme), duration=DURATION)
+
+
+def kernel(impact: il.Impact, scheme: str, nodes: int, copies: int = 1) -> np.ndarray:
+    """Our solver."""
+    answers = solve(np.repeat(table(impact, scheme, nodes), copies))
     return np.array([answers[name][0] for name in RESPONSES])
 
 
@@ -101,10 +107,12 @@ def measured(runs: dict[tuple[str, int, int], Run], rounds: int) -> pd.DataFrame
     """Responses and milliseconds per run; a row per solver, size of its grid, and steps."""
     seconds, copies, answers = {}, {}, []
     for key, run in runs.items():
-        start = time.thread_time()
         answers.append(run(1))
-        seconds[key] = time.thread_time() - start
-        copies[key] = math.ceil(LEAST_SECONDS / seconds[key]) if key[0] in NODES else 1
+        copies[key], seconds[key] = 1, math.inf
+        start = time.thread_time()
+        while key[0] in NODES and time.thread_time() - start < LEAST_SECONDS:
+            copies[key] *= 2
+            run(copies[key])
     for _ in range(rounds):
         for key, run in runs.items():
             start = time.thread_time()

@@ -161,4 +161,10 @@ FAULTS = (
         "(0.5 * stiffness * q_now - source[p])",
         "(0.5 * stiffness * q_now)",
     ),
+    Fault(
+        "modal: leaps over sections that yield",
+        "modal.py",
+        "if low < plastic.kappa_min[i] or high > plastic.kappa_max[i]:",
+        "if False:",
+    ),
 )

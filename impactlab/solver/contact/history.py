@@ -47,7 +47,7 @@ approach_m (m): the approach at delta_m. Where bending counts, shift (m): what i
 approach, now and a step before; bending_work (J): of the force on it; largest (m): approach and
 shift."""
 
-_PANELS = 8
+PANELS = 8
 _ITERATIONS, _ROUNDING = 60, 1e-14
 # Gauss-Legendre on [0, 1], 4 points
 _GAUSS = (
@@ -144,20 +144,21 @@ def force(contact: Record, pair: Pair, approach: float) -> float:
 
 
 @compiled
-def loading_work(pair: Pair, start: float, stop: float) -> float:
+def loading_work(pair: Pair, start: float, stop: float, panels: int = PANELS) -> float:
     """Return the integral of the loading force over [start, stop], J.
 
-    Gauss-Legendre with 4 points on panels of the square root of (delta - start), in which
-    delta^1.5 is smooth at zero; the panels keep a regime limit of a law from costing accuracy.
+    Gauss-Legendre with 4 points on each of so many panels of the square root of (delta - start),
+    in which delta^1.5 is smooth at zero; the panels keep a regime limit of a law from costing
+    accuracy.
     """
     total = 0.0
-    for panel in range(_PANELS):
+    for panel in range(panels):
         for point, weight in _GAUSS:
-            root = (panel + point) / _PANELS
+            root = (panel + point) / panels
             delta = start + root * root * (stop - start)
             F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
             total += weight * F * 2.0 * root
-    return total * (stop - start) / _PANELS
+    return total * (stop - start) / panels
 
 
 @compiled

@@ -38,7 +38,7 @@ def modes_of(n, dt):
 
 
 def move(modes, F):
-    q, u, k2, D, push, source, _, seen, _, slack = modes
+    q, u, k2, D, push, source, _, seen, _, slack = modes[:10]
     return move_modes(q, u, D, push, source, k2, seen, slack, F)
 
 
