@@ -19,11 +19,11 @@ from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
 from impactlab.model.plausibility import ImplausibleWarning, implausibilities, numbers
 from impactlab.model.quantities import Quantity, as_text, in_si
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LOADS, SCHEMES
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LOADS, LUMPED_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import FOLDER
-from impactlab.solver.leapfrog import kernel_of
+from impactlab.solver.leapfrog import is_extended, kernel_of
 from impactlab.solver.outputs import blank
 from impactlab.solver.section import rule_points
 from impactlab.solver.types import CASE
@@ -43,7 +43,8 @@ if TYPE_CHECKING:
 _COMPILE = """
 import impactlab as il
 from impactlab.simulate import case_table, solve
-grid, varied = il.Discretisation(nodes=5, scheme={scheme!r}), {{"beam_model": [{model!r}]}}
+grid = il.Discretisation(nodes=5, scheme={scheme!r})
+varied = {{"beam_model": [{model!r}], "load": [{load!r}]}}
 solve(case_table(il.paper_impact(), grid, duration=1e-6, varied=varied))
 """
 
@@ -224,7 +225,7 @@ def case_table(
             f"{SCHEMES[case.scheme]!r}: beam_model = {BEAM_MODELS[case.beam_model]!r} has "
             "'leapfrog' alone"
         )
-    lumped = cases["beam_model"] >= BEAM_MODELS.index("spring_mass")
+    lumped = cases["beam_model"] >= BEAM_MODELS.index(LUMPED_MODELS[0])
     wrong = np.flatnonzero(lumped & (cases["load"] != LOADS.index("point")))
     if wrong.size:
         case = cases[wrong[0]]
@@ -256,12 +257,14 @@ def solve(
     strains = np.full((2, runs, half, fibres), np.nan)
     contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
     arrays = (responses, contacts, events, histories, deflection, *strains)
-    kinds = np.stack([cases["beam_model"], cases["scheme"]])
+    kinds = np.stack([cases["beam_model"], cases["scheme"], is_extended(cases)])
     starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
     for start, end in itertools.pairwise((*starts, runs)):
-        model, scheme = kinds[:, start]
-        compile_kernels([BEAM_MODELS[model]], [SCHEMES[scheme]])
-        kernel_of(model, scheme)(cases[start:end], *(array[start:end] for array in arrays))
+        model, scheme, extended = kinds[:, start]
+        compile_kernels([BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)])
+        kernel_of(model, scheme, bool(extended))(
+            cases[start:end], *(array[start:end] for array in arrays)
+        )
     columns = {name: responses[name].copy() for name in responses.dtype.names or ()}
     if samples:
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
@@ -273,17 +276,23 @@ def solve(
 
 
 def compile_kernels(
-    beam_models: Iterable[str] = BEAM_MODELS, schemes: Iterable[str] = SCHEMES
+    beam_models: Iterable[str] = BEAM_MODELS,
+    schemes: Iterable[str] = SCHEMES,
+    extended: Iterable[bool] = (False,),
 ) -> Path | None:
     """Compile the kernels of these models and schemes side by side, unless they are compiled.
+
+    extended: whether those with strain rate and a load over the contact patch, those without, or
+    both.
 
     Returns the folder of the compiled kernels, None where they cannot be kept.
     """
     programs = {}
-    for model, scheme in itertools.product(beam_models, schemes):
+    for model, scheme, more in itertools.product(beam_models, schemes, extended):
         if model in BENDING_MODELS or (model in BEAM_MODELS and scheme == "leapfrog"):
-            kernel = kernel_of(BEAM_MODELS.index(model), SCHEMES.index(scheme))
-            programs[kernel] = _COMPILE.format(model=model, scheme=scheme)
+            kernel = kernel_of(BEAM_MODELS.index(model), SCHEMES.index(scheme), more)
+            load = LOADS[more and model not in LUMPED_MODELS]
+            programs[kernel] = _COMPILE.format(model=model, scheme=scheme, load=load)
     if len(programs) == 1:
         precompile(*programs.popitem())
     else:

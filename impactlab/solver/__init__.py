@@ -9,6 +9,8 @@ SCHEMES = ("leapfrog", "modal")
 """Names of the schemes in time; the index is the kernels' switch."""
 BEAM_MODELS = ("euler_bernoulli", "elastic", "timoshenko", "spring_mass", "rigid")
 """Names of the models of the beam; the index is the kernels' switch."""
+LUMPED_MODELS = BEAM_MODELS[3:]
+"""Those that move as one mass."""
 LOADS = ("point", "contact_patch")
 """Where the contact force acts on the beam; the index is the kernels' switch."""
 COMPLIANCES = ("half_space", "beam")

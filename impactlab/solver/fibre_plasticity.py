@@ -27,6 +27,7 @@ from impactlab.solver.section import (
     stored_energy,
     tangent,
 )
+from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.solver.types import ONE, TWO, Array, Index
 
 
@@ -170,13 +171,7 @@ def begin_tangents(
         if kappa > plastic_state.kappa_max[i] or kappa < plastic_state.kappa_min[i]:
             outside -= 1.0
             near = (beam.plastic[i - ONE], beam.plastic[i], beam.plastic[i + ONE])
-            if section.rate.D > 0.0:
-                M_0 = flow(plastic_state, section, i, kappa, grid.dt)
-                _add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
-            else:
-                _begin_tangent(beam, plastic_state, section, grid, i, kappa)
-                plastic_state.on_tangent[0] += ONE
-                plastic_state.on_tangent[plastic_state.on_tangent[0]] = i
+            _yield(beam, plastic_state, section, section.rate, grid, i, kappa)
             for j in range(max(i - ONE, TWO), i + TWO):  # the support does not move
                 change = beam.plastic[j] - near[j + ONE - i]
                 u[j] += change
@@ -186,10 +181,18 @@ def begin_tangents(
 
 
 @compiled
-def flow(plastic_state: PlasticState, section: Section, i: Index, kappa: float, dt: float) -> float:
+def flow(
+    plastic_state: PlasticState,
+    section: Section,
+    rate: CowperSymonds,
+    i: Index,
+    kappa: float,
+    dt: float,
+) -> float:
     """Let section i flow to kappa (1/m) in the time dt (s); return its new M_0 (N m)."""
     M_0, plastic_state.kappa_min[i], plastic_state.kappa_max[i], work = bend_at_rate(
         section,
+        rate,
         kappa,
         plastic_state.flowed[i, 0],
         dt,
@@ -200,6 +203,29 @@ def flow(plastic_state: PlasticState, section: Section, i: Index, kappa: float, 
     plastic_state.flowed[i, 0] = kappa
     plastic_state.flowed[i, 1] += work
     return float(M_0)
+
+
+@compiled
+def _yield(
+    beam: Beam,
+    plastic_state: PlasticState,
+    section: Section,
+    rate: CowperSymonds | None,
+    grid: Grid,
+    i: Index,
+    kappa: float,
+) -> None:
+    """Bend section i out of its elastic interval; rate: the section's, which rules at compile time.
+
+    A coefficient of 0 is none, too.
+    """
+    if rate is not None and rate.D > 0.0:
+        M_0 = flow(plastic_state, section, rate, i, kappa, grid.dt)
+        _add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
+        return
+    _begin_tangent(beam, plastic_state, section, grid, i, kappa)
+    plastic_state.on_tangent[0] += ONE
+    plastic_state.on_tangent[plastic_state.on_tangent[0]] = i
 
 
 @compiled

@@ -29,7 +29,7 @@ from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import catch_up, make_plastic_state, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
-from impactlab.solver.section import make_section
+from impactlab.solver.section import Section, make_section, with_rate
 from impactlab.solver.stability import discretise
 from impactlab.solver.state import Flight, Model, State
 from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
@@ -111,8 +111,8 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
     return fly
 
 
-def _time_loop(model: Model) -> Callable[..., int]:  # noqa: C901 one loop over the steps
-    """Return the time loop of a model of the beam."""
+def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C901 one loop
+    """Return the time loop of a model of the beam; extended: see _kernel."""
     _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight = model
     fly = None if flight is None else _leaps(flight)
 
@@ -156,7 +156,7 @@ def _time_loop(model: Model) -> Callable[..., int]:  # noqa: C901 one loop over 
         now = int(np.int64(0))  # a plain 0 would be a type of its own, its callees compiled twice
         to_audit = stride
         here = (0.0, 0.0, 0.0, 0.0, 0.0)
-        patch, ahead = case.load == CONTACT_PATCH, 0.0  # the mean under the pressure, of mid-span
+        ahead = 0.0  # the mean under the pressure, of mid-span
         contact.n = 1.5
         event_tracker.start(events)
         step = 0
@@ -196,7 +196,7 @@ def _time_loop(model: Model) -> Callable[..., int]:  # noqa: C901 one loop over 
 
             move_beam(state, now, F)
             excess = 0.0
-            if patch and F > 0.0:
+            if extended and case.load == CONTACT_PATCH and F > 0.0:
                 change, excess = spread(state, now, F, contact_radius(contact, pair, F))
                 ahead += change
 
@@ -217,8 +217,16 @@ def _time_loop(model: Model) -> Callable[..., int]:  # noqa: C901 one loop over 
     return march
 
 
-def _kernel(name: str, model: Model) -> Callable[..., None]:
+@allocating
+def _section_at_rate(case: Record) -> Section:
+    return with_rate(make_section(case), case)
+
+
+def _kernel(name: str, model: Model, extended: bool = False) -> Callable[..., None]:
     """Return the kernel of a model of the beam.
+
+    extended: with a load over the contact patch and strain rate, which other kernels are free of,
+    so that they compile sooner.
 
     It solves every case of R, by records and arrays of as many rows. cases: CASE records. answers:
     blank RESPONSE records, filled. contacts, events: zeros, CONTACT and EVENTS records to work in.
@@ -230,8 +238,9 @@ def _kernel(name: str, model: Model) -> Callable[..., None]:
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
     those of all runs are the caller's, who holds them until this returns.
     """
-    make, deflect, march = model.make, model.deflect, _time_loop(model)
+    make, deflect, march = model.make, model.deflect, _time_loop(model, extended)
     largest_deflection = None if model.flight is None else model.flight.largest
+    cut = _section_at_rate if extended else make_section
 
     def kernel(
         cases: Array,
@@ -245,7 +254,7 @@ def _kernel(name: str, model: Model) -> Callable[..., None]:
     ) -> None:
         for r in range(cases.size):
             case, answer = cases[r], answers[r]
-            pair, section = make_pair(case), make_section(case)
+            pair, section = make_pair(case), cut(case)
             grid, steps = discretise(case, pair, section)
             beam, plastic = make_beam(grid), make_plastic_state(grid, section)
             state = State(pair, section, grid, beam, plastic, make(case, section, grid))
@@ -279,7 +288,6 @@ def _kernel(name: str, model: Model) -> Callable[..., None]:
 
 _EULER_BERNOULLI = _kernel("euler_bernoulli", euler_bernoulli.MODEL)
 _LUMPED = _kernel("lumped", lumped.MODEL)
-_MODAL = _kernel("modal", modal.MODEL)
 _LEAPFROG = {
     "euler_bernoulli": _EULER_BERNOULLI,
     "elastic": _EULER_BERNOULLI,
@@ -287,8 +295,22 @@ _LEAPFROG = {
     "spring_mass": _LUMPED,
     "rigid": _LUMPED,
 }
+_EXTENDED_EULER_BERNOULLI = _kernel("extended_euler_bernoulli", euler_bernoulli.MODEL, True)
+_EXTENDED = _LEAPFROG | {
+    "euler_bernoulli": _EXTENDED_EULER_BERNOULLI,
+    "elastic": _EXTENDED_EULER_BERNOULLI,
+    "timoshenko": _kernel("extended_timoshenko", timoshenko.MODEL, True),
+}
+_MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", modal.MODEL, True))
 
 
-def kernel_of(beam_model: int, scheme: int) -> Callable[..., None]:
-    """Return the kernel for a beam model and a scheme, both as numbers."""
-    return _MODAL if scheme == MODAL else _LEAPFROG[BEAM_MODELS[beam_model]]
+def is_extended(cases: Array) -> Array:
+    """Return which cases need an extended kernel: a spread load, or fibres with a strain rate."""
+    return (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
+
+
+def kernel_of(beam_model: int, scheme: int, extended: bool = False) -> Callable[..., None]:
+    """Return the kernel for a beam model and a scheme, both as numbers; extended: see _kernel."""
+    if scheme == MODAL:
+        return _MODAL[extended]
+    return (_EXTENDED if extended else _LEAPFROG)[BEAM_MODELS[beam_model]]

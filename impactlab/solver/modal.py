@@ -59,6 +59,7 @@ from impactlab.solver.flight import (
 from impactlab.solver.jit import allocating, compiled, fused, inlined, vectorised
 from impactlab.solver.section import Section, bend
 from impactlab.solver.state import Flight, Model, State
+from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.solver.types import Array, Record
 
 _STEPS_UNSEEN = 8.0
@@ -187,6 +188,24 @@ def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
     modes.near[0] = near
 
 
+@compiled
+def _bend(
+    plastic: PlasticState,
+    section: Section,
+    rate: CowperSymonds | None,
+    i: int,
+    kappa: float,
+    dt: float,
+) -> float:
+    """Bend section i to kappa (1/m), by the rate if it has one; return its new M_0 (N m)."""
+    if rate is not None and rate.D > 0.0:
+        return flow(plastic, section, rate, i, kappa, dt)
+    M_0, plastic.kappa_min[i], plastic.kappa_max[i] = bend(
+        section, kappa, plastic.plastic_strain, plastic.peeq, i
+    )
+    return M_0
+
+
 @inlined
 def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: Grid) -> None:
     """Bend the sections that yield, and bring their moments to the modes."""
@@ -196,12 +215,7 @@ def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: G
         i = modes.near[k]
         kappa = mode_curvature(modes.q, modes.bent, i)
         if kappa > plastic.kappa_max[i] or kappa < plastic.kappa_min[i]:
-            if section.rate.D > 0.0:
-                M_0 = flow(plastic, section, i, kappa, grid.dt)
-            else:
-                M_0, plastic.kappa_min[i], plastic.kappa_max[i] = bend(
-                    section, kappa, plastic.plastic_strain, plastic.peeq, i
-                )
+            M_0 = _bend(plastic, section, section.rate, i, kappa, grid.dt)
             length = grid.dx if i == grid.mid else 2.0 * grid.dx
             _add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
             modes.leaps.memory[FRESH] = 0

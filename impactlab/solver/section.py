@@ -53,7 +53,7 @@ class Section(NamedTuple):
     z: distance from the axis, m, outermost first; area: twice B times the rule's weight, m2;
     lever: E area z, N m; each of shape (P // 2,). stiffness: (EI)_q = sum(E area z^2), N m2, the
     rule's own. yield_curvature: where the outermost fibre first yields, 1/m. rate: see
-    strain_rate.py.
+    strain_rate.py; None in the kernels without it.
     """
 
     z: Array
@@ -62,7 +62,7 @@ class Section(NamedTuple):
     stiffness: float
     yield_curvature: float
     moduli: Moduli
-    rate: CowperSymonds
+    rate: CowperSymonds | None
 
 
 @compiled
@@ -138,6 +138,20 @@ def make_section(case: Record) -> Section:
             case.beam_isotropic_hardening_modulus,
             case.beam_kinematic_hardening_modulus,
         ),
+        None,
+    )
+
+
+@allocating
+def with_rate(section: Section, case: Record) -> Section:
+    """Return the section with the case's law of the strain rate."""
+    return Section(
+        section.z,
+        section.area,
+        section.lever,
+        section.stiffness,
+        section.yield_curvature,
+        section.moduli,
         CowperSymonds(case.beam_rate_coefficient, case.beam_rate_exponent),
     )
 
@@ -204,6 +218,7 @@ def bend(
 @compiled
 def bend_at_rate(
     section: Section,
+    rate: CowperSymonds,
     kappa: float,
     before: float,
     dt: float,
@@ -216,7 +231,7 @@ def bend_at_rate(
     Returns as `bend`, and the work of the overstress (J/m). The new elastic interval is the static
     one, which does not hold kappa as long as the section flows.
     """
-    z, lever, (D, q) = section.z, section.lever, section.rate
+    z, lever, (D, q) = section.z, section.lever, rate
     E, S_y, H_i, H_k = section.moduli
     M_0, kappa_min, kappa_max, work = 0.0, -FAR, FAR, 0.0
     for j in range(z.size):

@@ -11,6 +11,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import case_table, simulate
 from impactlab.solver.section import bend_at_rate, make_section
+from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.types import Floats
 from impactlab.verification.cases import with_beam_material
 from impactlab.verification.finding import Comparison, Curve, Finding, Panel, check, relative
@@ -54,16 +55,15 @@ def strain_rate() -> Finding:
 
 def _moments(impact: Impact, rates: Floats) -> Floats:
     """Return the moments (N m) of the solver's section, bent at these rates of the surface."""
-    cut = make_section(
-        case_table(impact, Discretisation(rule="layers", points=64), duration=1.0)[0]
-    )
+    grid = Discretisation(rule="layers", points=64)
+    cut, law = make_section(case_table(impact, grid, duration=1.0)[0]), CowperSymonds(D, Q)
     found, steps, last = [], 200, 60.0 * cut.yield_curvature
     for rate in rates:
         dt = 0.5 * impact.beam.depth * last / steps / rate
         strain, peeq, before = np.zeros((1, 32)), np.zeros((1, 32)), 0.0
         moment = np.nan
         for kappa in np.linspace(0.0, last, steps + 1)[1:]:
-            plastic, _, _, _ = bend_at_rate(cut, float(kappa), before, dt, strain, peeq, 0)
+            plastic, _, _, _ = bend_at_rate(cut, law, float(kappa), before, dt, strain, peeq, 0)
             moment, before = cut.stiffness * kappa - plastic, float(kappa)
         found.append(moment)
     return np.array(found)

@@ -11,7 +11,7 @@ from impactlab.model.contact_compliance import TIMOSHENKO_ALONE
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, outputs
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, outputs
 from impactlab.study.errors import unknown
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
@@ -153,7 +153,7 @@ def _impacts(file: StudyFile) -> Reasons:
             "leapfrog alone: set scheme: leapfrog, or take out the beam model"
         )
         yield key_of("scheme", sampling), reason
-    lumped = [name for name in BEAM_MODELS[BEAM_MODELS.index("spring_mass") :] if name in models]
+    lumped = [name for name in LUMPED_MODELS if name in models]
     if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
         yield key_of("load", sampling), f"{reason}, or take out the beam model"

@@ -78,10 +78,14 @@ def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
 
 
 def prepare(design: xr.Dataset) -> None:
-    """Compile the kernels of a design's beam models and schemes."""
+    """Compile the kernels of a design's beam models, schemes and options."""
     given, grid = base(design)
     models = np.unique(design.get("beam_model", given.beam_model)).tolist()
-    compile_kernels(models, np.unique(design.get("scheme", grid.scheme)).tolist())
+    schemes = np.unique(design.get("scheme", grid.scheme)).tolist()
+    patch = np.atleast_1d(design.get("load", given.load)) == "contact_patch"
+    rate = np.atleast_1d(design.get("beam_rate_coefficient", given.beam.material.rate_coefficient))
+    extended = np.unique(np.logical_or.outer(patch.ravel(), rate.ravel() > 0.0)).tolist()
+    compile_kernels(models, schemes, extended)
 
 
 SOLVER = Solver(

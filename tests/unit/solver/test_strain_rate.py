@@ -8,15 +8,19 @@ import numpy as np
 import pytest
 
 from impactlab.solver.fibre_plasticity import plastic_energies
-from impactlab.solver.section import bend, bend_at_rate, make_section
+from impactlab.solver.section import bend, bend_at_rate, make_section, with_rate
 from impactlab.solver.strain_rate import overstress_ratio
 
 HARDENINGS = [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9), (2e9, 3e9)]
 every_hardening = pytest.mark.parametrize(("isotropic", "kinematic"), HARDENINGS)
 
 
+def at_rate(case):
+    return with_rate(make_section(case), case)
+
+
 def cut(make_case, isotropic=0.0, kinematic=0.0, D=40.4, q=5.0):
-    return make_section(
+    return at_rate(
         make_case(
             points=9,
             beam_isotropic_hardening_modulus=isotropic,
@@ -32,7 +36,7 @@ def follow(section, path, dt):
     strain, peeq = np.zeros((1, section.z.size)), np.zeros((1, section.z.size))
     moments, works, strains, peeqs, before = [], [], [], [], 0.0
     for kappa in path:
-        M_0, _, _, work = bend_at_rate(section, kappa, before, dt, strain, peeq, 0)
+        M_0, _, _, work = bend_at_rate(section, section.rate, kappa, before, dt, strain, peeq, 0)
         before = kappa
         moments.append(M_0 - section.stiffness * kappa)
         works.append(work)
