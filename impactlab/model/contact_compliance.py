@@ -21,7 +21,6 @@ circles than R/16 (from R/33 to R/8, 6 % of it).
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from impactlab.model.impact import Impact
 from impactlab.types import Floats
@@ -92,6 +91,8 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
         )
     if np.any(asked & (beam.span < LEAST_SPAN * np.maximum(beam.depth, beam.width))):
         raise ValueError(f"{refused}needs a span of {LEAST_SPAN:g} depths and widths at least")
+    from scipy.interpolate import CubicSpline  # half a second to import, for few
+
     nu, depth = np.asarray(steel.poissons_ratio), beam.depth
     tables = (CubicSpline(np.log(DEPTHS), table)(np.log(shape)) for table in (FORCE, MOMENT))
     force, moment = (_at_ratio(nu, table) for table in tables)
