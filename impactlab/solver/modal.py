@@ -26,9 +26,6 @@ Source: W. Gautschi, Numer. Math. 3 (1961) 381; Hochbruck, Lubich, Numer. Math. 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from impactlab.solver.beam import Grid
 from impactlab.solver.contact_patch import wave_share
@@ -45,128 +42,34 @@ from impactlab.solver.flight import (
     NOISE_W,
     PATIENCE,
     WAIT,
-    Leaps,
     bound_swing,
     exchange,
     largest_deflection,
     leap_modes,
     lowest,
-    make_leaps,
     make_tables,
     note_leap,
     section_swing,
 )
-from impactlab.solver.jit import allocating, compiled, fused, inlined, vectorised
+from impactlab.solver.jit import allocating, compiled, inlined
+from impactlab.solver.modes import (
+    Modes,
+    add_moment,
+    deflect,
+    make_modes,
+    modal_energy,
+    mode_curvature,
+    move_modes,
+)
 from impactlab.solver.section import Section, bend
 from impactlab.solver.state import Flight, Model, State
 from impactlab.solver.strain_rate import CowperSymonds
-from impactlab.solver.types import Array, Record
+from impactlab.solver.types import Record
 
 _STEPS_UNSEEN = 8.0
 """Steps, at the present pace, for which sections far from yielding are left alone."""
 _PATIENCE = 14
 """The most steps to wait after leaps have failed, before one is tried again."""
-
-
-class Modes(NamedTuple):
-    """The modes of a run, n of them.
-
-    q: amplitude (m). u: dt dq/dt half a step before (m). k2: k_p^2 (1/m2). D: see above. push: D/K
-    (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n,). bent:
-    curvature of node i per amplitude, (n + 4, n), 1/m2; nodes as in beam.py. seen: q when all
-    sections were last looked at, (n,). near: the number of sections that could yield before the
-    next such look, then which they are, (n + 1,). slack: what the curvature of any other may have
-    changed by until that look, and can have changed by now (1/m), (2,). leaps: see flight.py.
-    """
-
-    q: Array
-    u: Array
-    k2: Array
-    D: Array
-    push: Array
-    source: Array
-    bent: Array
-    seen: Array
-    near: Array
-    slack: Array
-    leaps: Leaps
-
-
-@allocating
-def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
-    """Return the n modes of a half beam of n spacings, at rest."""
-    k2, D, push = np.empty(n), np.empty(n), np.empty(n)
-    bent = np.zeros((grid.mid + 3, n))
-    for p in range(n):
-        k2[p] = ((2 * p + 1) * math.pi / (2 * n * grid.dx)) ** 2
-        turn = grid.dt * k2[p] * math.sqrt(EI / grid.mu)
-        D[p] = 4.0 * math.sin(0.5 * min(turn, 0.5 * math.pi)) ** 2
-        push[p] = D[p] / (EI * k2[p] ** 2 * n * grid.dx)
-    cosine = np.zeros(4 * n)
-    for i in range(n):
-        cosine[i] = math.cos(0.5 * math.pi * i / n)
-        cosine[2 * n - i] = -cosine[i]
-    for i in range(2 * n + 1, 4 * n):
-        cosine[i] = cosine[4 * n - i]
-    for i in range(n):
-        for p in range(n):
-            bent[grid.mid - i, p] = -k2[p] * cosine[(2 * p + 1) * i % (4 * n)]
-    slack = np.zeros(2)
-    slack[0] = yield_curvature
-    return Modes(
-        np.zeros(n),
-        np.zeros(n),
-        k2,
-        D,
-        push,
-        np.zeros(n),
-        bent,
-        np.zeros(n),
-        np.zeros(n + 1, dtype=np.int64),
-        slack,
-        make_leaps(n),
-    )
-
-
-@fused
-def mode_curvature(q: Array, bent: Array, i: int) -> float:
-    """Return the curvature of section i (1/m)."""
-    kappa = 0.0
-    for p in range(q.size):
-        kappa += bent[i, p] * q[p]
-    return kappa
-
-
-@vectorised
-def _add_moment(source: Array, bent: Array, i: int, moment: float) -> None:
-    for p in range(source.size):
-        source[p] += bent[i, p] * moment
-
-
-@fused
-def move_modes(
-    q: Array,
-    u: Array,
-    D: Array,
-    push: Array,
-    source: Array,
-    k2: Array,
-    seen: Array,
-    slack: Array,
-    F: float,
-) -> float:
-    """Move all modes by one step under the contact force F (N).
-
-    Returns the deflection at mid-span (m).
-    """
-    w, change = 0.0, 0.0
-    for p in range(q.size):
-        u[p] += push[p] * (F + source[p]) - D[p] * q[p]
-        q[p] += u[p]
-        w += q[p]
-        change += k2[p] * abs(q[p] - seen[p])
-    slack[1] = change
-    return w
 
 
 @inlined
@@ -217,32 +120,9 @@ def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: G
         if kappa > plastic.kappa_max[i] or kappa < plastic.kappa_min[i]:
             M_0 = _bend(plastic, section, section.rate, i, kappa, grid.dt)
             length = grid.dx if i == grid.mid else 2.0 * grid.dx
-            _add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
+            add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
             modes.leaps.memory[FRESH] = 0
             plastic.M_0[i] = M_0
-
-
-@vectorised
-def modal_energy(q: Array, u: Array, D: Array, push: Array, source: Array, F: float) -> float:
-    """Return the energy in J of a step's beginning, above what plastic strains store unbent.
-
-    After the step, made under the contact force F (N).
-    """
-    energy = 0.0
-    for p in range(q.size):
-        q_now, stiffness = q[p] - u[p], D[p] / push[p]
-        u_before = u[p] + D[p] * q_now - push[p] * (F + source[p])
-        energy += 0.5 * u_before * u[p] / push[p] + (0.5 * stiffness * q_now - source[p]) * q_now
-    return energy
-
-
-@compiled
-def deflect(modes: Modes, w: Array, now: int, mid: int) -> None:
-    """Set the nodes' deflections w[now] (m) at the beginning of the last step."""
-    for i in range(2, mid + 1):
-        w[now, i] = 0.0
-        for p in range(modes.q.size):
-            w[now, i] -= modes.bent[i, p] / modes.k2[p] * (modes.q[p] - modes.u[p])
 
 
 @allocating

@@ -17,7 +17,7 @@ from impactlab.simulate import case_table, simulate
 from impactlab.solver.beam import make_beam, move_virgin, strike
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, force, make_pair
-from impactlab.solver.modal import make_modes, move_modes
+from impactlab.solver.modes import make_modes, move_modes
 from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
 from impactlab.types import Floats

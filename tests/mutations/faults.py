@@ -139,7 +139,7 @@ FAULTS = (
     ),
     Fault(
         "modal: fast modes exact, too",
-        "modal.py",
+        "modes.py",
         "min(turn, 0.5 * math.pi)",
         "min(turn, math.pi)",
     ),
@@ -157,7 +157,7 @@ FAULTS = (
     ),
     Fault(
         "modal: energy without the plastic moments",
-        "modal.py",
+        "modes.py",
         "(0.5 * stiffness * q_now - source[p])",
         "(0.5 * stiffness * q_now)",
     ),

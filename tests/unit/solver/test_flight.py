@@ -19,7 +19,7 @@ from impactlab.solver.flight import (
     note_leap,
     section_swing,
 )
-from impactlab.solver.modal import make_modes, modal_energy, mode_curvature, move_modes
+from impactlab.solver.modes import make_modes, modal_energy, mode_curvature, move_modes
 from impactlab.solver.section import FAR
 
 MU, EI, SPAN = 13.0, 2e4, 0.8

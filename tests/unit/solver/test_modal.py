@@ -11,8 +11,8 @@ from impactlab.simulate import simulate, simulate_many
 from impactlab.solver.beam import make_grid
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.fibre_plasticity import make_plastic_state, plastic_energy
-from impactlab.solver.modal import (
-    bend_sections,
+from impactlab.solver.modal import bend_sections
+from impactlab.solver.modes import (
     deflect,
     make_modes,
     modal_energy,
