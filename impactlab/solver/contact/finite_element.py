@@ -27,6 +27,8 @@ LARGEST_INDENTATION = 320.0
 """x at which the data end."""
 LARGEST_DEPTH = 0.0194
 """delta/R at which they do."""
+LEAST_RATIO, LARGEST_RATIO = 300.0, 660.0
+"""E*/S_y: those of the data, 333 and 600, by a tenth beyond them."""
 
 
 @compiled
@@ -54,7 +56,12 @@ def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:
 
 @compiled
 def limit(E: float, R: float, S_y: float, nu: float) -> float:
-    """Return the indentation (m) at which the data end, in first yields or in radii."""
+    """Return the indentation (m) at which the data end, in first yields or in radii.
+
+    For other ratios of E*/S_y than those of the data it is that of first yield.
+    """
+    if not LEAST_RATIO <= E / S_y <= LARGEST_RATIO:
+        return yield_indentation(E, R, S_y)
     return min(LARGEST_INDENTATION * yield_indentation(E, R, S_y), LARGEST_DEPTH * R)
 
 

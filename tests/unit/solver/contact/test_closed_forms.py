@@ -10,7 +10,13 @@ import pandas as pd
 import pytest
 
 from impactlab.solver.contact import finite_element, hertz
-from impactlab.solver.contact.stronge import MEAN_PRESSURE, THETA, U_PLASTIC, curve
+from impactlab.solver.contact.stronge import (
+    MEAN_PRESSURE,
+    THETA,
+    U_PLASTIC,
+    curve,
+    yield_indentation,
+)
 from impactlab.verification.solutions import hertz as closed_form
 from impactlab.verification.solutions.stronge import StrongeImpact
 
@@ -106,3 +112,13 @@ def test_the_fit_is_that_of_the_finite_elements():
     assert np.abs(loading).max() < 0.036
     assert np.sqrt(np.mean(np.square(loading))) < 0.012
     assert np.sqrt(np.mean(np.square(recovered))) < 0.02
+
+
+@pytest.mark.parametrize(
+    ("ratio", "within"), [(250, False), (333, True), (600, True), (700, False)]
+)
+def test_the_fit_ends_with_the_ratios_of_its_data(ratio, within):
+    R, S_y = 0.035, 345e6
+    first_yield = yield_indentation(ratio * S_y, R, S_y)
+    last = finite_element.limit(ratio * S_y, R, S_y, 0.3)
+    assert last == pytest.approx(min(320 * first_yield, 0.0194 * R) if within else first_yield)
