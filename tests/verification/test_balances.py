@@ -6,8 +6,6 @@ from dataclasses import replace
 import numba
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import impactlab as il
 from impactlab.model.parameters import with_values
@@ -17,7 +15,7 @@ from impactlab.variables import STATUS_FLAGS
 from impactlab.verification.cases import with_beam_material
 from impactlab.verification.energy import audit
 
-from .test_plain_beam import FIXED, VALUES
+from .test_plain_beam import drawn
 
 NO_ANSWER = STATUS_FLAGS["diverged"][0] | STATUS_FLAGS["energy_out_of_balance"][0]
 
@@ -93,16 +91,15 @@ def test_force_moves_the_beam():
 def test_balances_of_hundreds_of_impacts(scheme, nodes, cases):
     """Exact in an elastic beam; in one that yields, as good as the run itself reports."""
     seen = Counter()
-
-    @settings(FIXED, max_examples=cases // len(LAWS))
-    @given(VALUES, st.floats(0.3e-3, 6e-3))
-    def check(law, values, duration):
+    random = np.random.default_rng(1)
+    for law in list(LAWS) * (cases // len(LAWS)):
         impact, grid = il.paper_impact(contact=law), il.Discretisation(nodes=nodes, scheme=scheme)
-        found = audit(*with_values(impact, grid, values), duration)
+        duration = random.uniform(0.3e-3, 6e-3)
+        found = audit(*with_values(impact, grid, drawn(random)), duration)
         run = found.run
         if run.status.item() & NO_ANSWER:
             seen["no answer"] += 1
-            return
+            continue
         yields = run.peak_plastic_strain.item() > 0
         seen["yields" if yields else "stays elastic"] += 1
         assert abs(found.momentum) < 1e-9
@@ -113,8 +110,5 @@ def test_balances_of_hundreds_of_impacts(scheme, nodes, cases):
         created = bool(run.remarks.item() & 1)
         assert (run.contact_dissipation.item() < -1e-9 * found.brought) <= created
         assert created <= (law == "stronge")
-
-    for law in LAWS:
-        check(law)
     assert min(seen["yields"], seen["stays elastic"]) >= cases // 6, seen
     assert seen["no answer"] < cases // 10, seen

@@ -9,15 +9,12 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
-from itertools import product
 from typing import Any, NamedTuple
 
 import numba
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import HealthCheck, Phase, assume, given, settings
-from hypothesis import strategies as st
 
 import impactlab as il
 from impactlab.model.parameters import with_values
@@ -37,47 +34,48 @@ pytestmark = [
 ]
 
 TOLERANCE = 1e-9
-SHAKE, MOST_GROWTH = 1e-12, 50.0
+SHAKE, MOST_GROWTH = 1e-12, 25.0
 
 
-HARDENING = st.floats(0.0, 50e9)
-ANY = {
-    "velocity": st.floats(0.1, 40.0),
-    "gravity": st.sampled_from([0.0, 9.81]) | st.floats(0.0, 50.0),
-    "sphere_radius": st.floats(0.005, 0.05),
-    "sphere_yield_stress": st.floats(200e6, 3e9),
-    "beam_span": st.floats(0.2, 1.0),
-    "beam_width": st.floats(0.01, 0.1),
-    "beam_depth": st.floats(0.005, 0.05),
-    "beam_yield_stress": st.floats(100e6, 1e9),
-    "beam_isotropic_hardening_modulus": st.just(0.0) | HARDENING,
-    "beam_kinematic_hardening_modulus": st.just(0.0) | HARDENING,
-    "points": st.integers(2, 21),
-    "rule": st.sampled_from(RULES),
-    "courant": st.floats(0.2, 1.0),
+RANGES = {
+    "velocity": (0.1, 40.0),
+    "gravity": (0.0, 50.0),
+    "sphere_radius": (0.005, 0.05),
+    "sphere_mass": (0.05, 5.0),
+    "sphere_yield_stress": (200e6, 3e9),
+    "beam_span": (0.2, 1.0),
+    "beam_width": (0.01, 0.1),
+    "beam_depth": (0.005, 0.05),
+    "beam_yield_stress": (100e6, 1e9),
+    "beam_isotropic_hardening_modulus": (-50e9, 50e9),
+    "beam_kinematic_hardening_modulus": (-50e9, 50e9),
+    "courant": (0.2, 1.0),
 }
-HARD = {
-    "velocity": st.floats(5.0, 20.0),
-    "sphere_mass": st.floats(0.5, 2.0),
-    "beam_yield_stress": st.floats(100e6, 300e6),
-    "beam_isotropic_hardening_modulus": HARDENING,
-    "beam_kinematic_hardening_modulus": HARDENING,
-}
-VALUES = st.fixed_dictionaries(ANY, optional={"sphere_mass": st.floats(0.05, 5.0)}) | (
-    st.fixed_dictionaries(ANY | HARD)
-)
-"""Half of the impacts are hard: every feature is seen often, whatever hypothesis draws."""
+"""Least and largest values; a hardening modulus below zero is none."""
+HARD = {"velocity": (5.0, 20.0), "sphere_mass": (0.5, 2.0), "beam_yield_stress": (100e6, 300e6)}
+
+
+def drawn(random: np.random.Generator) -> dict[str, Any]:
+    """Draw an impact and its discretisation: every other one is hard, one value in ten at an end.
+
+    Not by hypothesis, whose draws resemble each other and depend on what else is imported: by
+    chance, a feature of the model was then hardly met.
+    """
+    ranges = RANGES | (HARD if random.random() < 0.5 else {})
+    if random.random() < 0.3:
+        del ranges["sphere_mass"]  # that of the density
+    unit = np.clip(random.uniform(-0.05, 1.05, len(ranges)), 0.0, 1.0)
+    values = {
+        name: max(low + share * (high - low), 0.0)
+        for (name, (low, high)), share in zip(ranges.items(), unit, strict=True)
+    }
+    return values | {"points": int(random.integers(2, 22)), "rule": random.choice(RULES).item()}
+
+
 HALVES = {"leapfrog": (2, 30), "modal": (2, 12)}
 """Least and most spacings in the half beam."""
 MOST_STEPS = {"leapfrog": 8000, "modal": 4000}
 EXAMPLES = {"leapfrog": 400, "modal": 240}
-FIXED = settings(
-    derandomize=True,
-    database=None,
-    deadline=None,
-    suppress_health_check=list(HealthCheck),
-    phases=(Phase.generate, Phase.shrink),
-)
 
 
 class Case(NamedTuple):
@@ -158,21 +156,17 @@ def features(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> dict[str, 
 def test_same_answers_as_the_plain_solver(scheme):
     """Runs that bounce into chaos are left out: there no two codes agree, whoever is right."""
     seen: Counter[str] = Counter()
-    halves = st.integers(*HALVES[scheme])
-
-    @settings(FIXED, max_examples=EXAMPLES[scheme] // len(plain_beam.LAWS) // len(RULES))
-    @given(VALUES, halves, st.integers(500, MOST_STEPS[scheme]) | st.integers(10, 60))
-    def check(law: str, rule: str, values: dict[str, Any], half: int, steps: int) -> None:
-        given = {"contact": law, "rule": rule, "nodes": 2 * half + 1, "scheme": scheme}
-        case = make_case(values | given, steps)
+    random = np.random.default_rng(1)
+    for law in list(plain_beam.LAWS) * (EXAMPLES[scheme] // len(plain_beam.LAWS)):
+        values = drawn(random) | {"contact": law, "scheme": scheme}
+        values["nodes"] = 2 * int(random.integers(*HALVES[scheme], endpoint=True)) + 1
+        most = MOST_STEPS[scheme] if random.random() < 0.7 else 60
+        case = make_case(values, int(random.integers(10, most)))
         run = case.plain()
-        assume(growth(case, run) < MOST_GROWTH)
-        dataset = case.kernels()
-        seen.update(features(case, run, dataset))
-        assert_same(case, run, dataset)
-
-    for law, rule in product(plain_beam.LAWS, RULES):
-        check(law, rule)
+        if growth(case, run) < MOST_GROWTH:
+            dataset = case.kernels()
+            seen.update(features(case, run, dataset))
+            assert_same(case, run, dataset)
     assert min(seen.values()) >= 15, seen
 
 
