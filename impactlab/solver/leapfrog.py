@@ -153,13 +153,13 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
         stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
         # half a step before the first touch
         w_s, v_s, per_mass = 0.0, case.velocity - 0.5 * dt * case.gravity, 1.0 / case.sphere_mass
-        now = int(np.int64(0))  # a plain 0 would be a type of its own, its callees compiled twice
+        # a plain 0 would be a type of its own, and its callees compiled twice
+        now = step = int(np.int64(0))
         to_audit = stride
         here = (0.0, 0.0, 0.0, 0.0, 0.0)
         ahead = 0.0  # the mean under the pressure, of mid-span
         contact.n = 1.5
         event_tracker.start(events)
-        step = 0
         while step <= steps:
             w_mid, u_mid = w[now, mid], u[mid]
             delta = w_s - w_mid - ahead
