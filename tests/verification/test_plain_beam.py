@@ -74,8 +74,8 @@ def drawn(random: np.random.Generator) -> dict[str, Any]:
 
 HALVES = {"leapfrog": (2, 30), "modal": (2, 12)}
 """Least and most spacings in the half beam."""
-MOST_STEPS = {"leapfrog": 8000, "modal": 4000}
-EXAMPLES = {"leapfrog": 400, "modal": 240}
+MOST_STEPS = {"leapfrog": 6000, "modal": 4000}
+EXAMPLES = {"leapfrog": 240, "modal": 240}
 
 
 class Case(NamedTuple):
