@@ -42,7 +42,9 @@ def test_a_sphere_on_a_large_block_is_hertz(element_size, ratio):
     answer = solve_on(mesh, impact, duration=1.1 * duration, threads=2)
     assert float(answer["peak_force"]) == pytest.approx(peak, rel=0.01)
     assert float(answer["contact_duration"]) == pytest.approx(duration, rel=0.01)
-    assert float(answer["contact_work"][-1]) < 1e-3 * float(answer["kinetic_energy"][0])
+    # kept and lost where faces touch in part, which falls with the square of the element size
+    bound = 6e-4 * (element_size / 0.7e-3) ** 2
+    assert float(answer["contact_work"][-1]) < bound * float(answer["kinetic_energy"][0])
     assert float(answer["energy_error"]) < 1e-4
     assert float(answer["peak_plastic_strain"]) == 0.0
 
