@@ -27,6 +27,7 @@ What the runs say
     answers         the same in sentences
     plot            figures: plot.run, plot.response, plot.sobol, ...
     load_surrogate  predictions without solving
+    compare         measurements beside the runs, with verdicts
 
 Quantities are SI numbers, strings with a unit or quantities of pint. `help(il.Study)` and so on
 tell more, each with an example.

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
+from impactlab.analysis.analyse import analyse
+from impactlab.analysis.measurements import compared
 from impactlab.files import opened, read_netcdf, replaced
 from impactlab.model.checks import integer
 from impactlab.model.discretisation import Discretisation
@@ -19,6 +21,7 @@ from impactlab.model.quantities import Quantity
 from impactlab.study import REFINEMENT, RESOLUTION, steps
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.schema import files, yaml_file
+from impactlab.study.schema.measurements import Given, read_measurements
 from impactlab.study.schema.written import _Sampling, text_of
 from impactlab.study.solvers.own import Function, register, solver_name
 from impactlab.variables import FLAGS, RESPONSES, VARIABLES
@@ -45,10 +48,11 @@ class Study:
     which pilot runs find. responses, analyses: names; by default all. Responses of your own are
     functions of the dataset of one impact (see `simulate`) that return a number, or il.Function
     with a unit: `{"momentum": function, "peak_force": "peak_force"}`. store, analysis: mappings as
-    in a file. function: in place of the solver, the name of a test function, or a function of your
-    own, called with a run's parameters by name, that returns a number, or a mapping of `responses`
-    to numbers. name: of the folder of results; by default the title in small letters and digits.
-    results: the folder of all results.
+    in a file. measurements: files that the report compares with the runs (see `compare`). function:
+    in place of the solver, the name of a test function, or a function of your own, called with a
+    run's parameters by name, that returns a number, or a mapping of `responses` to numbers. name:
+    of the folder of results; by default the title in small letters and digits. results: the folder
+    of all results.
 
     Runs, analysis, figures and report go to `folder`, by default results/NAME of the working
     folder, and are found there again by whoever runs the same study: Python or the command line.
@@ -94,6 +98,7 @@ class Study:
         analyses: Sequence[str] | str | None = None,
         store: Mapping[str, Any] | None = None,
         analysis: Mapping[str, Any] | None = None,
+        measurements: Sequence[str] | None = None,
         description: str | None = None,
         function: str | Function | Callable[..., Any] | None = None,
         name: str | None = None,
@@ -124,6 +129,7 @@ class Study:
             "analyses": analyses,
             "store": store,
             "analysis": analysis,
+            "measurements": measurements,
         }
         self._set(files.study_of_text(_name(title, name), text_of(keys), Path("Study")), results)
 
@@ -285,6 +291,29 @@ class Study:
 
     def _head(self) -> str:
         return f"impactlab.Study {self.name}: {self.declared.size}, {self.folder}"
+
+
+def compare(
+    runs: xr.Dataset, measurements: Given, analysis: xr.Dataset | None = None
+) -> xr.Dataset:
+    """Compare the runs of a grid with measurements: values, uncertainties and verdicts.
+
+    measurements: a file (docs/measurements.md), or a mapping of its keys. analysis: of the runs, by
+    default made here; it knows their numerical uncertainty. Returns a row per measurement and model
+    on `comparison` (see analysis.measurements.compared), in SI units. Raises StudyError for
+    measurements that are wrong, ValueError for runs of no study.
+
+    >>> study = il.Study(
+    ...     title="Ours", impact=il.paper_impact("2 m/s"), duration="0.3 ms",
+    ...     responses=["peak_force"], sampling=il.Grid(parameters={"nodes": [21, 41, 81]}))
+    >>> force = {"quantity": "peak_force", "value": "24.5 kN", "standard_uncertainty": "1 kN"}
+    >>> ours = {"title": "Force", "source": "an example, not measured", "measurements": [force]}
+    >>> found = il.compare(study.run(workers=1), ours)
+    >>> found.compared_verdict.attrs["flag_meanings"].split()[found.compared_verdict.item()]
+    'compatible'
+    """
+    found = analyse(runs) if analysis is None else analysis
+    return compared(runs, found, read_measurements(measurements, runs))
 
 
 def _engine(workers: int, processes: bool = False, client: Client | None = None) -> Engine:

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from impactlab.analysis.measurements import compared
 from impactlab.figures import (
     access,
     catalogue,
@@ -27,6 +28,7 @@ from impactlab.figures import (
 from impactlab.figures.curves import plan
 from impactlab.figures.labels import display
 from impactlab.study.errors import unknown
+from impactlab.study.schema.measurements import read_measurements
 
 __all__ = ["delta", "figure", "morris", "pawn", "regression", "response", "run", "sobol"]
 
@@ -37,13 +39,15 @@ def response(
     *,
     x: str | None = None,
     hue: str | None = None,
+    measurements: Any = None,
     ax: Axes | None = None,
 ) -> Axes:
     """Draw a response against a parameter.
 
     Of a grid: over dimension `x`, with a curve for every value of dimension `hue`; jumps are not
     joined. Of a sample: the runs as points, with the mean of those of about the same `x`. x: by
-    default the only dimension of numbers beside `hue`.
+    default the only dimension of numbers beside `hue`. measurements: of a study's grid, what
+    `il.compare` takes; those of the response are drawn with their expanded uncertainties.
 
     Raises ValueError for unknown names, and for further dimensions: select a value of each first.
 
@@ -78,7 +82,10 @@ def response(
     else:
         most = runs.sizes[hue] if hue else 1
         selected = plan(runs, name, along=[str(x)], prefer=[hue] if hue else [], most=most)
-        label = grids.response_curves(ax, runs, name, along, selected)
+        analysis = xr.Dataset()
+        if measurements is not None:
+            analysis = compared(runs, analysis, read_measurements(measurements, runs))
+        label = grids.response_curves(ax, runs, analysis, name, along, selected)
         if hue:
             ax.legend(title=labels.sentence(labels.parameter(hue)))
     ax.set(xlabel=grids.parameter_axis(along), ylabel=label)

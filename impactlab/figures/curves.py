@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import access, labels, style
+from impactlab.figures import access, labels, measured, style
 from impactlab.figures.access import design_dims, usable
 from impactlab.model.impact import SOLID
 from impactlab.types import Floats
@@ -51,7 +51,8 @@ class Plan:
         if y:
             figure.supylabel(y)
         title = labels.sentence(", ".join(labels.parameter(dim) for dim in self.shown))
-        style.legend(figure, title, [curve.label for curve in self.curves])
+        order = [*(curve.label for curve in self.curves), *measured.LABELS.values()]
+        style.legend(figure, title, order)
         return figure
 
     def note(self, runs: xr.Dataset) -> str:

@@ -10,7 +10,16 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
+from impactlab.figures import (
+    access,
+    curves,
+    labels,
+    measured,
+    record,
+    responses_grid,
+    scales,
+    style,
+)
 from impactlab.figures.access import physical, responses, usable
 from impactlab.figures.curves import Plan, plan
 from impactlab.figures.labels import display
@@ -45,13 +54,16 @@ def _velocity_figure(name: str, title: str, text: str) -> Callable[[record.Drawe
         lambda runs, analysis: name in runs and runs[name].sizes.get("velocity", 0) >= _FEWEST,
         lambda runs, analysis: (
             _velocity_plan(runs, name).note(runs),
+            measured.note(analysis, [name], "velocity"),
             access.missing_note(runs, [name]),
         ),
     )
 
 
-def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, Axes, Plan]:
-    """Draw a curve per contact law, or per value of what else is varied."""
+def _against_velocity(
+    runs: xr.Dataset, analysis: xr.Dataset, name: str, label: str
+) -> tuple[Figure, Axes, Plan]:
+    """Draw a curve per contact law, or per value of what else is varied, and measurements."""
     selected, valid = _velocity_plan(runs, name), usable(runs, name)
     unit, speed = display(valid), runs["velocity"].values
     figure, (ax,) = style.panels(1, columns=1, height=62)
@@ -60,6 +72,7 @@ def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, 
         curves.add(ax, *curves.broken(speed, y), curve)
     if not ax.lines:
         style.remark(ax, "no finite values")
+    measured.add(ax, analysis, name, "velocity", display(runs["velocity"]), unit)
     ax.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
     ax.set_ylabel(labels.axis(label, unit.symbol))
     return figure, ax, selected
@@ -73,7 +86,9 @@ def _against_velocity(runs: xr.Dataset, name: str, label: str) -> tuple[Figure, 
 )
 def contact_duration(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw on logarithmic axes, as durations follow powers of the velocity, with a guide."""
-    figure, ax, selected = _against_velocity(runs, _DURATION, "duration of the first contact")
+    figure, ax, selected = _against_velocity(
+        runs, analysis, _DURATION, "duration of the first contact"
+    )
     values, speed = scales.drawn(ax, "y"), runs["velocity"].values
     if values.size:
         scales.logarithmic(ax, "x", speed)
@@ -92,7 +107,8 @@ def contact_duration(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 )
 def restitution_velocity(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw with an axis that holds zero and one."""
-    figure, ax, selected = _against_velocity(runs, _RESTITUTION, labels.response(_RESTITUTION))
+    label = labels.response(_RESTITUTION)
+    figure, ax, selected = _against_velocity(runs, analysis, _RESTITUTION, label)
     if ax.lines:
         scales.fit(ax, "x", runs["velocity"].values)
         scales.linear(ax, "y")
@@ -120,6 +136,7 @@ def _law_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
         "Permanent indentations of zero or below are not shown." if _DENT in names else "",
         "Open markers: beyond the range of the law." if beyond else "",
         _plan_laws(runs).note(runs),
+        measured.note(analysis, names, "velocity"),
         access.missing_note(runs, names),
     ]
 
@@ -141,7 +158,7 @@ def contact_laws(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         if name == _FORCE:
             _law_forces(ax, runs, selected)
         else:
-            _law_responses(ax, runs, name, selected)
+            _law_responses(ax, runs, analysis, name, selected)
     return selected.finish(figure)
 
 
@@ -163,7 +180,9 @@ def _law_forces(ax: Axes, runs: xr.Dataset, selected: Plan) -> None:
         responses_grid.empty(ax, "no finite values")
 
 
-def _law_responses(ax: Axes, runs: xr.Dataset, name: str, selected: Plan) -> None:
+def _law_responses(
+    ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str, selected: Plan
+) -> None:
     """Draw a response against the velocity, with open markers beyond the range of a law."""
     values, label = responses_grid.shown(runs, name)
     speed = runs["velocity"].values
@@ -173,6 +192,8 @@ def _law_responses(ax: Axes, runs: xr.Dataset, name: str, selected: Plan) -> Non
             outside = (runs["status"].isel(curve.where).values & _OUTSIDE) != 0
             hollow = {"linestyle": "", "markerfacecolor": "white", "label": "_open"}
             ax.plot(speed[outside], y[outside], **(curves.look(curve, markers=True) | hollow))
+    unit = display(usable(runs, name))
+    measured.add(ax, analysis, name, "velocity", display(runs["velocity"]), unit)
     ax.set(xlabel=labels.axis("velocity", "m/s"), ylabel=label)
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
@@ -201,6 +222,7 @@ def _plan_effects(runs: xr.Dataset) -> Plan:
         f"Responses against the {labels.parameter(str(_along(runs)))}; where curves coincide, the "
         "first in the legend lies on top. A jump is not joined.",
         _plan_effects(runs).note(runs),
+        measured.note(analysis, responses(runs), str(_along(runs))),
         access.missing_note(runs, responses(runs)),
     ),
 )
@@ -209,19 +231,29 @@ def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     along, selected = runs[_along(runs)], _plan_effects(runs)
     figure, axes = responses_grid.panels(responses(runs), height=38)
     for name, ax in axes.items():
-        ax.set_title(response_curves(ax, runs, name, along, selected), loc="left")
+        ax.set_title(response_curves(ax, runs, analysis, name, along, selected), loc="left")
     return selected.finish(figure, parameter_axis(along))
 
 
 def response_curves(
-    ax: Axes, runs: xr.Dataset, name: str, along: xr.DataArray, selected: Plan
+    ax: Axes,
+    runs: xr.Dataset,
+    analysis: xr.Dataset,
+    name: str,
+    along: xr.DataArray,
+    selected: Plan,
 ) -> str:
-    """Draw the planned curves of a response over a parameter; return the response's label."""
+    """Draw the planned curves of a response over a parameter, and measurements of it.
+
+    Returns the response's label.
+    """
     values, label = responses_grid.shown(runs, name)
     x = display(along)(along)
     for curve in selected.curves:
         y = values.isel(curve.where).values
         curves.add(ax, *curves.broken(x, y), curve)
+    unit = display(usable(runs, name))
+    measured.add(ax, analysis, name, str(along.name), display(along), unit)
     scales.fit(ax, "x", x)
     scales.fit(ax, "y", scales.drawn(ax, "y"))
     if not ax.lines:

@@ -13,6 +13,7 @@ from impactlab.figures import access, labels, measures
 from impactlab.figures.access import design_dims, responses, usable
 from impactlab.figures.labels import display
 from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family, Index, analysed
+from impactlab.report import measured
 from impactlab.report.cautions import beside
 from impactlab.report.convergence import ORDERED, Needs, finest, needed
 from impactlab.report.sensitivity import in_units, share, uncertainty, with_margin
@@ -79,8 +80,10 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
         note = (
             "Variation: the variance over the grid; a parameter explains that of its mean effect."
         )
-    size = -(-len(found) // LINES)  # responses per line
-    return [found[at : at + size] for at in range(0, len(found), max(size, 1))], note
+    last = [] if analysis is None else measured.entries(analysis)
+    size = -(-len(found) // (LINES - bool(last)))  # responses per line
+    lines = [found[at : at + size] for at in range(0, len(found), max(size, 1))]
+    return lines + [last] * bool(last), note
 
 
 def _verification(findings: xr.Dataset) -> list[Entry]:

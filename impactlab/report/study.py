@@ -17,7 +17,7 @@ from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatter
 from impactlab.model.parameters import PARAMETERS
-from impactlab.report import sensitivity
+from impactlab.report import measured, sensitivity
 from impactlab.report.answer import entries
 from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
@@ -101,6 +101,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         added = wings.added("sections", runs)
         return [
             *convergence(runs, analysis),
+            *measured.sections(analysis),
             *(added(runs, analysis) if added else []),
             Section("results", "Results", tables=[ranges], folded=_all_values(runs)),
             _outcome(runs, analysis),
@@ -111,6 +112,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     return [
         *sensitivity.sections(runs, analysis),
         *sensitivity.numerical_sections(runs, analysis),
+        *measured.sections(analysis),
         Section("results", "Distribution of each response", tables=[ranges], figures=drawn),
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         inputs,

@@ -130,10 +130,14 @@ def run(
 
     drawn: its design, where it is drawn already. force: whatever it costs. tell: of `resolved`.
 
-    Raises StudyError where a limit is exceeded, and as `resolved` and `solve`.
+    Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
+    `solve`.
     """
     from impactlab.study.sampling.design import design
+    from impactlab.study.schema.measurements import read_all
 
+    if isinstance(study, Study):
+        read_all(study.measurements)  # mistakes there are told before hours of runs
     cost = price(study, path.parent, engine.workers)
     for problem in cost.implausible:
         log.warning("%s", problem)
@@ -279,12 +283,16 @@ def analyse_runs(
     """Analyse solved runs; write the analysis to `path` (analysis.nc), and return it.
 
     Beside it, for a sample: indices.csv, indices.nc and surrogate.nc. resolution, refinement:
-    evidence on the numerical uncertainty, see analysis.analyse. The runs stay in their file: memory
-    holds few columns of a sample by Sobol.
+    evidence on the numerical uncertainty, see analysis.analyse. The study's measurements are
+    compared with the runs. The runs stay in their file: memory holds few columns of a sample by
+    Sobol. Raises StudyError for wrong measurements.
     """
     from impactlab.analysis.analyse import analyse
+    from impactlab.analysis.measurements import compared
+    from impactlab.analysis.responses import listed
     from impactlab.analysis.sensitivity.indices import sensitivity_variables, write_csv
     from impactlab.analysis.surrogate import packed
+    from impactlab.study.schema.measurements import read_all
 
     given = {"resolution": resolution, "refinement": refinement}
     evidence = {name: read_netcdf(file, name) for name, file in given.items() if file}
@@ -293,6 +301,9 @@ def analyse_runs(
             check_source(evidence["refinement"], refinement, solved, runs)
         sources = solved, *evidence.values()
         found = analyse(solved, **evidence)
+        if "measurements" in solved.attrs:
+            measured = read_all(listed(solved, "measurements"), solved)
+            found = found.merge(compared(solved, found, measured))
         write_netcdf(found, path, "analysis", *sources)
         for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps another study's
             path.with_name(name).unlink(missing_ok=True)

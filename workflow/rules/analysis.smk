@@ -8,6 +8,7 @@ rule analysis:
         runs="results/{study}/runs.nc",
         resolution=where("sample", "resolution.nc"),
         refinement=where("sobol", "refinement.nc"),
+        measurements=lambda wildcards: DESCRIBED.get(wildcards.study, {}).get("measurements", []),
     output:
         "results/{study}/analysis.nc",
     log:

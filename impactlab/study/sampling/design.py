@@ -59,6 +59,7 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
             "profiles": int(study.store.profiles),
             "history_samples": study.store.samples,
         }
+        own |= {"measurements": list(study.measurements)} if study.measurements else {}
     if study.python:
         own |= {"solver": resolve_name("impactlab.study.solvers.own:solver_name")(study)}
     varied: dict[str, Any]

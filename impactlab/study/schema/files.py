@@ -79,8 +79,8 @@ def describe(path: Path) -> dict[str, Any]:
 
     traits: "checks" (a verification), "auto" (its discretisation is to be found), "sample" (its
     impacts are drawn), "sobol" (by Sobol's sequence), "growing" (until its intervals are narrow),
-    "fem3d" (some runs are of the 3-D FE model). Of a file that is wrong: name, no traits, and
-    `error`.
+    "fem3d" (some runs are of the 3-D FE model). measurements: its files of them, if any. Of a file
+    that is wrong: name, no traits, and `error`.
     """
     try:
         study = read_any(path)
@@ -95,12 +95,13 @@ def describe(path: Path) -> dict[str, Any]:
         "sobol": impacts and isinstance(sampling, Sobol),
         "fem3d": isinstance(study, Study) and has_solid_runs(study),
     }
+    measured = study.measurements if isinstance(study, Study) else ()
     return {
         "name": study.name,
         "title": study.title,
         "size": study.size,
         "traits": [name for name, has in traits.items() if has],
-    }
+    } | ({"measurements": list(measured)} if measured else {})
 
 
 def _kind(source: Source) -> str:

@@ -29,7 +29,16 @@ from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.parameters import value_type
-from impactlab.study.schema.section import Heading, Number, Section, Whole, at_key, names, one_of
+from impactlab.study.schema.section import (
+    Heading,
+    Names,
+    Number,
+    Section,
+    Whole,
+    at_key,
+    names,
+    one_of,
+)
 from impactlab.study.validity import Base, refusal
 from impactlab.variables import ANALYSES, RESPONSES
 
@@ -157,6 +166,7 @@ class StudyFile(Heading):
     analyses: Annotated[tuple[str, ...], names("analysis", ANALYSES)] = tuple(ANALYSES)
     store: Store = Field(default_factory=Store)
     analysis: Analysis | None = None
+    measurements: Names = ()
 
 
 @dataclass(frozen=True)
@@ -204,7 +214,8 @@ class Study(StudyBase):
 
     impact and discretisation: the base of all runs. auto: how to find nodes, points and courant
     where they are not given. duration: simulated time in s. responses: names out of RESPONSES.
-    store: other data kept of each run. python: keys of the responses that are Python functions.
+    store: other data kept of each run. measurements: files of measurements to compare with.
+    python: keys of the responses that are Python functions.
     """
 
     impact: Impact
@@ -212,6 +223,7 @@ class Study(StudyBase):
     auto: Auto | None
     duration: float
     store: Store
+    measurements: tuple[str, ...] = ()
     python: Mapping[str, str] = field(default_factory=dict)
 
 

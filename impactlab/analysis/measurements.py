@@ -1,0 +1,222 @@
+"""Measurements beside solved runs: the runs that they are of, and whether both agree.
+
+Uncertainties are standard, or expanded by a coverage factor k (JCGM 100:2008, the GUM).
+Measurement and model are compatible where their difference is no larger than the root sum of
+squares of both expanded uncertainties (k = 2), as in ASME V&V 20-2009. Both are recalled, not read.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.responses import usable
+from impactlab.analysis.verdicts import Verdict, flagged
+from impactlab.variables import FAILED, MARKED, reasons
+
+COVERAGE = 2.0
+"""Coverage factor of every expanded uncertainty in datasets: about 95 % of a normal error."""
+_SAME = 1e-6
+"""Relative difference up to which two conditions are the same."""
+_AXES = {
+    "nodes": ("nodes", True),
+    "points": ("points", True),
+    "courant": ("time_step", False),
+    "element_size": ("element_size", False),
+    "elements_per_radius": ("element_size", True),
+}
+"""Refined parameters: prefix of their variables in the analysis; True where more is finer."""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One measured response of one impact, in SI units.
+
+    quantity: name of a response. standard_uncertainty: one standard deviation of the value.
+    conditions: parameters of the impact by name; others are taken to be those of the study.
+    simulated: from another model, not measured.
+    """
+
+    quantity: str
+    value: float
+    standard_uncertainty: float
+    units: str
+    conditions: Mapping[str, float | int | str]
+    source: str
+    simulated: bool = False
+
+
+class Agreement(Verdict):
+    """Verdicts on a measurement beside the model."""
+
+    COMPATIBLE = 0, True, "the difference is within the combined uncertainty"
+    INCOMPATIBLE = 1, False, "the difference exceeds the combined uncertainty"
+    NOT_JUDGED = 2, False, "there is no run, no answer, or no bound of its numerical error"
+    OTHER_IMPACT = 3, False, "the measurement is of another impact than the study's"
+
+
+@dataclass(frozen=True)
+class _Row:
+    verdict: Agreement
+    reason: str = ""
+    case: str = ""
+    model: float = np.nan
+    numerical: float = np.nan
+
+
+def compared(
+    runs: xr.Dataset, analysis: xr.Dataset, measurements: Sequence[Measurement]
+) -> xr.Dataset:
+    """Compare measurements with the runs of a grid, each with every model that the grid holds.
+
+    runs, analysis: as in runs.nc and analysis.nc. A run is of the measurement's conditions to
+    within 1e-6; there is no interpolation. It is that on the finest grid, with the numerical
+    uncertainty that the analysis found there along all refined axes.
+
+    Returns, on `comparison`, a row for each measurement and each combination of varied words
+    (contact law, beam model, ...), in SI units: compared_quantity, _units, _conditions (JSON),
+    _source, _simulated, _case (the words), _measured and its expanded _uncertainty (k = 2), _model
+    and its _numerical uncertainty, _difference (model less measured), _combined (uncertainty of the
+    difference), _verdict (CF flags, see Agreement) and _reason, why it is not judged.
+    """
+    found = [(one, row) for one in measurements for row in _rows(runs, analysis, one)]
+    measured = np.array([one.value for one, _ in found])
+    expanded = COVERAGE * np.array([one.standard_uncertainty for one, _ in found])
+    model = np.array([row.model for _, row in found])
+    numerical = np.array([row.numerical for _, row in found])
+    numbers = {
+        "measured": measured,
+        "uncertainty": expanded,
+        "model": model,
+        "numerical": numerical,
+        "difference": model - measured,
+        "combined": np.hypot(expanded, numerical),
+    }
+    words = {
+        "quantity": [one.quantity for one, _ in found],
+        "units": [one.units for one, _ in found],
+        "conditions": [json.dumps(dict(one.conditions)) for one, _ in found],
+        "source": [one.source for one, _ in found],
+        "simulated": np.array([one.simulated for one, _ in found], dtype=np.int8),
+        "case": [row.case for _, row in found],
+        "reason": [row.reason for _, row in found],
+    }
+    variables: dict[str, Any] = {
+        f"compared_{name}": ("comparison", each, {"long_name": _LONG_NAMES[name]})
+        for name, each in (words | numbers).items()
+    }
+    codes = xr.DataArray([int(row.verdict) for _, row in found], dims="comparison")
+    variables["compared_verdict"] = flagged(codes, Agreement, "verdict on measurement and model")
+    return xr.Dataset(variables)
+
+
+_LONG_NAMES = {
+    "measured": "measured value, in compared_units",
+    "uncertainty": f"its expanded uncertainty (k = {COVERAGE:g})",
+    "model": "the model's value on the finest grid",
+    "numerical": "numerical uncertainty of the model's value",
+    "difference": "model less measured",
+    "combined": "combined uncertainty of the difference",
+    "quantity": "response that was measured",
+    "units": "SI unit",
+    "conditions": "parameters of the impact that are stated with the measurement, SI",
+    "source": "where the measurement comes from",
+    "simulated": "1 for values of another model, which are not measured",
+    "case": "which of the study's models it is compared with",
+    "reason": "why there is no verdict",
+}
+
+
+def _rows(runs: xr.Dataset, analysis: xr.Dataset, one: Measurement) -> Iterator[_Row]:
+    where: dict[str, int] = {}
+    for name, wanted in one.conditions.items():
+        if name not in runs.coords:
+            reason = f"the study has no {name}, which the measurement states"
+            yield _Row(Agreement.OTHER_IMPACT, reason)
+            return
+        given = runs[name]
+        same = np.flatnonzero([_equal(each, wanted) for each in given.values.ravel().tolist()])
+        if given.ndim == 0 and not same.size:
+            reason = f"the study has {name} = {given.item()!r}, the measurement {wanted!r}"
+            yield _Row(Agreement.OTHER_IMPACT, reason)
+            return
+        if given.ndim and "run" not in given.dims:
+            if not same.size:
+                yield _Row(Agreement.NOT_JUDGED, f"the study has no run at {name} = {wanted!r}")
+                return
+            where[name] = int(same[0])
+    if "run" in runs.dims:
+        reason = "a sample has no single prediction: use a grid, or calibrate"
+        yield _Row(Agreement.NOT_JUDGED, reason)
+        return
+    if one.quantity not in runs.attrs.get("responses", list(runs.data_vars)):
+        yield _Row(Agreement.NOT_JUDGED, f"the study leaves out the response {one.quantity}")
+        return
+    values = _finest(usable(runs, one.quantity).squeeze("response", drop=True)).isel(where)
+    status = _finest(runs["status"]).isel(where)
+    share = _numerical(analysis, one.quantity, runs).isel(
+        {name: at for name, at in where.items() if name in runs.dims}, missing_dims="ignore"
+    )
+    words = [str(dim) for dim in values.dims if values[dim].dtype.kind not in "if"]
+    if numbers := [str(dim) for dim in values.dims if dim not in words and values.sizes[dim] > 1]:
+        reason = f"state {', '.join(numbers)}, which the study varies, in its conditions"
+        yield _Row(Agreement.NOT_JUDGED, reason)
+        return
+    for at in np.ndindex(*values.shape):
+        place = dict(zip(map(str, values.dims), at, strict=True))
+        case = ", ".join(str(values[dim].values[place[dim]]) for dim in words)
+        answer = float(values.isel(place))
+        error = abs(answer) * float(share.isel(place, missing_dims="ignore"))
+        yield _judged(one, case, answer, error, int(status.isel(place)))
+
+
+def _judged(one: Measurement, case: str, answer: float, error: float, status: int) -> _Row:
+    if not np.isfinite(answer):
+        why = "; ".join(reasons(status & FAILED)) or "no reason is recorded"
+        return _Row(Agreement.NOT_JUDGED, f"the run has no answer: {why}", case)
+    if not np.isfinite(error):
+        reason = "nothing bounds the numerical error: vary nodes over three values or more"
+        return _Row(Agreement.NOT_JUDGED, reason, case, answer)
+    difference = abs(answer - one.value)
+    within = difference <= np.hypot(COVERAGE * one.standard_uncertainty, error)
+    verdict = Agreement.COMPATIBLE if within else Agreement.INCOMPATIBLE
+    outside = "beyond the range of the contact law" if status & MARKED else ""
+    return _Row(verdict, outside, case, answer, error)
+
+
+def _equal(given: Any, wanted: Any) -> bool:
+    if isinstance(given, str) or isinstance(wanted, str):
+        return bool(given == wanted)
+    return bool(abs(given - wanted) <= _SAME * max(abs(given), abs(wanted)))
+
+
+def _finest(array: xr.DataArray) -> xr.DataArray:
+    """Return the values on the finest grid."""
+    for dim, (_, more) in _AXES.items():
+        if dim in array.dims:
+            order = np.argsort(array[dim].values)
+            array = array.isel({dim: int(order[-1] if more else order[0])}, drop=True)
+    return array
+
+
+def _numerical(analysis: xr.Dataset, name: str, runs: xr.Dataset) -> xr.DataArray:
+    """Return the relative numerical uncertainty on the finest grid; NaN where nothing bounds it.
+
+    Along several axes it is the sum; an axis with one value adds none where another is judged.
+    """
+    total, judged = xr.DataArray(0.0), False
+    for dim, (axis, _) in _AXES.items():
+        if runs.sizes.get(dim, 1) == 1:
+            continue
+        if f"{axis}_uncertainty" not in analysis:
+            return xr.DataArray(np.nan)
+        total = total + _finest(analysis[f"{axis}_uncertainty"].sel(response=name, drop=True))
+        judged = True
+    if not judged and "numerical_uncertainty" in analysis:
+        return analysis["numerical_uncertainty"].sel(response=name, drop=True)
+    return total if judged else xr.DataArray(np.nan)

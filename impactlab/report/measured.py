@@ -1,0 +1,147 @@
+"""What a study's measurements say of its models: a line of the answer, and a table."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.measurements import Agreement
+from impactlab.figures import labels
+from impactlab.model.parameters import PARAMETERS
+from impactlab.report.page import Cell, Row, Section, Table
+
+_LEAD = (
+    "Compatible: model and measurement differ by no more than the root sum of squares of the "
+    "measurement's expanded uncertainty (k = 2) and the numerical uncertainty of the run. The "
+    "uncertainty of the study's own parameters is not in it."
+)
+_MOST = 200
+"""Largest number of rows of the table; those that are incompatible come first."""
+
+
+def entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
+    """Return the line of the answer: the verdicts, and the worst differences; [] without any."""
+    if "compared_verdict" not in analysis:
+        return []
+    verdicts = analysis["compared_verdict"].values
+    counted = Counter(verdicts.tolist())
+    total = labels.counted(len(verdicts), "comparison")
+    told = [f"{counted[Agreement.COMPATIBLE]} of {total} compatible"]
+    bad = analysis.isel(comparison=np.flatnonzero(verdicts == Agreement.INCOMPATIBLE))
+    ratio = abs(bad["compared_difference"] / bad["compared_combined"]).values
+    worst = [_difference(bad.isel(comparison=at)) for at in np.argsort(-ratio, kind="stable")[:3]]
+    if worst:
+        which = "" if len(ratio) <= len(worst) else "the worst of the others: "
+        told.append(which + ", ".join(worst))
+    for verdict in (Agreement.NOT_JUDGED, Agreement.OTHER_IMPACT):
+        if number := counted[verdict]:
+            told.append(f"{number} {_words(verdict)}")
+    models = all(analysis["compared_simulated"].values)
+    return [("Beside another model" if models else "Beside measurements", "; ".join(told))]
+
+
+def _words(verdict: Agreement) -> str:
+    return "of another impact" if verdict is Agreement.OTHER_IMPACT else "not judged"
+
+
+def _difference(row: xr.Dataset) -> str:
+    """Return by how much the model is off: "peak force +2.5 % (± 0.6, stronge)"."""
+    measured = abs(float(row["compared_measured"]))
+    share = 100 * float(row["compared_difference"]) / measured if measured else np.inf
+    width = 100 * float(row["compared_combined"]) / measured if measured else np.inf
+    case = str(row["compared_case"].item()).replace("_", " ")
+    inside = ", ".join(filter(None, (f"± {labels.number(width, 2)}", case)))
+    sign = "+" * (share > 0)
+    name = labels.response(str(row["compared_quantity"].item()))
+    return f"{name} {sign}{labels.number(share, 2)} % ({inside})"
+
+
+def sections(analysis: xr.Dataset) -> list[Section]:
+    """Return the section on measurements, or none."""
+    if "compared_verdict" not in analysis or not analysis.sizes["comparison"]:
+        return []
+    verdicts = analysis["compared_verdict"].values
+    gravest = {Agreement.INCOMPATIBLE: 0, Agreement.NOT_JUDGED: 1, Agreement.OTHER_IMPACT: 2}
+    order = sorted(
+        range(verdicts.size), key=lambda at: gravest.get(_verdict_of(int(verdicts[at])), 3)
+    )
+    rows = [_row(analysis.isel(comparison=at)) for at in order[:_MOST]]
+    head = [
+        "Measured",
+        "Conditions",
+        "Model",
+        "Measured value",
+        "Model's value",
+        "Difference",
+        "Verdict",
+    ]
+    sources = dict.fromkeys(analysis["compared_source"].values.tolist())
+    simulated = dict(
+        zip(
+            analysis["compared_source"].values.tolist(),
+            analysis["compared_simulated"].values,
+            strict=True,
+        )
+    )
+    remarks = [f"Source: {each}{_SIMULATED * bool(simulated[each])}" for each in sources]
+    if (left := verdicts.size - _MOST) > 0:
+        remarks.append(f"{left} further rows are in analysis.nc.")
+    meanings = [(_verdict(each), each.meaning) for each in Agreement if each in verdicts]
+    table = Table("Each measurement beside each model", head, rows, remarks, meanings)
+    return [Section("measurements", "Beside measurements", _LEAD, tables=[table])]
+
+
+_SIMULATED = " (values of another model, not measured)"
+
+
+def _verdict_of(code: int) -> Agreement:
+    return list(Agreement)[code]
+
+
+def _verdict(verdict: Agreement) -> str:
+    return verdict.name.lower().replace("_", " ")
+
+
+def _row(row: xr.Dataset) -> Row:
+    verdict, quantity = (
+        _verdict_of(int(row["compared_verdict"])),
+        str(row["compared_quantity"].item()),
+    )
+    ends = [
+        row[f"compared_{key}"].item() for key in ("measured", "uncertainty", "model", "numerical")
+    ]
+    units = {"units": str(row["compared_units"].item())}
+    unit = labels.display(xr.DataArray(np.array(ends[:1]), name=quantity, attrs=units))
+    measured, uncertainty, model, numerical = unit(ends).tolist()
+    stated = [
+        _condition(*each) for each in json.loads(str(row["compared_conditions"].item())).items()
+    ]
+    difference = "–"
+    if np.isfinite(model):
+        share = 100 * (model / measured - 1) if measured else np.inf
+        difference = f"{'+' * (share > 0)}{labels.number(share, 2)} %"
+    kind = "" if verdict.sound else "warning"
+    return [
+        Cell(labels.sentence(labels.response(quantity))),
+        ", ".join(stated) or "–",
+        str(row["compared_case"].item()).replace("_", " ") or "–",
+        Cell(f"{labels.number(measured)} ± {labels.number(uncertainty, 2)} {unit.symbol}".rstrip()),
+        Cell("–" if np.isnan(model) else _value(model, numerical, unit.symbol)),
+        Cell(difference, "number"),
+        Cell(_verdict(verdict), kind, str(row["compared_reason"].item())),
+    ]
+
+
+def _value(model: float, numerical: float, symbol: str) -> str:
+    width = f" ± {labels.number(numerical, 2)}" if np.isfinite(numerical) else ""
+    return f"{labels.number(model)}{width} {symbol}".rstrip()
+
+
+def _condition(name: str, value: float | str) -> str:
+    """Return one condition in words: "impact velocity = 0.99 m/s"."""
+    attrs = {"units": PARAMETERS[name].units} if name in PARAMETERS else {}
+    single = xr.DataArray(np.array([value]), dims=name, name=name, attrs=attrs)
+    return labels.setting(single, [0])

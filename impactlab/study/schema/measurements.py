@@ -1,0 +1,160 @@
+"""Readers of measurements: files measurements/NAME.yaml, or mappings with the same keys."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+import xarray as xr
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PlainValidator,
+    StrictBool,
+    TypeAdapter,
+    ValidationInfo,
+    model_validator,
+)
+
+from impactlab.analysis.measurements import Measurement
+from impactlab.analysis.responses import listed
+from impactlab.model.parameters import PARAMETERS, Parameter
+from impactlab.model.quantities import si
+from impactlab.study.errors import unknown
+from impactlab.study.schema.parameters import value_type
+from impactlab.study.schema.section import (
+    Heading,
+    Number,
+    Section,
+    Text,
+    at_key,
+    requires,
+    validated,
+)
+from impactlab.study.schema.written import plain
+from impactlab.study.schema.yaml_file import read_mapping, read_text
+from impactlab.variables import RESPONSES
+
+Conditions = Mapping[str, Any]
+Given = str | Path | Mapping[str, Any]
+"""A file, or a mapping of the keys that a file has."""
+
+
+def _quantity(value: Any, info: ValidationInfo) -> str:
+    units: Mapping[str, str] = info.context["responses"]  # type: ignore[index]
+    if not isinstance(value, str) or value not in units:
+        raise ValueError(unknown("quantity", value, units))
+    return value
+
+
+def _number(value: Any, info: ValidationInfo) -> float | None:
+    """Read a number in the unit of the quantity, which is wrong itself where it is absent."""
+    quantity = info.data.get("quantity")
+    return si(value, info.context["responses"][quantity]) if quantity else None  # type: ignore[index]
+
+
+def _conditions(data: Any, info: ValidationInfo) -> Conditions:
+    if not isinstance(data, dict):
+        raise ValueError("expected a mapping such as {velocity: 2 m/s}")
+    parameters: Mapping[str, Parameter] = info.context["parameters"]  # type: ignore[index]
+    found = {}
+    for name, value in data.items():
+        if name not in parameters:
+            raise at_key(str(name), unknown("parameter", name, parameters))
+        try:
+            found[name] = TypeAdapter(value_type(parameters[name])).validate_python(value)
+        except ValueError as error:
+            words = [str(line["msg"]).removeprefix("Value error, ") for line in error.errors()]  # type: ignore[attr-defined]
+            raise at_key(name, "; ".join(words)) from None
+    return found
+
+
+class _Entry(Section):
+    """One measured value, with its uncertainty and the meaning of that."""
+
+    quantity: Annotated[str, BeforeValidator(_quantity)]
+    value: Annotated[Any, PlainValidator(_number)]
+    standard_uncertainty: Annotated[Any, PlainValidator(_number)] = None
+    expanded_uncertainty: Annotated[Any, PlainValidator(_number)] = None
+    coverage_factor: Annotated[Number, Field(ge=1, le=10)] | None = None
+    conditions: Annotated[Conditions, PlainValidator(_conditions)] = Field(default_factory=dict)
+    note: Text = ""
+
+    @model_validator(mode="after")
+    def _one_uncertainty(self) -> Self:
+        given = [self.standard_uncertainty, self.expanded_uncertainty]
+        if sum(each is not None for each in given) != 1:
+            raise ValueError(
+                "give one of standard_uncertainty (a standard deviation) and expanded_uncertainty "
+                "(with its coverage_factor)"
+            )
+        if (self.expanded_uncertainty is None) != (self.coverage_factor is None):
+            raise ValueError("expanded_uncertainty and coverage_factor belong together: give both")
+        if self.standard <= 0:
+            raise ValueError("the uncertainty must be above zero")
+        return self
+
+    @property
+    def standard(self) -> float:
+        """The standard uncertainty, in the unit of the quantity."""
+        expanded = self.expanded_uncertainty
+        return float(
+            self.standard_uncertainty if expanded is None else expanded / self.coverage_factor
+        )
+
+
+class _File(Heading):
+    """The keys of a file of measurements."""
+
+    source: Annotated[Text, Field(min_length=1)]
+    simulated: StrictBool = False
+    conditions: Annotated[Conditions, PlainValidator(_conditions)] = Field(default_factory=dict)
+    measurements: Annotated[
+        tuple[_Entry, ...], requires(bool, "is empty: list at least one measurement")
+    ]
+
+
+def read_measurements(given: Given, runs: xr.Dataset | None = None) -> tuple[Measurement, ...]:
+    """Read measurements: a file, or a mapping of the keys that a file has (docs/measurements.md).
+
+    runs: whose responses and parameters may be measured beside those of impacts. Raises StudyError
+    with every problem: file, key, value, what to do; ValueError for runs of no study.
+    """
+    responses = {name: entry.units for name, entry in RESPONSES.items()}
+    parameters = dict(PARAMETERS)
+    if runs is not None:
+        if "responses" not in runs.attrs:
+            raise ValueError(
+                "the runs are not those of a study: take what il.Study(...).run() gives"
+            )
+        for name in listed(runs, "responses"):
+            responses.setdefault(name, str(runs[name].attrs.get("units", "1")))
+        for name in listed(runs, "varied"):
+            parameters.setdefault(name, Parameter(name, "1", name, ()))
+    if isinstance(given, Mapping):
+        file, data = "measurements", plain(given)
+    else:
+        file = str(given)
+        data = read_mapping(read_text(Path(given)), file)
+    read: Any = partial(validated, parameters=parameters, responses=responses)
+    found: _File = read(_File, data, file)
+    source = f"{found.title} ({found.source})"
+    return tuple(
+        Measurement(
+            each.quantity,
+            each.value,
+            each.standard,
+            responses[each.quantity],
+            {**found.conditions, **each.conditions},
+            source,
+            found.simulated,
+        )
+        for each in found.measurements
+    )
+
+
+def read_all(given: Sequence[Given], runs: xr.Dataset | None = None) -> tuple[Measurement, ...]:
+    """Read several files, or mappings, in their order; see `read_measurements`."""
+    return tuple(each for one in given for each in read_measurements(one, runs))
