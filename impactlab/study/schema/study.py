@@ -72,6 +72,8 @@ def _section(*path: str, **others: Any) -> type[Section]:
     for name, entry in PARAMETERS.items():
         if entry.path[: len(path)] == path:
             key, *deeper = entry.path[len(path) :]
+            if key in keys:  # a section below, made for its first parameter
+                continue
             optional = not deeper and _DEFAULTS[name] is None
             kind = _section(*path, key) if deeper else value_type(entry)
             keys[key] = (Annotated[kind, nothing] if optional else kind, None)

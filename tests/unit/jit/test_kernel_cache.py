@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import shutil
 import subprocess
@@ -12,6 +13,7 @@ from pathlib import Path
 import numba
 import pytest
 
+from impactlab.jit import _read
 from impactlab.solver import jit
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
@@ -103,19 +105,30 @@ DAMAGE: dict[str, Callable[[bytes], bytes]] = {
 }
 
 
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_no_damage_passes_for_a_kernel(damage: str, tmp_path: Path) -> None:
+    content = bytes(range(256))
+    kernel, other = tmp_path / "a.kernel", tmp_path / "b.kernel"
+    for file in (kernel, other):
+        file.write_bytes(hashlib.sha256(content).digest() + content)
+    assert _read(other) == content
+    kernel.write_bytes(DAMAGE[damage](kernel.read_bytes()))
+    assert _read(kernel) is None
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_damaged_kernel_is_removed_reported_and_compiled_again(
     call: Start, tmp_path: Path
 ) -> None:
     assert printed(call())[0] == ["6.0", "0"]
-    for name, damage in DAMAGE.items():
-        (file,) = (tmp_path / "cache").rglob("*.kernel")
-        file.write_bytes(damage(file.read_bytes()))
-        out, errors = printed(call())
-        assert out == ["6.0", "0"], name
-        assert errors.splitlines() == [
-            f"damaged compiled kernels in {file.parent} are removed and compiled again"
-        ], name
-        assert printed(call()) == (["6.0", "1"], ""), name
+    (file,) = (tmp_path / "cache").rglob("*.kernel")
+    file.write_bytes(DAMAGE["a bit flipped in the code"](file.read_bytes()))
+    out, errors = printed(call())
+    assert out == ["6.0", "0"]
+    assert errors.splitlines() == [
+        f"damaged compiled kernels in {file.parent} are removed and compiled again"
+    ]
+    assert printed(call()) == (["6.0", "1"], "")
 
 
 def test_a_write_that_fails_half_way_leaves_nothing(call: Start, tmp_path: Path) -> None:
