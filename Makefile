@@ -19,7 +19,7 @@
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
 PYTHON ?= python3
 CORES ?= all
-STUDIES ?= velocity discretisation material ishigami sobol_slow sobol sobol_fast verification
+STUDIES ?= velocity discretisation material model_form ishigami sobol_slow sobol sobol_fast verification
 PYTEST_ARGS ?=
 SCALING_ARGS ?=
 STORED ?=

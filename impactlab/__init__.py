@@ -21,6 +21,7 @@ Its sampling
     Morris                         elementary effects
     Delta, Pawn, Regression        from one Latin hypercube
     Uniform, LogUniform, Normal, TruncatedNormal, Lognormal, Triangular
+    Choice                         one of several words
 
 What the runs say
     analyse         convergence and sensitivity, with verdicts

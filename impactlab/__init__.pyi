@@ -13,6 +13,7 @@ from .report.answer import answers as answers
 from .simulate import simulate as simulate
 from .simulate import simulate_many as simulate_many
 from .study.errors import StudyError as StudyError
+from .study.schema.written import Choice as Choice
 from .study.schema.written import Delta as Delta
 from .study.schema.written import Fast as Fast
 from .study.schema.written import Grid as Grid

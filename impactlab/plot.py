@@ -26,7 +26,6 @@ from impactlab.figures import (
     style,
 )
 from impactlab.figures.curves import plan
-from impactlab.figures.labels import display
 from impactlab.study.errors import unknown
 from impactlab.study.schema.measurements import read_measurements
 
@@ -66,7 +65,8 @@ def response(
     coordinates = [
         str(key)
         for key, each in runs.coords.items()
-        if each.dims == (("run",) if sample else (key,)) and each.dtype.kind in "if"
+        if each.dims == (("run",) if sample else (key,))
+        and (each.dtype.kind in "if" or labels.words(each))
     ]
     _require("x", x, coordinates)
     if hue is not None:
@@ -78,7 +78,7 @@ def response(
     along = runs[str(x)]
     if sample:
         values, label = responses_grid.shown(runs, name)
-        samples.scatter_runs(ax, display(along)(along.values), values.values)
+        samples.scatter_runs(ax, along, values.values)
     else:
         most = runs.sizes[hue] if hue else 1
         selected = plan(runs, name, along=[str(x)], prefer=[hue] if hue else [], most=most)
@@ -88,7 +88,8 @@ def response(
         label = grids.response_curves(ax, runs, analysis, name, along, selected)
         if hue:
             ax.legend(title=labels.sentence(labels.parameter(hue)))
-    ax.set(xlabel=grids.parameter_axis(along), ylabel=label)
+    across = samples.axis_label(along) if sample else grids.parameter_axis(along)
+    ax.set(xlabel=across, ylabel=label)
     return ax
 
 

@@ -13,6 +13,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from impactlab.analysis.responses import in_order, listed
+from impactlab.model.distributions import CHOICE
 from impactlab.types import Floats
 
 
@@ -46,12 +47,31 @@ class Sample:
 
     @cached_property
     def inputs(self) -> Floats:
-        """The parameters of all runs, (runs, parameter), in SI units: held in memory once used."""
+        """The parameters of all runs, (runs, parameter): held in memory once used; see `column`."""
         return np.stack([self.column(name) for name in self.parameters], axis=1)
 
+    @cached_property
+    def words(self) -> dict[str, list[str]]:
+        """The words of each parameter that is drawn among words, by its name."""
+        attrs = {name: self.runs[name].attrs for name in self.parameters}
+        drawn = [name for name in attrs if attrs[name].get("distribution") == CHOICE]
+        return {
+            name: [str(word) for word in np.atleast_1d(attrs[name]["values"])] for name in drawn
+        }
+
     def column(self, parameter: str) -> Floats:
-        """Return a parameter in all runs, (runs,)."""
-        return np.asarray(self.runs[parameter].values, float)
+        """Return a parameter in all runs, (runs,), in SI units; of words, their places in `words`.
+
+        The places only tell words apart: they have no order. Raises ValueError for other words.
+        """
+        values = self.runs[parameter].values
+        if parameter not in self.words:
+            return np.asarray(values, float)
+        known = self.words[parameter]
+        found = sum(at * (values == word) for at, word in enumerate(known, 1))
+        if not np.all(found):
+            raise ValueError(f"the runs of {self.study} hold words of {parameter} not drawn from")
+        return np.asarray(found, float) - 1
 
     def rows(self, runs: NDArray[np.int64]) -> Floats:
         """Return the parameters of these runs, (runs, parameter); one column is read at a time."""
@@ -95,6 +115,14 @@ class Sample:
         if self.size != runs:
             raise ValueError(
                 f"{self.study} has {self.size} runs, but {words} make {runs}: solve it again"
+            )
+
+    def ordered(self) -> None:
+        """Raise ValueError where words are drawn for a method that needs an order of the values."""
+        if self.words:
+            raise ValueError(
+                f"{self.study}: the method {self.settings['method']!r} needs an order of the "
+                f"values, and {next(iter(self.words))} takes words: use sobol, delta or pawn"
             )
 
     def ungrouped(self) -> None:

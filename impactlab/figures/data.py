@@ -40,7 +40,8 @@ _PANELS, _CURVES = 5, 3
 class Drawn:
     """One curve: where it is, what it is called, and its points x, y of shape (points,).
 
-    category: the name of each point, where the axis has names in place of numbers; else "". low,
+    category: the name of each point, where an axis has names in place of numbers (x: `across`);
+    else "". low,
     high: ends of the error bar of each point, (points,), along the axis of its value; else NaN.
     """
 
@@ -53,6 +54,7 @@ class Drawn:
     low: Floats
     high: Floats
     category: list[str]
+    across: bool = False
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:
@@ -91,18 +93,20 @@ def drawn(figure: Figure) -> Iterator[Drawn]:
         legend = ax.get_legend()
         title = str(legend.get_title().get_text()) if legend else ""
         panel = ax.get_title(loc="left") or title or f"panel {number}"
-        formatter = ax.yaxis.get_major_formatter()
-        names = [""]
+        formatter, names = ax.yaxis.get_major_formatter(), [""]
         if isinstance(formatter, FixedFormatter):  # an axis of names has no label
             names, up = [str(of) for of in formatter.seq], str(ax.get_ylabel())
+        formatter = ax.xaxis.get_major_formatter()
+        if named := isinstance(formatter, FixedFormatter):
+            names = [str(of) for of in formatter.seq]
         for curve, x, y, low, high in _points(ax):
             kept = np.isfinite(x) & np.isfinite(y)
-            nearest = np.clip(np.rint(y[kept]), 0, len(names) - 1).astype(int)
+            places = (x if named else y)[kept]
+            nearest = np.clip(np.rint(places), 0, len(names) - 1).astype(int)
             if kept.any():
                 category = [names[at] for at in nearest]
-                yield Drawn(
-                    panel, curve, across, up, x[kept], y[kept], low[kept], high[kept], category
-                )
+                ends = low[kept], high[kept]
+                yield Drawn(panel, curve, across, up, x[kept], y[kept], *ends, category, named)
 
 
 def _label(figure: Figure, ax: Axes, axis: str) -> str:
@@ -191,8 +195,9 @@ def alt(figure: Figure) -> str:
 def _curve(curve: Drawn) -> str:
     label = f"{curve.curve}: " if curve.curve else ""
     if any(curve.category):
-        at = int(np.argmax(np.abs(curve.x)))
-        return f"{label}largest for {curve.category[at]} ({labels.number(curve.x[at], 3)})"
+        values = curve.y if curve.across else curve.x
+        at = int(np.argmax(np.abs(values)))
+        return f"{label}largest for {curve.category[at]} ({labels.number(values[at], 3)})"
     if curve.x.size == 1:
         return f"{label}{labels.number(curve.x[0], 3)}, {labels.number(curve.y[0], 3)}"
     return f"{label}{labels.span(curve.y, 3)} over {labels.span(curve.x, 3)}"

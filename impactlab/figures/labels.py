@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from impactlab.model.distributions import CHOICE
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver.contact import CONTACT_LAWS
@@ -183,6 +184,16 @@ def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
     if coordinate.name == "beam_model":
         return [beam_model(word) for word in words]
     return [_SPELLED.get(word, word.replace("_", " ")) for word in words]
+
+
+def words(coordinate: xr.DataArray) -> list[str]:
+    """Return the words that a parameter is drawn among, for axes and tables; [] for numbers."""
+    if coordinate.attrs.get("distribution") != CHOICE:
+        return []
+    listed = [str(word) for word in np.atleast_1d(coordinate.attrs["values"])]
+    if coordinate.name == "beam_model":
+        return [beam_model(word) for word in listed]
+    return [_SPELLED.get(word, word.replace("_", " ")) for word in listed]
 
 
 def unit(coordinate: xr.DataArray) -> str:

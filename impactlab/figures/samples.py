@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import combinations
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import scipy  # its stats are loaded when first used
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FixedFormatter
 from numpy.typing import NDArray
 
 from impactlab.analysis.verdicts import ROUND_OFF
@@ -36,6 +37,8 @@ _POINTS: dict[str, Any] = {
     "markeredgewidth": 0.0,
     "color": "0.6",
 }
+_NAMES = 14.0
+"""Height of the names of words under a panel, mm."""
 _BINS, _FEWEST = 20, 30
 """Largest number of bins of the mean, and smallest number of runs in a bin."""
 _MOST = 400
@@ -115,10 +118,13 @@ def scatter(response: str) -> Figure:
 
     def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
         total = runs.sizes["run"]
+        columns = [runs[name] for name in varied(runs)]
         points = f"{_SHOWN} of the {total} runs, drawn at random" if total > _SHOWN else "the runs"
         what = (
             f"Points: {points}. Line: mean of the response over all runs with about this value of "
             "the parameter; where it is flat, the parameter alone changes nothing."
+            + " Diamonds: mean over all runs with this word."
+            * any(map(labels.words, columns))
         )
         return what, access.missing_note(runs, [response])
 
@@ -134,28 +140,66 @@ def scatter(response: str) -> Figure:
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per parameter; points are a bitmap, which keeps the vector file small."""
         values, label = responses_grid.shown(runs, response)
-        return _along_parameters(runs, label, 42, lambda ax, x: scatter_runs(ax, x, values.values))
+        return _along_parameters(
+            runs, label, 42, lambda ax, at: scatter_runs(ax, at, values.values)
+        )
 
     return plot
 
 
 def _along_parameters(
-    runs: xr.Dataset, label: str, height: float, draw: Callable[[Axes, Floats], None]
+    runs: xr.Dataset, label: str, height: float, draw: Callable[[Axes, xr.DataArray], None]
 ) -> Drawing:
-    """Draw a panel per parameter, over its values in display units, (runs,)."""
+    """Draw a panel per parameter, given as its column of the runs."""
     names = varied(runs)
+    height += _NAMES * any(labels.words(runs[name]) for name in names)
     figure, axes = style.panels(len(names), columns=3, height=height, sharey=True)
     for ax, name in zip(axes, names, strict=True):
-        unit = display(runs[name])
-        draw(ax, unit(runs[name].values))
-        ax.set_xlabel(labels.wrapped_axis(labels.parameter(name), unit.symbol))
+        draw(ax, runs[name])
+        ax.set_xlabel(axis_label(runs[name]))
     figure.supylabel(label)
     style.legend(figure)
     return figure
 
 
-def scatter_runs(ax: Axes, x: Floats, y: Floats) -> None:
-    """Draw some of the runs, and the mean of all."""
+def axis_label(column: xr.DataArray) -> str:
+    """Return the label of the axis of a parameter, with a unit where it takes numbers."""
+    text, symbol = labels.parameter(str(column.name)), display(column).symbol
+    return labels.sentence(text) if labels.words(column) else labels.wrapped_axis(text, symbol)
+
+
+def _places(column: xr.DataArray) -> Floats:
+    """Return the values of a parameter in its display unit, (runs,), or the places of its words."""
+    if not labels.words(column):
+        return display(column)(column.values)
+    listed = np.atleast_1d(column.attrs["values"])
+    return np.asarray(sum(at * (column.values == word) for at, word in enumerate(listed)), float)
+
+
+def _beside(column: xr.DataArray, places: Floats) -> Floats:
+    """Return places, those of words moved at random, so that points do not hide each other."""
+    wide = 0.6 * bool(labels.words(column))
+    return places + wide * (np.random.default_rng(2).random(places.size) - 0.5)
+
+
+def _ticks(ax: Axes, which: Literal["x", "y"], column: xr.DataArray) -> None:
+    """Make an axis one of numbers, or of the names of words."""
+    if not (listed := labels.words(column)):
+        scales.linear(ax, which, 4)
+        return
+    ax.set(**{f"{which}lim": (-0.5, len(listed) - 0.5), f"{which}ticks": range(len(listed))})
+    getattr(ax, f"{which}axis").set_major_formatter(FixedFormatter(listed))
+    ax.tick_params(axis=which, labelrotation=90.0 if which == "x" else 0.0)
+    ax.grid(visible=False, axis=which)
+
+
+def scatter_runs(ax: Axes, column: xr.DataArray, y: Floats) -> None:
+    """Draw some of the runs over a parameter, and the mean of all about each value, or word.
+
+    column, y: (runs,), a varied coordinate and a response in its display unit.
+    """
+    _ticks(ax, "x", column)
+    x = _places(column)
     finite = np.isfinite(x) & np.isfinite(y)
     if not np.isfinite(y).any():
         style.remark(ax, "no finite values")
@@ -163,10 +207,16 @@ def scatter_runs(ax: Axes, x: Floats, y: Floats) -> None:
     if not x.size:
         return
     some = np.random.default_rng(1).permutation(x.size)[:_SHOWN]  # a sample's order has structure
-    ax.plot(x[some], y[some], label="_runs", rasterized=True, **_POINTS)
-    middle, mean = conditional_mean(x, y)
-    ax.plot(middle, mean, label="conditional mean", color=style.COLOURS[1], linewidth=1.5)
-    scales.linear(ax, "xy", 4)
+    ax.plot(_beside(column, x)[some], y[some], label="_runs", rasterized=True, **_POINTS)
+    if labels.words(column):
+        middle = np.unique(x)
+        mean = np.array([y[x == place].mean() for place in middle])
+        look: dict[str, Any] = {"linestyle": "", "marker": "D", "label": "mean by word"}
+    else:
+        middle, mean = conditional_mean(x, y)
+        look = {"linewidth": 1.5, "label": "conditional mean"}
+    ax.plot(middle, mean, color=style.COLOURS[1], **look)
+    scales.linear(ax, "y", 4)
 
 
 def conditional_mean(x: Floats, y: Floats) -> tuple[Floats, Floats]:
@@ -258,9 +308,9 @@ def _failure_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 
 @record.figure(
     "Share of failed runs along each parameter",
-    "Share of the runs that failed in each tenth of a parameter's draws, with the 95 % "
-    "interval of a binomial share (Wilson); dashed: the share of all runs. A parameter along "
-    "which the share rises tells where runs fail.",
+    "Share of the runs that failed in each tenth of a parameter's draws, or with each word, with "
+    "the 95 % interval of a binomial share (Wilson); dashed: the share of all runs. A parameter "
+    "along which the share rises tells where runs fail.",
     lambda runs, analysis: (
         is_sample(runs) and bool(varied(runs)) and bool(access.failed(runs).any())
     ),
@@ -269,12 +319,15 @@ def _failure_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 def failure_shares(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per parameter."""
     failed = access.failed(runs).values
-    return _along_parameters(runs, "Failed runs (%)", 36, lambda ax, x: _shares(ax, x, failed))
+    return _along_parameters(runs, "Failed runs (%)", 36, lambda ax, at: _shares(ax, at, failed))
 
 
-def _shares(ax: Axes, x: Floats, failed: NDArray[np.bool_]) -> None:
+def _shares(ax: Axes, column: xr.DataArray, failed: NDArray[np.bool_]) -> None:
+    x = _places(column)
     edges = np.unique(np.quantile(x, np.linspace(0.0, 1.0, 11)))
     place = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, max(edges.size - 2, 0))
+    if labels.words(column):
+        place = x.astype(int)
     found = []
     for at in np.unique(place):
         here = place == at
@@ -295,14 +348,22 @@ def _shares(ax: Axes, x: Floats, failed: NDArray[np.bool_]) -> None:
     )
     ax.axhline(100 * failed.mean(), label="_guide: all runs", linestyle="--", **style.GUIDE)
     ax.set_ylim(0.0, None)
-    scales.linear(ax, "xy", 4)
+    _ticks(ax, "x", column)
+    scales.linear(ax, "y", 4)
 
 
 def _distances(runs: xr.Dataset) -> dict[str, float]:
-    """Return the Kolmogorov-Smirnov distances of the most telling parameters, the largest first."""
+    """Return the Kolmogorov-Smirnov distances of the most telling parameters, the largest first.
+
+    Of words, which have no order, it is half the sum of the differences of their shares.
+    """
     failed, found = access.failed(runs).values, {}
     for name in varied(runs):
         values = runs[name].values
+        if labels.words(runs[name]):
+            here = values[:, None] == np.unique(values)
+            found[name] = float(abs(here[failed].mean(0) - here[~failed].mean(0)).sum() / 2)
+            continue
         test = scipy.stats.ks_2samp(values[failed], values[~failed], method="asymp")
         found[name] = float(test.statistic)
     ranked = sorted(found, key=lambda name: -found[name])
@@ -338,12 +399,10 @@ def failure_map(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     for ax, pair in zip(axes, pairs, strict=True):
         for kind, which in kinds.items():
             some = np.random.default_rng(1).permutation(which)[: _DRAWN[kind]]
-            x, y = (display(runs[name])(runs[name].values[some]) for name in pair)
+            x, y = (_beside(runs[name], _places(runs[name]))[some] for name in pair)
             ax.plot(x, y, linestyle="", label=kind, rasterized=kind == "good", **_LOOKS[kind])
-        across, up = (
-            labels.wrapped_axis(labels.parameter(name), display(runs[name]).symbol) for name in pair
-        )
-        ax.set(xlabel=across, ylabel=up)
-        scales.linear(ax, "xy", 4)
+        ax.set(xlabel=axis_label(runs[pair[0]]), ylabel=axis_label(runs[pair[1]]))
+        _ticks(ax, "x", runs[pair[0]])
+        _ticks(ax, "y", runs[pair[1]])
     style.legend(figure)
     return figure

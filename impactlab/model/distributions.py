@@ -41,6 +41,8 @@ _FORMS: dict[str, Callable[..., Any]] = {
 """By their name in study files: scipy's distribution, of the arguments that a study gives."""
 ARGUMENTS = {name: tuple(signature(form).parameters) for name, form in _FORMS.items()}
 """Names of the arguments of each distribution."""
+CHOICE = "choice"
+"""The name of the draw among words, which have no order and so no quantiles."""
 
 
 def arguments(attributes: Arguments) -> dict[str, Any]:

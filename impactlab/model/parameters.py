@@ -25,7 +25,8 @@ class Parameter:
     """One entry: `path` leads from (impact, discretisation) to the field.
 
     units: UDUNITS spelling, "1" for a pure number. choices: the allowed words, for parameters
-    that are names; `whole`: for those that count.
+    that are names; `whole`: for those that count; any_word: for those that may be words of any
+    kind, as the arguments of a Python function.
     """
 
     name: str
@@ -34,6 +35,7 @@ class Parameter:
     path: tuple[str, ...]
     choices: tuple[str, ...] = ()
     whole: bool = False
+    any_word: bool = False
 
 
 _MATERIAL = (

@@ -120,6 +120,8 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
             text = _written(runs, analysis, family, index, name, at)
             if family is SOBOL and not found and not listed:
                 text = text.replace(")", ") of the variance", 1)
+            if not listed:
+                text += _of_words(runs, measures.parameters(analysis)[at], name)
             if sizes[at] > _MATTERS * sizes.max():
                 listed.append(f"{names[at]} {text}")
         if listed and family is REGRESSION and "regression_r_squared" in analysis:
@@ -133,6 +135,21 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
             (f"{subject} ({verdict.words})" if verdict else subject, ", ".join(listed) or none)
         )
     return found
+
+
+def _of_words(runs: xr.Dataset, parameter: str, response: str) -> str:
+    """Return which words give the least and the largest mean response; "" for numbers."""
+    listed = labels.words(runs[parameter]) if parameter in runs.coords else []
+    if not listed:
+        return ""
+    unit, values = display(runs[response]), usable(runs, response).values
+    stored = np.atleast_1d(runs[parameter].attrs["values"])
+    given = [values[(runs[parameter].values == word) & np.isfinite(values)] for word in stored]
+    means = {word: each.mean() for word, each in zip(listed, given, strict=True) if each.size}
+    least, most = min(means, key=means.__getitem__), max(means, key=means.__getitem__)
+    low, high = (labels.number(float(unit(means[word])), 3) for word in (least, most))
+    symbol = labels.unit(runs[response])
+    return f" (on average {low}{symbol} with {least} to {high}{symbol} with {most})"
 
 
 def _written(

@@ -75,6 +75,10 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             )
     if "surrogate_q2" in analysis:
         yield surrogate(runs, analysis)
+    elif drawn := [name for name in access.varied(runs) if labels.words(runs[name])]:
+        listed = labels.listing([labels.parameter(name) for name in drawn])
+        lead = f"There is none, nor an explorer: no polynomial follows words ({listed})."
+        yield Section("surrogate", "Surrogate", lead)
 
 
 def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:

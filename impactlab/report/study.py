@@ -113,7 +113,12 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         *sensitivity.sections(runs, analysis),
         *sensitivity.numerical_sections(runs, analysis),
         *measured.sections(analysis),
-        Section("results", "Distribution of each response", tables=[ranges], figures=drawn),
+        Section(
+            "results",
+            "Distribution of each response",
+            tables=[ranges, *(_by_word(runs, name) for name in varied(runs) if _words(runs, name))],
+            figures=drawn,
+        ),
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         inputs,
         Section("scatter", title, _SCATTER, figures=scattered, closed=True),
@@ -155,6 +160,10 @@ def _described(runs: xr.Dataset, name: str) -> xr.DataArray:
 def _values(coordinate: xr.DataArray) -> Row:
     """Return values and their number, or a distribution: "uniform: low 250 MPa, high 450 MPa"."""
     unit, size, attrs = labels.unit(coordinate), coordinate.size, coordinate.attrs
+    if listed := labels.words(coordinate):
+        weights = map(labels.percent, np.atleast_1d(attrs["weights"]).tolist())
+        told = [f"{word} {weight}" for word, weight in zip(listed, weights, strict=True)]
+        return [f"choice: {', '.join(told)}", Cell(f"{size} draws", "number")]
     if "distribution" in attrs:
         arguments = []
         for key, value in attrs.items():
@@ -170,6 +179,24 @@ def _values(coordinate: xr.DataArray) -> Row:
         return [", ".join(labels.values(coordinate, range(size))) + unit, str(size)]
     ends = [int(np.argmin(coordinate.values)), int(np.argmax(coordinate.values))]
     return [" to ".join(labels.values(coordinate, ends)) + unit, str(size)]
+
+
+def _words(runs: xr.Dataset, name: str) -> list[str]:
+    return labels.words(runs[name])
+
+
+def _by_word(runs: xr.Dataset, name: str) -> Table:
+    """Return one row per response: its mean over the runs of each word that a parameter takes."""
+    listed = np.atleast_1d(runs[name].attrs["values"])
+    rows: list[Row] = []
+    for response in responses(runs):
+        unit, values = display(runs[response]), usable(runs, response).values
+        here = [values[(runs[name].values == word) & np.isfinite(values)] for word in listed]
+        means = [float(unit(each.mean())) if each.size else np.nan for each in here]
+        cells = [Cell(labels.number(mean, 3), "number") for mean in means]
+        rows.append([labels.axis(labels.response(response), unit.symbol), *cells])
+    caption = f"Mean of each response by {labels.parameter(name)}, over the runs that have it"
+    return Table(caption, ["Response", *_words(runs, name)], rows)
 
 
 def _outcome(runs: xr.Dataset, analysis: xr.Dataset, figures: list[str] | None = None) -> Section:

@@ -206,6 +206,8 @@ def _largest_run(
         if isinstance(sampling, Grid):
             values = sampling.parameters[name]
             ends = list(values) if isinstance(values[0], str) else [min(values), max(values)]
+        elif name in sampling.words:
+            ends = list(sampling.varied[name].values)
         else:
             ends = sampling.varied[name].quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
         columns = {key: [value] * len(ends) for key, value in found.items()} | {name: ends}

@@ -67,7 +67,10 @@ def refused_corner(base: Base, extremes: Mapping[str, Iterable[Value]]) -> Refus
 
 def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal | None:
     """Return the first run that the model refuses; columns hold one value per run."""
-    box = {name: sorted({min(values), max(values)}) for name, values in columns.items()}
+    box = {
+        name: sorted({*values} if isinstance(values[0], str) else {min(values), max(values)})
+        for name, values in columns.items()
+    }
     if refused_corner(base, box) is None:
         return None  # no run in the box is refused
     runs = zip(*columns.values(), strict=True)

@@ -18,7 +18,7 @@ from ruamel.yaml import YAML
 import impactlab as il
 from impactlab.figures.catalogue import CATALOGUE as INDEX_FIGURES
 from impactlab.files import read_netcdf
-from impactlab.model.distributions import ARGUMENTS
+from impactlab.model.distributions import ARGUMENTS, CHOICE
 from impactlab.study import steps
 from impactlab.study.sampling import METHODS
 from impactlab.study.schema.files import read_study
@@ -115,7 +115,7 @@ def test_shipped_studies_are_the_same_from_python(path, folder):
 
 def test_every_method_and_distribution_has_its_class():
     classes = [getattr(il, name) for name in dir(il) if isinstance(getattr(il, name), type)]
-    for base, names in ((_Sampling, METHODS), (_Distribution, ARGUMENTS)):
+    for base, names in ((_Sampling, METHODS), (_Distribution, (*ARGUMENTS, CHOICE))):
         found = [each for each in classes if issubclass(each, base)]
         given = [{each.name: {} for each in dataclasses.fields(one)} for one in found]
         keys = {one(**each).written()[base._key] for one, each in zip(found, given, strict=True)}

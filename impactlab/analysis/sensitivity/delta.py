@@ -9,7 +9,7 @@ each other where a response has several modes: of 2000 runs of Ishigami's functi
 0.32 and 0.16 for 0.264, 0.425 and 0.209. Here the kernels have half of that width, and there
 are twice as many classes: less smoothing would raise the noise of indices near zero. What bias is
 left is of the size of the change from half the classes and twice the width; the interval includes
-it, times SAFETY.
+it, times SAFETY. The classes of a parameter that takes words are the words.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ SAFETY = 1.5
 """Bias over change; one would do for an error that each halving of the width halves."""
 COARSE = 20
 """Resamples for the bias of the estimate with half the classes and twice the width."""
-Starts = npt.NDArray[np.intp]
+Mask = npt.NDArray[np.bool_]
 _2013 = "Plischke et al. (2013), Eur. J. Oper. Res. 226, 536"
 _DUMMY = "of a random column that the model never saw"
 _INDICES = {
@@ -47,7 +47,8 @@ _INDICES = {
     "delta_first_order": Index(
         "first-order Sobol index from given data",
         f"{_2013}, section 3",
-        comment="of the variance between classes: a tenth too small with 5 classes (500 runs)",
+        comment="of the variance between classes: a tenth too small with 5 classes (500 runs); "
+        "of words, between the words",
     ),
     "dummy_delta": Index("delta of a dummy", f"{_2013}, eqs. 26 and 30", (), comment=_DUMMY),
     "dummy_delta_first_order": Index(
@@ -64,50 +65,67 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
     inputs = np.column_stack([sample.inputs, dummy_column(sample)])
     exponent = 2.0 / (7.0 + np.tanh((1500.0 - runs) / 500.0))
     classes = round(min(int(np.ceil(runs**exponent)), 48))  # of a parameter's values, as in SALib
-    coarse, fine = (np.linspace(0, runs, n + 1)[:-1].astype(int) for n in (classes, 2 * classes))
     places = np.linspace(outputs.min(), outputs.max(), GRID)
+    words = np.array([*(name in sample.words for name in sample.parameters), False])
 
-    def reduced(starts: Starts, width: float, rows: npt.NDArray[np.int64]) -> tuple[Floats, Floats]:
+    def reduced(count: int, width: float, rows: npt.NDArray[np.int64]) -> tuple[Floats, Floats]:
         """Return delta without its bias (eq. 30), and the resamples of it."""
-        again = np.array([deltas(inputs[at], outputs[at], starts, places, width) for at in rows])
-        return 2 * deltas(inputs, outputs, starts, places, width) - again.mean(axis=0), again
+        again = [deltas(inputs[at], outputs[at], count, places, width, words) for at in rows]
+        whole = deltas(inputs, outputs, count, places, width, words)
+        return 2 * whole - np.mean(again, axis=0), np.array(again)
 
     drawn = sample.rng(response).integers(runs, size=(sample.resamples, runs))
-    values, replicates = reduced(fine, WIDTH, drawn)
-    change = np.abs(values - reduced(coarse, 2 * WIDTH, drawn[:COARSE])[0])
+    values, replicates = reduced(2 * classes, WIDTH, drawn)
+    change = np.abs(values - reduced(classes, 2 * WIDTH, drawn[:COARSE])[0])
     found = apart_from_dummy("delta", values, sample.half_width(replicates) + SAFETY * change)
-    again = np.array([first_orders(inputs[at], outputs[at], coarse) for at in drawn])
-    first = first_orders(inputs, outputs, coarse)
+    again = np.array([first_orders(inputs[at], outputs[at], classes, words) for at in drawn])
+    first = first_orders(inputs, outputs, classes, words)
     return found | apart_from_dummy("delta_first_order", first, sample.half_width(again))
 
 
-def deltas(inputs: Floats, outputs: Floats, starts: Starts, places: Floats, width: float) -> Floats:
+def deltas(
+    inputs: Floats, outputs: Floats, classes: int, places: Floats, width: float, words: Mask
+) -> Floats:
     """Return half the mean distance of the densities in classes of each parameter from that of all.
 
-    inputs: (runs, parameters); outputs: (runs,); starts: where the classes begin among the runs in
-    the order of a parameter; width: of the kernels, relative to Silverman's. NaN where a class does
-    not vary.
+    inputs: (runs, parameters); outputs: (runs,); classes: their number, of equal size; width: of
+    the kernels, relative to Silverman's; words: (parameters,), where each value is a class of its
+    own. NaN where a class does not vary.
     """
     whole = _density(outputs, np.zeros(1, int), places, width)
-    shares = np.diff(starts, append=len(outputs)) / len(outputs)
+    equal = _starts(len(outputs), classes)
     found = []
-    for column in inputs.T:
-        ordered = outputs[np.argsort(column, kind="stable")]
-        apart = np.abs(_density(ordered, starts, places, width) - whole)
+    for column, of_words in zip(inputs.T, words, strict=True):
+        order = np.argsort(column, kind="stable")
+        starts = np.flatnonzero(np.diff(column[order], prepend=-1)) if of_words else equal
+        shares = np.diff(starts, append=len(outputs)) / len(outputs)
+        apart = np.abs(_density(outputs[order], starts, places, width) - whole)
         found.append((shares * np.trapezoid(apart, places, axis=0)).sum() / 2)
     return np.array(found)
 
 
-def first_orders(inputs: Floats, outputs: Floats, starts: Starts) -> Floats:
+def first_orders(inputs: Floats, outputs: Floats, classes: int, words: Mask) -> Floats:
     """Return the share of the variance between the classes of each parameter, as for `deltas`."""
+    starts = _starts(len(outputs), classes)
     sizes = np.diff(starts, append=len(outputs))[:, None]
     ordered = outputs[np.argsort(inputs, axis=0, kind="stable")]
     means = np.add.reduceat(ordered, starts, axis=0) / sizes
     between = (sizes * (means - outputs.mean()) ** 2).sum(axis=0) / len(outputs)
+    for at in np.flatnonzero(words):
+        _, place, number = np.unique(inputs[:, at], return_inverse=True, return_counts=True)
+        apart = np.bincount(place, weights=outputs) / number - outputs.mean()
+        between[at] = (number * apart**2).sum() / len(outputs)
     return np.asarray(between / (outputs.var() or np.nan))
 
 
-def _density(outputs: Floats, starts: Starts, places: Floats, relative: float) -> Floats:
+def _starts(runs: int, classes: int) -> npt.NDArray[np.intp]:
+    """Return where classes of equal size begin among the runs in the order of a parameter."""
+    return np.linspace(0, runs, classes + 1)[:-1].astype(int)
+
+
+def _density(
+    outputs: Floats, starts: npt.NDArray[np.intp], places: Floats, relative: float
+) -> Floats:
     """Return the density of each class of outputs at the places, (places, classes).
 
     outputs: (runs,), sorted by class; starts: where the classes begin; relative: width of the
@@ -115,7 +133,7 @@ def _density(outputs: Floats, starts: Starts, places: Floats, relative: float) -
     """
     sizes = np.diff(starts, append=len(outputs))
     means = np.repeat(np.add.reduceat(outputs, starts) / sizes, sizes)
-    squares = np.add.reduceat((outputs - means) ** 2, starts) / (sizes - 1)
+    squares = np.add.reduceat((outputs - means) ** 2, starts) / np.maximum(sizes - 1, 1)
     width = relative * np.sqrt(squares) * (0.75 * sizes) ** -0.2
     each = np.repeat(np.where(width > 0, width, np.nan), sizes)
     kernels = np.exp(-0.5 * ((places[:, None] - outputs) / each) ** 2)

@@ -37,6 +37,7 @@ _INDICES = {
 
 def _check(sample: Sample) -> None:
     sample.ungrouped()
+    sample.ordered()
     curves = len(sample.parameters) + 1
     points, harmonics = sample.size // curves, sample.number("harmonics")
     sample.expect(points * curves, f"{curves} curves of {points} points")

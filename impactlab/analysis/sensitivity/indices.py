@@ -127,6 +127,11 @@ def imputed(outputs: Floats, sample: Sample, response: str) -> Floats | None:
     gaps = np.isnan(outputs)
     if not gaps.any() or sample.settings.get("failed_runs") != "impute":
         return outputs
+    if sample.words:
+        raise ValueError(
+            f"{sample.study}: no surrogate is fitted over words ({', '.join(sample.words)}), so it "
+            "cannot supply values: set failed_runs: fail"
+        )
     enough = np.count_nonzero(~gaps) >= FEWEST_PER_PARAMETER * len(sample.parameters)
     if not enough or np.count_nonzero(gaps) > MOST_IMPUTED * outputs.size:
         return None

@@ -2,7 +2,8 @@
 
 The distance is that of Kolmogorov and Smirnov between the runs of a slide, a tenth of the values of
 the parameter, and all runs. It needs no density and no variance, so that jumps and skewed responses
-are no trouble; it is never zero in a finite sample, which is what the dummy shows.
+are no trouble; it is never zero in a finite sample, which is what the dummy shows. The slides of a
+parameter that takes words are the words, and the median is that over the runs.
 """
 
 from __future__ import annotations
@@ -51,24 +52,46 @@ def _check(sample: Sample) -> None:
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
+    words = np.array([*(name in sample.words for name in sample.parameters), False])
     inputs = np.column_stack([sample.inputs, dummy_column(sample)])
-    names = [*sample.parameters, "dummy"]
+    numbers = inputs[:, ~words]
+    names = [str(at) for at in range(numbers.shape[1])]
     with warnings.catch_warnings():
         # of the significance of a distance, which is not used
         warnings.filterwarnings("ignore", "ks_2samp", RuntimeWarning)
-        found = pawn.analyze({"num_vars": len(names), "names": names}, inputs, outputs, S=SLIDES)
+        given = pawn.analyze({"num_vars": len(names), "names": names}, numbers, outputs, S=SLIDES)
     order = np.argsort(outputs, kind="stable")
     last = np.flatnonzero(np.diff(outputs[order], append=np.inf))
-    members = [slides(column)[order] for column in inputs.T]  # the limits are kept in resamples
+    # the limits are kept in resamples
+    members = [
+        (column[:, None] == np.unique(column) if of_words else slides(column))[order]
+        for column, of_words in zip(inputs.T, words, strict=True)
+    ]
     medians = [
-        # of the slides that are not empty, as in SALib
-        [np.nanmedian(distances(row[order], member, last)) for member in members]
+        [_median(row[order], *each, last)[0] for each in zip(members, words, strict=True)]
         for tally in counts(len(outputs), sample.resamples, sample.rng(response))
         for row in tally
     ]
     margins = sample.half_width(np.array(medians))
-    indices = apart_from_dummy("pawn", np.array(found["median"]), margins)
-    return indices | {"pawn_maximum": found["maximum"][:-1]}
+    median, largest = np.empty((2, words.size))
+    median[~words], largest[~words] = given["median"], given["maximum"]
+    for at in np.flatnonzero(words):
+        median[at], largest[at] = _median(np.ones(len(outputs)), members[at], True, last)
+    return apart_from_dummy("pawn", median, margins) | {"pawn_maximum": largest[:-1]}
+
+
+def _median(
+    weights: Floats, members: npt.NDArray[np.bool_], words: bool, last: npt.NDArray[np.intp]
+) -> tuple[float, float]:
+    """Return median and maximum of the distances of slides, as `distances`.
+
+    The median is that over the slides that are not empty, as in SALib; of words it is that over
+    the runs, so that a word counts by how often it is drawn.
+    """
+    apart = distances(weights, members, last)
+    if words:
+        apart = np.repeat(apart, (weights @ members).astype(int))
+    return float(np.nanmedian(apart)), float(np.nanmax(apart))
 
 
 def slides(column: Floats) -> npt.NDArray[np.bool_]:

@@ -37,6 +37,7 @@ _INDICES = {
 
 def _check(sample: Sample) -> None:
     sample.ungrouped()
+    sample.ordered()
     runs, needed = sample.inputs.shape[0], 2 * (sample.inputs.shape[1] + 2)
     if runs < needed:
         raise ValueError(

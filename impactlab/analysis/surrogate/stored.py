@@ -195,6 +195,11 @@ def load_surrogate(path: str | Path) -> Surrogate:
     >>> surrogate.predict(x1=1.0, x2=0.5, x3=0.0).value.round(1).item()
     2.5
     """
+    if not Path(path).exists():
+        raise FileNotFoundError(
+            f"{path}: there is no such file: `impactlab analyse` writes it for a sample, unless "
+            "words are drawn, over which no surrogate is fitted"
+        )
     found = read_netcdf(Path(path), "surrogate")
     if "outer" not in found:
         raise ValueError(f"{path}: is of an earlier impactlab: write it anew (impactlab analyse)")

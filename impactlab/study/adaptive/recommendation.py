@@ -12,7 +12,7 @@ Hunter and Hunter (2005), Statistics for Experimenters, ch. 6), and the case in 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import product
@@ -37,7 +37,7 @@ from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.engine import Engine
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.execute import execute
-from impactlab.study.schema.parameters import Distribution
+from impactlab.study.schema.parameters import Choice, Distribution
 from impactlab.study.schema.study import Auto, Study
 from impactlab.study.store import locked
 from impactlab.types import Floats
@@ -298,6 +298,9 @@ def solve_along(
 def corner_cases(study: Study) -> dict[str, list[Value]]:
     """Return one value per parameter and case: numbers at extremes and middle, and all words.
 
+    A grid's words come in all combinations. Those that a sample draws take turns: every word meets
+    every corner, beside another word in each.
+
     Nodes, points and courant are not varied. Where nothing else is, the study's own impact is the
     one case.
     """
@@ -305,12 +308,18 @@ def corner_cases(study: Study) -> dict[str, list[Value]]:
     ends = {name: _ends(given) for name, given in varied if name not in AXES}
     words = {name: values for name, values in ends.items() if isinstance(values[0], str)}
     numbers = {name: values for name, values in ends.items() if name not in words}
-    signs = corners(len(numbers))
+    signs, listed = corners(len(numbers)).tolist(), list(words.values())
+    pairs: Iterable[tuple[Iterable[Value], list[int]]] = product(product(*listed), signs)
+    if study.sampling.words:
+        pairs = [
+            ([each[(turn + at * corner) % len(each)] for at, each in enumerate(listed)], row)
+            for corner, row in enumerate(signs)
+            for turn in range(max(map(len, listed)))
+        ]
     rows = []
-    for combination in product(*words.values()):
-        for row in signs.tolist():
-            levels = [values[1 + sign] for values, sign in zip(numbers.values(), row, strict=True)]
-            rows.append((*combination, *levels))
+    for combination, row in pairs:
+        levels = [values[1 + sign] for values, sign in zip(numbers.values(), row, strict=True)]
+        rows.append((*combination, *levels))
     if not ends:
         return {"velocity": [study.impact.velocity]}
     return {name: [row[at] for row in rows] for at, name in enumerate([*words, *numbers])}
@@ -335,6 +344,7 @@ def _ends(given: Any) -> Sequence[Any]:
         low, middle, high = given.quantile(np.array([_TAIL, 0.5, 1.0 - _TAIL])).tolist()
         bounds = given.bounds()
         return bounds.get("low", low), middle, bounds.get("high", high)
+    given = given.values if isinstance(given, Choice) else given
     if isinstance(given[0], str):
         return tuple(given)
     ordered = sorted(given)

@@ -23,7 +23,6 @@ from impactlab.study.schema.files import study_of_text
 from impactlab.study.schema.study import FunctionStudy, Study, StudyBase
 from impactlab.study.solvers import run_shape
 from impactlab.study.validity import Refusal, check_alone, refused_run
-from impactlab.types import Floats
 from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
 
@@ -82,10 +81,12 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
     return found
 
 
-def _check_draws(study: Study, drawn: dict[str, Floats]) -> None:
-    """Raise StudyError where the model refuses a run that was drawn."""
+def _check_draws(study: Study, drawn: dict[str, np.ndarray[Any, Any]]) -> None:
+    """Raise StudyError where the model refuses a run that was drawn; words are checked before."""
     found = None
     for name, values in drawn.items():
+        if name in study.sampling.words:
+            continue
         for extreme in (float(values.min()), float(values.max())):
             try:
                 check_alone(PARAMETERS[name], extreme)

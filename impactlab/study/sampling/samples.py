@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, Field, StrictBool, model_validator
@@ -12,6 +13,8 @@ from impactlab.types import Floats
 
 _FEWEST_TO_GROW = 64
 """Base samples from which on bootstrap intervals are good enough to decide on growth."""
+_FEWEST_OF_WORD = 20
+"""Runs per word: bootstrap resamples then practically never hold fewer than two."""
 _SEARCH = 500_000
 """Limit on trajectories times chosen ones squared: the search then takes about a minute."""
 
@@ -165,7 +168,10 @@ class Fast(Sample):
 
 
 class Latin(Sample):
-    """Latin hypercube: the one sample of delta, PAWN and regression. samples: number of runs."""
+    """Latin hypercube: the one sample of delta, PAWN and regression. samples: number of runs.
+
+    Raises ValueError where too few runs draw a word to tell the distribution of a response.
+    """
 
     method: Literal["delta", "pawn", "regression"]
     samples: Annotated[Whole, Field(ge=64, le=MOST_RUNS)]
@@ -174,6 +180,20 @@ class Latin(Sample):
     def runs(self) -> int:
         """Number of runs: that of the samples."""
         return self.samples
+
+    @model_validator(mode="after")
+    def _check_rarest(self) -> Self:
+        for name in self.words:
+            given = self.varied[name].arguments()
+            weight, word = min(zip(given["weights"], given["values"], strict=True))
+            if self.samples * weight < _FEWEST_OF_WORD:
+                reason = (
+                    f"gives {word!r} about {self.samples * weight:.0f} of {self.samples:,} runs, "
+                    f"and {_FEWEST_OF_WORD} are needed: raise samples to "
+                    f"{math.ceil(_FEWEST_OF_WORD / weight):,}, or leave the word out"
+                )
+                raise at_key(f"parameters.{name}", reason)
+        return self
 
     def draws(self) -> Floats:
         """Draw one value in each of equal strata of every parameter, whatever the method."""

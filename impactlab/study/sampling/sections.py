@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from abc import abstractmethod
 from collections.abc import Mapping
 from functools import partial
@@ -20,10 +19,16 @@ from pydantic import (
     model_validator,
 )
 
-from impactlab.model.distributions import ARGUMENTS
+from impactlab.model.distributions import ARGUMENTS, CHOICE
 from impactlab.model.parameters import Parameter, Value
 from impactlab.study.errors import unknown
-from impactlab.study.schema.parameters import Distribution, Fixed, distribution_section
+from impactlab.study.schema.parameters import (
+    LABEL,
+    Choice,
+    Distribution,
+    Fixed,
+    distribution_section,
+)
 from impactlab.study.schema.section import Names, Section, Whole, at_key, name_at
 from impactlab.types import Floats
 
@@ -31,6 +36,14 @@ MOST_RUNS = 10_000_000
 _EDGE = 2.0**-31
 """Half a step of scipy's 30-bit Sobol sequence: keeps draws off 0 and 1, where quantiles may be
 infinite."""
+
+
+_NEEDS_ORDER = {
+    "morris": "steps from level to level",
+    "fast": "moves along the values in waves",
+    "regression": "fits a slope over the values",
+}
+"""Methods without words, and why."""
 
 
 class Sampling(Section):
@@ -62,6 +75,11 @@ class Sampling(Section):
         entries = self.parameters.items()
         return {name: each.value for name, each in entries if isinstance(each, Fixed)}
 
+    @property
+    def words(self) -> list[str]:
+        """Names of the parameters that are drawn among words."""
+        return [name for name, each in self.parameters.items() if isinstance(each, Choice)]
+
     @abstractmethod
     def bounds(self) -> dict[str, tuple[Value, ...]]:
         """Return the least and greatest value of each bounded parameter, or its words."""
@@ -90,27 +108,50 @@ class Sampling(Section):
 class Sample(Sampling):
     """Draws of two or more independent parameters.
 
-    seed: equal seeds give equal draws; 0 is a seed like any other. parameters: a distribution or
-    one fixed value each.
+    seed: equal seeds give equal draws; 0 is a seed like any other. parameters: a distribution, a
+    choice of words or one fixed value each.
+
+    Raises ValueError for a choice of words where the method needs an order of the values.
     """
 
     fewest: ClassVar[int] = 2
 
     seed: Annotated[Whole, Field(ge=0, le=2**32 - 1)] = 1
-    parameters: Mapping[str, Distribution | Fixed]
+    parameters: Mapping[str, Distribution | Choice | Fixed]
 
     @staticmethod
-    def read_entry(parameter: Parameter, data: Any, info: ValidationInfo) -> Distribution | Fixed:
-        """Read a distribution within the model's limits, or a fixed value, as words always are."""
-        fixed = isinstance(data, dict) and data.get("distribution") == "fixed"
-        if not fixed and (parameter.choices or parameter.whole):
-            what = "a choice of words" if parameter.choices else "a whole number"
+    def read_entry(
+        parameter: Parameter, data: Any, info: ValidationInfo
+    ) -> Distribution | Choice | Fixed:
+        """Read a distribution within the model's limits, a choice of words, or a fixed value."""
+        given = data.get("distribution") if isinstance(data, dict) else None
+        if parameter.choices and given not in (CHOICE, "fixed"):
+            some = ", ".join(parameter.choices[:2])
             raise ValueError(
-                f"is {what} and cannot be sampled: vary it in a study with method: grid, "
+                f"takes words: write {{distribution: choice, values: [{some}]}}, or "
+                "{distribution: fixed, value: ...}"
+            )
+        if parameter.whole and given != "fixed":
+            raise ValueError(
+                "is a whole number and cannot be sampled: vary it in a study with method: grid, "
                 "or write {distribution: fixed, value: ...}"
             )
-        name = name_at("distribution", (*ARGUMENTS, "fixed"), data)
+        if given == CHOICE and not (parameter.choices or parameter.any_word):
+            raise at_key(
+                "distribution", f"is for words, and this is a number: use {', '.join(ARGUMENTS)}"
+            )
+        name = name_at("distribution", (*ARGUMENTS, CHOICE, "fixed"), data)
         return distribution_section(name, parameter).model_validate(data, context=info.context)
+
+    @model_validator(mode="after")
+    def _check_words(self) -> Self:
+        if self.words and (needs := _NEEDS_ORDER.get(self.method)):
+            reason = (
+                f"cannot be drawn by method {self.method}, which {needs}, and words have no order: "
+                "use method sobol, delta or pawn, or fix it ({distribution: fixed, value: ...})"
+            )
+            raise at_key(f"parameters.{self.words[0]}.distribution", reason)
+        return self
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -119,8 +160,11 @@ class Sample(Sampling):
         return {key: int(value) for key, value in keys.items()}
 
     def bounds(self) -> dict[str, tuple[Value, ...]]:
-        """Return low and high of the bounded distributions, and the fixed values."""
-        ends = {name: tuple(each.bounds().values()) for name, each in self.varied.items()}
+        """Return low and high of the bounded distributions, all words, and the fixed values."""
+        ends = {
+            name: each.values if isinstance(each, Choice) else tuple(each.bounds().values())
+            for name, each in self.varied.items()
+        }
         single = {name: (value,) for name, value in self.fixed.items()}
         return {name: values for name, values in (ends | single).items() if values}
 
@@ -145,21 +189,17 @@ class Sample(Sampling):
         found: Floats = draw(problem, number, seed=generator, **options)
         return found
 
-    def columns(self) -> dict[str, Floats]:
-        """Draw one value per run of each varied parameter, in SI units."""
+    def columns(self) -> dict[str, np.ndarray[Any, Any]]:
+        """Draw one value per run of each varied parameter, in SI units, or one word."""
         unit = np.clip(self.draws(), _EDGE, 1 - _EDGE).T
         columns = zip(self.varied.items(), unit, strict=True)
         return {name: given.quantile(draws) for (name, given), draws in columns}
 
 
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
-"""Excludes formulas in tables, and labels that a legend leaves out."""
-
-
 def _check_names(data: Any) -> Any:
     if not isinstance(data, dict):
         raise ValueError("expected a mapping such as {steel: [beam_density, beam_yield_stress]}")
-    if odd := [name for name in data if not isinstance(name, str) or not _NAME.fullmatch(name)]:
+    if odd := [name for name in data if not isinstance(name, str) or not LABEL.fullmatch(name)]:
         raise ValueError(
             f"{odd[0]!r} cannot name a group: use letters, digits, _ and -, starting with a "
             "letter or a digit"

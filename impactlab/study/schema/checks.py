@@ -16,7 +16,7 @@ from impactlab.study.errors import unknown
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample, Sampling
-from impactlab.study.schema.parameters import Distribution
+from impactlab.study.schema.parameters import Choice, Distribution
 from impactlab.study.schema.study import Study, StudyFile
 from impactlab.study.validity import Base, refused_corner
 from impactlab.variables import ANALYSES
@@ -26,6 +26,7 @@ Reasons = Iterator[tuple[str, str]]
 
 _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
 """Parameters that move the places at which profiles are given."""
+NO_SURROGATE = "no surrogate is fitted over words, which have no order"
 _TAILS = np.array([1e-3, 1 - 1e-3])
 
 
@@ -35,9 +36,12 @@ def has_solid_runs(study: Study | StudyFile) -> bool:
 
 
 def values_of(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, ...]:
-    """Return all values of a parameter that a sample cannot draw."""
+    """Return all values of a parameter of which a sample draws no numbers."""
     if isinstance(sampling, Grid):
         return sampling.parameters.get(name, (base,))
+    if isinstance(given := sampling.parameters.get(name), Choice):
+        words: tuple[Value, ...] = given.values
+        return words
     return (sampling.fixed.get(name, base),)
 
 
@@ -106,6 +110,10 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
     for name in file.analyses if file.analyses != tuple(ANALYSES) else ():
         if not possible[name]:
             yield "analyses", f"{name} needs {ANALYSES[name]}: take it out, or change the sampling"
+        elif name == "surrogate" and file.sampling.words:
+            yield "analyses", f"{NO_SURROGATE}: take out surrogate"
+    if file.analysis is not None and file.analysis.failed_runs == "impute" and file.sampling.words:
+        yield "analysis.failed_runs", f"{NO_SURROGATE}: set failed_runs: fail"
 
 
 def _automatic_discretisation(file: StudyFile) -> Reasons:

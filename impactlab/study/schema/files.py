@@ -16,7 +16,7 @@ from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.checks import CHECKS, has_solid_runs, values_of
+from impactlab.study.schema.checks import CHECKS, NO_SURROGATE, has_solid_runs, values_of
 from impactlab.study.schema.section import Heading, Names, names, validated
 from impactlab.study.schema.study import Analysis, FunctionStudy, Study, StudyFile, Verification
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
@@ -201,8 +201,13 @@ def _own_function_study(source: Source, key: str) -> FunctionStudy:
     if wrong := [name for name in names if not name.isidentifier() or name in ("run", "status")]:
         reason = "cannot name an argument of a function: use letters, digits and _"
         raise StudyError(Problem(path, f"sampling.parameters.{wrong[0]}", reason))
-    parameters = {name: Parameter(name, "1", name.replace("_", " "), ()) for name in names}
+    parameters = {
+        name: Parameter(name, "1", name.replace("_", " "), (), any_word=True) for name in names
+    }
     file = validated(_OwnFunctionFile, source.data, path, parameters)
+    if file.sampling.words and file.analysis.failed_runs == "impute":
+        reason = f"{NO_SURROGATE}: set failed_runs: fail"
+        raise StudyError(Problem(path, "analysis.failed_runs", reason))
     own: dict[str, Any] = {"analyses": ("sensitivity", "surrogate")}
     return FunctionStudy(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 

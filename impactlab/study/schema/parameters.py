@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import cache, partial
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
 from pydantic import (
     AfterValidator,
     Field,
+    StrictStr,
     ValidationInfo,
     create_model,
     field_validator,
     model_validator,
 )
 
-from impactlab.model.distributions import ARGUMENTS, quantile
+from impactlab.model.distributions import ARGUMENTS, CHOICE, quantile
 from impactlab.model.parameters import Parameter
 from impactlab.study.schema.section import Number, Section, Whole, one_of, quantity, requires
 from impactlab.study.validity import check_alone
 from impactlab.types import Floats
+
+LABEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
+"""Names of a study's own; no formulas in tables, and no labels that a legend leaves out."""
 
 
 def value_type(parameter: Parameter) -> Any:
@@ -81,6 +87,50 @@ class Distribution(Section):
         return {key: getattr(self, key) for key in ("low", "high") if hasattr(self, key)}
 
 
+class Choice(Section):
+    """A draw among words, in an order that has no meaning.
+
+    weights: their probabilities, once read; by default equal.
+
+    Raises ValueError unless there are two distinct words or more, with a weight each.
+    """
+
+    distribution: Literal["choice"]
+    values: Any
+    weights: list[Annotated[Number, Field(gt=0)]] | None = None
+
+    @field_validator("values")
+    @classmethod
+    def _distinct(cls, values: list[str]) -> tuple[str, ...]:
+        if twice := [word for at, word in enumerate(values) if word in values[:at]]:
+            raise ValueError(f"names {twice[0]} more than once: name each word once")
+        if len(values) < 2:
+            raise ValueError(
+                "needs two words or more: for a single one write {distribution: fixed, value: ...}"
+            )
+        return tuple(values)
+
+    @field_validator("weights")
+    @classmethod
+    def _of_each(cls, weights: list[float], info: ValidationInfo) -> list[float]:
+        words = info.data.get("values", weights)
+        if len(weights) != len(words):
+            raise ValueError(f"holds {len(weights)} for {len(words)} words: give each word one")
+        relative = np.array(weights) / max(weights)  # of which the sum is finite
+        found: list[float] = (relative / relative.sum()).tolist()
+        return found
+
+    def quantile(self, probability: Floats) -> np.ndarray[Any, np.dtype[np.str_]]:
+        """Return the words at these probabilities in (0, 1), in their order, of the same shape."""
+        ends = np.cumsum(self.arguments()["weights"])[:-1]
+        return np.array(self.values)[np.searchsorted(ends, probability, side="right")]
+
+    def arguments(self) -> dict[str, Any]:
+        """Return name, words and probabilities as lists, for the attributes of a dataset."""
+        weights = self.weights or [1 / len(self.values)] * len(self.values)
+        return {"distribution": CHOICE, "values": list(self.values), "weights": weights}
+
+
 class Fixed(Section):
     """One value for all runs of a listed parameter, which is then not varied."""
 
@@ -88,10 +138,19 @@ class Fixed(Section):
     value: Any
 
 
+_LABELLED = requires(
+    lambda text: bool(LABEL.fullmatch(text)),
+    "is no word: use letters, digits, _ and -, starting with a letter or a digit",
+)
+
+
 @cache  # equal studies hold sections of one class
-def distribution_section(name: str, parameter: Parameter) -> type[Distribution | Fixed]:
-    """Return the section of a distribution of this name (or "fixed") of a parameter."""
+def distribution_section(name: str, parameter: Parameter) -> type[Distribution | Choice | Fixed]:
+    """Return the section of a distribution of this name ("choice" or "fixed", too)."""
     value = value_type(parameter)
+    if name == CHOICE:
+        word: Any = value if parameter.choices else Annotated[StrictStr, _LABELLED]
+        return create_model("Choice", __base__=Choice, values=(list[word], ...))
     if name == "fixed":
         return create_model("Fixed", __base__=Fixed, value=(value, ...))
     number, above_zero = quantity(parameter.units), Field(gt=0)

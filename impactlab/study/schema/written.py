@@ -110,6 +110,19 @@ class Triangular(_Distribution):
     high: Quantity
 
 
+@dataclass(frozen=True)
+class Choice(_Distribution):
+    """One of several words, such as contact laws; weights: relative, by default equal.
+
+    For Sobol, Delta and Pawn, which need no order of the values.
+
+    >>> law = il.Choice(["stronge", "mjg", "thornton"], weights=[2, 1, 1])
+    """
+
+    values: Sequence[str]
+    weights: Sequence[float] | None = None
+
+
 class _Sampling(_Section):
     _key = "method"
 

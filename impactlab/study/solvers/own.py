@@ -190,7 +190,12 @@ def _labelled_responses(task: Task, design: xr.Dataset, answers: Mapping[str, An
 
 
 def _points(task: Task, design: xr.Dataset, runs: Array) -> Array:
-    table = np.zeros(runs.size, [(name, "f8") for name in task.parameters])
+    words = {name: np.atleast_1d(design[name].attrs.get("values", [])) for name in task.parameters}
+    # as wide as the longest word of the study, so that equal cases have equal bytes in any batch
+    kinds = [
+        (name, np.asarray(each, str).dtype if each.size else "f8") for name, each in words.items()
+    ]
+    table = np.zeros(runs.size, kinds)
     for name in task.parameters:
         table[name] = flattened(design, name, runs)
     return table

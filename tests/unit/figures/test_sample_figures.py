@@ -12,6 +12,7 @@ import xarray as xr
 from drawings import panel
 from matplotlib.container import BarContainer
 
+from impactlab import plot
 from impactlab.figures import data, draw
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.data import alt
@@ -133,6 +134,44 @@ def test_the_map_is_over_the_parameter_that_tells_failures(study: Study) -> None
         c for c in data.drawn(CATALOGUE["failure_map"].plot(*study)) if c.curve == "failed"
     )
     np.testing.assert_allclose(np.sort(points.x), np.sort(runs["velocity"].values[failed]))
+
+
+@pytest.fixture
+def of_words(study: Study) -> xr.Dataset:
+    """The runs, a parameter more: two contact laws, of which one fails three times as often."""
+    runs, _ = study
+    failed = np.isnan(runs["peak_force"].values)
+    one = np.where(failed, np.cumsum(failed) % 4 != 0, np.arange(failed.size) % 4 == 0)
+    choice = {"distribution": "choice", "values": ["mjg", "kogut_etsion"], "weights": [0.5, 0.5]}
+    law = ("run", np.where(one, "mjg", "kogut_etsion"), choice)
+    runs = runs.drop_vars("contact").assign_coords(contact=law)
+    return runs.assign_attrs(varied=[*runs.attrs["varied"], "contact"])
+
+
+def test_words_are_categories_with_names(of_words: xr.Dataset) -> None:
+    figure = scatter("peak_force").plot(of_words, xr.Dataset())
+    ax = figure.axes[4]
+    assert [text.get_text() for text in ax.get_xticklabels()] == ["mjg", "kogut etsion"]
+    assert ax.get_xlabel() == "Contact law"
+    means = next(each for each in data.drawn(figure) if each.curve == "mean by word")
+    assert means.category == ["mjg", "kogut etsion"]
+    force = 1e-3 * of_words["peak_force"].groupby("contact").mean()
+    np.testing.assert_allclose(means.y, force.sel(contact=["mjg", "kogut_etsion"]))
+    assert "mean by word: largest for" in alt(figure)
+    ax = plot.response(of_words, "peak_force", x="contact")
+    assert ax.get_xlabel() == "Contact law"
+
+
+def test_failures_are_shared_out_among_words(of_words: xr.Dataset) -> None:
+    *_, law = data.drawn(CATALOGUE["failure_shares"].plot(of_words, xr.Dataset()))
+    failed = np.isnan(of_words["peak_force"])
+    share = 100 * failed.groupby("contact").mean().sel(contact=["mjg", "kogut_etsion"])
+    np.testing.assert_allclose(law.y, share)
+    caption = CATALOGUE["failure_map"].caption(of_words, xr.Dataset())
+    one = of_words["contact"].values == "mjg"
+    apart = one[failed.values].mean() - one[~failed.values].mean()
+    assert f"contact law {apart:.2f}" in caption
+    CATALOGUE["failure_map"].plot(of_words, xr.Dataset())
 
 
 def test_without_failures_there_is_no_map() -> None:

@@ -63,6 +63,27 @@ def test_sections_stand_in_the_order_of_sensobol(report: Any, study: Study) -> N
     ]
 
 
+def test_words_have_means_and_no_surrogate(report: Any, study: Study) -> None:
+    runs, analysis = study
+    choice = {"distribution": "choice", "values": ["mjg", "brake"], "weights": [0.75, 0.25]}
+    law = ("run", np.where(np.arange(64) % 4, "mjg", "brake"), choice)
+    runs = runs.drop_vars("contact").assign_coords(contact=law)
+    runs.attrs["varied"] = [*runs.attrs["varied"], "contact"]
+    kept = ["first_order", "total_order", "sensitivity_verdict"]
+    page = report(runs, analysis[kept])
+    ((head), *rows) = _table(page, "Mean of each response by contact law")
+    assert head == ["Response", "mjg", "brake"]
+    force = 1e-3 * runs["peak_force"].groupby("contact").mean()
+    assert rows[0] == [
+        "Peak force (kN)",
+        f"{force.sel(contact='mjg'):.1f}",
+        f"{force.sel(contact='brake'):.1f}",
+    ]
+    varied = _table(page, "Varied parameters")
+    assert varied[-1][:2] == ["Contact law", "choice: mjg 75 %, brake 25 %"]
+    assert "no polynomial follows words (contact law)" in page.text
+
+
 def test_figures_are_numbered_as_they_stand(study: Study, tmp_path: Path, page: Any) -> None:
     runs, analysis = study
     kept = ["first_order", "total_order", "sensitivity_verdict", "numerical_uncertainty"]

@@ -73,8 +73,8 @@ def test_delta_is_that_of_salib_at_its_width(normal: Any) -> None:
     rows = np.random.default_rng(1).integers(500, size=499)
     inputs, outputs = normal[rows], normal[rows] @ WEIGHTS
     edges, places = np.linspace(0, 499, 8), np.linspace(-4, 4, 100)
-    starts = edges[:-1].astype(int)
-    ours = deltas(inputs, outputs, starts, places, 1.0), first_orders(inputs, outputs, starts)
+    words = np.zeros(3, bool)
+    ours = deltas(inputs, outputs, 7, places, 1.0, words), first_orders(inputs, outputs, 7, words)
     for column, delta, first in zip(inputs.T, *ours, strict=True):
         theirs = salib_delta.calc_delta(outputs, places, column, edges)
         np.testing.assert_allclose(delta, theirs, rtol=1e-10)
