@@ -169,7 +169,7 @@ def axis_label(column: xr.DataArray) -> str:
 
 
 def _places(column: xr.DataArray) -> Floats:
-    """Return the values of a parameter in its display unit, (runs,), or the places of its words."""
+    """Return a parameter in its display unit, (runs,), or the places of its words."""
     if not labels.words(column):
         return display(column)(column.values)
     listed = np.atleast_1d(column.attrs["values"])

@@ -89,8 +89,8 @@ def deltas(
     """Return half the mean distance of the densities in classes of each parameter from that of all.
 
     inputs: (runs, parameters); outputs: (runs,); classes: their number, of equal size; width: of
-    the kernels, relative to Silverman's; words: (parameters,), where each value is a class of its
-    own. NaN where a class does not vary.
+    the kernels, relative to Silverman's; words: (parameters,), where the values
+    are the classes. NaN where a class does not vary.
     """
     whole = _density(outputs, np.zeros(1, int), places, width)
     equal = _starts(len(outputs), classes)

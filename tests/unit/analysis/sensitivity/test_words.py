@@ -122,7 +122,7 @@ def test_the_order_of_the_words_changes_nothing(indices: Any) -> None:
 
 @pytest.mark.parametrize("method", ["morris", "fast", "regression"])
 def test_methods_that_need_an_order_refuse_stored_words(drawn: Any, method: str) -> None:
-    """As no study file gives them; places of words would make plausible indices."""
+    """Places of words would make plausible indices."""
     runs = drawn(method, np.zeros((40, 2)), np.arange(40.0))
     choice = {"distribution": "choice", "values": ["a", "b"], "weights": [0.5, 0.5]}
     runs = runs.assign_coords(x1=("run", np.array(["a", "b"] * 20), choice))
