@@ -47,29 +47,37 @@ from impactlab.fem3d.solver.hexahedron import (
     volume,
 )
 from impactlab.fem3d.solver.jit import Array, compiled, inlined
-from impactlab.fem3d.solver.material import POINT_ROWS, Metal, advance
+from impactlab.fem3d.solver.material import ALONG, PAST_ROWS, PEEQ, STRESS_ROWS, Metal, advance
 
 Four = tuple[Vector, Vector, Vector, Vector]
 
-MEAN, WORK, DISSIPATED, HOURGLASS_WORK = range(4)
-"""Rows of `state` after those of the points: the mean stress (Pa), and energies (J)."""
-FULL_ROWS = 8 * POINT_ROWS + 4
-ONE_POINT_ROWS = POINT_ROWS + 4 + 12
-"""Rows of `state`; the last 12: hourglass forces in N in the element's frame, three of each a."""
+FULL_MEAN, MEAN = 8 * STRESS_ROWS, STRESS_ROWS
+"""Row of the mean stress (Pa) in `state`, after the points' deviators."""
+_HOURGLASS = MEAN + 1
+"""First row of the hourglass forces in N in the element's frame, three of each a."""
+FULL_ROWS, ROWS = FULL_MEAN + 1, _HOURGLASS + 12
+"""Rows of `state`."""
+WORK, DISSIPATED, HOURGLASS_WORK = range(3)
+"""Rows of `works`: energies in J."""
 
 _C, _W, _T = F + 24, F + 45, F + 66
 """First rows in `s` of the modes of position and velocity, and of the modes' forces, 21 each."""
+_DONE, _YIELDED = F + 87, F + 90
+"""First rows in `s` of a step's works, and of the increments of PEEQ and strain along the beam."""
 _ROOT = 1.0 / math.sqrt(3.0)
 
 
 @compiled
 def add_forces(
-    blocks: tuple[int, int],
+    pieces: tuple[int, int],
+    count: int,
     full: bool,
     metal: Metal,
     nodes: Array,
     rows: Array,
     state: Array,
+    past: Array,
+    works: Array,
     x: Array,
     v: Array,
     dt: float,
@@ -78,29 +86,78 @@ def add_forces(
 ) -> None:
     """Take a step's motion into `state`, and add the nodal forces that answer it.
 
-    blocks: the first and the one past the last. full: with eight integration points. nodes, and the
-    rows of forces that are theirs: (blocks, 8 W). x: (n, 3) in m, at the step's end; v: (n, 3) in
-    m/s, at its middle; dt in s. state: (blocks, rows W), rows FULL_ROWS or ONE_POINT_ROWS. forces:
-    (., 3) in N. s: scratch, (SCRATCH W,).
+    pieces: the first and the one past the last, see blocks_of. count: of all elements, which the
+    last block may repeat. full: with eight integration points. nodes, and the rows of forces that
+    are theirs: (blocks, 8 W). x: (n, 3) in m, at the step's end; v: (n, 3) in m/s, at its middle;
+    dt in s. state: (blocks, rows W), rows FULL_ROWS or ROWS. past: (blocks, points PAST_ROWS W),
+    apart, since without hardening only yielding needs it. works: (pieces, 3 W), sums in J by lane.
+    forces: (., 3) in N. s: scratch, (SCRATCH W,).
     """
-    for block in range(blocks[0], blocks[1]):
-        gather(s, nodes[block], x, v)
-        held = state[block]
-        if full:
+    hardens = metal[5] > 0.0 or metal[6] > 0.0
+    for piece in range(pieces[0], pieces[1]):
+        first, end = blocks_of(len(state), piece, len(works))
+        for block in range(first, end):
+            gather(s, nodes[block], x, v)
+            if full:
+                _answer_full(s, state[block], past[block], dt, metal, hardens)
+            else:
+                _answer(s, state[block], past[block], dt, metal, hardens)
+            for row in range(3):
+                for lane in range(min(W, count - block * W)):
+                    works[piece, row * W + lane] += s[(_DONE + row) * W + lane]
+            scatter(s, rows[block], forces)
+
+
+@inlined
+def blocks_of(blocks: int, piece: int, pieces: int) -> tuple[int, int]:
+    """Return the first and the one past the last of the blocks in a piece of a group."""
+    return blocks * piece // pieces, blocks * (piece + 1) // pieces
+
+
+@inlined
+def _answer(s: Array, state: Array, past: Array, dt: float, metal: Metal, hardens: bool) -> None:
+    """Update a block of elements with one integration point, and store its forces in `s`."""
+    yielding = 0
+    if hardens:  # for the compiler, a literal: half of the memory is left alone without
+        for lane in range(W):
+            yielding += _element(s, state, past, lane, dt, metal, True)
+    else:
+        for lane in range(W):
+            yielding += _element(s, state, past, lane, dt, metal, False)
+    _yield(s, past, 0, yielding)
+
+
+@inlined
+def _answer_full(
+    s: Array, state: Array, past: Array, dt: float, metal: Metal, hardens: bool
+) -> None:
+    """Update a block of fully integrated elements, and store its forces in `s`."""
+    for lane in range(W):
+        _begin(s, state, lane, dt, metal)
+    for corner in range(8):
+        xi = _ROOT * (2 * (corner & 1) - 1)
+        eta = _ROOT * ((corner & 2) - 1)
+        zeta = _ROOT * ((corner >> 1 & 2) - 1)
+        at, yielding = (xi, eta, zeta), 0
+        if hardens:
             for lane in range(W):
-                _begin(s, held, lane, dt, metal)
-            for corner in range(8):
-                xi = _ROOT * (2 * (corner & 1) - 1)
-                eta = _ROOT * ((corner & 2) - 1)
-                zeta = _ROOT * ((corner >> 1 & 2) - 1)
-                for lane in range(W):
-                    _point(s, held, corner * POINT_ROWS, lane, (xi, eta, zeta), dt, metal)
-            for lane in range(W):
-                nodal(s, lane, _load(s, _T, lane))
+                yielding += _point(s, state, past, corner, lane, at, dt, metal, True)
         else:
             for lane in range(W):
-                _element(s, held, lane, dt, metal)
-        scatter(s, rows[block], forces)
+                yielding += _point(s, state, past, corner, lane, at, dt, metal, False)
+        _yield(s, past, corner, yielding)
+    for lane in range(W):
+        nodal(s, lane, _load(s, _T, lane))
+
+
+@inlined
+def _yield(s: Array, past: Array, point: int, yielding: int) -> None:
+    """Add the increments to a point's PEEQ and strain along the beam, if a lane is yielding."""
+    row = PAST_ROWS * point
+    if yielding > 0:
+        for lane in range(W):
+            past[(row + PEEQ) * W + lane] += s[_YIELDED * W + lane]
+            past[(row + ALONG) * W + lane] += s[(_YIELDED + 1) * W + lane]
 
 
 @inlined
@@ -109,27 +166,28 @@ def _dilate(
 ) -> tuple[float, float, float]:
     """Return the dilation in a step, and the mean stress before and after it, which is stored."""
     dilation = dt * (L[0][0] + L[1][1] + L[2][2])
-    before = state[(row + MEAN) * W + lane]
+    before = state[row * W + lane]
     mean = before + metal[3] * dilation
-    state[(row + MEAN) * W + lane] = mean
+    state[row * W + lane] = mean
     return dilation, before, mean
 
 
 @inlined
-def _element(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None:
-    """Update an element's stresses, and store its nodal forces in `s`."""
+def _element(
+    s: Array, state: Array, past: Array, lane: int, dt: float, metal: Metal, hardens: bool
+) -> int:
+    """Update an element's stresses, and store its nodal forces in `s`; return whether it yields."""
     c, w = shape(s, X, lane), shape(s, V, lane)
     B = gradient(c)
     size = volume(c, B)
     L = mean_gradient(w, B, size)
-    row = POINT_ROWS
     Q, work = hourglass(state, lane, c, w, L, size, dt, metal)
-    state[(row + HOURGLASS_WORK) * W + lane] += work
+    s[(_DONE + HOURGLASS_WORK) * W + lane] = work
     L = midway(L, dt)
-    S, work, dissipated = advance(state, 0, lane, L, dt, metal)
-    dilation, before, mean = _dilate(state, row, lane, L, dt, metal)
-    state[(row + WORK) * W + lane] += size * (work + 0.5 * (before + mean) * dilation)
-    state[(row + DISSIPATED) * W + lane] += size * dissipated
+    S, work, dissipated, dp, along = advance(state, past, 0, lane, L, dt, metal, hardens)
+    dilation, before, mean = _dilate(state, MEAN, lane, L, dt, metal)
+    s[(_DONE + WORK) * W + lane] = size * (work + 0.5 * (before + mean) * dilation)
+    s[(_DONE + DISSIPATED) * W + lane] = size * dissipated
     share, g = 1.0 / size, (c[3], c[4], c[5], c[6])
     T = (
         _row((S[0] + mean, S[5], S[4]), g, Q, 0, share),
@@ -146,6 +204,14 @@ def _element(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None
         times(0.125, Q[3]),
     )
     nodal(s, lane, forces)
+    return _raise(s, lane, dp, along)
+
+
+@inlined
+def _raise(s: Array, lane: int, dp: float, along: float) -> int:
+    """Store increments of PEEQ and strain along the beam; return whether there are any."""
+    s[_YIELDED * W + lane], s[(_YIELDED + 1) * W + lane] = dp, along
+    return int(dp != 0.0)
 
 
 @inlined
@@ -163,7 +229,7 @@ def hourglass(
 
     L: dv/dx at the step's end. The forces in `state` are updated.
     """
-    row = POINT_ROWS + 4
+    row = _HOURGLASS
     # A frame of unit vectors: along c_1, in the plane of c_1 and c_2, across it.
     along, across = times(1.0 / math.sqrt(dot(c[0], c[0])), c[0]), cross(c[0], c[1])
     across = times(1.0 / math.sqrt(dot(across, across)), across)
@@ -231,9 +297,10 @@ def _begin(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None:
     B = gradient(c)
     size = volume(c, B)
     L = midway(mean_gradient(w, B, size), dt)
-    row = 8 * POINT_ROWS
-    dilation, before, mean = _dilate(state, row, lane, L, dt, metal)
-    state[(row + WORK) * W + lane] += size * 0.5 * (before + mean) * dilation
+    dilation, before, mean = _dilate(state, FULL_MEAN, lane, L, dt, metal)
+    s[(_DONE + WORK) * W + lane] = size * 0.5 * (before + mean) * dilation
+    s[(_DONE + DISSIPATED) * W + lane] = 0.0
+    s[(_DONE + HOURGLASS_WORK) * W + lane] = 0.0
     for mode in range(6):
         store(s, _T + 3 * mode, lane, times(0.125 * mean, B[mode]))
     store(s, _T + 18, lane, (0.0, 0.0, 0.0))
@@ -241,9 +308,20 @@ def _begin(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None:
 
 @inlined
 def _point(
-    s: Array, state: Array, row: int, lane: int, at: Vector, dt: float, metal: Metal
-) -> None:
-    """Update an integration point's deviator and its work; add its share to the modes' forces."""
+    s: Array,
+    state: Array,
+    past: Array,
+    point: int,
+    lane: int,
+    at: Vector,
+    dt: float,
+    metal: Metal,
+    hardens: bool,
+) -> int:
+    """Update an integration point's deviator and its work; add its share to the modes' forces.
+
+    Returns whether it yields.
+    """
     xi, eta, zeta = at
     r, v = _slopes(_load(s, _C, lane), at), _slopes(_load(s, _W, lane), at)
     C = (cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1]))  # cofactors of dx/dxi
@@ -254,9 +332,10 @@ def _point(
         times(share, combine(C, (v[0][1], v[1][1], v[2][1]))),
         times(share, combine(C, (v[0][2], v[1][2], v[2][2]))),
     )
-    S, work, dissipated = advance(state, row, lane, midway(gradient, dt), dt, metal)
-    state[(8 * POINT_ROWS + WORK) * W + lane] += size * work
-    state[(8 * POINT_ROWS + DISSIPATED) * W + lane] += size * dissipated
+    L = midway(gradient, dt)
+    S, work, dissipated, dp, along = advance(state, past, point, lane, L, dt, metal, hardens)
+    s[(_DONE + WORK) * W + lane] += size * work
+    s[(_DONE + DISSIPATED) * W + lane] += size * dissipated
     T = ((S[0], S[5], S[4]), (S[5], S[1], S[3]), (S[4], S[3], S[2]))
     # Forces that work on the derivatives by xi, eta and zeta, and those of the modes.
     t1, t2 = times(0.125, apply(T, C[0])), times(0.125, apply(T, C[1]))
@@ -272,6 +351,7 @@ def _point(
         plus(plus(plus(f7, eta * zeta, t1), zeta * xi, t2), xi * eta, t3),
     )
     _store(s, _T, lane, forces)
+    return _raise(s, lane, dp, along)
 
 
 @inlined

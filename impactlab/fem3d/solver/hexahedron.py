@@ -30,7 +30,7 @@ X, V = 0, 24
 """First rows of the nodes' positions and velocities in `s`: node 0's x, y, z, node 1's ..."""
 F = 48
 """First row of the nodes' forces in `s`."""
-SCRATCH = 48 + 24 + 63
+SCRATCH = 48 + 24 + 63 + 5
 """Rows of `s`."""
 
 

@@ -145,15 +145,13 @@ class March:
             self._take()
         system, mesh, history = self.system, self.system.mesh, self.history
         before = system.v.copy()
-        rows = (WORK, DISSIPATED, HOURGLASS_WORK)
-        works = [[group.of_elements(row).sum() for row in rows] for group in system.groups]
-        worked = 4.0 * np.sum(works, axis=0)
+        worked = 4.0 * np.sum([group.energies() for group in system.groups], axis=0)
         self._take()
         # Energies at the start of this step, kinetic by the velocities around it.
         moment = history.moments[-1]
         kinetic = 2.0 * float(np.sum(system.mass[:, None] * before * system.v))
         gravity = self.impact.sphere.total_mass * self.impact.gravity * moment.sphere
-        work, plastic, hourglass = worked.tolist()
+        work, plastic, hourglass = worked[[WORK, DISSIPATED, HOURGLASS_WORK]].tolist()
         contact = 4.0 * self._pushed
         history.energies.append(
             Energies(moment.time, kinetic, work, plastic, hourglass, contact, gravity)

@@ -79,19 +79,33 @@ def _rate(s: Six, r: Vector) -> Six:
     )
 
 
-STRESS, BACK, PEEQ, ALONG = 0, 6, 12, 13
-"""Rows from a point's first: deviator, back stress, PEEQ, plastic strain along the beam."""
-POINT_ROWS = 14
-"""Rows of a point."""
+STRESS_ROWS = 6
+"""Rows of a point in `state`: the deviator."""
+BACK, PEEQ, ALONG = 0, 6, 7
+"""Rows of a point in `past`: back stress, PEEQ, plastic strain along the beam."""
+PAST_ROWS = 8
+"""Rows of a point in `past`."""
+_NONE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @inlined
 def advance(
-    state: Array, row: int, lane: int, L: Tensor, dt: float, metal: Metal
-) -> tuple[Six, float, float]:
-    """Return the deviator (Pa) at the step's end, the work on it and the dissipated part, in J/m3.
+    state: Array,
+    past: Array,
+    point: int,
+    lane: int,
+    L: Tensor,
+    dt: float,
+    metal: Metal,
+    hardens: bool,
+) -> tuple[Six, float, float, float, float]:
+    """Return the deviator (Pa) at a point at the step's end, works in J/m3, and what has yielded.
 
-    L: dv/dx at the middle of the step, in 1/s. row: the point's first in `state`, which is updated.
+    The works: of the deviator, and the dissipated part of it. What has yielded: the increments of
+    PEEQ and of the plastic strain along the beam, which the caller adds to `past`.
+
+    L: dv/dx at the middle of the step, in 1/s. Stresses are updated. hardens: False leaves `past`
+    alone.
     """
     half, third = 0.5 * dt, (L[0][0] + L[1][1] + L[2][2]) / 3.0
     rate = (  # the strain rate's deviator
@@ -104,17 +118,18 @@ def advance(
     )
     # Angles in rad by which the material turns about x, y and z in the step.
     turn = (half * (L[2][1] - L[1][2]), half * (L[0][2] - L[2][0]), half * (L[1][0] - L[0][1]))
-    before = turned(_load(state, row + STRESS, lane), turn)
-    back = turned(_load(state, row + BACK, lane), turn)
-    p = state[(row + PEEQ) * W + lane]
+    row, gone = STRESS_ROWS * point, PAST_ROWS * point
+    before = turned(_load(state, row, lane), turn)
     trial = less(before, -2.0 * metal[2] * dt, rate)
+    back, p = _NONE, 0.0
+    if hardens:
+        back, p = turned(_load(past, gone + BACK, lane), turn), past[(gone + PEEQ) * W + lane]
     S, back, dp, along = radial_return(trial, back, p, metal)
-    _store(state, row + STRESS, lane, S)
-    _store(state, row + BACK, lane, back)
-    state[(row + PEEQ) * W + lane] = p + dp
-    state[(row + ALONG) * W + lane] += along
+    if hardens:
+        _store(past, gone + BACK, lane, back)
+    _store(state, row, lane, S)
     work = 0.5 * dt * double_dot(less(before, -1.0, S), rate)
-    return S, work, dp * (metal[4] + metal[5] * (p + 0.5 * dp))
+    return S, work, dp * (metal[4] + metal[5] * (p + 0.5 * dp)), dp, along
 
 
 @inlined

@@ -99,12 +99,12 @@ class Mesh:
         """Return the faces that may touch: four rows of pairs each, (f, 4)."""
         return _faces(len(self.pairs))
 
-    @property
+    @cached_property
     def pole(self) -> int:
         """Return the sphere's node at the origin."""
         return int(self.pairs[np.argmin(self.gaps), 0])
 
-    @property
+    @cached_property
     def top_node(self) -> int:
         """Return the beam's node at the origin."""
         return int(self.pairs[np.argmin(self.gaps), 1])

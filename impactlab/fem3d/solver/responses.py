@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.fem3d.solver.march import History
-from impactlab.fem3d.solver.material import ALONG, PEEQ, STRESS
+from impactlab.fem3d.solver.material import ALONG, PEEQ
 from impactlab.fem3d.solver.mesh import BEAM, Mesh
 from impactlab.fem3d.solver.system import Group
 from impactlab.model.impact import Impact
@@ -124,8 +124,7 @@ def fields(groups: list[Group], count: int) -> dict[str, Floats]:
     """
     result: dict[str, Floats] = {}
     for group in groups:
-        strain = group.of_points(PEEQ)
-        s = np.stack([group.of_points(STRESS + row) for row in range(6)])
+        strain, s = group.of_points(PEEQ), group.deviators.swapaxes(0, 1)
         squares = np.sum(s[:3] ** 2, axis=0) + 2.0 * np.sum(s[3:] ** 2, axis=0)
         for name, values in {
             "equivalent_plastic_strain": strain.mean(axis=0),

@@ -16,20 +16,30 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from impactlab.fem3d.solver.contact import RULE, close_gaps
-from impactlab.fem3d.solver.elements import FULL_ROWS, ONE_POINT_ROWS, add_forces
+from impactlab.fem3d.solver.elements import (
+    FULL_MEAN,
+    FULL_ROWS,
+    MEAN,
+    ROWS,
+    add_forces,
+    blocks_of,
+)
 from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
 from impactlab.fem3d.solver.jit import Array, compiled, inlined
-from impactlab.fem3d.solver.material import POINT_ROWS, Metal
+from impactlab.fem3d.solver.material import PAST_ROWS, STRESS_ROWS, Metal
 from impactlab.fem3d.solver.mesh import BEAM, NEIGHBOURS, SPHERE, Mesh, nodal_masses
 from impactlab.model.impact import Impact, Material
 from impactlab.types import Floats
+
+MOST_THREADS = 24
+"""Pieces of a group: it is shared equally by 2, 3, 4, 6, 8 or 12 threads, too."""
 
 
 class Group:
     """Elements of one body with the same number of integration points.
 
     elements: (g,) numbers in the mesh. nodes: (blocks, 8 W), the last element repeated to fill.
-    state: (blocks, rows W), the rows of the points first.
+    state, past, works: see elements.add_forces, works of each piece: (MOST_THREADS, 3 W).
     """
 
     def __init__(self, elements: Array, numbers: Array, full: bool, metal: Metal) -> None:
@@ -38,20 +48,35 @@ class Group:
         filled = np.append(numbers, np.repeat(numbers[-1], blocks * W - numbers.size))
         nodes = elements[filled].reshape(blocks, W, 8).transpose(0, 2, 1).reshape(blocks, 8 * W)
         self.elements, self.points, self.metal = numbers, 8 if full else 1, metal
-        self.nodes = np.ascontiguousarray(nodes)
-        self.state = np.zeros((blocks, (FULL_ROWS if full else ONE_POINT_ROWS) * W))
+        self.nodes = np.ascontiguousarray(
+            nodes, dtype=np.uint32
+        )  # signed ones may count from the end
+        self.state = np.zeros((blocks, (FULL_ROWS if full else ROWS) * W))
+        self.past = np.zeros((blocks, self.points * PAST_ROWS * W))
+        self.works = np.zeros((MOST_THREADS, 3 * W))
 
-    def of_elements(self, row: int) -> Array:
-        """Return a row of `state` after those of the points, by element: (g,)."""
-        return self._row(self.points * POINT_ROWS + row)
+    @property
+    def mean_stress(self) -> Array:
+        """Return the mean stress of each element in Pa, (g,)."""
+        return self._rows(self.state)[FULL_MEAN if self.points == 8 else MEAN]
+
+    @property
+    def deviators(self) -> Array:
+        """Return the deviator at every integration point in Pa, (points, 6, g)."""
+        rows = self._rows(self.state)[: self.points * STRESS_ROWS]
+        return rows.reshape(self.points, STRESS_ROWS, -1)
 
     def of_points(self, row: int) -> Array:
-        """Return one row of every integration point, (points, g)."""
-        return np.stack([self._row(point * POINT_ROWS + row) for point in range(self.points)])
+        """Return a row of the past of every integration point, (points, g)."""
+        return self._rows(self.past)[row::PAST_ROWS]
 
-    def _row(self, row: int) -> Array:
-        values = self.state.reshape(len(self.nodes), -1, W)[:, row]
-        return values.reshape(-1)[: self.elements.size]
+    def energies(self) -> Array:
+        """Return the sums over the elements of the rows of `works` in J, (3,)."""
+        return np.asarray(self.works.reshape(MOST_THREADS, 3, W).sum(axis=(0, 2)))
+
+    def _rows(self, held: Array) -> Array:
+        rows = held.reshape(len(held), -1, W).transpose(1, 0, 2)
+        return rows.reshape(len(rows), -1)[:, : self.elements.size]
 
 
 def refuse_rate(material: Material) -> None:
@@ -81,16 +106,6 @@ def metal(material: Material) -> Metal:
     )
 
 
-MOST_THREADS = 24
-"""Pieces of a group: it is shared equally by 2, 3, 4, 6, 8 or 12 threads, too."""
-
-
-def blocks_of(group: Group, first: int, end: int) -> tuple[int, int]:
-    """Return the blocks of a group's pieces from `first` to before `end`."""
-    blocks = len(group.nodes)
-    return blocks * first // MOST_THREADS, blocks * end // MOST_THREADS
-
-
 class ForceAssembly:
     """Rows of forces, (count, 3), for the elements of all groups.
 
@@ -104,7 +119,7 @@ class ForceAssembly:
         for group in groups:
             rows = np.empty_like(group.nodes)
             for piece in range(MOST_THREADS):
-                blocks = slice(*blocks_of(group, piece, piece + 1))
+                blocks = slice(*blocks_of(len(group.nodes), piece, MOST_THREADS))
                 own, place = np.unique(group.nodes[blocks], return_inverse=True)
                 rows[blocks] = self.count + place.reshape(rows[blocks].shape)
                 owners.append(own)
@@ -117,7 +132,7 @@ class ForceAssembly:
         every = np.concatenate(owners)
         starts = np.concatenate([[0], np.cumsum(np.bincount(every, minlength=nodes)[:nodes])])
         slots = np.argsort(every, kind="stable")[: starts[-1]]
-        self.starts, self.slots = starts.astype(np.int32), slots.astype(np.int32)
+        self.starts, self.slots = starts.astype(np.int32), slots.astype(np.uint32)
 
 
 class ThreadPool(ThreadPoolExecutor):
@@ -208,10 +223,12 @@ class System:
         """Strain the elements by a motion of dt (s) with v, which has led to x."""
 
         def work(part: int, first: int, end: int) -> None:
+            scratch = self._scratch[part]
             for group, rows in zip(self.groups, self.assembly.of_groups, strict=True):
-                blocks = blocks_of(group, first, end)
-                own = (group.points == 8, group.metal, group.nodes, rows, group.state)
-                add_forces(blocks, *own, self.x, self.v, dt, self.forces, self._scratch[part])
+                own = (group.elements.size, group.points == 8, group.metal, group.nodes, rows)
+                held = (group.state, group.past, group.works)
+                moved = (self.x, self.v, dt)
+                add_forces((first, end), *own, *held, *moved, self.forces, scratch)
 
         self.pool.run(work, MOST_THREADS)
 
@@ -243,7 +260,7 @@ def critical_step(system: System) -> float:
         answer = root * np.add.reduceat(system.forces[rows.slots], rows.starts[:-1], axis=0)
         system.forces[:] = 0.0
         for group in system.groups:
-            group.state[:] = 0.0
+            group.state[:], group.works[:] = 0.0, 0.0
         return np.asarray(answer.ravel() / _TINY)
 
     operator = LinearOperator((root.size, root.size), matvec=product, dtype=np.float64)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.elements import MEAN, add_forces
+from impactlab.fem3d.solver.elements import add_forces
 from impactlab.fem3d.solver.hexahedron import SCRATCH, W
-from impactlab.fem3d.solver.material import STRESS
 from impactlab.fem3d.solver.mesh import brick
-from impactlab.fem3d.solver.system import ForceAssembly, Group, metal
+from impactlab.fem3d.solver.system import MOST_THREADS, ForceAssembly, Group, metal
 from impactlab.model.impact import Material
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
@@ -32,9 +31,19 @@ class Body:
         self._forces[:] = 0.0
         self.x = np.ascontiguousarray(x)
         rows = self._rows.of_groups[0]
-        own = (group.points == 8, group.metal, group.nodes, rows, group.state)
-        blocks = (0, len(group.nodes))
-        add_forces(blocks, *own, self.x, v, dt, self._forces, self._scratch)
+        own = (group.points == 8, group.metal, group.nodes, rows)
+        held = (group.state, group.past, group.works)
+        add_forces(
+            (0, MOST_THREADS),
+            len(self.elements),
+            *own,
+            *held,
+            self.x,
+            v,
+            dt,
+            self._forces,
+            self._scratch,
+        )
         return self.forces()
 
     def forces(self):
@@ -42,12 +51,12 @@ class Body:
 
     def deviators(self):
         """(6, points, elements)"""
-        return np.stack([self.group.of_points(STRESS + row) for row in range(6)])
+        return self.group.deviators.swapaxes(0, 1)
 
     def stress(self):
         """(6, points, elements): xx, yy, zz, yz, zx, xy."""
-        stress = self.deviators()
-        stress[:3] += self.group.of_elements(MEAN)
+        stress = self.deviators().copy()
+        stress[:3] += self.group.mean_stress
         return stress
 
 

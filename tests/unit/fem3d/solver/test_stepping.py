@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.contact import SHAPE
+from impactlab.fem3d.solver.elements import blocks_of
 from impactlab.fem3d.solver.hexahedron import W
 from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh, brick
@@ -15,7 +16,6 @@ from impactlab.fem3d.solver.system import (
     Group,
     System,
     ThreadPool,
-    blocks_of,
 )
 from impactlab.model.impact import Beam, Impact, Material, Sphere
 
@@ -52,7 +52,7 @@ def test_pieces_share_no_row():
     nodes, groups = two_groups()
     rows = ForceAssembly(groups, nodes)
     pieces = [
-        set(own[slice(*blocks_of(group, piece, piece + 1))].ravel().tolist())
+        set(own[slice(*blocks_of(len(own), piece, MOST_THREADS))].ravel().tolist())
         for group, own in zip(groups, rows.of_groups, strict=True)
         for piece in range(MOST_THREADS)
     ]
@@ -61,11 +61,10 @@ def test_pieces_share_no_row():
 
 def test_blocks_are_all_shared_out_in_their_order():
     _, (_, group) = two_groups()
-    ends = [blocks_of(group, piece, piece + 1) for piece in range(MOST_THREADS)]
+    ends = [blocks_of(len(group.nodes), piece, MOST_THREADS) for piece in range(MOST_THREADS)]
     assert ends[0][0] == 0
     assert ends[-1][1] == len(group.nodes)
     assert [end for _, end in ends[:-1]] == [first for first, _ in ends[1:]]
-    assert blocks_of(group, 0, MOST_THREADS) == (0, len(group.nodes))
 
 
 STEEL = Material(density=8000.0, youngs_modulus=200e9, poissons_ratio=0.0, yield_stress=1e11)
