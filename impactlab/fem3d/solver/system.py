@@ -32,7 +32,7 @@ from impactlab.model.impact import Impact, Material
 from impactlab.types import Floats
 
 MOST_THREADS = 24
-"""Pieces of a group: it is shared equally by 2, 3, 4, 6, 8 or 12 threads, too."""
+"""Pieces of a group, each the work of one thread."""
 
 
 class Group:
@@ -144,10 +144,26 @@ class ThreadPool(ThreadPoolExecutor):
         self.threads = threads
 
     def run(self, work: Callable[[int, int, int], Any], count: int) -> None:
-        """Call work(part, first, end) for each thread's part of `count` numbers; wait for all."""
-        own, *others = pairwise(count * part // self.threads for part in range(self.threads + 1))
-        started = [self.submit(work, part, *share) for part, share in enumerate(others, 1)]
-        work(0, *own)
+        """Call work(thread, first, end) for parts of `count` numbers; wait for all.
+
+        Each thread takes the next part when it is done with its last one. The parts get smaller, so
+        that none waits long for another, be it slower.
+        """
+        if self.threads == 1:
+            work(0, 0, count)
+            return
+        ends = [0]
+        while (rest := count - ends[-1]) > 0:
+            ends.append(ends[-1] + max(rest // (2 * self.threads), count // MOST_THREADS, 1))
+        ends[-1] = count
+        parts = iter(list(pairwise(ends)))  # a list's gives each item to one thread
+
+        def take(thread: int) -> None:
+            for part in parts:
+                work(thread, *part)
+
+        started = [self.submit(take, thread) for thread in range(1, self.threads)]
+        take(0)
         for other in started:
             other.result()
 
@@ -222,8 +238,8 @@ class System:
     def strain(self, dt: float) -> None:
         """Strain the elements by a motion of dt (s) with v, which has led to x."""
 
-        def work(part: int, first: int, end: int) -> None:
-            scratch = self._scratch[part]
+        def work(thread: int, first: int, end: int) -> None:
+            scratch = self._scratch[thread]
             for group, rows in zip(self.groups, self.assembly.of_groups, strict=True):
                 own = (group.elements.size, group.points == 8, group.metal, group.nodes, rows)
                 held = (group.state, group.past, group.works)
@@ -236,7 +252,7 @@ class System:
         """Apply the elements' forces for velocity_dt (s), move the nodes by dt; see close_gaps."""
         rows = (self.assembly.starts, self.assembly.slots, self.forces)
         moved = (*rows, self.inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
-        self.pool.run(lambda part, first, end: integrate((first, end), *moved), len(self.x))
+        self.pool.run(lambda _, first, end: integrate((first, end), *moved), len(self.x))
         mesh = self.mesh
         own = (mesh.faces, mesh.bulge, self._share, mesh.pairs, mesh.rim, self.inverse_mass)
         return close_gaps(RULE, *own, self.x, self.v, dt, self.approach, self.closing)
