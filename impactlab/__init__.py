@@ -29,6 +29,7 @@ What the runs say
     plot            figures: plot.run, plot.response, plot.sobol, ...
     load_surrogate  predictions without solving
     compare         measurements beside the runs, with verdicts
+    calibrate       parameters and contact laws from measurements
 
 Quantities are SI numbers, strings with a unit or quantities of pint. `help(il.Study)` and so on
 tell more, each with an example.

@@ -2,6 +2,7 @@ from . import plot as plot
 from .analysis.analyse import analyse as analyse
 from .analysis.surrogate import load_surrogate as load_surrogate
 from .api import Study as Study
+from .api import calibrate as calibrate
 from .api import compare as compare
 from .model.discretisation import Discretisation as Discretisation
 from .model.impact import Beam as Beam

@@ -316,6 +316,42 @@ def compare(
     return compared(runs, found, read_measurements(measurements, runs))
 
 
+def calibrate(
+    study: Study,
+    measurements: Given,
+    *,
+    contact: Sequence[str] = (),
+    model_error: float = 0.0,
+    workers: int = _CORES,
+) -> xr.Dataset:
+    """Infer the parameters that a sample varies from measurements, and the weights of contact laws.
+
+    The distributions of the sample are the prior; a parameter that all measurements state is not
+    inferred. measurements: as for `compare`. contact: laws to weigh, under each of which the sample
+    is solved. model_error: relative standard error of the model itself.
+
+    Returns the dataset of study.calibration.calibrate, kept as calibration.nc in the study's
+    folder, with the figure calibration.svg; its attribute `answer` holds the finding in sentences.
+    Raises StudyError where study or measurements are wrong, ValueError with every reason for which
+    there is no posterior (docs/measurements.md).
+
+    >>> study = il.Study(
+    ...     title="Decay", function=lambda rate, start: start - 2 * rate, sampling=il.Pawn(
+    ...         samples=64, parameters={"rate": il.Uniform(0, 1), "start": il.Uniform(5, 6)}))
+    >>> value = {"quantity": "value", "value": 4.5, "standard_uncertainty": 0.1}
+    >>> ours = {"title": "Value", "source": "an example, not measured", "measurements": [value]}
+    >>> found = il.calibrate(study, ours, workers=1)
+    >>> found.spread_ratio.round(1).values
+    array([0.5, 1. ])
+    """
+    from impactlab.report.calibration import draw_and_tell
+    from impactlab.study.calibration import calibrate as calibration
+
+    names = study.declared, study.folder, measurements, _engine(workers), contact, model_error
+    found = calibration(*names)
+    return found.assign_attrs(answer="\n".join(draw_and_tell(found, study.folder)))
+
+
 def _engine(workers: int, processes: bool = False, client: Client | None = None) -> Engine:
     from impactlab.study.engine import Engine
 

@@ -64,6 +64,7 @@ CONTENTS = {
     "resolution": "impactlab recommend",
     "refinement": "impactlab refine",
     "findings": "impactlab verify",
+    "calibration": "impactlab calibrate",
     "impact": "impactlab simulate",
     "witness": "impactlab witness",
     "beams": "impactlab witness",

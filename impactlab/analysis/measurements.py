@@ -140,16 +140,16 @@ def _rows(runs: xr.Dataset, analysis: xr.Dataset, one: Measurement) -> Iterator[
             yield _Row(Agreement.OTHER_IMPACT, reason)
             return
         given = runs[name]
-        same = np.flatnonzero([_equal(each, wanted) for each in given.values.ravel().tolist()])
-        if given.ndim == 0 and not same.size:
+        at = np.flatnonzero([same(each, wanted) for each in given.values.ravel().tolist()])
+        if given.ndim == 0 and not at.size:
             reason = f"the study has {name} = {given.item()!r}, the measurement {wanted!r}"
             yield _Row(Agreement.OTHER_IMPACT, reason)
             return
         if given.ndim and "run" not in given.dims:
-            if not same.size:
+            if not at.size:
                 yield _Row(Agreement.NOT_JUDGED, f"the study has no run at {name} = {wanted!r}")
                 return
-            where[name] = int(same[0])
+            where[name] = int(at[0])
     if "run" in runs.dims:
         reason = "a sample has no single prediction: use a grid, or calibrate"
         yield _Row(Agreement.NOT_JUDGED, reason)
@@ -167,8 +167,8 @@ def _rows(runs: xr.Dataset, analysis: xr.Dataset, one: Measurement) -> Iterator[
         reason = f"state {', '.join(numbers)}, which the study varies, in its conditions"
         yield _Row(Agreement.NOT_JUDGED, reason)
         return
-    for at in np.ndindex(*values.shape):
-        place = dict(zip(map(str, values.dims), at, strict=True))
+    for position in np.ndindex(*values.shape):
+        place = dict(zip(map(str, values.dims), position, strict=True))
         case = ", ".join(str(values[dim].values[place[dim]]) for dim in words)
         answer = float(values.isel(place))
         error = abs(answer) * float(share.isel(place, missing_dims="ignore"))
@@ -189,7 +189,8 @@ def _judged(one: Measurement, case: str, answer: float, error: float, status: in
     return _Row(verdict, outside, case, answer, error)
 
 
-def _equal(given: Any, wanted: Any) -> bool:
+def same(given: Any, wanted: Any) -> bool:
+    """Return whether two conditions are the same: words, or numbers to within 1e-6."""
     if isinstance(given, str) or isinstance(wanted, str):
         return bool(given == wanted)
     return bool(abs(given - wanted) <= _SAME * max(abs(given), abs(wanted)))

@@ -26,6 +26,7 @@ _COMMANDS = {
     "status": "impactlab.cli.studies:status",
     "analyse": "impactlab.cli.results:analyse",
     "predict": "impactlab.cli.results:predict",
+    "calibrate": "impactlab.cli.solve:calibrate",
     "verify": "impactlab.cli.solve:verify",
     "figures": "impactlab.cli.results:figures",
     "report": "impactlab.cli.results:report",

@@ -1,4 +1,4 @@
-"""What a study's measurements say of its models: a line of the answer, and a table."""
+"""Measurements beside a study's models: a line of the answer, and a table."""
 
 from __future__ import annotations
 

@@ -67,9 +67,7 @@ class Surrogate:
         pairs = zip(self._distributions, columns, strict=True)
         places = [cumulative(drawn, column.values.ravel()) for drawn, column in pairs]
         unit = np.column_stack(places)
-        degrees, coefficients = self.dataset["degree"].values, self.dataset["coefficient"].values
-        batches = [unit[start : start + _AT_ONCE] for start in range(0, len(unit) or 1, _AT_ONCE)]
-        found = np.hstack([coefficients @ basis(batch, degrees) for batch in batches])
+        found = self.at(unit)
         at_end = np.abs(unit - 0.5) > 0.5 - OUTER
         variables = {}
         for name, row in zip(self.responses, found, strict=True):
@@ -92,6 +90,25 @@ class Surrogate:
             }
             variables[name] = (columns[0].dims, row.reshape(columns[0].shape), attrs)
         return xr.Dataset(variables, dict(zip(self.parameters, columns, strict=True)))
+
+    def at(self, unit: Floats) -> Floats:
+        """Return all responses where the parameters have these probabilities.
+
+        unit: (points, parameters); the result is (responses, points).
+        """
+        degrees, coefficients = self.dataset["degree"].values, self.dataset["coefficient"].values
+        batches = [unit[start : start + _AT_ONCE] for start in range(0, len(unit) or 1, _AT_ONCE)]
+        return np.hstack([coefficients @ basis(batch, degrees) for batch in batches])
+
+    def distribution(self, parameter: str) -> dict[str, Any]:
+        """Return name and arguments of a parameter's distribution, in SI units."""
+        found: dict[str, Any] = self._distributions[self.parameters.index(parameter)]
+        return found
+
+    def probability(self, parameter: str, value: float) -> float:
+        """Return the probability of smaller values. Raises ValueError outside the sampled range."""
+        self._checked(parameter, value)
+        return float(cumulative(self.distribution(parameter), value))
 
     def _check_known(self, name: str) -> None:
         if name not in self.parameters:

@@ -1,0 +1,391 @@
+"""Calibration: the posterior of parameters, and the weights of models, from measurements.
+
+The likelihood is normal, with the measurements' uncertainties, the error of the surrogates on runs
+held out, and the numerical uncertainty of the runs: Kennedy and O'Hagan (2001), J. R. Stat. Soc. B
+63, 425 (recalled, not read), with a discrepancy of given size in place of a fitted one. Weights of
+models are their evidence over the sum, all equally probable before.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy  # its stats are loaded when first used
+import xarray as xr
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from impactlab.analysis.importance import Posterior, normalised, posterior
+from impactlab.analysis.measurements import COVERAGE, Measurement, same
+from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
+from impactlab.analysis.surrogate.stored import OUTER, Surrogate
+from impactlab.model.distributions import quantile
+from impactlab.types import Floats
+
+MOST = 5
+"""Largest number of calibrated parameters."""
+FEWEST = 400.0
+"""Least effective sample size: the mean is then known to 5 % of the posterior's deviation."""
+EDGE, LEANING = 0.02, 0.1
+"""Share of the prior at an end of its range, and share of the posterior there that is too much."""
+SILENT = 0.9
+"""Posterior over prior standard deviation from which on the data cannot tell a parameter."""
+CONTRADICTED = 0.01
+"""Posterior predictive p-value below which the data contradict the models."""
+NEGLIGIBLE = 0.01
+"""Weight below which a model's own doubts do not matter."""
+DRAWS = 2000
+"""Equally weighted draws that are kept."""
+_SEED = 1
+
+
+@dataclass(frozen=True)
+class Model:
+    """A surrogate with measurements: from points of the prior's unit cube to their likelihood.
+
+    free: calibrated parameters. limits: probabilities of the ends of their sampled ranges,
+    (parameters, 2). places: for each distinct condition, the probabilities of the
+    stated parameters, and which measurements have it. error: of the surrogate, and covariance: of
+    all errors together, both for the measurements.
+    """
+
+    surrogate: Surrogate
+    free: tuple[str, ...]
+    places: tuple[tuple[Mapping[str, float], NDArray[np.int64]], ...]
+    limits: Floats
+    responses: tuple[str, ...]
+    measured: Floats
+    error: Floats
+    covariance: Floats
+
+    @classmethod
+    def of(
+        cls,
+        surrogate: Surrogate,
+        measurements: Sequence[Measurement],
+        numerical: Mapping[str, float],
+        model_error: float,
+    ) -> Model:
+        """Match a surrogate with measurements.
+
+        Raises ValueError, with every reason, where it cannot predict one of them.
+        """
+        reasons = list(_mismatches(surrogate, measurements))
+        stated = [
+            {
+                name: float(value)
+                for name, value in one.conditions.items()
+                if name in surrogate.parameters
+            }
+            for one in measurements
+        ]
+        free = tuple(n for n in surrogate.parameters if not all(n in each for each in stated))
+        for name in free:
+            if some := [
+                one.quantity for one, each in zip(measurements, stated, strict=True) if name in each
+            ]:
+                reasons.append(
+                    f"{name}: is stated for {some[0]} but not for all: state it for all, or none"
+                )
+        if not 0 < len(free) <= MOST:
+            reasons.append(
+                f"{len(free)} parameters are left to calibrate ({', '.join(free) or 'none'}): vary "
+                f"1 to {MOST} that no measurement states"
+            )
+        if reasons:
+            raise ValueError("\n".join(dict.fromkeys(reasons)))
+        places = []
+        for given in {json.dumps(each): each for each in stated}.values():
+            unit = {
+                name: float(surrogate.probability(name, value)) for name, value in given.items()
+            }
+            members = np.array([at for at, each in enumerate(stated) if each == given])
+            places.append((unit, members))
+        found = surrogate.dataset.sel(response=[one.quantity for one in measurements])
+        error = found["rmse"].values.astype(float)
+        for unit, members in places:  # at an end of a range the error may be larger
+            for name, probability in unit.items():
+                if abs(probability - 0.5) > 0.5 - OUTER:
+                    error[members] *= found["outer"].sel(parameter=name).values[members]
+        measured = np.array([one.value for one in measurements])
+        names = np.array([one.quantity for one in measurements])
+        place = np.empty(len(measurements), int)
+        for at, (_, members) in enumerate(places):
+            place[members] = at
+        alike = names[:, None] == names
+        covariance = np.diag([one.standard_uncertainty**2 for one in measurements])
+        # the same prediction has the same error, however often it is measured
+        covariance = covariance + np.outer(error, error) * (alike & (place[:, None] == place))
+        shared = np.array([numerical.get(name, 0.0) / 2.0 for name in names]) * measured
+        own = model_error * measured
+        covariance = covariance + (np.outer(shared, shared) + np.outer(own, own)) * alike
+        ends = (
+            surrogate.dataset[["lowest", "highest"]].sel(parameter=list(free)).to_array().values.T
+        )
+        limits = np.array(
+            [
+                [surrogate.probability(name, end) for end in pair]
+                for name, pair in zip(free, ends.tolist(), strict=True)
+            ]
+        )
+        return cls(
+            surrogate, free, tuple(places), limits, tuple(names), measured, error, covariance
+        )
+
+    def values(self, points: Floats) -> Floats:
+        """Return the parameters at points of the prior's cube, in SI units, (points, free)."""
+        low, high = self.limits.T
+        unit = low + (high - low) * points
+        given = [self.surrogate.distribution(name) for name in self.free]
+        return np.array([quantile(each, u) for each, u in zip(given, unit.T, strict=True)]).T
+
+    def predicted(self, points: Floats) -> Floats:
+        """Return the surrogate at each measurement, (points, measurements)."""
+        low, high = self.limits.T
+        inner = dict(zip(self.free, (low + (high - low) * points).T, strict=True))
+        found = np.empty((len(points), self.measured.size))
+        for stated, members in self.places:
+            columns = [
+                inner[name] if name in inner else np.full(len(points), stated[name])
+                for name in self.surrogate.parameters
+            ]
+            answers = self.surrogate.at(np.column_stack(columns))
+            rows = [self.surrogate.responses.index(self.responses[at]) for at in members]
+            found[:, members] = answers[rows].T
+        return found
+
+    def squared(self, predicted: Floats) -> Floats:
+        """Return the squared distance of predictions from the data, in all errors, (points,)."""
+        whitening = np.linalg.inv(np.linalg.cholesky(self.covariance))
+        return np.asarray((((predicted - self.measured) @ whitening.T) ** 2).sum(axis=1))
+
+    def log_likelihood(self, points: Floats) -> Floats:
+        """Return the logarithm of the likelihood, (points,)."""
+        constant = np.linalg.slogdet(2 * np.pi * self.covariance)[1]
+        return np.asarray(-0.5 * (self.squared(self.predicted(points)) + constant))
+
+
+def _mismatches(surrogate: Surrogate, measurements: Sequence[Measurement]) -> Iterator[str]:
+    """Yield the reasons why a surrogate cannot predict the measurements."""
+    held = surrogate.dataset.coords
+    for one in measurements:
+        for name, value in one.conditions.items():
+            if name in surrogate.parameters:
+                try:
+                    surrogate.probability(name, float(value))
+                except ValueError as error:
+                    yield f"{one.quantity}: {error}"
+            elif name not in held or not same(held[name].item(), value):
+                own = (
+                    f"it is {held[name].item()!r} in the study"
+                    if name in held
+                    else "the study has none"
+                )
+                yield f"{one.quantity}: was measured at {name} = {value!r}, but {own}"
+        if one.quantity not in surrogate.responses:
+            yield f"{one.quantity}: is no response of the study ({', '.join(surrogate.responses)})"
+            continue
+        entry = surrogate.dataset.sel(response=one.quantity)
+        verdict = list(SurrogateVerdict)[int(entry["verdict"])]
+        if verdict is not SurrogateVerdict.USABLE:
+            yield f"{one.quantity}: its surrogate is not usable: {verdict.meaning}"
+        elif (rmse := float(entry["rmse"])) > one.standard_uncertainty:
+            yield (
+                f"{one.quantity}: the surrogate's error ({rmse:.3g} {one.units}) exceeds the "
+                f"standard uncertainty of the data ({one.standard_uncertainty:.3g}): draw more "
+                "runs, or narrower ranges"
+            )
+
+
+def calibrated(
+    surrogates: Mapping[str, Surrogate],
+    measurements: Sequence[Measurement],
+    numerical: Mapping[str, float] | None = None,
+    model_error: float = 0.0,
+) -> xr.Dataset:
+    """Return posterior, weights of models and predictions as a dataset.
+
+    surrogates: by the name of the model, of one set of parameters. numerical: relative expanded
+    uncertainty of responses. model_error: relative standard uncertainty of the models themselves,
+    the same way in all measurements of a response.
+
+    Returns on (parameter): posterior_mean, _deviation, _low and _high (95 %), prior_mean and
+    prior_deviation, spread_ratio (posterior over prior deviation) and parameter_units, over all
+    models by their weights; on (model): model_weight, log_evidence, effective_samples, model_doubt,
+    and model_mean and model_deviation of each parameter;
+    on (measurement): measured, its _uncertainty (expanded, k = 2), _quantity, _units, _conditions,
+    predicted_mean and _deviation, surrogate_error; draws (draw, parameter) and draw_model (draw),
+    equally weighted; predictive_p, the posterior predictive p-value of chi-squared.
+
+    Raises ValueError with every reason for which there is no posterior: a surrogate or a
+    measurement that do not fit, a surrogate that is less certain than the data, too small an
+    effective sample, a posterior at the edge of the sampled range.
+    """
+    if len({surrogate.parameters for surrogate in surrogates.values()}) != 1:
+        raise ValueError("the models vary different parameters: sample the same ones for all")
+    reasons: list[str] = []
+    models: dict[str, Model] = {}
+    for name, surrogate in surrogates.items():
+        try:
+            models[name] = Model.of(surrogate, measurements, numerical or {}, model_error)
+        except ValueError as error:
+            head = f"{name}: " if name else ""
+            reasons += [f"{head}{line}" for line in str(error).splitlines()]
+    if reasons:
+        raise ValueError("\n".join(reasons))
+    with threadpool_limits(limits=1):  # the same bits on any number of processors
+        found = {
+            name: posterior(model.log_likelihood, len(model.free), _SEED + at)
+            for at, (name, model) in enumerate(models.items())
+        }
+        return _packed(models, found, measurements)
+
+
+def _packed(
+    models: Mapping[str, Model], found: Mapping[str, Posterior], measurements: Sequence[Measurement]
+) -> xr.Dataset:
+    evidence = np.array([each.log_evidence for each in found.values()])
+    share = normalised(evidence)
+    doubts = [_doubt(models[name], each) for name, each in found.items()]
+    if reasons := [
+        f"{name}: {doubt}" if name else doubt
+        for name, doubt, weight in zip(found, doubts, share, strict=True)
+        if doubt and not weight < NEGLIGIBLE
+    ]:
+        raise ValueError("\n".join(reasons))
+    free = next(iter(models.values())).free
+    weights = np.concatenate(
+        [w * each.weights for w, each in zip(share, found.values(), strict=True)]
+    )
+    values = np.concatenate([models[name].values(each.points) for name, each in found.items()])
+    predicted = np.concatenate(
+        [models[name].predicted(each.points) for name, each in found.items()]
+    )
+    squared = np.concatenate(
+        [models[name].squared(models[name].predicted(each.points)) for name, each in found.items()]
+    )
+    of_model = np.repeat(np.arange(len(found)), [each.weights.size for each in found.values()])
+    even = (np.arange(20_000) + 0.5) / 20_000
+    prior = next(iter(models.values())).values(np.column_stack([even] * len(free)))
+    mean, deviation = _moments(values, weights)
+    of_each = [
+        _moments(models[name].values(one.points), one.weights) for name, one in found.items()
+    ]
+    prior_mean, prior_deviation = prior.mean(axis=0), prior.std(axis=0)
+    low, high = (_quantile(values, weights, p) for p in (0.025, 0.975))
+    predicted_mean, predicted_deviation = _moments(predicted, weights)
+    # systematic resampling: draws of equal weight, in a random order
+    rng = np.random.default_rng(_SEED)
+    ends = np.cumsum(weights)
+    picked = np.searchsorted(ends / ends[-1], (np.arange(DRAWS) + rng.random()) / DRAWS)
+    picked = rng.permutation(picked.clip(max=weights.size - 1))
+    p_value = float(weights @ scipy.stats.chi2.sf(squared, len(measurements)))
+    first = next(iter(models.values()))
+    units = [first.surrogate.units(name) for name in free]
+    words = {
+        "quantity": [one.quantity for one in measurements],
+        "units": [one.units for one in measurements],
+        "conditions": [json.dumps(dict(one.conditions)) for one in measurements],
+        "source": [one.source for one in measurements],
+    }
+    uncertainty = COVERAGE * np.array([one.standard_uncertainty for one in measurements])
+    variables: dict[str, Any] = {
+        "posterior_mean": ("parameter", mean),
+        "posterior_deviation": ("parameter", deviation),
+        "posterior_low": ("parameter", low),
+        "posterior_high": ("parameter", high),
+        "prior_mean": ("parameter", prior_mean),
+        "prior_deviation": ("parameter", prior_deviation),
+        "spread_ratio": ("parameter", deviation / prior_deviation),
+        "parameter_units": ("parameter", units),
+        "model_weight": ("model", share),
+        "model_mean": (("model", "parameter"), np.array([each for each, _ in of_each])),
+        "model_deviation": (("model", "parameter"), np.array([each for _, each in of_each])),
+        "log_evidence": ("model", evidence),
+        "effective_samples": ("model", [each.effective for each in found.values()]),
+        "model_doubt": ("model", doubts),
+        "measured": ("measurement", first.measured),
+        "measured_uncertainty": ("measurement", uncertainty),
+        "predicted_mean": ("measurement", predicted_mean),
+        "predicted_deviation": ("measurement", predicted_deviation),
+        "surrogate_error": (
+            "measurement",
+            np.max([model.error for model in models.values()], axis=0),
+        ),
+        "draws": (("draw", "parameter"), values[picked]),
+        "draw_model": ("draw", np.array(list(found))[of_model[picked]]),
+        "draw_predicted": (("draw", "measurement"), predicted[picked]),
+        "prior_draws": (("prior_draw", "parameter"), prior[::20]),
+        "predictive_p": ((), p_value),
+    } | {f"measured_{name}": ("measurement", each) for name, each in words.items()}
+    dataset = xr.Dataset(variables, {"parameter": list(free), "model": list(found)})
+    for name, words_of in _LONG_NAMES.items():
+        dataset[name].attrs["long_name"] = words_of
+    return dataset
+
+
+_LONG_NAMES = {
+    "posterior_mean": "mean of the parameter given the measurements, SI",
+    "posterior_deviation": "standard deviation of the parameter given the measurements",
+    "posterior_low": "lower end of the central 95 % of the posterior",
+    "posterior_high": "upper end of the central 95 % of the posterior",
+    "prior_mean": "mean of the sampled range",
+    "prior_deviation": "standard deviation of the sampled range",
+    "spread_ratio": "standard deviation of the posterior over that of the prior",
+    "model_weight": "probability of the model given the measurements, all equal before",
+    "model_mean": "mean of the parameter given the measurements and the model, SI",
+    "model_deviation": "standard deviation of the parameter given measurements and model",
+    "log_evidence": "logarithm of the evidence",
+    "effective_samples": "effective sample size",
+    "model_doubt": "why a model of negligible weight might deserve more",
+    "measured": "measured value, in measured_units",
+    "measured_uncertainty": "expanded uncertainty of the measured value (k = 2)",
+    "predicted_mean": "mean of the posterior predictions",
+    "predicted_deviation": "standard deviation of the posterior predictions",
+    "surrogate_error": "root mean squared error of the surrogate on runs held out",
+    "draws": "draws from the posterior, of equal weight, SI",
+    "draw_model": "model of a draw",
+    "draw_predicted": "the surrogate's prediction of each measurement at a draw",
+    "prior_draws": "quantiles of the prior, SI",
+    "predictive_p": "posterior predictive p-value of chi-squared",
+}
+
+
+def _doubt(model: Model, found: Posterior) -> str:
+    """Return why a posterior is not to be trusted; "" where nothing speaks against it."""
+    if not found.effective >= FEWEST:
+        return (
+            f"the effective sample size is {found.effective:.0f}, less than {FEWEST:g}: the data "
+            "are too precise for the sampled ranges, or contradict them: narrow the ranges"
+        )
+    for at, name in enumerate(model.free):
+        column = found.points[:, at]
+        for end, there in (("lower", column < EDGE), ("upper", column > 1 - EDGE)):
+            mass = float(found.weights[there].sum())
+            if mass > LEANING:
+                edge = model.values(np.full((1, len(model.free)), float(end == "upper")))[0, at]
+                return (
+                    f"{name}: {100 * mass:.0f} % of the posterior leans on the {end} end of the "
+                    f"range ({edge:.4g} {model.surrogate.units(name)}): sample a wider one"
+                )
+    return ""
+
+
+def _moments(values: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    mean = weights @ values
+    return mean, np.sqrt(weights @ (values - mean) ** 2)
+
+
+def _quantile(values: Floats, weights: Floats, probability: float) -> Floats:
+    order = np.argsort(values, axis=0)
+    found = []
+    for column, at in zip(values.T, order.T, strict=True):
+        ends = np.cumsum(weights[at])
+        found.append(
+            column[at][np.searchsorted(ends, probability * ends[-1]).clip(max=at.size - 1)]
+        )
+    return np.array(found)

@@ -1,0 +1,191 @@
+"""Calibration of a study: its sample under each contact law, its posterior, runs to confirm it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis import surrogate
+from impactlab.analysis.calibration import calibrated
+from impactlab.analysis.measurements import Measurement
+from impactlab.analysis.responses import in_order, listed, usable
+from impactlab.analysis.surrogate.stored import Surrogate
+from impactlab.files import read_netcdf, write_netcdf
+from impactlab.solver.contact import LAWS
+from impactlab.study import steps
+from impactlab.study.engine import Engine
+from impactlab.study.errors import Problem, StudyError, unknown
+from impactlab.study.execute import execute
+from impactlab.study.sampling.sections import Sample
+from impactlab.study.schema.files import of_impacts, study_of_text
+from impactlab.study.schema.measurements import Given, read_measurements
+from impactlab.study.schema.written import text_of
+from impactlab.study.schema.yaml_file import read_mapping
+
+FOLDER, CONFIRMING = "calibration", "confirming"
+"""Folders of results: of the runs under other contact laws, and of the runs that confirm."""
+RUNS = 16
+"""Draws of the posterior that are solved."""
+OFF = 2.0
+"""Error of a surrogate at these draws over that on runs held out from which on it is refused."""
+
+
+def calibrate(
+    study: steps.AnyStudy,
+    folder: Path,
+    given: Given,
+    engine: Engine,
+    laws: Sequence[str] = (),
+    model_error: float = 0.0,
+) -> xr.Dataset:
+    """Solve a study's sample, calibrate it on measurements, confirm by runs of the solver.
+
+    laws: contact laws that are weighed against each other; the sample is solved under each. The
+    dataset (see analysis.calibration.calibrated) is written to calibration.nc in `folder`, with
+    confirmed_error (measurement), the root mean squared difference of surrogate and solver at
+    draws of the posterior, confirmed_ratio, the same over surrogate_error, and confirmed_runs.
+
+    Raises StudyError where study or measurements are wrong, ValueError with every reason for which
+    there is no posterior.
+    """
+    if not isinstance(study.sampling, Sample):
+        reason = "calibration needs a sample (any method but grid), whose ranges are the prior"
+        raise StudyError(Problem(str(study.path), "sampling.method", reason))
+    models = list(_models(study, folder, laws))  # all of them right before one is solved
+    runs = {name: _solved(each, where, engine) for name, each, where in models}
+    first = next(iter(runs.values()))
+    measurements = read_measurements(given, first)
+    surrogates, numerical = {}, {}
+    for name, solved in runs.items():
+        fitted = None
+        if surrogate.applies(solved):
+            fitted = surrogate.packed(solved, surrogate.analysis(solved))
+        if fitted is None:
+            raise ValueError(
+                f"study {study.name!r}: its sample has no surrogate: draw numbers from "
+                "distributions (contact laws are weighed by --contact)"
+            )
+        surrogates[name] = Surrogate(fitted)
+    if kept := steps.evidence(study, folder / "runs.nc").get("resolution"):
+        grid = read_netcdf(kept, "resolution")["grid_relative"]
+        numerical = dict(zip(grid["response"].values.tolist(), grid.values.tolist(), strict=True))
+    found = calibrated(surrogates, measurements, numerical, model_error)
+    found = _confirmed(found, runs, measurements, folder / FOLDER, engine)
+    about = {key: first.attrs[key] for key in ("study", "title", "study_text", "study_sha256")}
+    found = found.assign_attrs(about | {"model_error": model_error})
+    write_netcdf(found, folder / "calibration.nc", "calibration")
+    return found
+
+
+def _models(
+    study: steps.AnyStudy, folder: Path, laws: Sequence[str]
+) -> Iterator[tuple[str, steps.AnyStudy, Path]]:
+    """Yield name, study and folder of each model."""
+    if not laws:
+        yield "", study, folder
+        return
+    impacts = of_impacts(study)
+    for law in laws:
+        if law not in LAWS:
+            raise ValueError(f"contact = {law!r}: {unknown('contact law', law, LAWS)}")
+        if law == impacts.sampling.fixed.get("contact", impacts.impact.contact):
+            yield law, study, folder
+            continue
+        data = read_mapping(study.text, str(study.path))
+        if "contact" in impacts.sampling.parameters:
+            data["sampling"]["parameters"]["contact"]["value"] = law
+        else:
+            data["impact"]["contact"] = law
+        under = study_of_text(study.name, text_of(data), study.path)
+        yield law, replace(under, path=Path(f"{study.name}_{law}.yaml")), folder / FOLDER / law
+
+
+def _solved(study: steps.AnyStudy, folder: Path, engine: Engine) -> xr.Dataset:
+    """Return the runs of a study, solved where they are not."""
+    path = folder / "runs.nc"
+    if path.exists():
+        runs = read_netcdf(path, "runs")
+        if runs.attrs.get("study_sha256") == study.sha256:
+            return runs
+    folder.mkdir(parents=True, exist_ok=True)
+    steps.run(study, path, engine)
+    return read_netcdf(path, "runs")
+
+
+def _confirmed(
+    found: xr.Dataset,
+    runs: dict[str, xr.Dataset],
+    measurements: Sequence[Measurement],
+    folder: Path,
+    engine: Engine,
+) -> xr.Dataset:
+    """Add what runs at draws of the posterior say of the surrogates.
+
+    Raises ValueError where these are further off than on the runs held out, or no run answers.
+    """
+    draws = found.isel(draw=slice(RUNS))
+    square, answered = np.zeros(len(measurements)), np.zeros(len(measurements), int)
+    solved = 0
+    for name in runs:
+        mine = draws.isel(draw=np.flatnonzero(draws["draw_model"].values == name))
+        if not (count := mine.sizes["draw"]):
+            continue
+        sample = in_order(runs[name])
+        stated = [
+            {key: value for key, value in one.conditions.items() if key in listed(sample, "varied")}
+            for one in measurements
+        ]
+        for conditions in {json.dumps(each): each for each in stated}.values():
+            answers = execute(_design(sample, mine, conditions), folder / CONFIRMING / name, engine)
+            solved += count
+            for at, one in enumerate(measurements):
+                if stated[at] == conditions:
+                    ours = usable(answers, one.quantity).values[0]
+                    error = (ours - mine["draw_predicted"].values[:, at]) ** 2
+                    square[at] += np.nansum(error)
+                    answered[at] += np.isfinite(error).sum()
+    if lacking := [
+        one.quantity for one, n in zip(measurements, answered, strict=True) if n < RUNS / 2
+    ]:
+        raise ValueError(
+            f"{', '.join(dict.fromkeys(lacking))}: most runs at the posterior gave no answer, so "
+            "that nothing confirms it: sample another range"
+        )
+    error = np.sqrt(square / answered)
+    ratio = error / np.maximum(found["surrogate_error"], 0.1 * found["measured_uncertainty"] / 2)
+    for at in np.flatnonzero(ratio > OFF)[:1]:
+        one = measurements[at]
+        raise ValueError(
+            f"{one.quantity}: at the posterior the surrogate is off by {error[at]:.3g} {one.units},"
+            f" {float(ratio[at]):.2g} times its stated error: draw more runs, or narrower ranges"
+        )
+    words = "root mean squared difference of surrogate and solver at draws of the posterior"
+    return found.assign(
+        confirmed_error=("measurement", error, {"long_name": words}),
+        confirmed_missing=(
+            "measurement",
+            RUNS - answered,
+            {"long_name": "draws without an answer"},
+        ),
+        confirmed_runs=((), solved, {"long_name": "runs solved at draws of the posterior"}),
+    )
+
+
+def _design(sample: xr.Dataset, draws: xr.Dataset, conditions: Mapping[str, object]) -> xr.Dataset:
+    """Return the design of one run per draw, of all else as in the sample."""
+    count = draws.sizes["draw"]
+    beside = [name for name, values in sample.coords.items() if set(values.dims) - {"run"}]
+    some = sample.isel(run=np.arange(count) % sample.sizes["run"])
+    some = some.drop_vars([*some.data_vars, *beside]).assign_coords(run=np.arange(count))
+    for name in listed(sample, "varied"):
+        if name in conditions:
+            values = np.full(count, float(str(conditions[name])))
+        else:
+            values = draws["draws"].sel(parameter=name).values
+        some = some.assign_coords({name: ("run", values, sample[name].attrs)})
+    return some.assign_attrs(histories=0, profiles=0)
