@@ -37,7 +37,7 @@ def shares() -> Any:
     return parts / parts.sum()
 
 
-def distributions() -> tuple[Any, Any, Any, Any]:
+def distributions(weights: Any) -> tuple[Any, Any, Any, Any]:
     """Return t, the distribution of the response at t, and that given each word, and given x."""
     t, middles = np.linspace(-1, 9, 4001), (np.arange(400) + 0.5) / 400
 
@@ -48,10 +48,10 @@ def distributions() -> tuple[Any, Any, Any, Any]:
         np.mean([ramp(a + SLOPES[0] * x) for x in middles], axis=0) for a in OFFSET.values()
     ]
     of_x = [
-        sum(w * ramp(a + SLOPES[0] * x) for w, a in zip(WEIGHTS, OFFSET.values(), strict=True))
+        sum(w * ramp(a + SLOPES[0] * x) for w, a in zip(weights, OFFSET.values(), strict=True))
         for x in middles
     ]
-    return t, WEIGHTS @ np.array(of_numbers), np.array(of_numbers), np.array(of_x)
+    return t, weights @ np.array(of_numbers), np.array(of_numbers), np.array(of_x)
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def test_sobol_indices_of_a_choice_with_unequal_weights(indices: Any) -> None:
 
 def test_delta_of_a_choice(indices: Any) -> None:
     found = indices(il.Delta(samples=800, parameters=PARAMETERS))
-    t, whole, of_words, of_x = distributions()
+    t, whole, of_words, of_x = distributions(WEIGHTS)
     density = np.gradient(whole, t)
     of_law = [np.abs(np.gradient(each, t) - density) for each in of_words]
     exact = np.trapezoid(WEIGHTS @ np.array(of_law), t) / 2
@@ -97,11 +97,13 @@ def test_delta_of_a_choice(indices: Any) -> None:
 
 
 def test_pawn_of_a_choice(indices: Any) -> None:
-    found = indices(il.Pawn(samples=2000, parameters=PARAMETERS))
-    _, whole, of_words, of_x = distributions()
+    law = il.Choice(list(OFFSET), weights=[0.2, 0.6, 0.2])
+    found = indices(il.Pawn(samples=2000, parameters=PARAMETERS | {"law": law}))
+    _, whole, of_words, of_x = distributions(np.array([0.2, 0.6, 0.2]))
     apart = np.abs(of_words - whole).max(axis=1)
-    # six runs in ten have the first word, so that the median over the runs is its distance
-    np.testing.assert_allclose(found["pawn"][0], apart[0], atol=0.02)
+    # six runs in ten have the second word, so that the median over the runs is its distance
+    np.testing.assert_allclose(found["pawn"][0], apart[1], atol=0.03)
+    assert np.median(apart) > apart[1] + 0.1
     np.testing.assert_allclose(found["pawn_maximum"][0], apart.max(), atol=0.03)
     slides = np.abs(of_x - whole).max(axis=1).reshape(10, -1).mean(axis=1)
     np.testing.assert_allclose(found["pawn"][1], np.median(slides), atol=0.04)
