@@ -161,7 +161,7 @@ def _values(coordinate: xr.DataArray) -> Row:
     """Return values and their number, or a distribution: "uniform: low 250 MPa, high 450 MPa"."""
     unit, size, attrs = labels.unit(coordinate), coordinate.size, coordinate.attrs
     if listed := labels.words(coordinate):
-        weights = map(labels.percent, np.atleast_1d(attrs["weights"]).tolist())
+        weights = [labels.percent(each, 3) for each in np.atleast_1d(attrs["weights"]).tolist()]
         told = [f"{word} {weight}" for word, weight in zip(listed, weights, strict=True)]
         return [f"choice: {', '.join(told)}", Cell(f"{size} draws", "number")]
     if "distribution" in attrs:
