@@ -3,7 +3,7 @@
 The likelihood is normal, with the measurements' uncertainties, the error of the surrogates on runs
 held out, and the numerical uncertainty of the runs: Kennedy and O'Hagan (2001), J. R. Stat. Soc. B
 63, 425 (recalled, not read), with a discrepancy of given size in place of a fitted one. Weights of
-models are their evidence over the sum, all equally probable before.
+models are proportional to their evidence, times their probability before.
 """
 
 from __future__ import annotations
@@ -206,20 +206,23 @@ def calibrated(
     measurements: Sequence[Measurement],
     numerical: Mapping[str, float] | None = None,
     model_error: float = 0.0,
+    before: Mapping[str, float] | None = None,
 ) -> xr.Dataset:
     """Return posterior, weights of models and predictions as a dataset.
 
     surrogates: by the name of the model, of one set of parameters. numerical: relative expanded
-    uncertainty of responses. model_error: relative standard uncertainty of the models themselves,
-    the same way in all measurements of a response.
+    uncertainty of responses. before: probabilities of the models without the data, by default
+    equal. model_error: relative standard uncertainty of the models themselves, the same way in all
+    measurements of a response.
 
     Returns on (parameter): posterior_mean, _deviation, _low and _high (95 %), prior_mean and
     prior_deviation, spread_ratio (posterior over prior deviation) and parameter_units, over all
-    models by their weights; on (model): model_weight, log_evidence, effective_samples, model_doubt,
-    and model_mean and model_deviation of each parameter;
-    on (measurement): measured, its _uncertainty (expanded, k = 2), _quantity, _units, _conditions,
-    predicted_mean and _deviation, surrogate_error; draws (draw, parameter) and draw_model (draw),
-    equally weighted; predictive_p, the posterior predictive p-value of chi-squared.
+    models by their weights; on (model): model_weight, model_weight_before, log_evidence,
+    effective_samples, model_doubt, and model_mean and model_deviation of each parameter; on
+    (measurement): measured, its _uncertainty (expanded, k = 2), _quantity, _units, _conditions,
+    predicted_mean and _deviation, surrogate_error; draws (draw, parameter), draw_predicted (draw,
+    measurement) and draw_model (draw), equally weighted; predictive_p, the posterior predictive
+    p-value of chi-squared.
 
     Raises ValueError with every reason for which there is no posterior: a surrogate or a
     measurement that do not fit, a surrogate that is less certain than the data, too small an
@@ -242,14 +245,18 @@ def calibrated(
             name: posterior(model.log_likelihood, len(model.free), _SEED + at)
             for at, (name, model) in enumerate(models.items())
         }
-        return _packed(models, found, measurements)
+        even = dict.fromkeys(found, 1.0 / len(found))
+        return _packed(models, found, measurements, before or even)
 
 
 def _packed(
-    models: Mapping[str, Model], found: Mapping[str, Posterior], measurements: Sequence[Measurement]
+    models: Mapping[str, Model],
+    found: Mapping[str, Posterior],
+    measurements: Sequence[Measurement],
+    before: Mapping[str, float],
 ) -> xr.Dataset:
     evidence = np.array([each.log_evidence for each in found.values()])
-    share = normalised(evidence)
+    share = normalised(evidence + np.log([before[name] for name in found]))
     doubts = [_doubt(models[name], each) for name, each in found.items()]
     if reasons := [
         f"{name}: {doubt}" if name else doubt
@@ -303,6 +310,7 @@ def _packed(
         "spread_ratio": ("parameter", deviation / prior_deviation),
         "parameter_units": ("parameter", units),
         "model_weight": ("model", share),
+        "model_weight_before": ("model", [before[name] for name in found]),
         "model_mean": (("model", "parameter"), np.array([each for each, _ in of_each])),
         "model_deviation": (("model", "parameter"), np.array([each for _, each in of_each])),
         "log_evidence": ("model", evidence),
@@ -336,7 +344,8 @@ _LONG_NAMES = {
     "prior_mean": "mean of the sampled range",
     "prior_deviation": "standard deviation of the sampled range",
     "spread_ratio": "standard deviation of the posterior over that of the prior",
-    "model_weight": "probability of the model given the measurements, all equal before",
+    "model_weight": "probability of the model given the measurements",
+    "model_weight_before": "probability of the model without the measurements",
     "model_mean": "mean of the parameter given the measurements and the model, SI",
     "model_deviation": "standard deviation of the parameter given measurements and model",
     "log_evidence": "logarithm of the evidence",

@@ -54,7 +54,7 @@ def _sentences(found: xr.Dataset) -> Iterator[str]:
     if found.sizes["model"] > 1:
         order = np.argsort(-found["model_weight"].values, kind="stable")
         told = [_model(found.isel(model=at)) for at in order.tolist()]
-        yield f"Weights of the contact laws, equal before the data: {'; '.join(told)}."
+        yield f"Weights of the contact laws given the data: {'; '.join(told)}."
     inside = [_inside(found.isel(measurement=at)) for at in range(found.sizes["measurement"])]
     out = sorted({labels.response(name) for name, within in inside if not within})
     yield (
@@ -96,6 +96,7 @@ def _model(one: xr.Dataset) -> str:
     """Return a law with its weight, and the parameters under it where it has some weight."""
     weight, doubt = float(one["model_weight"]), str(one["model_doubt"].item())
     text = f"{str(one['model'].item()).replace('_', ' ')} {labels.number(weight, 2)}"
+    text += f", {labels.number(float(one['model_weight_before']), 2)} before"
     if doubt:
         return f"{text} (though {doubt})"
     told = []

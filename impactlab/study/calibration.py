@@ -24,6 +24,7 @@ from impactlab.study.execute import execute
 from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.files import of_impacts, study_of_text
 from impactlab.study.schema.measurements import Given, read_measurements
+from impactlab.study.schema.parameters import Choice
 from impactlab.study.schema.written import text_of
 from impactlab.study.schema.yaml_file import read_mapping
 
@@ -45,10 +46,11 @@ def calibrate(
 ) -> xr.Dataset:
     """Solve a study's sample, calibrate it on measurements, confirm by runs of the solver.
 
-    laws: contact laws that are weighed against each other; the sample is solved under each. The
-    dataset (see analysis.calibration.calibrated) is written to calibration.nc in `folder`, with
-    confirmed_error (measurement), the root mean squared difference of surrogate and solver at
-    draws of the posterior, confirmed_ratio, the same over surrogate_error, and confirmed_runs.
+    laws: contact laws that are weighed against each other, by default those that the sample draws;
+    the sample is solved under each. model_error: see analysis.calibration.calibrated, whose dataset
+    is written to calibration.nc in `folder`. It has besides confirmed_error (measurement), the root
+    mean squared difference of surrogate and solver at draws of the posterior, confirmed_missing
+    (measurement), how many of these gave no answer, and confirmed_runs.
 
     Raises StudyError where study or measurements are wrong, ValueError with every reason for which
     there is no posterior.
@@ -74,7 +76,9 @@ def calibrate(
     if kept := steps.evidence(study, folder / "runs.nc").get("resolution"):
         grid = read_netcdf(kept, "resolution")["grid_relative"]
         numerical = dict(zip(grid["response"].values.tolist(), grid.values.tolist(), strict=True))
-    found = calibrated(surrogates, measurements, numerical, model_error)
+    before = _drawn(study)
+    known = before.keys() == surrogates.keys()
+    found = calibrated(surrogates, measurements, numerical, model_error, before if known else None)
     found = _confirmed(found, runs, measurements, folder / FOLDER, engine)
     about = {key: first.attrs[key] for key in ("study", "title", "study_text", "study_sha256")}
     found = found.assign_attrs(about | {"model_error": model_error})
@@ -85,7 +89,9 @@ def calibrate(
 def _models(
     study: steps.AnyStudy, folder: Path, laws: Sequence[str]
 ) -> Iterator[tuple[str, steps.AnyStudy, Path]]:
-    """Yield name, study and folder of each model."""
+    """Yield name, study and folder of each model: of each law listed, or else in the sample."""
+    drawn = _drawn(study)
+    laws = laws or tuple(drawn)
     if not laws:
         yield "", study, folder
         return
@@ -93,16 +99,26 @@ def _models(
     for law in laws:
         if law not in LAWS:
             raise ValueError(f"contact = {law!r}: {unknown('contact law', law, LAWS)}")
-        if law == impacts.sampling.fixed.get("contact", impacts.impact.contact):
+        if not drawn and law == impacts.sampling.fixed.get("contact", impacts.impact.contact):
             yield law, study, folder
             continue
         data = read_mapping(study.text, str(study.path))
         if "contact" in impacts.sampling.parameters:
-            data["sampling"]["parameters"]["contact"]["value"] = law
+            one = {"distribution": "fixed", "value": law}
+            data["sampling"]["parameters"]["contact"] = one
         else:
             data["impact"]["contact"] = law
         under = study_of_text(study.name, text_of(data), study.path)
         yield law, replace(under, path=Path(f"{study.name}_{law}.yaml")), folder / FOLDER / law
+
+
+def _drawn(study: steps.AnyStudy) -> dict[str, float]:
+    """Return the contact laws that a sample draws, with their probabilities; else {}."""
+    given = study.sampling.parameters.get("contact")
+    if not isinstance(given, Choice):
+        return {}
+    drawn = given.arguments()
+    return dict(zip(drawn["values"], drawn["weights"], strict=True))
 
 
 def _solved(study: steps.AnyStudy, folder: Path, engine: Engine) -> xr.Dataset:

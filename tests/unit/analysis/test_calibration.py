@@ -86,8 +86,14 @@ def test_of_a_linear_model_it_is_the_normal_posterior_and_evidence():
     assert found["log_evidence"].values == pytest.approx(evidence, abs=0.03)
     weights = (1 / determinants) / (1 / determinants).sum()
     assert found["model_weight"].values == pytest.approx(weights, abs=0.01)
+    before = {"first": 0.1, "second": 0.9}
+    again = calibrated({"first": linear(BOTH), "second": linear(other)}, data, before=before)
+    weights = np.array([0.1, 0.9]) / determinants
+    assert again["model_weight"].values == pytest.approx(weights / weights.sum(), abs=0.01)
     share = (found["draw_model"] == "first").mean().item()
-    assert share == pytest.approx(weights[0], abs=0.005), "draws are of the models by weight"
+    assert share == pytest.approx(found["model_weight"][0].item(), abs=0.005), (
+        "draws are of the models by weight"
+    )
 
 
 def test_intervals_cover_parameters_drawn_from_the_prior():

@@ -142,8 +142,17 @@ def test_the_law_that_made_the_data_is_found(tmp_path, monkeypatch):
     ]
     data = {"title": "Made", "source": "the model itself", "measurements": given}
     study = il.Study.from_yaml("steel.yaml")
-    found = il.calibrate(study, data, contact=["stronge", "thornton", "hertz"], workers=1)
+    laws = ["stronge", "thornton", "hertz"]
+    found = il.calibrate(study, data, contact=laws, workers=1)
     weight = found["model_weight"].to_series()
     assert weight["thornton"] > 0.1
     assert weight["hertz"] < 0.01
-    assert "Weights of the contact laws" in found.attrs["answer"]
+    assert "Weights of the contact laws given the data: " in found.attrs["answer"]
+
+    # a sample that draws the law names laws and weights itself
+    choice = f"    contact: {{distribution: choice, values: {laws}, weights: [1, 2, 1]}}\n"
+    Path("drawn.yaml").write_text(text.rstrip() + "\n" + choice)
+    drawn = il.calibrate(il.Study.from_yaml("drawn.yaml"), data, workers=1)
+    assert drawn["model_weight_before"].values.tolist() == [0.25, 0.5, 0.25]
+    odds = found["model_weight"] * drawn["model_weight_before"]
+    assert drawn["model_weight"].values == pytest.approx((odds / odds.sum()).values, abs=0.01)
