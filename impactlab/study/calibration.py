@@ -58,6 +58,12 @@ def calibrate(
     if not isinstance(study.sampling, Sample):
         reason = "calibration needs a sample (any method but grid), whose ranges are the prior"
         raise StudyError(Problem(str(study.path), "sampling.method", reason))
+    if words := study.sampling.words:
+        reason = (
+            "draws words, and no surrogate is fitted over words: fix it (contact laws are weighed "
+            "by --contact; Python: contact=)"
+        )
+        raise StudyError(Problem(str(study.path), f"sampling.parameters.{words[0]}", reason))
     models = list(_models(study, folder, laws))  # all of them right before one is solved
     runs = {name: _solved(each, where, engine) for name, each, where in models}
     first = next(iter(runs.values()))

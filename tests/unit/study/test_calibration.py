@@ -110,6 +110,15 @@ sampling:
 """
 
 
+def test_words_are_refused_before_a_run_is_solved(tmp_path):
+    given = {"kind": il.Choice(["soft", "hard"]), "rate": il.Uniform(0, 1)}
+    sampling = il.Pawn(samples=100, parameters=given)
+    study = il.Study(title="Words", function=decay, sampling=sampling, results=tmp_path)
+    with pytest.raises(il.StudyError, match="kind: draws words, and no surrogate is fitted"):
+        il.calibrate(study, values(), workers=1)
+    assert study.status().done == 0
+
+
 def test_the_command_refuses_without_a_traceback(tmp_path):
     (tmp_path / "steel.yaml").write_text(
         STUDY.replace("METHOD", "grid").replace("VALUES", "[300 MPa, 400 MPa]").rsplit("\n", 2)[0]
