@@ -58,10 +58,10 @@ def calibrate(
     if not isinstance(study.sampling, Sample):
         reason = "calibration needs a sample (any method but grid), whose ranges are the prior"
         raise StudyError(Problem(str(study.path), "sampling.method", reason))
-    if words := study.sampling.words:
+    if words := [name for name in study.sampling.words if name != "contact"]:
         reason = (
-            "draws words, and no surrogate is fitted over words: fix it (contact laws are weighed "
-            "by --contact; Python: contact=)"
+            "draws words, and no surrogate is fitted over words: fix it (contact laws alone are "
+            "weighed against each other)"
         )
         raise StudyError(Problem(str(study.path), f"sampling.parameters.{words[0]}", reason))
     models = list(_models(study, folder, laws))  # all of them right before one is solved
