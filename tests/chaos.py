@@ -18,7 +18,7 @@ STUDY = """
 title: Tough
 impact: {base: paper}
 discretisation: {points: 5}
-duration: 16 ms
+duration: 8 ms
 sampling:
   method: grid
   parameters:
@@ -27,7 +27,7 @@ sampling:
 store: {histories: true, samples: 50}
 """
 RUNS = 480
-SMALL = ("--batch-seconds", "0.05")
+SMALL = ("--batch-seconds", "0.03")
 """About eighty batches."""
 PATIENCE = 120.0
 """Seconds to wait before a test counts as stuck."""

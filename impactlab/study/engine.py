@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from dask_jobqueue.slurm import SLURMCluster
 
 _LOOPBACK = "127.0.0.1:0"
+_PATIENCE = 10.0
+"""Seconds that a scheduler has to answer."""
 _SUBMIT_AGAIN = 60.0
 """Seconds between checks whether Slurm jobs have to be submitted again."""
 _LOGGERS = ("distributed", "distributed.client", "tornado.application")
@@ -81,7 +83,7 @@ class Engine:
         clients: AbstractContextManager[Client]
         with dask.config.set(_SETTINGS):
             if self.address:
-                clients = Client(self.address, timeout=10, set_as_default=False)
+                clients = Client(self.address, timeout=_PATIENCE, set_as_default=False)
             elif self.profile:
                 clients = _slurm(self.profile)
             else:

@@ -14,8 +14,10 @@ from impactlab import wings
 PROGRAM = """
 import sys
 from pkgutil import resolve_name
-from command_line import done
+from command_line import SMALL, done
+from pathlib import Path
 
+Path("study.yaml").write_text(SMALL)
 done("run", "study.yaml", "--output", "runs.nc", cwd=".")
 done("analyse", "runs.nc", cwd=".")
 done("figures", "runs.nc", "analysis.nc", "--output", "figures", cwd=".")
@@ -27,8 +29,6 @@ print(*(name for name in sys.modules if name.startswith(("impactlab.fem3d", "imp
 @pytest.mark.slow
 def test_a_study_of_beams_imports_nothing_of_the_wings(tmp_path: Path) -> None:
     tests = Path(__file__).parents[1]
-    smoke = tests.parent / "studies" / "smoke.yaml"
-    (tmp_path / "study.yaml").write_text(smoke.read_text())
     program = f"import sys; sys.path.insert(0, {str(tests)!r})\n{PROGRAM}"
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True

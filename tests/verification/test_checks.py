@@ -16,9 +16,15 @@ from impactlab.verification.modal_series import (
 )
 from impactlab.verification.solutions.modal import solve, solve_timoshenko
 
+SLOW = ("contact_patch", "strain_rate")
+"""They need kernels of their own, each compiled for ten seconds."""
+
 
 @pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
-@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.long] * (name in SLOW)) for name in CATALOGUE],
+)
 def test_check(name):
     finding = CATALOGUE[name].check()
     assert finding.comparisons

@@ -154,7 +154,7 @@ def features(case: Case, run: plain_beam.Run, dataset: xr.Dataset) -> dict[str, 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_same_answers_as_the_plain_solver(scheme):
-    """Runs that bounce into chaos are left out: there no two codes agree, whoever is right."""
+    """Runs that bounce into chaos may differ: there no two codes agree, whoever is right."""
     seen: Counter[str] = Counter()
     random = np.random.default_rng(1)
     for law in list(plain_beam.LAWS) * (EXAMPLES[scheme] // len(plain_beam.LAWS)):
@@ -162,11 +162,14 @@ def test_same_answers_as_the_plain_solver(scheme):
         values["nodes"] = 2 * int(random.integers(*HALVES[scheme], endpoint=True)) + 1
         most = MOST_STEPS[scheme] if random.random() < 0.7 else 60
         case = make_case(values, int(random.integers(10, most)))
-        run = case.plain()
-        if growth(case, run) < MOST_GROWTH:
-            dataset = case.kernels()
-            seen.update(features(case, run, dataset))
+        run, dataset = case.plain(), case.kernels()
+        try:
             assert_same(case, run, dataset)
+        except AssertionError:
+            if growth(case, run) < MOST_GROWTH:
+                raise
+        else:
+            seen.update(features(case, run, dataset))
     assert min(seen.values()) >= 15, seen
 
 

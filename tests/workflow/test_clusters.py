@@ -2,7 +2,6 @@
 
 import os
 import subprocess
-import time
 from contextlib import ExitStack
 
 import pytest
@@ -30,11 +29,21 @@ BRIDGE = "impactlab0"
 NETWORK = "10.213.47"
 
 
+def new_study(folder):
+    (folder / "studies").mkdir()
+    (folder / "studies" / "spread.yaml").write_text(STUDY)
+    return folder
+
+
 @pytest.fixture
 def folder(tmp_path):
-    (tmp_path / "studies").mkdir()
-    (tmp_path / "studies" / "spread.yaml").write_text(STUDY)
-    return tmp_path
+    return new_study(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def in_threads(tmp_path_factory):
+    """The runs, solved in threads."""
+    return solved(new_study(tmp_path_factory.mktemp("threads")))
 
 
 def solved(folder, *options, env=None):
@@ -42,15 +51,7 @@ def solved(folder, *options, env=None):
     assert done.returncode == 0, done.stderr
     assert "200 runs, 0 of them solved before" in done.stderr
     runs = folder / "results" / "spread" / "runs.nc"
-    dataset = xr.load_dataset(runs).drop_attrs()
-    (folder / "results").rename(folder / f"results_{time.monotonic_ns()}")
-    return dataset
-
-
-def test_three_workers_on_loopback(folder):
-    with Cluster(folder) as cluster:
-        cluster.add(3)
-        assert solved(folder, "--scheduler", cluster.address).identical(solved(folder))
+    return xr.load_dataset(runs).drop_attrs()
 
 
 @pytest.fixture
@@ -83,11 +84,11 @@ def namespaces():
         yield names
 
 
-def test_three_workers_in_networks_of_their_own(folder, namespaces):
+def test_three_workers_in_networks_of_their_own(folder, namespaces, in_threads):
     with Cluster(folder, f"{NETWORK}.254") as cluster:
         for name in namespaces:
             cluster.add(inside=("ip", "netns", "exec", name))
-        assert solved(folder, "--scheduler", cluster.address).identical(solved(folder))
+        assert solved(folder, "--scheduler", cluster.address).identical(in_threads)
 
 
 @pytest.fixture
@@ -106,17 +107,17 @@ def tls(tmp_path):
     return {f"DASK_DISTRIBUTED__COMM__{name}": value for name, value in settings.items()}
 
 
-def test_certificates_of_dask_are_asked_for(folder, tls):
+def test_certificates_of_dask_are_asked_for(folder, in_threads, tls):
     with Cluster(folder, protocol="tls", **tls) as cluster:
         cluster.add()
         to_it = ("--scheduler", cluster.address)
         refused = impactlab("run", "studies/spread.yaml", *to_it, cwd=folder)
         assert refused.returncode == 1
         assert "Traceback" not in refused.stderr
-        assert solved(folder, *to_it, env=os.environ | tls).sizes["velocity"] == 200
+        assert solved(folder, *to_it, env=os.environ | tls).identical(in_threads)
 
 
-def test_slurm_jobs_as_a_shell_would_run_them(folder):
+def test_slurm_jobs_as_a_shell_would_run_them(folder, in_threads):
     """The whole path but Slurm itself: sbatch runs the job script here."""
     pytest.importorskip("dask_jobqueue")
     bin_folder = folder / "bin"
@@ -129,4 +130,4 @@ def test_slurm_jobs_as_a_shell_would_run_them(folder):
         "{jobs: 2, interface: lo, cores: 1, memory: 1 GB, walltime: '00:05:00'}"
     )
     env = os.environ | {"PATH": f"{bin_folder}:{os.environ['PATH']}"}
-    assert solved(folder, "--cluster", "workers.yaml", env=env).identical(solved(folder))
+    assert solved(folder, "--cluster", "workers.yaml", env=env).identical(in_threads)

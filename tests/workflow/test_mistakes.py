@@ -7,6 +7,8 @@ import pytest
 from command_line import CHECKS, SMALL, here
 from command_line import done as impactlab
 
+from impactlab.study import engine
+
 
 def test_help_is_not_cut_short(tmp_path):
     assert not re.search(r"\w\.\.\.", impactlab("--help", cwd=tmp_path).stdout)
@@ -59,6 +61,7 @@ def test_mistakes_end_in_one_message(folder, args, words, monkeypatch, capsys):
     (folder / "studies" / "tabs.yaml").write_text(SMALL.replace("  method", "\tmethod"))
     (folder / "studies" / "long.yaml").write_text(SMALL.replace("1 ms", "1"))
     monkeypatch.chdir(folder)
+    monkeypatch.setattr(engine, "_PATIENCE", 1.0)
     assert here(*args) == 1
     said = capsys.readouterr().err
     assert "Traceback" not in said

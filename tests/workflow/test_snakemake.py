@@ -20,7 +20,7 @@ from impactlab.verification.stored import packed
 ROOT = Path(__file__).parents[2]
 
 
-def snakemake(folder, *args, studies="smoke,again,checks"):
+def snakemake(folder, *args, studies="smoke,checks"):
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     command = [sys.executable, "-m", "snakemake", "--cores", "2", "--config", f"studies={studies}"]
     return subprocess.run(
@@ -35,44 +35,57 @@ def snakemake(folder, *args, studies="smoke,again,checks"):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
+    """A study, a verification, and another one whose findings are there and say that it failed."""
     copy = tmp_path_factory.mktemp("checkout")
     for name in ("impactlab", "studies", "workflow"):
         shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("Snakefile", "environment.yaml"):
         shutil.copy(ROOT / name, copy)
-    smoke = (copy / "studies" / "smoke.yaml").read_text()
-    (copy / "studies" / "again.yaml").write_text(smoke.replace("0.99 m/s", "2 m/s"))
-    (copy / "studies" / "checks.yaml").write_text("title: Checks\nchecks: [half_space]\n")
-    done = snakemake(copy, "--quiet", "all")
-    assert done.returncode == 0, done.stderr
+    text = "title: Checks\nchecks: [half_space]\n"
+    for name in ("checks", "bad"):
+        (copy / "studies" / f"{name}.yaml").write_text(text)
+    # Snakemake takes files newer than their sources as made
+    entry = relative("peak force", "here", "N", 2.0, 1.0, 0.1)
+    outcome = Outcome("half_space", "Half-space", "made up", 0.0, Finding([entry]))
+    findings = packed([outcome]).assign_attrs(study="bad", study_text=text, **provenance())
+    write_netcdf(findings, copy / "results" / "bad" / "findings.nc", "findings")
+    done = snakemake(copy, "--quiet", "all", "--keep-going", studies="smoke,checks,bad")
+    assert done.returncode == 1, done.stderr
     (copy / "printed").write_text(done.stderr)
     return copy
 
 
 def test_every_product_is_there(folder):
     results = folder / "results"
-    for study in ("smoke", "again"):
-        assert f"{study}/report.html" in (results / "index.html").read_text()
-        for name in ("design.nc", "runs.nc", "analysis.nc", "report.html", "figures/captions.json"):
-            assert (results / study / name).stat().st_size > 0
-    assert "checks/report.html" in (results / "index.html").read_text()
+    index = (results / "index.html").read_text()
+    for name in ("design.nc", "runs.nc", "analysis.nc", "report.html", "figures/captions.json"):
+        assert (results / "smoke" / name).stat().st_size > 0
     for name in ("findings.nc", "report.html", "figures/captions.json"):
         assert (results / "checks" / name).stat().st_size > 0
+    assert all(f"{study}/report.html" in index for study in ("smoke", "checks", "bad"))
     assert (results / "checks" / "passed").exists()
     assert not (results / "smoke" / "passed").exists()
 
 
 def test_a_line_per_step_names_its_study_and_the_time_left(folder):
     lines = (folder / "printed").read_text().splitlines()
-    assert {"smoke: figures", "again: figures"} <= {line.split("; ")[-1] for line in lines}
+    assert {"smoke: figures", "checks: figures"} <= {line.split("; ")[-1] for line in lines}
     index = r"\d+ of \d+ done, about \d\.\d min left; all studies: index"
     assert any(re.fullmatch(index, line) for line in lines)
+
+
+def test_failed_checks_come_after_the_report(folder):
+    results = folder / "results" / "bad"
+    assert "half_space: 1 of 1 comparisons" in (folder / "printed").read_text()
+    assert "Verification failed" in (results / "report.html").read_text()
+    assert not (results / "passed").exists()
+    assert "half_space" in (results / "logs" / "verdict.log").read_text()
 
 
 def test_a_study_that_does_not_exist_is_named(folder):
     done = snakemake(folder, "--quiet", "all", studies="smoke,nowhere")
     assert done.returncode == 1
-    assert "studies=nowhere: there is no such study; the folder studies/ has again," in done.stderr
+    assert "studies=nowhere: there is no such study; the folder studies/ has bad," in done.stderr
 
 
 ALONE = """
@@ -102,10 +115,6 @@ def test_stored_runs_are_those_of_the_library(folder):
     assert [list(row) for row in zip(*stored, strict=True)] == alone
 
 
-def test_a_finished_workflow_has_nothing_to_do(folder):
-    assert "Nothing to be done" in snakemake(folder, "--dry-run").stdout
-
-
 def test_the_report_of_the_workflow_has_pages_and_figures(folder):
     done = snakemake(folder, "--report", "report.zip")
     assert done.returncode == 0, done.stderr
@@ -115,30 +124,12 @@ def test_the_report_of_the_workflow_has_pages_and_figures(folder):
 
 
 def test_a_changed_study_reruns_alone(folder):
-    study = folder / "studies" / "again.yaml"
+    study = folder / "studies" / "checks.yaml"
     before = study.read_text()
     try:
-        study.write_text(before.replace("2 m/s", "3 m/s"))
+        study.write_text(before.replace("half_space", "rigid_beam"))
         planned = snakemake(folder, "--dry-run").stdout
     finally:
         study.write_text(before)
-    assert "results/again/runs.nc" in planned
+    assert "results/checks/findings.nc" in planned
     assert "results/smoke/" not in planned.replace("results/smoke/report.html", "")
-
-
-def test_failed_checks_come_after_the_report(folder):
-    """The findings are put there, as if made: Snakemake takes files newer than their sources."""
-    text = "title: Bad checks\nchecks: [half_space]\n"
-    (folder / "studies" / "bad.yaml").write_text(text)
-    results = folder / "results" / "bad"
-    entry = relative("peak force", "here", "N", 2.0, 1.0, 0.1)
-    outcome = Outcome("half_space", "Half-space", "made up", 0.0, Finding([entry]))
-    findings = packed([outcome]).assign_attrs(study="bad", study_text=text, **provenance())
-    write_netcdf(findings, results / "findings.nc", "findings")
-    done = snakemake(folder, studies="bad")
-    assert done.returncode != 0
-    assert "half_space: 1 of 1 comparisons" in done.stderr
-    assert "Verification failed" in (results / "report.html").read_text()
-    assert "bad/report.html" in (folder / "results" / "index.html").read_text()
-    assert not (results / "passed").exists()
-    assert "half_space" in (results / "logs" / "verdict.log").read_text()

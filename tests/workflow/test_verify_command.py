@@ -26,6 +26,10 @@ def test_checks_from_the_file_to_the_index(folder):
     assert stored["ours"].values == pytest.approx(stored["independent"].values, rel=1e-4)
 
 
+def passes():
+    return Finding([relative("one", "here", "1", 1.0, 1.0, 0.1)])
+
+
 def fails():
     entries = [relative("one", "here", "1", 1.0, 1.0, 0.1), relative("two", "", "1", 2.0, 1.0, 0.1)]
     return Finding(entries)
@@ -42,6 +46,7 @@ def breaks():
 def test_a_failing_check_is_told_everywhere(folder, check, words, monkeypatch, capsys):
     file = Check("bad", "A bad check", "made up", check)
     monkeypatch.setitem(CATALOGUE, "bad", file)
+    monkeypatch.setitem(CATALOGUE, "half_space", Check("half_space", "Good", "made up", passes))
     monkeypatch.chdir(folder)
     (folder / "studies" / "checks.yaml").write_text(CHECKS.replace("half_space", "half_space, bad"))
     findings = "results/checks/findings.nc"

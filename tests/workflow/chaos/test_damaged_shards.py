@@ -20,7 +20,7 @@ from chaos import (
 
 pytestmark = pytest.mark.chaos
 
-SOME = 8
+SOME = 12
 """Shards on disk, at least, when they are damaged."""
 
 
@@ -82,17 +82,18 @@ def be_a_folder(paths, foreign, drawn):
     return paths[:1]
 
 
-DAMAGES = [truncate, truncate, empty, garbage, swap, take_anothers_place, be_a_folder]
+DAMAGES = [truncate, empty, garbage, swap, take_anothers_place, be_a_folder]
 
 
-@pytest.mark.parametrize("seed", range(len(DAMAGES)))
-def test_damaged_shards_are_solved_again(tmp_path, half_done, foreign, seed, undisturbed):
-    folder = shutil.copytree(half_done, tmp_path / "copy")
-    before = keys_on_disk(folder)
-    damaged = DAMAGES[seed](shards(folder), foreign, random.Random(seed))
+def test_damaged_shards_are_solved_again(tmp_path, half_done, foreign, undisturbed):
+    """Every damage, each to shards of its own."""
+    folder, drawn = shutil.copytree(half_done, tmp_path / "copy"), random.Random(0)
+    before, paths, damaged = keys_on_disk(folder), shards(folder), []
+    for damage in DAMAGES:
+        damaged += damage(paths[len(damaged) :], foreign, drawn)
     lost = {key for path in damaged for key in keys_in(half_done / path.relative_to(folder))}
     runs, said = resumed(folder, "--workers", "1")
-    assert solved_before(said) == len(before - lost)
+    assert solved_before(said) == len(before - lost) > 0
     assert all(path.name in said for path in damaged)
     assert "Traceback" not in said
     assert_same_bits(runs, undisturbed)

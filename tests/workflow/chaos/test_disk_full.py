@@ -15,6 +15,7 @@ from chaos import (
     resumed,
     run,
     solved_before,
+    stored,
 )
 
 pytestmark = pytest.mark.chaos
@@ -83,23 +84,20 @@ def test_while_shards_are_merged(small_disk, undisturbed):
 
 
 def test_while_the_runs_are_written(small_disk, undisturbed):
+    """An older file stays; where there was none, there is none."""
     resumed(small_disk)
     file = small_disk / "results" / "tough" / "runs.nc"
-    file.unlink()
-    fill(small_disk, 20_000)
-    complains(forced(small_disk), "runs.nc", "free")
-    assert not file.exists()
-    make_room(small_disk)
+    for older in (True, False):
+        if not older:
+            file.unlink()
+        fill(small_disk, 20_000)
+        complains(forced(small_disk), "runs.nc", "free")
+        assert file.exists() == older
+        make_room(small_disk)
+        if older:
+            assert_same_bits(stored(small_disk), undisturbed)
     runs, said = resumed(small_disk)
     assert solved_before(said) == RUNS
-    assert_same_bits(runs, undisturbed)
-
-
-def test_an_older_file_stays(small_disk, undisturbed):
-    runs, _ = resumed(small_disk)
-    fill(small_disk, 20_000)
-    complains(forced(small_disk), "runs.nc", "free")
-    make_room(small_disk)
     assert_same_bits(runs, undisturbed)
 
 
@@ -117,13 +115,11 @@ STEPS = [
 """What is made of the runs, in order."""
 
 
-@pytest.mark.parametrize("which", range(3), ids=[args[0] for args in STEPS])
-def test_while_a_later_step_is_written(small_disk, which):
+def test_while_later_steps_are_written(small_disk):
     resumed(small_disk)
-    for args in STEPS[:which]:
-        assert step(small_disk, *args).end() == 0
-    fill(small_disk, 4_096)
-    complains(step(small_disk, *STEPS[which]), "tough", "free")
-    make_room(small_disk)
-    last = step(small_disk, *STEPS[which])
-    assert last.end() == 0, last.said
+    for args in STEPS:
+        fill(small_disk, 4_096)
+        complains(step(small_disk, *args), "tough", "free")
+        make_room(small_disk)
+        last = step(small_disk, *args)
+        assert last.end() == 0, last.said
