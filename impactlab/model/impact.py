@@ -152,14 +152,15 @@ class Impact:
     """A sphere hits the middle of a beam at rest.
 
     velocity: the sphere's, downwards at first touch, in m/s. contact: the name of a contact law
-    (impactlab.solver.contact.LAWS). gravity: acts on the sphere alone, in m/s2. beam_model:
-    "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
-    "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one degree
-    of freedom), "rigid" (the beam does not move) or "solid" (3-D finite elements of both bodies,
-    in which `contact` and `load` play no part). load: "point" (the contact force acts at mid-span)
-    or "contact_patch" (over the contact circle, see solver/contact_patch.py; not on lumped beams).
-    contact_compliance: of the contact law's "half_space", or of this "beam" and sphere
-    (Timoshenko's beam alone; see model/contact_compliance.py).
+    (impactlab.solver.contact.LAWS); by default the one that agrees best with 3-D finite elements
+    (docs/agreement.md), in paper_impact the paper's. gravity: acts on the sphere alone, in m/s2.
+    beam_model: "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre
+    yields), "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.:
+    one degree of freedom), "rigid" (the beam does not move) or "solid" (3-D finite elements of both
+    bodies, in which `contact` and `load` play no part). load: "point" (the contact force acts at
+    mid-span) or "contact_patch" (over the contact circle, see solver/contact_patch.py; not on
+    lumped beams). contact_compliance: of the contact law's "half_space", or of this "beam" and
+    sphere (Timoshenko's beam alone; see model/contact_compliance.py).
 
     Raises ValueError naming the field when a value is not physical or a name is unknown.
 
@@ -175,7 +176,7 @@ class Impact:
     sphere: Sphere
     beam: Beam
     velocity: SI[float] = SI("m s-1")
-    contact: str = "stronge"
+    contact: str = "finite_element"
     gravity: SI[float] = SI("m s-2", 9.81)
     beam_model: str = "euler_bernoulli"
     load: str = "point"

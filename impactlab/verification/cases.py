@@ -52,6 +52,7 @@ def aluminium_impact() -> Impact:
         sphere=Sphere(radius=0.015, material=paper_impact().sphere.material),
         beam=Beam(span=0.4, width=0.03, depth=0.012, material=aluminium),
         velocity=1.0,
+        contact="stronge",
     )
 
 

@@ -67,6 +67,7 @@ def test_a_response_of_ones_own_is_that_of_each_run():
             span=beam.span, width=beam.width, depth=one.beam_depth.item(), material=beam.material
         ),
         velocity=one.velocity.item(),
+        contact="stronge",
     )
     grid = il.Discretisation(nodes=21, points=3)
     alone = il.simulate(impact, grid, duration=1e-3, samples=1000)
