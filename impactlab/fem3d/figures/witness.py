@@ -196,7 +196,7 @@ def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) ->
             ax.errorbar(speeds, 100.0 * gap.value, yerr=bars, **look)
             reach = np.nan_to_num(bars)
             ends += [*(100.0 * gap.value - reach), *(100.0 * gap.value + reach)]
-    ax.set_title(f"Difference in {labels.response(name)}", loc="left")
+    ax.set_title(f"Δ {labels.response(name)}", loc="left")  # as short as its column is wide
     if not ax.containers:
         style.remark(ax, "no finite values")
         return

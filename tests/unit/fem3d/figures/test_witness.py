@@ -46,10 +46,10 @@ def test_the_figure_has_values_above_and_differences_below(study):
 
 def test_the_data_of_the_figure_are_its_numbers(study):
     """Differences in % with their bars, at the velocities themselves."""
-    below = [one for one in drawn(FIGURES["witness"].plot(*study)) if "Diff" in one.panel]
+    below = [one for one in drawn(FIGURES["witness"].plot(*study)) if "Δ" in one.panel]
     assert [one.panel for one in below[::2]] == [
-        "Difference in peak force",
-        "Difference in contact duration",
+        "Δ peak force",
+        "Δ contact duration",
     ]
     assert {one.y_label for one in below} == {"Difference from the 3-D FE model (%)"}
     for one in below:
@@ -68,7 +68,7 @@ def test_no_curve_is_of_a_refinement_that_its_model_does_not_know(study):
 def test_points_without_a_bound_have_no_bar(study):
     runs, analysis = study[0], study[1].copy(deep=True)
     analysis["nodes_uncertainty"].loc[{"velocity": 1.0}] = np.inf
-    below = [one for one in drawn(FIGURES["witness"].plot(runs, analysis)) if "Diff" in one.panel]
+    below = [one for one in drawn(FIGURES["witness"].plot(runs, analysis)) if "Δ" in one.panel]
     assert np.isnan(below[0].low).tolist() == [False, True, False]
 
 
