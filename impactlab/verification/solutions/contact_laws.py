@@ -49,7 +49,7 @@ def finite_element(d: float, E: float, R: float, S: float, nu: float) -> float:
     if x <= 1.0:
         return hertz(d, E, R, S, nu)
     end = min(x, 320.0)
-    exponent = -0.03758957 * math.log(end) ** 2 + 0.00053654 * math.log(end) ** 3
+    exponent = -0.03540419 * math.log(end) ** 2 + 0.0001842 * math.log(end) ** 3
     return hertz(d * end / x, E, R, S, nu) * math.exp(exponent) * x / end
 
 
