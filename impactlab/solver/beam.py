@@ -70,6 +70,13 @@ def make_beam(grid: Grid) -> Beam:
 
 
 @compiled
+def rest_beam(beam: Beam) -> None:
+    """Put a beam back to rest."""
+    for i in range(beam.u.size):
+        beam.w[0, i] = beam.w[1, i] = beam.u[i] = beam.du[i] = beam.plastic[i] = 0.0
+
+
+@compiled
 def reach(w: Array, now: int, first: int) -> int:
     """Return where the wave from mid-span begins, one step after it began at `first`."""
     moved = abs(w[now, first]) > _NOTHING or abs(w[now, first + 1]) > _NOTHING

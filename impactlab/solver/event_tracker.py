@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from impactlab.solver.jit import compiled
+from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.types import Record, record
 
 EVENTS = record(
@@ -41,7 +41,7 @@ def vertex(before: float, here: float, after: float) -> tuple[float, float]:
     return offset, here - 0.25 * (before - after) * offset
 
 
-@compiled
+@inlined
 def update_events(
     events: Record,
     delta: float,

@@ -69,6 +69,20 @@ def make_plastic_state(grid: Grid, section: Section) -> PlasticState:
 
 
 @compiled
+def rest_plastic_state(plastic: PlasticState, section: Section) -> None:
+    """Make the sections ones that have never yielded."""
+    for i in range(plastic.M_0.size):
+        plastic.M_0[i] = plastic.flowed[i, 0] = plastic.flowed[i, 1] = 0.0
+        plastic.kappa_min[i], plastic.kappa_max[i] = (
+            -section.yield_curvature,
+            section.yield_curvature,
+        )
+        for j in range(section.z.size):
+            plastic.plastic_strain[i, j] = plastic.peeq[i, j] = 0.0
+    plastic.on_tangent[0] = np.uint64(0)
+
+
+@compiled
 def curvature(w: Array, now: int, psi: Array | None, grid: Grid, i: Index) -> float:
     """Return kappa in 1/m: w_xx, or psi_x of a beam with its own rotation (timoshenko.py)."""
     if psi is not None:

@@ -15,8 +15,8 @@ modes leaves the straight line between two values m steps apart by at most
     sag = sum over slow modes of D A m^2/8 + sum over fast ones of 2 A.
 
 From the gap's two ends, and those of the curvature of each section that could yield at all, follows
-whether a leap is clear. The largest deflection is looked for afterwards, in the one leap that may
-hide it.
+whether a leap is clear. The largest deflection is looked for afterwards, in the leaps that may hide
+it.
 """
 
 from __future__ import annotations
@@ -33,14 +33,16 @@ from impactlab.solver.types import Array
 LEAST, MOST = 2, 11
 """Levels of leaps: of 4 steps at least, 2048 at most."""
 _FAST = 1.0 / 16.0
-"""D of modes that count as fast: those that 16 steps turn by four radians."""
+"""D of modes that count as fast in a section: those that 16 steps turn by four radians."""
+_ROOM = 8
+"""The most leaps to hold."""
 
 # What `memory` holds.
-FRESH, LEVEL, WAIT, PATIENCE, BENT, _TABLES, _HELD = range(7)
+FRESH, LEVEL, WAIT, PATIENCE, BENT, _TABLES = range(6)
 # What `swing` holds.
-BEND_W, NOISE_W, MOST_KAPPA, MOST_SLOPE = range(4)
+MOST_KAPPA, MOST_SLOPE = range(2)
 # What `top` holds.
-_SEEN, _FOUND, _BOUND, _BEND, _NOISE = range(5)
+_SEEN, _FOUND = range(2)
 
 
 class Leaps(NamedTuple):
@@ -49,17 +51,19 @@ class Leaps(NamedTuple):
     D, S: D_m and S_m by level, (MOST + 1, n). rest: the modes' amplitudes at rest (m), (n,).
     trial: q and u after a leap that is tried; once it is made, those before, (2, n).
 
-    A: the modes' swing (m), (n,). swing: of mid-span, the second difference of slow modes and the
-    swing of fast ones (m); then the most that a curvature can differ from that at rest (1/m), and
-    how fast this grows with the distance from the support (1/m2). watched: the number of sections
+    A: the modes' swing (m), (n,). swing: the most that a curvature can differ from that at rest
+    (1/m), and how fast this grows with the distance from the support (1/m2). bounds: of mid-span in
+    a leap, by level, the second difference of slow modes and the swing of fast ones (m),
+    (2, MOST + 1). watched: the number of sections
     that could yield, then which they are; kappa: their curvatures before and after a leap that is
     tried, second difference of slow modes, and swing of fast ones (1/m), (4, n + 1).
 
     memory: whether `swing` holds; the level to try next; steps to wait before, and next time;
-    whether `kappa` holds; the highest level of the tables; the level of the leap held, or -1.
-    top: the largest deflection met between leaps, and found within (m); of the leap held, in which
-    a larger one may be, the bound, and the two of `swing`. held: its q, u and rest, then work
-    space, (7, n).
+    whether `kappa` holds; the highest level of the tables.
+    top: the largest deflection met between leaps, and found within (m). Of the leaps held, each of
+    which may hide a larger one: levels (-1: none), the most that it can be (m), both (8,);
+    held_bounds, its bounds, (8, 2, MOST + 1); held, its q, u and rest, (8, 3, n). path: work space,
+    (2, 2, n).
     """
 
     D: Array
@@ -68,31 +72,50 @@ class Leaps(NamedTuple):
     trial: Array
     A: Array
     swing: Array
+    bounds: Array
     watched: Array
     kappa: Array
     memory: Array
     top: Array
+    levels: Array
+    most: Array
+    held_bounds: Array
     held: Array
+    path: Array
 
 
 @allocating
 def make_leaps(n: int) -> Leaps:
-    """Return the leaps of n modes, before any."""
-    memory = np.zeros(7, dtype=np.int64)
-    memory[LEVEL], memory[_TABLES], memory[_HELD] = LEAST, -1, -1
+    """Return room for the leaps of n modes."""
     return Leaps(
         np.empty((MOST + 1, n)),
         np.empty((MOST + 1, n)),
         np.empty(n),
         np.empty((2, n)),
         np.empty(n),
-        np.empty(4),
+        np.empty(2),
+        np.empty((2, MOST + 1)),
         np.empty(n + 1, dtype=np.int64),
         np.empty((4, n + 1)),
-        memory,
-        np.zeros(5),
-        np.empty((7, n)),
+        np.empty(6, dtype=np.int64),
+        np.empty(2),
+        np.empty(_ROOM, dtype=np.int64),
+        np.empty(_ROOM),
+        np.empty((_ROOM, 2, MOST + 1)),
+        np.empty((_ROOM, 3, n)),
+        np.empty((2, 2, n)),
     )
+
+
+@compiled
+def rest_leaps(leaps: Leaps) -> None:
+    """Forget all leaps."""
+    memory = leaps.memory
+    memory[FRESH] = memory[WAIT] = memory[PATIENCE] = memory[BENT] = 0
+    memory[LEVEL], memory[_TABLES] = LEAST, -1
+    leaps.top[_SEEN] = leaps.top[_FOUND] = 0.0
+    for k in range(_ROOM):
+        leaps.levels[k] = -1
 
 
 @vectorised
@@ -125,20 +148,28 @@ def bound_swing(
     rest: Array,
     swings: Array,
     swing: Array,
+    bounds: Array,
 ) -> None:
-    """Set `rest`, `A` (swings) and `swing` of the free motion from here on."""
-    bend, noise, most, slope = 0.0, 0.0, 0.0, 0.0
+    """Set `rest`, `A` (swings), `swing` and `bounds` of the free motion from here on."""
+    most, slope = 0.0, 0.0
     for p in range(q.size):
         rest[p] = push[p] * source[p] / D[p]
         x = q[p] - rest[p]
         s = u[p] - 0.5 * D[p] * x
         A = math.sqrt(x * x + s * s / (D[p] * (1.0 - 0.25 * D[p])))
-        bend += 0.0 if D[p] > _FAST else D[p] * A
-        noise += 2.0 * A if D[p] > _FAST else 0.0
         most += k2[p] * A
         slope += k2[p] * math.sqrt(k2[p]) * A
         swings[p] = A
-    swing[BEND_W], swing[NOISE_W], swing[MOST_KAPPA], swing[MOST_SLOPE] = bend, noise, most, slope
+    swing[MOST_KAPPA], swing[MOST_SLOPE] = most, slope
+    slow, bend, noise = q.size, 0.0, 0.0
+    for p in range(q.size):
+        bend += D[p] * swings[p]
+    for level in range(MOST + 1):  # a mode is fast if its D is above 16/m^2
+        while slow > 0 and D[slow - 1] * (1 << (2 * level)) > 16.0:
+            slow -= 1
+            bend -= D[slow] * swings[slow]
+            noise += 2.0 * swings[slow]
+        bounds[0, level], bounds[1, level] = bend, noise
 
 
 @vectorised
@@ -214,60 +245,95 @@ def note_leap(
 
     q, u: before it. w, w_after: deflection before and after (m). w_max: the largest so far (m).
     """
-    memory, top, bend, noise = leaps.memory, leaps.top, leaps.swing[BEND_W], leaps.swing[NOISE_W]
+    top = leaps.top
     top[_SEEN] = max(top[_SEEN], w_max, w, w_after)
-    bound = noise - lowest(-w, -w_after, 1 << level, bend) + 0.125 * (bend + noise)
-    if bound <= top[_SEEN]:
+    most = _most(leaps.bounds, w, w_after, level)
+    if most <= top[_SEEN]:
         return
-    largest_deflection(leaps, D, w_max)
-    if bound <= top[_SEEN]:
-        return
-    memory[_HELD], top[_BOUND], top[_BEND], top[_NOISE] = level, bound, bend, noise
+    at = _ROOM
+    while at > 0:
+        at -= 1
+        if leaps.levels[at] < 0 or leaps.most[at] <= top[_SEEN]:
+            break
+    else:
+        largest_deflection(leaps, D, w_max)
+    leaps.levels[at], leaps.most[at] = level, most
     for p in range(q.size):
-        leaps.held[0, p], leaps.held[1, p], leaps.held[2, p] = q[p], u[p], leaps.rest[p]
+        leaps.held[at, 0, p], leaps.held[at, 1, p] = q[p], u[p]
+        leaps.held[at, 2, p] = leaps.rest[p]
+    for k in range(level + 1):
+        leaps.held_bounds[at, 0, k] = leaps.bounds[0, k]
+        leaps.held_bounds[at, 1, k] = leaps.bounds[1, k]
+
+
+@compiled
+def _most(bounds: Array, w: float, w_after: float, level: int) -> float:
+    """Return the most (m) that a vertex through three steps can be in a leap from w to w_after."""
+    most = bounds[1, level] - lowest(-w, -w_after, 1 << level, bounds[0, level])
+    return most + 0.125 * (bounds[0, 0] + bounds[1, 0])
 
 
 @compiled
 def largest_deflection(leaps: Leaps, D: Array, w_max: float) -> float:
-    """Return the largest deflection (m), of the steps (w_max) and within the leaps so far.
-
-    A leap held is walked through if it may hide a larger one: first by halves to near a peak, if
-    the velocity changes sign; then from its start, in leaps that hide none and single steps.
-    """
-    memory, top, held = leaps.memory, leaps.top, leaps.held
-    level, memory[_HELD] = memory[_HELD], -1
-    known = max(top[_SEEN], w_max)
-    if level >= 0 and top[_BOUND] > known:
-        q, u, rest, q_after, u_after = held[0], held[1], held[2], held[5], held[6]
-        w, U = 0.0, 0.0
-        for p in range(q.size):
-            held[3, p], held[4, p] = q[p], u[p]
-            w += q[p]
-            U += u[p]
-        _, U_after = leap_modes(q, u, D, rest, leaps.D, leaps.S, level, q_after, u_after)
-        for half in range(level - 1, -1 if U > 0.0 > U_after else level - 1, -1):
-            w_after, U_after = leap_modes(
-                held[3], held[4], D, rest, leaps.D, leaps.S, half, q_after, u_after
-            )
-            known = max(known, w_after)
-            for p in range(q.size if U_after > 0.0 else 0):
-                held[3, p], held[4, p] = q_after[p], u_after[p]
-        left, level, held_back = 1 << level, level - 1, 1
-        while left > 0:
-            while 1 << level > left:
-                level -= 1
-            w_after, U_after = leap_modes(q, u, D, rest, leaps.D, leaps.S, level, q_after, u_after)
-            bound = top[_NOISE] - lowest(-w, -w_after, 1 << level, top[_BEND])
-            if level > 0 and bound + 0.125 * (top[_BEND] + top[_NOISE]) > known:
-                level, held_back = level - 1, 1
-                continue
-            if level == 0 and U > 0.0 and w_after <= w:
-                _, value = vertex(w - U, w, w_after)
-                top[_FOUND] = max(top[_FOUND], value)
-            left -= 1 << level
-            level, held_back = level + 1 - held_back, 0
-            w, U, known = w_after, U_after, max(known, w_after, top[_FOUND])
-            for p in range(q.size):
-                q[p], u[p] = q_after[p], u_after[p]
-        top[_SEEN] = known
+    """Return the largest deflection (m), of the steps (w_max) and within the leaps so far."""
+    top, levels, most = leaps.top, leaps.levels, leaps.most
+    top[_SEEN] = max(top[_SEEN], w_max)
+    for _ in range(_ROOM):  # the highest first, which rules out others
+        k = 0
+        for other in range(1, _ROOM):
+            k = other if levels[other] >= 0 and (levels[k] < 0 or most[other] > most[k]) else k
+        if levels[k] < 0 or most[k] <= top[_SEEN]:
+            break
+        _search(leaps, D, leaps.held[k], leaps.held_bounds[k], levels[k])
+        levels[k] = -1
+    for k in range(_ROOM):
+        levels[k] = -1
     return max(w_max, top[_FOUND])
+
+
+@compiled
+def _search(leaps: Leaps, D: Array, held: Array, bounds: Array, level: int) -> None:
+    """Find the largest vertex within a leap held.
+
+    First by halves to near the highest peak, or one of nearly its height: that of a parabola is on
+    the side of the higher end. Then from its start, in leaps that hide none and single steps.
+    """
+    (q, u), (q_after, u_after), rest, top = leaps.path[0], leaps.path[1], held[2], leaps.top
+    w, _ = _begin(held, q, u)
+    w_end, _ = leap_modes(q, u, D, rest, leaps.D, leaps.S, level, q_after, u_after)
+    for half in range(level - 1, -1, -1):
+        w_mid, _ = leap_modes(q, u, D, rest, leaps.D, leaps.S, half, q_after, u_after)
+        top[_SEEN] = max(top[_SEEN], w_mid)
+        if w < w_end:
+            w = w_mid
+            for p in range(rest.size):
+                q[p], u[p] = q_after[p], u_after[p]
+        else:
+            w_end = w_mid
+    w, U = _begin(held, q, u)
+    left, level = 1 << level, level - 1
+    while left > 0:
+        w_after, U_after = leap_modes(q, u, D, rest, leaps.D, leaps.S, level, q_after, u_after)
+        if level > 0 and _most(bounds, w, w_after, level) > top[_SEEN]:
+            level -= 1
+            continue
+        if level == 0 and U > 0.0 and w_after <= w:
+            _, value = vertex(w - U, w, w_after)
+            top[_FOUND] = max(top[_FOUND], value)
+        w, U, left = w_after, U_after, left - (1 << level)
+        top[_SEEN] = max(top[_SEEN], w, top[_FOUND])
+        for p in range(rest.size):
+            q[p], u[p] = q_after[p], u_after[p]
+        while left > 0 and left % (2 << level) == 0:
+            level += 1
+
+
+@compiled
+def _begin(held: Array, q: Array, u: Array) -> tuple[float, float]:
+    """Set q and u to those of a leap held; return mid-span's deflection and last step there (m)."""
+    w, U = 0.0, 0.0
+    for p in range(q.size):
+        q[p], u[p] = held[0, p], held[1, p]
+        w += q[p]
+        U += u[p]
+    return w, U

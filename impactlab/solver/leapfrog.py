@@ -22,14 +22,20 @@ from impactlab.solver import (
     responses,
     timoshenko,
 )
-from impactlab.solver.beam import make_beam
+from impactlab.solver.beam import Beam, make_beam, make_grid, rest_beam
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact.history import Pair, make_pair
 from impactlab.solver.contact_patch import contact_radius
-from impactlab.solver.fibre_plasticity import catch_up, make_plastic_state, plastic_energy
+from impactlab.solver.fibre_plasticity import (
+    PlasticState,
+    catch_up,
+    make_plastic_state,
+    plastic_energy,
+    rest_plastic_state,
+)
 from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
-from impactlab.solver.section import Section, make_section, with_rate
+from impactlab.solver.section import Rule, Section, cut_section, make_rule, with_rate
 from impactlab.solver.stability import discretise
 from impactlab.solver.state import Flight, Model, State
 from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
@@ -64,7 +70,7 @@ def _sample(
         k += 1
 
 
-@compiled
+@inlined
 def contact_force(
     contact: Record, events: Record, pair: Pair, delta: float, t: float, dt: float
 ) -> float:
@@ -113,7 +119,7 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
 
 def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C901 one loop
     """Return the time loop of a model of the beam; extended: see _kernel."""
-    _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight = model
+    _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight, _ = model
     fly = None if flight is None else _leaps(flight)
 
     @compiled
@@ -137,7 +143,7 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
         start = 0.5 * case.sphere_mass * case.velocity**2
         falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
         in_beam = beam_energy(state, now, F, u_mid) + excess
-        kept, lost = contact_history.energies(contact, state.pair, approach)
+        kept, lost = contact_history.energies(contact, state.pair, approach, flight is not None)
         return abs(falling + in_beam + kept + lost - start) / start
 
     @compiled
@@ -218,8 +224,75 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
 
 
 @allocating
-def _section_at_rate(case: Record) -> Section:
-    return with_rate(make_section(case), case)
+def _section_at_rate(case: Record, rule: Rule) -> Section:
+    return with_rate(cut_section(case, rule), case)
+
+
+@compiled
+def _end_of_alike(cases: Array, start: int) -> int:
+    """Return where the cases end that from `start` on need the same memory and the same rule."""
+    stop, first = start + 1, cases[start]
+    while stop < cases.size:
+        case = cases[stop]
+        if case.nodes != first.nodes or case.points != first.points or case.rule != first.rule:
+            break
+        stop += 1
+    return stop
+
+
+@compiled
+def _keep_profiles(
+    beam: Beam,
+    plastic: PlasticState,
+    now: int,
+    r: int,
+    deflection: Array,
+    plastic_strain: Array,
+    peeq: Array,
+) -> None:
+    """Keep the half beam's final state as that of run r, if it is asked for."""
+    # element by element: slices would compile the message of numpy's error, for seconds
+    for i in range(deflection.shape[1]):
+        deflection[r, i] = beam.w[now, i + 1]
+        for j in range(peeq.shape[2]):
+            plastic_strain[r, i, j] = plastic.plastic_strain[i + 1, j]
+            peeq[r, i, j] = plastic.peeq[i + 1, j]
+
+
+def _run(model: Model, extended: bool) -> Callable[..., int]:
+    """Return a function that solves a case; extended: see _kernel."""
+    march = _time_loop(model, extended)
+    largest_deflection = None if model.flight is None else model.flight.largest
+
+    @compiled
+    def run(
+        case: Record,
+        answer: Record,
+        contact: Record,
+        events: Record,
+        samples: Array,
+        state: State,
+        steps: int,
+    ) -> int:
+        """Solve a case from rest, and fill in its answer; see march for what is returned."""
+        now = march(case, state, contact, events, samples, steps)
+        if largest_deflection is not None:
+            events.w_max = largest_deflection(state, events.w_max)
+        if now < 0:
+            answer.status = DIVERGED
+            return now
+        answer.energy_error = events.energy_error
+        if answer.energy_error > WORST_ENERGY_ERROR:
+            answer.status = ENERGY_OUT_OF_BALANCE
+        else:
+            pair, section, grid, plastic = state.pair, state.section, state.grid, state.plastic
+            _, dissipated = plastic_energy(plastic, section, grid)
+            responses.read_contact(answer, events, contact, pair)
+            responses.read_rebound(answer, case, events)
+            responses.read_beam(answer, case, events, plastic.peeq, grid, dissipated)
+        return now
+
+    return run
 
 
 def _kernel(name: str, model: Model, extended: bool = False) -> Callable[..., None]:
@@ -238,9 +311,8 @@ def _kernel(name: str, model: Model, extended: bool = False) -> Callable[..., No
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
     those of all runs are the caller's, who holds them until this returns.
     """
-    make, deflect, march = model.make, model.deflect, _time_loop(model, extended)
-    largest_deflection = None if model.flight is None else model.flight.largest
-    cut = _section_at_rate if extended else make_section
+    make, renew, deflect, run = model.make, model.renew, model.deflect, _run(model, extended)
+    cut = _section_at_rate if extended else cut_section
 
     def kernel(
         cases: Array,
@@ -252,35 +324,31 @@ def _kernel(name: str, model: Model, extended: bool = False) -> Callable[..., No
         plastic_strain: Array,
         peeq: Array,
     ) -> None:
-        for r in range(cases.size):
-            case, answer = cases[r], answers[r]
-            pair, section = make_pair(case), cut(case)
-            grid, steps = discretise(case, pair, section)
-            beam, plastic = make_beam(grid), make_plastic_state(grid, section)
-            state = State(pair, section, grid, beam, plastic, make(case, section, grid))
-            now = march(case, state, contacts[r], events[r], samples[r], steps)
-            if largest_deflection is not None:
-                events[r].w_max = largest_deflection(state, events[r].w_max)
-            if now < 0:
-                answer.status = DIVERGED
-                samples[r] = np.nan
-                continue
-            answer.energy_error = events[r].energy_error
-            if answer.energy_error > WORST_ENERGY_ERROR:
-                answer.status = ENERGY_OUT_OF_BALANCE
-            else:
-                _, dissipated = plastic_energy(plastic, section, grid)
-                responses.read_contact(answer, events[r], contacts[r], pair)
-                responses.read_rebound(answer, case, events[r])
-                responses.read_beam(answer, case, events[r], plastic.peeq, grid, dissipated)
-            if deflection.shape[1] > 0:
-                deflect(state, now)
-            # element by element: slices would compile the message of numpy's error, for seconds
-            for i in range(deflection.shape[1]):
-                deflection[r, i] = beam.w[now, i + 1]
-                for j in range(peeq.shape[2]):
-                    plastic_strain[r, i, j] = plastic.plastic_strain[i + 1, j]
-                    peeq[r, i, j] = plastic.peeq[i + 1, j]
+        stop = 0
+        while stop < cases.size:
+            start, first = stop, cases[stop]
+            stop = _end_of_alike(cases, start)
+            rule, size = make_rule(first), make_grid(first.nodes // 2, 1.0, 1.0, 1.0, 1.0)
+            section = cut(first, rule)
+            beam, plastic = make_beam(size), make_plastic_state(size, section)
+            own = make(first, section, size)
+            for r in range(start, stop):
+                case, pair, section = cases[r], make_pair(cases[r]), cut(cases[r], rule)
+                grid, steps = discretise(case, pair, section)
+                rest_beam(beam)
+                rest_plastic_state(plastic, section)
+                if renew is not None:
+                    renew(own, section, grid)
+                else:
+                    own = make(case, section, grid)
+                state = State(pair, section, grid, beam, plastic, own)
+                now = run(case, answers[r], contacts[r], events[r], samples[r], state, steps)
+                if now < 0:
+                    samples[r] = np.nan
+                    continue
+                if deflection.shape[1] > 0:
+                    deflect(state, now)
+                _keep_profiles(beam, plastic, now, r, deflection, plastic_strain, peeq)
 
     kernel.__qualname__ = name
     return allocating(kernel)

@@ -31,7 +31,6 @@ from impactlab.solver.beam import Grid
 from impactlab.solver.contact_patch import wave_share
 from impactlab.solver.fibre_plasticity import PlasticState, flow, plastic_energy
 from impactlab.solver.flight import (
-    BEND_W,
     BENT,
     FRESH,
     LEAST,
@@ -39,7 +38,6 @@ from impactlab.solver.flight import (
     MOST,
     MOST_KAPPA,
     MOST_SLOPE,
-    NOISE_W,
     PATIENCE,
     WAIT,
     bound_swing,
@@ -60,6 +58,7 @@ from impactlab.solver.modes import (
     modal_energy,
     mode_curvature,
     move_modes,
+    rest_modes,
 )
 from impactlab.solver.section import Section, bend
 from impactlab.solver.state import Flight, Model, State
@@ -130,9 +129,14 @@ def _make(case: Record, section: Section, grid: Grid) -> Modes:
     return make_modes(case.nodes // 2, grid, section.stiffness, section.yield_curvature)
 
 
+@compiled
+def _renew(modes: Modes, section: Section, grid: Grid) -> None:
+    rest_modes(modes, grid, section.stiffness, section.yield_curvature)
+
+
 @inlined
 def _step(state: State, now: int, F: float) -> None:
-    q, u, k2, D, push, source, _, seen, near, slack, leaps = state.own
+    q, u, k2, D, push, source, _, seen, near, slack, _, leaps = state.own
     w, mid = state.beam.w, state.grid.mid
     if near[0] > 0 or slack[1] >= slack[0]:
         bend_sections(state.own, state.plastic, state.section, state.grid)
@@ -195,6 +199,7 @@ def _begin_flight(modes: Modes, plastic: PlasticState, EI: float, grid: Grid) ->
         leaps.rest,
         leaps.A,
         swing,
+        leaps.bounds,
     )
     watched[0] = 0
     for i in range(2, grid.mid + 1):
@@ -267,8 +272,8 @@ def _leap(
             leaps.trial[1],
         )
         gap_after = gap + w_after - w - steps * (sphere[0] + 0.5 * (steps + 1) * sphere[1])
-        least = lowest(gap, gap_after, steps, leaps.swing[BEND_W] + sphere[1])
-        if least > leaps.swing[NOISE_W] and _stays_elastic(modes, state.plastic, level):
+        least = lowest(gap, gap_after, steps, leaps.bounds[0, level] + sphere[1])
+        if least > leaps.bounds[1, level] and _stays_elastic(modes, state.plastic, level):
             note_leap(leaps, modes.q, modes.u, modes.D, w, w_after, level, w_max)
             modes.slack[1] = exchange(modes.q, modes.u, leaps.trial, modes.k2, modes.seen)
             for k in range(1, leaps.watched[0] + 1):
@@ -306,4 +311,5 @@ MODEL = Model(
     _spread,
     flight_stride=64,
     flight=Flight(_leap, _retrace, _largest),
+    renew=_renew,
 )

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import Grid
-from impactlab.solver.flight import Leaps, make_leaps
+from impactlab.solver.flight import Leaps, make_leaps, rest_leaps
 from impactlab.solver.jit import allocating, compiled, fused, vectorised
 from impactlab.solver.types import Array
 
@@ -24,7 +24,8 @@ class Modes(NamedTuple):
     curvature of node i per amplitude, (n + 4, n), 1/m2; nodes as in beam.py. seen: q when all
     sections were last looked at, (n,). near: the number of sections that could yield before the
     next such look, then which they are, (n + 1,). slack: what the curvature of any other may have
-    changed by until that look, and can have changed by now (1/m), (2,). leaps: see flight.py.
+    changed by until that look, and can have changed by now (1/m), (2,). cosine: of quarter turns
+    over n, (4 n,). leaps: see flight.py.
     """
 
     q: Array
@@ -37,43 +38,55 @@ class Modes(NamedTuple):
     seen: Array
     near: Array
     slack: Array
+    cosine: Array
     leaps: Leaps
 
 
 @allocating
 def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
     """Return the n modes of a half beam of n spacings, at rest."""
-    k2, D, push = np.empty(n), np.empty(n), np.empty(n)
-    bent = np.zeros((grid.mid + 3, n))
-    for p in range(n):
-        k2[p] = ((2 * p + 1) * math.pi / (2 * n * grid.dx)) ** 2
-        turn = grid.dt * k2[p] * math.sqrt(EI / grid.mu)
-        D[p] = 4.0 * math.sin(0.5 * min(turn, 0.5 * math.pi)) ** 2
-        push[p] = D[p] / (EI * k2[p] ** 2 * n * grid.dx)
     cosine = np.zeros(4 * n)
     for i in range(n):
         cosine[i] = math.cos(0.5 * math.pi * i / n)
         cosine[2 * n - i] = -cosine[i]
     for i in range(2 * n + 1, 4 * n):
         cosine[i] = cosine[4 * n - i]
-    for i in range(n):
-        for p in range(n):
-            bent[grid.mid - i, p] = -k2[p] * cosine[(2 * p + 1) * i % (4 * n)]
-    slack = np.zeros(2)
-    slack[0] = yield_curvature
-    return Modes(
-        np.zeros(n),
-        np.zeros(n),
-        k2,
-        D,
-        push,
-        np.zeros(n),
-        bent,
-        np.zeros(n),
-        np.zeros(n + 1, dtype=np.int64),
-        slack,
+    modes = Modes(
+        np.empty(n),
+        np.empty(n),
+        np.empty(n),
+        np.empty(n),
+        np.empty(n),
+        np.empty(n),
+        np.zeros((grid.mid + 3, n)),
+        np.empty(n),
+        np.empty(n + 1, dtype=np.int64),
+        np.empty(2),
+        cosine,
         make_leaps(n),
     )
+    rest_modes(modes, grid, EI, yield_curvature)
+    return modes
+
+
+@compiled
+def rest_modes(modes: Modes, grid: Grid, EI: float, yield_curvature: float) -> None:
+    """Make the modes those of another half beam of as many spacings, at rest."""
+    n, speed = modes.q.size, grid.dt * math.sqrt(EI / grid.mu)
+    length = n * grid.dx
+    for p in range(n):
+        k2 = ((2 * p + 1) * (0.5 * math.pi / length)) ** 2
+        D = 4.0 * math.sin(0.5 * min(speed * k2, 0.5 * math.pi)) ** 2
+        modes.k2[p], modes.D[p], modes.push[p] = k2, D, D / (EI * length * k2 * k2)
+        modes.q[p] = modes.u[p] = modes.source[p] = modes.seen[p] = 0.0
+    for i in range(n):
+        angle = i  # in quarter turns over n, less whole turns
+        for p in range(n):
+            modes.bent[grid.mid - i, p] = -modes.k2[p] * modes.cosine[angle]
+            angle += 2 * i if angle + 2 * i < 4 * n else 2 * i - 4 * n
+    modes.near[0] = 0
+    modes.slack[0], modes.slack[1] = yield_curvature, 0.0
+    rest_leaps(modes.leaps)
 
 
 @fused

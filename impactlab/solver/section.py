@@ -65,6 +65,19 @@ class Section(NamedTuple):
     rate: CowperSymonds | None
 
 
+class Rule(NamedTuple):
+    """An integration rule, and room for the section of a run, all of shape (P // 2,).
+
+    position, weight: see upper_half. z, area, lever: see Section.
+    """
+
+    position: Array
+    weight: Array
+    z: Array
+    area: Array
+    lever: Array
+
+
 @compiled
 def legendre_pair(degree: int, x: float) -> tuple[float, float]:
     """Return (P_n(x), P_{n-1}(x)), n = degree >= 1, by the three-term recurrence."""
@@ -116,20 +129,33 @@ def rule_points(rule: str, points: int) -> np.ndarray:
 
 
 @allocating
+def make_rule(case: Record) -> Rule:
+    """Return the integration rule of a case, and room for the section of a run."""
+    half = case.points // 2
+    rule = Rule(np.empty(half), np.empty(half), np.empty(half), np.empty(half), np.empty(half))
+    upper_half(case.rule, case.points, rule.position, rule.weight)
+    return rule
+
+
+@allocating
 def make_section(case: Record) -> Section:
     """Return the section of a case."""
-    half = case.points // 2
-    z, area = np.empty(half), np.empty(half)
-    upper_half(case.rule, case.points, z, area)
-    E, stiffness = case.beam_youngs_modulus, 0.0
-    for j in range(half):
-        z[j] *= 0.5 * case.beam_depth
-        area[j] *= case.beam_depth * case.beam_width
+    return cut_section(case, make_rule(case))
+
+
+@allocating
+def cut_section(case: Record, rule: Rule) -> Section:
+    """Return the section of a case; it uses the rule's room."""
+    E, stiffness, (position, weight, z, area, lever) = case.beam_youngs_modulus, 0.0, rule
+    for j in range(z.size):
+        z[j] = position[j] * (0.5 * case.beam_depth)
+        area[j] = weight[j] * (case.beam_depth * case.beam_width)
+        lever[j] = E * area[j] * z[j]
         stiffness += E * area[j] * z[j] * z[j]
     return Section(
         z,
         area,
-        E * area * z,
+        lever,
         stiffness,
         FAR if case.beam_model == ELASTIC else case.beam_yield_stress / (E * z[0]),
         Moduli(

@@ -8,7 +8,8 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
                       taken, for accuracy: no wave asks for small steps here
 The modal scheme takes half of the time in which a bar wave crosses a spacing, for accuracy. For
 stability D (modal.py) and dt^2 times the contact's term above must not exceed 4 together; D is at
-most 2, and the modes together are no lighter at mid-span than the node: dt <= sqrt(2/contact).
+most 2, and the modes together are no lighter at mid-span than the node: dt <= sqrt(2/contact). That
+is mostly far beyond, which few indentations show.
 """
 
 from __future__ import annotations
@@ -25,15 +26,17 @@ from impactlab.solver.section import Section
 from impactlab.solver.timoshenko import shear_stiffness
 from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, Record
 
-_GROWTH = 1.25
+_GROWTH, _COARSE_GROWTH = 1.25, 2.0
+_SAFETY = 2.0
+"""Between the few indentations the contact is less than so many times as stiff as at them."""
 _LARGEST_SHARE = 0.01
 """Of the loading work, in energy that a jump at the turn may bring at the critical time step."""
 _LUMPED_STEPS = 1000.0
 
 
 @compiled
-def _stiffness(pair: Pair, delta: float) -> float:
-    """Return the largest tangent stiffness (N/m) of loading and of unloading at delta.
+def _stiffness(pair: Pair, delta: float) -> tuple[float, float]:
+    """Return the largest tangent stiffness (N/m) of loading and of unloading at delta; the force.
 
     A jump of the force at the limit of a regime is no stiffness: it falls into the difference
     to one side alone. Where unloading begins with a jump, up to a step is made under the wrong
@@ -48,29 +51,31 @@ def _stiffness(pair: Pair, delta: float) -> float:
     start = K * max(delta - delta_r, 0.0) ** n
     unloading = n * start / (delta - delta_r)
     turning = 10.0 * (F - start) ** 2 / (_LARGEST_SHARE * F * delta)
-    return max(loading, unloading, turning)
+    return max(loading, unloading, turning), F
 
 
 @compiled
-def stiffest_contact(case: Record, pair: Pair) -> float:
+def stiffest_contact(case: Record, pair: Pair, growth: float = _GROWTH) -> float:
     """Return k_c in N/m, over all indentations that the sphere's energy can drive.
 
     The indentation is raised until loading has taken all of that energy: no impact on a beam,
-    which takes a part of it, goes deeper.
+    which takes a part of it, goes deeper. growth: from one indentation to the next.
     """
     energy = 0.5 * case.sphere_mass * case.velocity**2
     hertz = 4.0 / 3.0 * pair.E * math.sqrt(pair.R)
     delta = 0.1 * (2.5 * energy / hertz) ** 0.4
-    work, k_c, panels = 0.0, 0.0, 1 if case.scheme == MODAL else PANELS
+    work, panels = 0.0, 1 if case.scheme == MODAL else PANELS
+    k_c, F = _stiffness(pair, delta)
     while work < energy + case.sphere_mass * case.gravity * delta and delta < pair.R:
-        k_c = max(k_c, _stiffness(pair, delta))
-        work += loading_work(pair, delta, _GROWTH * delta, panels)
+        k, F_next = _stiffness(pair, growth * delta)
+        if growth > _GROWTH:
+            work += 0.5 * (F + F_next) * (growth - 1.0) * delta
+        else:
+            work += loading_work(pair, delta, growth * delta, panels)
         if pair.compliance != 0.0:  # of the spring in series
-            F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
-            F_next, _, _, _ = curve(pair.law, _GROWTH * delta, pair.E, pair.R, pair.S_y, pair.nu)
             work += 0.5 * pair.compliance * (F_next * F_next - F * F)
-        delta *= _GROWTH
-    k_c = max(k_c, _stiffness(pair, delta))
+        delta *= growth
+        k_c, F = max(k_c, k), F_next
     return k_c / max(1.0 + pair.compliance * k_c, 1.0 - LARGEST_COMPLIANCE)
 
 
@@ -80,15 +85,21 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
 
     EI: the integration rule's (N m2); dx: node spacing (m).
     """
-    k_c, mu = stiffest_contact(case, pair), case.beam_density * case.beam_width * case.beam_depth
+    mu = case.beam_density * case.beam_width * case.beam_depth
+    wave = 0.5 * dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
+    push = 1.0 / (mu * dx) + 1.0 / case.sphere_mass
+    if case.scheme == MODAL:
+        about = _SAFETY * stiffest_contact(case, pair, _COARSE_GROWTH)
+        if about * push * wave * wave < 2.0:
+            return wave
+    k_c = stiffest_contact(case, pair)
     if case.beam_model >= SPRING_MASS:
         omega_squared = k_c / case.sphere_mass
         if case.beam_model == SPRING_MASS:
             mass, stiffness = mid_span(case, EI)
             omega_squared += (k_c + stiffness) / mass
         return 2.0 / math.sqrt(omega_squared) / _LUMPED_STEPS
-    contact = k_c * (1.0 / (mu * dx) + 1.0 / case.sphere_mass)
-    wave = 0.5 * dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
+    contact = k_c * push
     if case.scheme == MODAL:
         return min(wave, math.sqrt(2.0 / contact))
     if case.beam_model == TIMOSHENKO:

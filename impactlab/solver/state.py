@@ -42,13 +42,15 @@ class Flight(NamedTuple):
 class Model(NamedTuple):
     """A model of the beam in one scheme: compiled functions, from which leapfrog.py makes a kernel.
 
-    make(case, section, grid): State.own at rest. step(state, now, F): move the beam under the
-    contact force F (N). curvature(state, now): at mid-span, 1/m. energy(state, now, F, u_mid): the
-    beam's in J, plastic strains' included, after a step, at its beginning; u_mid: u at mid-span
-    before it (m). deflect(state, now): set all of beam.w[now] in the end. spread(state, now, F, a):
-    spread the force of a step just made over the contact radius a (contact_patch.py); return how
-    far the mean under it has moved beyond mid-span (m), and what `energy` lacks (J). flight_stride:
-    steps between two audits of the energy without contact, at least. flight: see above.
+    make(case, section, grid): State.own at rest. renew(own, section, grid): put it back to rest,
+    for another case of as many nodes; None: it is made anew. step(state, now, F): move the beam
+    under the contact force F (N). curvature(state, now): at mid-span, 1/m. energy(state, now, F,
+    u_mid): the beam's in J, plastic strains' included, after a step, at its beginning; u_mid: u at
+    mid-span before it (m). deflect(state, now): set all of beam.w[now] in the end. spread(state,
+    now, F, a): spread the force of a step just made over the contact radius a (contact_patch.py);
+    return how far the mean under it has moved beyond mid-span (m), and what `energy` lacks (J).
+    flight_stride: steps between two audits of the energy without contact, at least. flight: see
+    above.
     """
 
     make: Callable[..., Any]
@@ -59,3 +61,4 @@ class Model(NamedTuple):
     spread: Callable[..., tuple[float, float]]
     flight_stride: int = 1
     flight: Flight | None = None
+    renew: Callable[..., None] | None = None

@@ -30,8 +30,8 @@ FAULTS = (
     Fault(
         "unloading: sign of the residual indentation",
         "contact/history.py",
-        "over = delta - contact.delta_r\n",
-        "over = delta + contact.delta_r\n",
+        "over = approach - contact.delta_r\n    if over <= 0.0:\n        return 0.0\n    if",
+        "over = approach + contact.delta_r\n    if over <= 0.0:\n        return 0.0\n    if",
     ),
     Fault(
         "fibre: sign of the back stress",
@@ -42,22 +42,24 @@ FAULTS = (
     Fault(
         "section: moment from the plastic strain before the step",
         "section.py",
-        "        plastic_strain[i, j], peeq[i, j] = strain, slipped\n"
+        "H_k)\n        plastic_strain[i, j], peeq[i, j] = strain, slipped\n"
         "        M_0 -= lever[j] * strain\n",
-        "        M_0 -= lever[j] * plastic_strain[i, j]\n"
+        "H_k)\n        M_0 -= lever[j] * plastic_strain[i, j]\n"
         "        plastic_strain[i, j], peeq[i, j] = strain, slipped\n",
     ),
     Fault(
         "section: each fibre counted once",
         "section.py",
-        "area[j] *= case.beam_depth * case.beam_width",
-        "area[j] *= 0.5 * case.beam_depth * case.beam_width",
+        "area[j] = weight[j] * ",
+        "area[j] = 0.5 * weight[j] * ",
     ),
     Fault(
         "section: levers of the fibres in reverse order",
         "section.py",
-        "M_0 -= lever[j] * strain",
-        "M_0 -= lever[z.size - 1 - j] * strain",
+        "H_k)\n        plastic_strain[i, j], peeq[i, j] = strain, slipped\n"
+        "        M_0 -= lever[j] * strain\n",
+        "H_k)\n        plastic_strain[i, j], peeq[i, j] = strain, slipped\n"
+        "        M_0 -= lever[z.size - 1 - j] * strain\n",
     ),
     Fault(
         "section: the tangent leaves out kinematic hardening",
@@ -140,8 +142,8 @@ FAULTS = (
     Fault(
         "modal: fast modes exact, too",
         "modes.py",
-        "min(turn, 0.5 * math.pi)",
-        "min(turn, math.pi)",
+        "min(speed * k2, 0.5 * math.pi)",
+        "min(speed * k2, math.pi)",
     ),
     Fault(
         "modal: sections that come near their limit late",

@@ -1,15 +1,18 @@
 from __future__ import annotations
 
+import math
+import time
 from dataclasses import replace
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 
 from impactlab.model.cost import node_steps, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
-from impactlab.simulate import case_table
+from impactlab.simulate import case_table, solve
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.section import make_section
@@ -72,3 +75,29 @@ def test_steps_are_about_as_many_as_the_kernel_takes(
     _, steps = discretise(case[0], pair, section)
     rate = 0.5 * nodes * (1.0, 1.0, 3.0, 4.0, 4.0)[BEAM_MODELS.index(model)] + 20.0
     assert 0.3 < work(case)[0] / rate / steps < 3.0
+
+
+def _seconds(case: Any) -> float:
+    """Return the processor time of a run."""
+    cases, least = np.repeat(case, 8), math.inf
+    for _ in range(5):
+        start = time.thread_time()
+        solve(cases)
+        least = min(least, (time.thread_time() - start) / cases.size)
+    return least
+
+
+@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="times compiled kernels")
+@pytest.mark.parametrize(
+    ("velocity", "nodes", "duration"),
+    [(1.0, 51, 8e-3), (5.0, 201, 4e-3), (10.0, 101, 4e-3), (20.0, 51, 4e-3)],
+)
+def test_leaps_and_yielding_sections_cost_what_they_take(
+    velocity: float, nodes: int, duration: float
+) -> None:
+    """Against leapfrog, in one process; a scheme that makes every step is 10 to 45 times beside."""
+    grid = Discretisation(nodes=nodes, scheme="modal")
+    modal = case_table(paper_impact(velocity), grid, duration=duration)
+    leapfrog = case_table(paper_impact(1.0), Discretisation(nodes=25), duration=4e-3)
+    estimated = (work(modal) / work(leapfrog))[0]
+    assert 0.25 < estimated / (_seconds(modal) / _seconds(leapfrog)) < 4.0

@@ -7,10 +7,8 @@ import pytest
 
 from impactlab.solver.beam import make_grid
 from impactlab.solver.flight import (
-    BEND_W,
     LEAST,
     MOST,
-    NOISE_W,
     bound_swing,
     largest_deflection,
     leap_modes,
@@ -38,7 +36,7 @@ def swinging(n, turn, seed, slope=3.0):
     leaps = modes.leaps
     bound_swing(
         *(modes.q, modes.u, modes.k2, modes.D, modes.push, modes.source),
-        *(leaps.rest, leaps.A, leaps.swing),
+        *(leaps.rest, leaps.A, leaps.swing, leaps.bounds),
     )
     make_tables(leaps, modes.D, MOST)
     return modes, grid
@@ -79,17 +77,16 @@ def test_no_step_of_a_leap_lies_below_its_bound(turn):
     shares = []
     for seed in range(20):
         modes, grid = swinging(7, turn, seed, slope=2.0)
-        bend, noise = modes.leaps.swing[BEND_W], modes.leaps.swing[NOISE_W]
         swings = [section_swing(modes.leaps.A, modes.D, modes.bent, i) for i in (2, grid.mid)]
         rows = []
         for _ in range(65):
             curvatures = [mode_curvature(modes.q, modes.bent, i) for i in (2, grid.mid)]
             rows.append([modes.q.sum(), *curvatures])
             move(modes)
-        bounds = [(bend, noise), *(swing[1:] for swing in swings)]
-        for values, (slow, fast) in zip(np.array(rows).T, bounds, strict=True):
+        bounds = [modes.leaps.bounds.T, *(np.full((MOST, 2), swing[1:]) for swing in swings)]
+        for values, by_level in zip(np.array(rows).T, bounds, strict=True):
             for level in range(LEAST, 7):
-                steps = 1 << level
+                steps, (slow, fast) = 1 << level, by_level[level]
                 least = lowest(values[0], values[steps], steps, slow) - fast
                 ends, least_of_steps = min(values[0], values[steps]), values[: steps + 1].min()
                 assert least_of_steps >= least - 1e-12 * np.abs(values).max()
