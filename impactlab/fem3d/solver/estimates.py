@@ -90,9 +90,9 @@ def bending_yields(impact: Impact) -> bool:
     return impact.velocity > limit
 
 
-ONE_POINT_SECONDS, FULL_SECONDS = 200e-9, 500e-9
-"""Time per element and step on one core, nodes included: the slower of two machines, on meshes
-that its caches do not hold; a small mesh on the faster one takes half."""
+ONE_POINT_SECONDS, FULL_SECONDS = 170e-9, 350e-9
+"""Time per element and step on one core, nodes included, on meshes that the caches of a busy
+machine do not hold; a small mesh takes half."""
 _BYTES = 1000
 """Approximate memory per element, with its share of the nodes."""
 _ONE_POINT_BYTES, _FULL_BYTES, _NODE_BYTES = 700, 1600, 250
