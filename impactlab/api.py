@@ -48,11 +48,12 @@ class Study:
     which pilot runs find. responses, analyses: names; by default all. Responses of your own are
     functions of the dataset of one impact (see `simulate`) that return a number, or il.Function
     with a unit: `{"momentum": function, "peak_force": "peak_force"}`. store, analysis: mappings as
-    in a file. measurements: files that the report compares with the runs (see `compare`). function:
-    in place of the solver, the name of a test function, or a function of your own, called with a
-    run's parameters by name, that returns a number, or a mapping of `responses` to numbers. name:
-    of the folder of results; by default the title in small letters and digits. results: the folder
-    of all results.
+    in a file. measurements: files that the report compares with the runs (see `compare`). limits:
+    `{"permanent_indentation": "50 um"}`, of which `analyse` gives the probability that a run
+    exceeds them. function: in place of the solver, the name of a test function, or a function of
+    your own, called with a run's parameters by name, that returns a number, or a mapping of
+    `responses` to numbers. name: of the folder of results; by default the title in small letters
+    and digits. results: the folder of all results.
 
     Runs, analysis, figures and report go to `folder`, by default results/NAME of the working
     folder, and are found there again by whoever runs the same study: Python or the command line.
@@ -96,6 +97,7 @@ class Study:
         discretisation: Discretisation | Mapping[str, Any] | str | None = None,
         responses: Sequence[str] | str | Mapping[str, Any] | None = None,
         analyses: Sequence[str] | str | None = None,
+        limits: Mapping[str, Quantity] | None = None,
         store: Mapping[str, Any] | None = None,
         analysis: Mapping[str, Any] | None = None,
         measurements: Sequence[str] | None = None,
@@ -127,6 +129,7 @@ class Study:
             "sampling": sampling,
             "responses": responses,
             "analyses": analyses,
+            "limits": limits,
             "store": store,
             "analysis": analysis,
             "measurements": measurements,

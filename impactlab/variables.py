@@ -121,9 +121,17 @@ ANALYSES: dict[str, str] = {
     "`elements_per_radius` over at least 3 values",
     "convergence_in_points": "a grid that varies `points` over at least 2 values",
     "sensitivity": "a sample (any method but grid)",
+    "distribution": "a sample that represents it (any method but grid, morris and fast)",
     "surrogate": "a sample (any method but grid)",
 }
 """Names of the analyses (modules of impactlab.analysis), and what runs each one needs."""
+
+NO_DISTRIBUTION: dict[str, str] = {
+    "grid": "the runs of a grid have no probabilities",
+    "morris": "trajectories step over a few levels of each parameter, whatever its distribution",
+    "fast": "the runs lie along search curves, and are no independent draws",
+}
+"""Why the runs of a method do not represent the distribution of a response."""
 
 UNLIKE: dict[str, str] = dict.fromkeys(
     ("peak_plastic_strain", "plastic_zone_length", "plastic_dissipation"),

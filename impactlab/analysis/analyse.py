@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis import sensitivity, surrogate
+from impactlab.analysis import distribution, sensitivity, surrogate
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.axes import ELEMENT_SIZE, NODES, TIME_STEP
 from impactlab.analysis.numerical import numerical
@@ -24,6 +24,7 @@ _TABLE: dict[str, tuple[Callable[[xr.Dataset], bool], Callable[[xr.Dataset], xr.
         lambda runs: runs.attrs.get("method") in sensitivity.METHODS,
         sensitivity.analysis,
     ),
+    "distribution": (distribution.applies, distribution.analysis),
     "surrogate": (surrogate.applies, surrogate.analysis),
 }
 """Every analysis by its name: whether the runs are of the kind that it is about, and its variables,
@@ -34,7 +35,7 @@ with `response` among their coordinates. A new one is one line here and one in v
 def analyse(
     runs: xr.Dataset, resolution: xr.Dataset | None = None, refinement: xr.Dataset | None = None
 ) -> xr.Dataset:
-    """Return failures, convergence and sensitivity of a study, whichever apply, in one dataset.
+    """Return failures, convergence, sensitivity and distributions of a study, whichever apply.
 
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
     attribute `analyses` lists the wanted ones (without it: all). resolution, refinement: results of

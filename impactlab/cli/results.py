@@ -32,7 +32,7 @@ def analyse(
     """Convergence and sensitivity from solved runs.
 
     Of a sample also, beside the output: every index with its interval (indices.csv, indices.nc),
-    and surrogate.nc for `impactlab predict`.
+    the distribution of each response (distribution.csv), and surrogate.nc for `impactlab predict`.
     """
     from impactlab.files import opened
     from impactlab.report.answer import answers
@@ -41,7 +41,8 @@ def analyse(
     path = output or runs.with_name("analysis.nc")
     found = analyse_runs(runs, path, resolution, refinement)
     with opened(runs, "runs") as solved:
-        print(f"{path}: {answers(solved, found)[0]}")
+        lines = answers(solved, found)
+        print(f"{path}: {lines[0]}", *lines[1:] if "limits" in found.attrs else (), sep="\n")
 
 
 def predict(

@@ -5,7 +5,17 @@ from __future__ import annotations
 import xarray as xr
 
 from impactlab import wings
-from impactlab.figures import access, convergence, grids, indices, measures, samples, single_runs
+from impactlab.analysis.distribution import limits
+from impactlab.figures import (
+    access,
+    convergence,
+    distributions,
+    grids,
+    indices,
+    measures,
+    samples,
+    single_runs,
+)
 from impactlab.figures.record import Figure
 
 ANSWERS = (
@@ -27,6 +37,7 @@ ANSWERS = (
     convergence.points_convergence,
     convergence.convergence_cost,
     samples.response_distributions,
+    distributions.cumulative_distributions,
 )
 INDICES = (
     indices.index_bars(measures.SOBOL),
@@ -42,12 +53,13 @@ INDICES = (
     samples.failure_map,
 )
 CATALOGUE = {figure.name: figure for figure in (*ANSWERS, *INDICES)}
-"""Every figure by name, in the order of the report, but for the scatter plots of each response."""
+"""Every figure by name, in the order of the report, but for those of a single response."""
 
 
 def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Figure]:
     """Return the figures that apply to a study, by name, in the order of the report."""
     of_wings: dict[str, Figure] = wings.added("figures", runs) or {}
     scatters = map(samples.scatter, access.responses(runs))
-    everything = (*of_wings.values(), *ANSWERS, *scatters, *INDICES)
+    beyond = [distributions.exceedance(name) for name in limits(runs) if name in runs]
+    everything = (*of_wings.values(), *beyond, *ANSWERS, *scatters, *INDICES)
     return {figure.name: figure for figure in everything if figure.applies(runs, analysis)}

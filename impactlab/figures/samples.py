@@ -53,10 +53,14 @@ _LOOKS: dict[str, dict[str, Any]] = {
 
 @record.figure(
     "Distributions of the responses",
-    "Histograms of the responses over the sample. Line: median; shaded: from the 5th to the "
-    "95th percentile.",
+    "Histograms of the responses over all runs of the sample.",
     lambda runs, analysis: is_sample(runs) and bool(responses(runs)),
-    lambda runs, analysis: (*_jumps(runs), access.missing_note(runs, responses(runs))),
+    lambda runs, analysis: (
+        "Line: median; shaded: from the 5th to the 95th percentile of the independent draws."
+        * ("quantile" in analysis),
+        *_jumps(runs),
+        access.missing_note(runs, responses(runs)),
+    ),
 )
 def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, of the runs that have it."""
@@ -64,12 +68,16 @@ def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     for name, ax in axes.items():
         values, label = responses_grid.shown(runs, name)
         ax.set_title(label, loc="left")
-        _distribution(ax, values.values[np.isfinite(values.values)])
+        percentiles = None
+        if analysed(runs, analysis, "quantile") and access.known(analysis, name):
+            found = analysis["quantile"].sel(response=name, probability=[0.05, 0.5, 0.95])
+            percentiles = display(usable(runs, name))(found)
+        _distribution(ax, values.values[np.isfinite(values.values)], percentiles)
     figure.supylabel("Number of runs (–)")
     return figure
 
 
-def _distribution(ax: Axes, values: Floats) -> None:
+def _distribution(ax: Axes, values: Floats, percentiles: Floats | None) -> None:
     if values.size == 0 or np.ptp(values) <= ROUND_OFF * np.abs(values).max():
         text = f"constant: {labels.number(float(values[0]))}" if values.size else "no finite values"
         responses_grid.empty(ax, text)
@@ -88,8 +96,8 @@ def _distribution(ax: Axes, values: Floats) -> None:
         text = f"{share:.0f} % of the runs: {labels.number(common)}\n(not drawn)"
         ax.margins(y=0.35)
         ax.text(0.98, 0.98, text, transform=ax.transAxes, ha="right", va="top", color=_WARNING)
-    else:
-        low, middle, high = np.percentile(values, [5, 50, 95])
+    elif percentiles is not None:
+        low, middle, high = percentiles
         ax.axvspan(low, high, color="0.93", zorder=0)
         ax.axvline(middle, color=style.COLOURS[1], linewidth=1.0, zorder=3)
     bins = int(np.clip(np.sqrt(values.size), 10, 40))
@@ -140,14 +148,12 @@ def scatter(response: str) -> Figure:
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per parameter; points are a bitmap, which keeps the vector file small."""
         values, label = responses_grid.shown(runs, response)
-        return _along_parameters(
-            runs, label, 42, lambda ax, at: scatter_runs(ax, at, values.values)
-        )
+        return along_parameters(runs, label, 42, lambda ax, at: scatter_runs(ax, at, values.values))
 
     return plot
 
 
-def _along_parameters(
+def along_parameters(
     runs: xr.Dataset, label: str, height: float, draw: Callable[[Axes, xr.DataArray], None]
 ) -> Drawing:
     """Draw a panel per parameter, given as its column of the runs."""
@@ -168,7 +174,7 @@ def axis_label(column: xr.DataArray) -> str:
     return labels.sentence(text) if labels.words(column) else labels.wrapped_axis(text, symbol)
 
 
-def _places(column: xr.DataArray) -> Floats:
+def places(column: xr.DataArray) -> Floats:
     """Return a parameter in its display unit, (runs,), or the places of its words."""
     if not labels.words(column):
         return display(column)(column.values)
@@ -182,7 +188,7 @@ def _beside(column: xr.DataArray, places: Floats) -> Floats:
     return places + wide * (np.random.default_rng(2).random(places.size) - 0.5)
 
 
-def _ticks(ax: Axes, which: Literal["x", "y"], column: xr.DataArray) -> None:
+def ticks(ax: Axes, which: Literal["x", "y"], column: xr.DataArray) -> None:
     """Make an axis one of numbers, or of the names of words."""
     if not (listed := labels.words(column)):
         scales.linear(ax, which, 4)
@@ -198,8 +204,8 @@ def scatter_runs(ax: Axes, column: xr.DataArray, y: Floats) -> None:
 
     column, y: (runs,), a varied coordinate and a response in its display unit.
     """
-    _ticks(ax, "x", column)
-    x = _places(column)
+    ticks(ax, "x", column)
+    x = places(column)
     finite = np.isfinite(x) & np.isfinite(y)
     if not np.isfinite(y).any():
         style.remark(ax, "no finite values")
@@ -319,11 +325,11 @@ def _failure_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 def failure_shares(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per parameter."""
     failed = access.failed(runs).values
-    return _along_parameters(runs, "Failed runs (%)", 36, lambda ax, at: _shares(ax, at, failed))
+    return along_parameters(runs, "Failed runs (%)", 36, lambda ax, at: _shares(ax, at, failed))
 
 
 def _shares(ax: Axes, column: xr.DataArray, failed: NDArray[np.bool_]) -> None:
-    x = _places(column)
+    x = places(column)
     edges = np.unique(np.quantile(x, np.linspace(0.0, 1.0, 11)))
     place = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, max(edges.size - 2, 0))
     if labels.words(column):
@@ -348,7 +354,7 @@ def _shares(ax: Axes, column: xr.DataArray, failed: NDArray[np.bool_]) -> None:
     )
     ax.axhline(100 * failed.mean(), label="_guide: all runs", linestyle="--", **style.GUIDE)
     ax.set_ylim(0.0, None)
-    _ticks(ax, "x", column)
+    ticks(ax, "x", column)
     scales.linear(ax, "y", 4)
 
 
@@ -399,10 +405,10 @@ def failure_map(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     for ax, pair in zip(axes, pairs, strict=True):
         for kind, which in kinds.items():
             some = np.random.default_rng(1).permutation(which)[: _DRAWN[kind]]
-            x, y = (_beside(runs[name], _places(runs[name]))[some] for name in pair)
+            x, y = (_beside(runs[name], places(runs[name]))[some] for name in pair)
             ax.plot(x, y, linestyle="", label=kind, rasterized=kind == "good", **_LOOKS[kind])
         ax.set(xlabel=axis_label(runs[pair[0]]), ylabel=axis_label(runs[pair[1]]))
-        _ticks(ax, "x", runs[pair[0]])
-        _ticks(ax, "y", runs[pair[1]])
+        ticks(ax, "x", runs[pair[0]])
+        ticks(ax, "y", runs[pair[1]])
     style.legend(figure)
     return figure

@@ -16,11 +16,14 @@ from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family
 from impactlab.report import measured
 from impactlab.report.cautions import beside
 from impactlab.report.convergence import ORDERED, Needs, finest, needed
+from impactlab.report.distribution import limit_entries, limit_note
 from impactlab.report.sensitivity import in_units, share, uncertainty, with_margin
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 
 LINES = 5
+_LIMITS = 2
+"""Lines that limits may take of these."""
 _MATTERS = 0.01
 """Smallest share of the largest index that is named."""
 _INTERACTS = 0.02
@@ -80,10 +83,18 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
         note = (
             "Variation: the variance over the grid; a parameter explains that of its mean effect."
         )
+    limits = [] if analysis is None else limit_entries(runs, analysis)
+    if analysis is not None and limits:
+        note = limit_note(runs, analysis) + note
+    first = _packed(limits, _LIMITS)
     last = [] if analysis is None else measured.entries(analysis)
-    size = -(-len(found) // (LINES - bool(last)))  # responses per line
-    lines = [found[at : at + size] for at in range(0, len(found), max(size, 1))]
-    return lines + [last] * bool(last), note
+    rest = _packed(found, LINES - len(first) - bool(last))
+    return first + rest + [last] * bool(last), note
+
+
+def _packed(found: list[Entry], lines: int) -> list[list[Entry]]:
+    size = max(1, -(-len(found) // lines))  # entries per line
+    return [found[at : at + size] for at in range(0, len(found), size)]
 
 
 def _verification(findings: xr.Dataset) -> list[Entry]:

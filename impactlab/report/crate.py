@@ -31,6 +31,7 @@ _FILES = {
     "analysis.nc": "Convergence and sensitivity",
     "indices.nc": "Sensitivity indices with intervals",
     "indices.csv": "Sensitivity indices with intervals",
+    "distribution.csv": "Distribution of each response, and probabilities of exceeding limits",
     "surrogate.nc": "Surrogates of the responses",
 }
 _SOLVED = ("design.nc", "resolution.nc", "refinement.nc", "runs.nc", "findings.nc")

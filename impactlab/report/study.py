@@ -17,13 +17,13 @@ from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatter
 from impactlab.model.parameters import PARAMETERS
-from impactlab.report import measured, sensitivity
+from impactlab.report import distribution, measured, sensitivity
 from impactlab.report.answer import entries
 from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
 from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
-from impactlab.variables import attributes
+from impactlab.variables import NO_DISTRIBUTION, attributes
 
 _GRID_VALUES = 12
 """A longer list of values of a grid is replaced by its range."""
@@ -33,7 +33,7 @@ _PRINTED_RUNS = 48
 """Grids up to this size are printed run by run."""
 _COLUMNS = 6
 """Responses side by side in a printed table."""
-_QUANTILES = {"5th percentile": 0.05, "Median": 0.5, "95th percentile": 0.95}
+_DISTRIBUTIONS = ("response_distributions", "cumulative_distributions")
 _SCATTER = (
     "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
     "around a flat line suggest a parameter that matters together with others."
@@ -108,14 +108,18 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             inputs,
         ]
     scattered = [scatter(name).name for name in responses(runs)]
-    drawn, title = ["response_distributions"], "Each response against each parameter"
+    drawn, title = _DISTRIBUTIONS, "Each response against each parameter"
+    lead = NO_DISTRIBUTION.get(str(runs.attrs.get("method")), "")
+    lead = lead and f"There are no moments and percentiles: {lead}."
     return [
+        *distribution.limit_sections(runs, analysis),
         *sensitivity.sections(runs, analysis),
         *sensitivity.numerical_sections(runs, analysis),
         *measured.sections(analysis),
         Section(
             "results",
             "Distribution of each response",
+            lead,
             tables=[ranges, *(_by_word(runs, name) for name in varied(runs) if _words(runs, name))],
             figures=drawn,
         ),
@@ -250,33 +254,37 @@ def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
 
 
 def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
-    """Return one row per response; a grid names runs, a sample has percentiles."""
-    quantiles = _QUANTILES if is_sample(runs) else {}
+    """Return one row per response; a grid names runs, a sample has moments and percentiles."""
+    sample = is_sample(runs)
+    heads = distribution.HEADS if "quantile" in analysis else ()
     rows: list[Row] = []
     for name in responses(runs):
         unit, array = display(runs[name]), usable(runs, name)
         array = array.where(np.isfinite(array))
         shown = unit(array.values)
         gaps = int(np.isnan(shown).sum())
-        cells = [Cell("missing", "warning")] * (2 + len(quantiles))
+        cells = [Cell("missing", "warning")] * 2
         if gaps < shown.size:
-            numbers = np.nanquantile(shown, [0.0, *quantiles.values(), 1.0])
-            details = [""] * len(numbers) if quantiles else ["in every run"] * 2
-            if not quantiles and array.min() < array.max():
+            numbers = np.nanmin(shown), np.nanmax(shown)
+            details = [""] * 2 if sample else ["in every run"] * 2
+            if not sample and array.min() < array.max():
                 ends: Any = (array.argmin(...), array.argmax(...))
                 details = [_place(runs, {dim: int(i) for dim, i in at.items()}) for at in ends]
             cells = [
                 Cell(labels.number(float(number)), "number", detail)
                 for number, detail in zip(numbers, details, strict=True)
             ]
+        if heads:
+            cells = [*distribution.summary(analysis, name, unit), *cells]
         told = [runs[name].attrs.get("long_name", ""), beside(runs, analysis, name)]
         detail = "; ".join(filter(None, told))
         kind = "warning" if told[1] else ""
         response = Cell(labels.sentence(labels.response(name)), kind, detail)
         missing = Cell(str(gaps), "warning" if gaps else "number")
         rows.append([response, unit.symbol or "–", *cells, missing])
-    head = ["Response", "Unit", "Smallest", *quantiles, "Largest", "Runs missing"]
-    return Table("Range of each response", head, rows)
+    head = ["Response", "Unit", *heads, "Smallest", "Largest", "Runs missing"]
+    remarks = distribution.remarks(runs, analysis) if heads else []
+    return Table("Range of each response", head, rows, remarks)
 
 
 def _all_values(runs: xr.Dataset) -> list[Table]:

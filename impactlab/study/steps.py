@@ -282,11 +282,12 @@ def analyse_runs(
 ) -> xr.Dataset:
     """Analyse solved runs; write the analysis to `path` (analysis.nc), and return it.
 
-    Beside it, for a sample: indices.csv, indices.nc and surrogate.nc. resolution, refinement:
-    evidence on the numerical uncertainty, see analysis.analyse. The study's measurements are
-    compared with the runs. The runs stay in their file: memory holds few columns of a sample by
-    Sobol. Raises StudyError for wrong measurements.
+    Beside it, for a sample: indices.csv, indices.nc, distribution.csv and surrogate.nc. resolution,
+    refinement: evidence on the numerical uncertainty, see analysis.analyse. The study's
+    measurements are compared with the runs. The runs stay in their file: memory holds few columns
+    of a sample by Sobol. Raises StudyError for wrong measurements.
     """
+    from impactlab.analysis import distribution
     from impactlab.analysis.analyse import analyse
     from impactlab.analysis.measurements import compared
     from impactlab.analysis.responses import listed
@@ -305,12 +306,16 @@ def analyse_runs(
             measured = read_all(listed(solved, "measurements"), solved)
             found = found.merge(compared(solved, found, measured))
         write_netcdf(found, path, "analysis", *sources)
-        for name in ("indices.csv", "indices.nc", "surrogate.nc"):  # perhaps another study's
+        names = ("indices.csv", "indices.nc", "distribution.csv", "surrogate.nc")
+        for name in names:  # perhaps another study's
             path.with_name(name).unlink(missing_ok=True)
         if indices := sensitivity_variables(found):
             with replaced(path.with_name("indices.csv"), indices.nbytes) as unfinished:
                 write_csv(found, unfinished)
             write_netcdf(indices, path.with_name("indices.nc"), "indices", *sources)
+        if "quantile" in found:
+            with replaced(path.with_name("distribution.csv")) as unfinished:
+                distribution.write_csv(found, unfinished)
         if surrogates := packed(solved, found):
             write_netcdf(surrogates, path.with_name("surrogate.nc"), "surrogate", *sources)
     return found

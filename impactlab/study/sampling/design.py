@@ -123,6 +123,8 @@ def _common_attributes(study: StudyBase) -> dict[str, Any]:
     if isinstance(sampling, Grid):
         return attrs
     attrs |= study.analysis.model_dump() | sampling.settings
+    if study.limits:
+        attrs |= {"limited": list(study.limits), "limits": list(study.limits.values())}
     if isinstance(sampling, Grouped) and sampling.groups:
         attrs["groups"] = list(sampling.group_of.values())
     if isinstance(sampling, Sobol) and (until := sampling.until):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from impactlab.study.sampling.sections import Sample, Sampling
 from impactlab.study.schema.parameters import Choice, Distribution
 from impactlab.study.schema.study import Study, StudyFile
 from impactlab.study.validity import Base, refused_corner
-from impactlab.variables import ANALYSES
+from impactlab.variables import ANALYSES, NO_DISTRIBUTION
 
 Reasons = Iterator[tuple[str, str]]
 """Dotted keys, and the reason why each is wrong."""
@@ -106,6 +106,7 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
         "convergence_in_points": counts.get("points", 0) >= 2,
         "sensitivity": not grid,
         "surrogate": not grid,
+        "distribution": file.sampling.method not in NO_DISTRIBUTION,
     }
     for name in file.analyses if file.analyses != tuple(ANALYSES) else ():
         if not possible[name]:
@@ -114,6 +115,30 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
             yield "analyses", f"{NO_SURROGATE}: take out surrogate"
     if file.analysis is not None and file.analysis.failed_runs == "impute" and file.sampling.words:
         yield "analysis.failed_runs", f"{NO_SURROGATE}: set failed_runs: fail"
+
+
+def limit_reasons(
+    limits: Collection[str],
+    responses: Collection[str],
+    analyses: Collection[str],
+    sampling: Sampling,
+) -> Reasons:
+    """Check that limits are of responses, with runs that tell the probability to exceed them."""
+    for name in limits:
+        if name not in responses:
+            yield f"limits.{name}", unknown("response", name, responses)
+    if limits and (reason := NO_DISTRIBUTION.get(sampling.method)):
+        methods = "sobol, delta, pawn or regression"
+        yield (
+            "limits",
+            f"give no probabilities with method {sampling.method}: {reason} (use {methods})",
+        )
+    elif limits and "distribution" not in analyses:
+        yield "limits", "need the analysis distribution: list it in analyses"
+
+
+def _limits(file: StudyFile) -> Reasons:
+    return limit_reasons(file.limits, file.responses, file.analyses, file.sampling)
 
 
 def _automatic_discretisation(file: StudyFile) -> Reasons:
@@ -220,6 +245,7 @@ CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (_mass_and_density, {"impact", "sampling"}),
     (_one_mesh_for_profiles, {"store", "sampling"}),
     (_runs_for_the_analyses, {"analyses", "analysis", "sampling"}),
+    (_limits, {"limits", "responses", "analyses", "sampling"}),
     (_automatic_discretisation, {"discretisation", "responses", "sampling"}),
     (_indices_to_grow_by, {"analyses", "responses", "sampling"}),
     (_impacts, {"impact", "discretisation", "sampling"}),

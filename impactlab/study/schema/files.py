@@ -16,9 +16,22 @@ from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.checks import CHECKS, NO_SURROGATE, has_solid_runs, values_of
+from impactlab.study.schema.checks import (
+    CHECKS,
+    NO_SURROGATE,
+    has_solid_runs,
+    limit_reasons,
+    values_of,
+)
 from impactlab.study.schema.section import Heading, Names, names, validated
-from impactlab.study.schema.study import Analysis, FunctionStudy, Study, StudyFile, Verification
+from impactlab.study.schema.study import (
+    Analysis,
+    FunctionStudy,
+    Limits,
+    Study,
+    StudyFile,
+    Verification,
+)
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
 from impactlab.verification.functions import FUNCTIONS
 
@@ -129,16 +142,17 @@ def _study(source: Source) -> Study:
     """Return a study of impacts. Raises StudyError with every problem of the file."""
     path = str(source.path)
     python = _python_responses(source.data, path)
+    units = _units(python)
     data = {key: value for key, value in source.data.items() if key != "python_responses"}
     problems: list[Problem] = []
     try:
-        file = validated(StudyFile, data, path, responses=python)
+        file = validated(StudyFile, data, path, responses=units)
     except StudyError as error:
         problems = list(error.args)
     wrong = {problem.key.split(".")[0] for problem in problems}
     if problems:
         valid = {key: data[key] for key in StudyFile.model_fields if key in data.keys() - wrong}
-        file = validated(StudyFile, _STAND_INS | valid, path, responses=python)
+        file = validated(StudyFile, _STAND_INS | valid, path, responses=units)
     for check, sections in CHECKS:
         if not sections & wrong:
             problems += [Problem(path, key, reason) for key, reason in check(file)]
@@ -170,6 +184,15 @@ def _python_responses(data: Mapping[str, Any], path: str) -> dict[str, str]:
     return {str(name): str(key) for name, key in python.items()}
 
 
+def _units(python: Mapping[str, str]) -> dict[str, str]:
+    """Return the units of Python functions, by response; python: their keys."""
+    if not python:
+        return {}
+    from impactlab.study.solvers.own import KNOWN
+
+    return {name: KNOWN[key].units for name, key in python.items()}
+
+
 _NOT_KNOWN = "holds a Python function, which is in no file: build the study in Python"
 
 
@@ -184,8 +207,17 @@ def _function_study(source: Source) -> FunctionStudy:
     parameters = {
         key: Parameter(key, "1", f"{key} of the {title}", ()) for key in FUNCTIONS[name].ranges
     }
-    file = validated(_FunctionFile, source.data, path, parameters)
-    own: dict[str, Any] = {"responses": ("value",), "analyses": ("sensitivity", "surrogate")}
+    file = validated(_FunctionFile, source.data, path, parameters, {"value": "1"})
+    return _of_function(source, file, ("value",))
+
+
+def _of_function(source: Source, file: _FunctionFile, responses: tuple[str, ...]) -> FunctionStudy:
+    """Return the study. Raises StudyError where its limits have no meaning."""
+    analyses, path = ("sensitivity", "distribution", "surrogate"), str(source.path)
+    reasons = limit_reasons(file.limits, responses, analyses, file.sampling)
+    if problems := [Problem(path, *reason) for reason in reasons]:
+        raise StudyError(*problems)
+    own: dict[str, Any] = {"responses": responses, "analyses": analyses}
     return FunctionStudy(name=source.name, path=source.path, text=source.text, **dict(file) | own)
 
 
@@ -204,12 +236,14 @@ def _own_function_study(source: Source, key: str) -> FunctionStudy:
     parameters = {
         name: Parameter(name, "1", name.replace("_", " "), (), any_word=True) for name in names
     }
-    file = validated(_OwnFunctionFile, source.data, path, parameters)
+    given = source.data.get("responses")
+    responses = [str(name) for name in given] if isinstance(given, list) else ["value"]
+    units = _units(dict.fromkeys(responses, key))
+    file = validated(_OwnFunctionFile, source.data, path, parameters, units)
     if file.sampling.words and file.analysis.failed_runs == "impute":
         reason = f"{NO_SURROGATE}: set failed_runs: fail"
         raise StudyError(Problem(path, "analysis.failed_runs", reason))
-    own: dict[str, Any] = {"analyses": ("sensitivity", "surrogate")}
-    return FunctionStudy(name=source.name, path=source.path, text=source.text, **dict(file) | own)
+    return _of_function(source, file, file.responses)
 
 
 class _FunctionFile(Heading):
@@ -217,6 +251,7 @@ class _FunctionFile(Heading):
 
     function: str
     sampling: Annotated[Grid | Sample, PlainValidator(read_sampling)]
+    limits: Limits = Field(default_factory=dict)
     analysis: Analysis = Field(default_factory=Analysis)
 
 

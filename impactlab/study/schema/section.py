@@ -32,7 +32,7 @@ class Section(BaseModel):
 
     The context of the validation takes the allowed keys under "keys", by the id of the mapping, so
     that a message about an unknown key can list them; it holds the parameters that the study can
-    vary under "parameters", and names of responses of its own under "responses".
+    vary under "parameters", and units of responses of its own under "responses".
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -170,14 +170,15 @@ def validated(
     data: Any,
     file: str,
     parameters: Mapping[str, Parameter] = PARAMETERS,
-    responses: Collection[str] = (),
+    responses: Mapping[str, str] | None = None,
 ) -> S:
     """Return the content of a file as a section. Raises StudyError with all of its problems.
 
-    parameters: those that it can vary. responses: names of its own, beside those of all studies.
+    parameters: those that it can vary. responses: those of its own, beside those of all studies,
+    with their units.
     """
     keys: dict[int, tuple[str, ...]] = {}
-    context = {"keys": keys, "parameters": parameters, "responses": responses}
+    context = {"keys": keys, "parameters": parameters, "responses": responses or {}}
     try:
         return kind.model_validate(data, context=context)
     except ValidationError as error:

@@ -38,6 +38,7 @@ from impactlab.study.schema.section import (
     at_key,
     names,
     one_of,
+    quantity,
 )
 from impactlab.study.validity import Base, refusal
 from impactlab.variables import ANALYSES, RESPONSES
@@ -143,7 +144,7 @@ class Store(Section):
 
 
 class Analysis(Section):
-    """Settings of sensitivity indices and their intervals.
+    """Settings of sensitivity indices, and of all intervals.
 
     confidence: level of the intervals. resamples: number of bootstrap resamples. failed_runs: what
     happens to a response that is missing in some runs: no index is given ("fail"), or a surrogate
@@ -153,6 +154,26 @@ class Analysis(Section):
     confidence: Annotated[Number, Field(ge=0.5, le=0.999)] = 0.95
     resamples: Annotated[Whole, Field(ge=10, le=100_000)] = 200
     failed_runs: Annotated[str, one_of("policy", ("fail", "impute"))] = "fail"
+
+
+def read_limits(known: Mapping[str, str]) -> PlainValidator:
+    """Return the reader of limits by response, in SI units.
+
+    known: units of the responses that a study may have beside its own, which the context gives.
+    """
+
+    def read(data: Any, info: ValidationInfo) -> dict[str, float]:
+        units = {**known, **(info.context or {}).get("responses", {})}
+        keys: dict[str, Any] = {name: (quantity(unit), None) for name, unit in units.items()}
+        section = create_model("Limits", __base__=Section, **keys)
+        found = section.model_validate(data, context=info.context)
+        return {name: getattr(found, name) for name in data}  # in the file's order
+
+    return PlainValidator(read)
+
+
+Limits = Annotated[Mapping[str, float], read_limits({})]
+"""Limits of the responses of a function."""
 
 
 class StudyFile(Heading):
@@ -166,6 +187,9 @@ class StudyFile(Heading):
     sampling: Annotated[Grid | Sample, PlainValidator(read_sampling)]
     responses: Annotated[tuple[str, ...], names("response", RESPONSES)] = tuple(RESPONSES)
     analyses: Annotated[tuple[str, ...], names("analysis", ANALYSES)] = tuple(ANALYSES)
+    limits: Annotated[
+        Mapping[str, float], read_limits({name: each.units for name, each in RESPONSES.items()})
+    ] = Field(default_factory=dict)
     store: Store = Field(default_factory=Store)
     analysis: Analysis | None = None
     measurements: Names = ()
@@ -194,13 +218,14 @@ class Declared:
 class StudyBase(Declared):
     """The part of a study of runs that does not depend on its solver.
 
-    responses: names of the responses of each run; analyses: names out of ANALYSES. analysis:
-    settings of sensitivity indices.
+    responses: names of the responses of each run; analyses: names out of ANALYSES. limits: by
+    response, in SI units. analysis: settings of sensitivity indices and intervals.
     """
 
     sampling: Grid | Sample
     responses: tuple[str, ...]
     analyses: tuple[str, ...]
+    limits: Mapping[str, float]
     analysis: Analysis
 
     @property

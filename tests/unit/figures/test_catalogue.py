@@ -16,9 +16,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as MplFigure
 from matplotlib.text import Text
 
+from impactlab.analysis import distribution
 from impactlab.fem3d.figures import FIGURES
 from impactlab.figures import style
 from impactlab.figures.catalogue import CATALOGUE, applicable
+from impactlab.figures.distributions import exceedance
 from impactlab.figures.record import Figure
 from impactlab.figures.samples import scatter
 from impactlab.variables import RESPONSES
@@ -72,6 +74,8 @@ EXPECTED = {
     },
     "sample_study": {
         "response_distributions",
+        "cumulative_distributions",
+        "exceedance_peak_force",
         *(f"scatter_{name}" for name in samples.ASKED),
         "sobol_indices",
         "sobol_second_order",
@@ -108,7 +112,9 @@ FEW = ["peak_force", "contact_duration", "peak_plastic_strain", "number_of_conta
 def sample_study() -> tuple[xr.Dataset, xr.Dataset]:
     """Nine parameters with long names, eight responses, failures, and every index there is."""
     runs = samples.sample(400, failures=9)
-    return runs, samples.indices(runs)
+    runs.attrs |= {"limited": "peak_force", "limits": 35e3}
+    latin = runs.assign_attrs(method="delta")
+    return runs, samples.indices(runs).merge(distribution.analysis(latin))
 
 
 @made_once
@@ -135,6 +141,8 @@ def _study(request: pytest.FixtureRequest, study: str, name: str) -> tuple[xr.Da
 def _figure(name: str, runs: xr.Dataset) -> Figure:
     if name.startswith("scatter_"):
         return scatter(name.removeprefix("scatter_"))
+    if name.startswith("exceedance_"):
+        return exceedance(name.removeprefix("exceedance_"))
     return (CATALOGUE | FIGURES)[name]
 
 

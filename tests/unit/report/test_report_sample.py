@@ -11,6 +11,7 @@ import pytest
 import samples
 import xarray as xr
 
+from impactlab.analysis import distribution
 from impactlab.analysis.numerical import NumericalFrom
 from impactlab.analysis.verdicts import flagged
 from impactlab.figures.draw import draw_all
@@ -249,3 +250,49 @@ def test_responses_and_parameters_of_another_solver(report: Any) -> None:
 )
 def test_digits_follow_the_interval(value: float, margin: float, text: str) -> None:
     assert with_margin(value, margin) == text
+
+
+def test_limits_open_the_answer_and_the_report(report: Any) -> None:
+    """Of 40 failed runs of 400, all may exceed, or none."""
+    runs = samples.sample(400, 4, failures=40)[["peak_force", "status"]]
+    limit = {"limited": "peak_force", "limits": 35e3}
+    runs = runs.assign_attrs(method="delta", responses="peak_force", **limit)
+    analysis = samples.indices(runs).merge(distribution.analysis(runs))
+    above = int((runs["peak_force"] > 35e3).sum())
+    told = f"{100 * above / 360:.0f} % ("
+    shares = f"40 of 400 draws are missing: {above / 4:.0f} % if none of them is above, "
+    shares += f"{(above + 40) / 4:.0f} % if all are)"
+    first = answers(runs, analysis)[0]
+    assert first.startswith(f"Peak force above 35 kN: {told}")
+    assert shares in first
+    assert "runs above it have larger impact velocity (distance 0." in first
+    page = report(runs, analysis)
+    assert _titles(page)[:3] == ["answer", "limits", "ranking"]
+    row = _table(page, "Probability that a response exceeds")[1]
+    assert row[:5] == ["Peak force", "35 kN", "400", "40", str(above)]
+    assert row[5].startswith(told)
+    assert _table(page, "Parameters in runs above")[1][1].endswith("larger")
+    head, row = _table(page, "Range of each response")
+    at = head.index("95th percentile")
+    found = analysis["quantile"].sel(response="peak_force", probability=0.95).item() / 1e3
+    assert row[at].startswith(f"{found:.4g}")
+    assert head[-1] == "Runs missing"
+    assert row[at].endswith("no bound") or "above" in row[at]
+
+
+@pytest.mark.parametrize(("above", "told"), [(0, "at most 0.92 %"), (400, "at least 99.08 %")])
+def test_none_or_all_above_the_limit_is_told_as_a_bound(above: int, told: str) -> None:
+    """1 - 0.025 ** (1 / 400) = 0.918 %."""
+    runs = samples.sample(400, 4)[["peak_force", "status"]]
+    limit = {"limited": "peak_force", "limits": 0.0 if above else 1e9}
+    runs = runs.assign_attrs(method="pawn", responses="peak_force", **limit)
+    words = "all" if above else "none"
+    expected = f"Peak force above {'0' if above else '10⁶'} kN: {told} ({words} of 400 draws)."
+    assert answers(runs, distribution.analysis(runs))[0] == expected
+
+
+def test_a_design_that_is_no_sample_of_the_distribution_says_so(report: Any, study: Study) -> None:
+    runs, analysis = study
+    page = report(runs.assign_attrs(method="morris"), analysis)
+    assert "There are no moments and percentiles: trajectories step" in page.text
+    assert "Median" not in _table(page, "Range of each response")[0]

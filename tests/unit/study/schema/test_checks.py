@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
 from impactlab.study.sampling.design import design
-from impactlab.variables import ANALYSES
+from impactlab.variables import ANALYSES, NO_DISTRIBUTION
 
 UNIFORM = {"distribution": "uniform", "low": 1, "high": 2}
 
@@ -110,6 +112,36 @@ def test_an_analysis_asked_for_by_name_must_be_possible(problems, read, grid, sa
     asked = {"analyses": [entry for entry in ANALYSES if entry.startswith("convergence")]}
     asked |= {"responses": ["peak_force"]}
     read(grid({"sampling.parameters": several} | asked))
+
+
+@pytest.mark.parametrize("method", NO_DISTRIBUTION)
+def test_limits_need_runs_that_are_draws(problems, sampled, grid, method):
+    number = {"morris": {"trajectories": 8}, "fast": {"samples": 128}}
+    limits = {"limits": {"peak_force": "9 kN"}}
+    study = json.loads(grid(limits) if method == "grid" else sampled(method, **number[method]))
+    ((key, said),) = problems(json.dumps(study | limits))
+    assert key == "limits"
+    assert NO_DISTRIBUTION[method] in said
+    assert "use sobol" in said
+
+
+def test_limits_are_of_responses_of_the_study_in_their_units(problems, read, sample):
+    asked = {"responses": ["peak_force", "restitution"]}
+    found = read(sample(asked | {"limits": {"restitution": "30 %", "peak_force": "9 kN"}}))
+    assert found.limits == {"restitution": 0.3, "peak_force": 9000.0}
+    attrs = design(found).attrs
+    assert dict(zip(attrs["limited"], attrs["limits"], strict=True)) == found.limits
+    wrong = {"peak_force": ("9 mm", "wrong dimension"), "impulse": (1, "choose from peak_force")}
+    wrong |= {
+        "peak_forces": (1, "did you mean 'peak_force'"),
+        "restitution": (float("nan"), "finite"),
+    }
+    for name, (limit, reason) in wrong.items():
+        ((key, said),) = problems(sample(asked | {"limits": {name: limit}}))
+        assert key == f"limits.{name}"
+        assert reason in said
+    ((key, said),) = problems(sample({"limits": {"impulse": 1}, "analyses": ["sensitivity"]}))
+    assert (key, "list it in analyses" in said) == ("limits", True)
 
 
 SOLID = {

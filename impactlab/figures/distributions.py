@@ -1,0 +1,162 @@
+"""Figures of distributions: cumulative ones with their band, and parameters beyond a limit."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+from impactlab.analysis.distribution import (
+    cumulative,
+    drawn_outputs,
+    draws,
+    limits,
+    significance,
+)
+from impactlab.analysis.sample import Sample
+from impactlab.figures import access, labels, record, responses_grid, scales, style
+from impactlab.figures.curves import spread
+from impactlab.figures.labels import display
+from impactlab.figures.measures import analysed
+from impactlab.figures.record import Figure
+from impactlab.figures.samples import along_parameters, places, ticks
+from impactlab.types import Floats
+
+_MOST = 300
+"""Largest number of steps drawn of a curve."""
+_EVEN = ("sobol", "delta", "pawn", "regression")
+"""Methods whose draws spread more evenly than random ones."""
+
+
+def spread_evenly(runs: xr.Dataset) -> str:
+    """Return the clause on intervals of draws that are no random ones; "" for others."""
+    even = runs.attrs.get("method") in _EVEN
+    return ", which is on the safe side, for the draws spread more evenly than random ones" * even
+
+
+def limited(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    """Return the responses with a limit that the analysis has."""
+    return [name for name in analysed(runs, analysis, "limit") if name in limits(runs)]
+
+
+def _cumulative_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
+    band = f"Shaded: the {access.confidence(analysis)} band of Dvoretzky, Kiefer and Wolfowitz"
+    return (
+        f"{band}, which holds the whole curve{spread_evenly(runs)}.",
+        "Dashed: the limit." if limited(runs, analysis) else "",
+        access.missing_note(runs, analysed(runs, analysis)),
+    )
+
+
+@record.figure(
+    "Cumulative distributions of the responses",
+    "Share of the independent draws of the sample with a response up to each value.",
+    lambda runs, analysis: bool(analysed(runs, analysis, "quantile")),
+    _cumulative_sentences,
+)
+def cumulative_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+    """Draw a panel per response: the curve, its band, and the limit if the study has one."""
+    names, given = analysed(runs, analysis), limits(runs)
+    figure, axes = responses_grid.panels(names, height=40)
+    level = float(analysis.attrs.get("confidence", 0.95))
+    for name, ax in axes.items():
+        unit = display(runs[name])
+        ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
+        values, share, low, high = cumulative(drawn_outputs(runs, name), level)
+        if not values.size:
+            responses_grid.empty(ax, "no finite values")
+            continue
+        some = spread(values.size, _MOST)
+        x = unit(values[some])
+        ax.fill_between(x, low[some], high[some], step="post", color="0.87", label="band")
+        ax.step(x, share[some], where="post", color=style.COLOURS[0], label="share of the draws")
+        if name in given:
+            ax.axvline(
+                float(unit(given[name])), label="_guide: limit", linestyle="--", **style.GUIDE
+            )
+        ax.set_ylim(0.0, 1.0)
+        scales.linear(ax, "xy", 4)
+    figure.supylabel("Share of the draws (–)")
+    style.legend(figure)
+    return figure
+
+
+def exceedance(response: str) -> Figure:
+    """Return the figure of each parameter in runs above the limit of a response, and in others."""
+
+    def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
+        found = analysis.sel(response=response)
+        above, total, missing = (int(np.nan_to_num(found[key])) for key in _COUNTS)
+        others = total - missing - above
+        unit = display(runs[response])
+        limit = f"{labels.number(float(unit(found['limit'])))} {unit.symbol}".strip()
+        return (
+            f"Cumulative distribution of each parameter (of words: their shares) in the {above:,} draws with a "
+            f"{labels.response(response)} above {limit}, and in the other {others:,}.",
+            "D: largest distance of the two (Kolmogorov and Smirnov); p: probability of such a "
+            "distance if the parameter does not matter. Pale: not significant at the level of the "
+            "intervals, shared among the parameters (Bonferroni).",
+            access.missing_note(runs, [response]),
+        )
+
+    @record.figure(
+        f"Parameters in runs above the limit of the {labels.response(response)}",
+        "",
+        lambda runs, analysis: (
+            response in limited(runs, analysis)
+            and bool(analysis["exceedance_distance"].sel(response=response).notnull().any())
+        ),
+        sentences,
+        f"exceedance_{response}",
+    )
+    def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+        """Draw a panel per parameter."""
+        sample = Sample.of(runs)
+        outputs, rows = drawn_outputs(runs, response), draws(sample)
+        found, least = analysis.sel(response=response), significance(analysis)
+
+        def draw(ax: Axes, column: xr.DataArray) -> None:
+            one = found.sel(varied_parameter=str(column.name))
+            distance, p = (float(one[f"exceedance_{key}"]) for key in ("distance", "p_value"))
+            _two_curves(ax, column[rows], outputs, limits(runs)[response], p < least)
+            if np.isfinite(distance):
+                small = "p < 0.001" if p < 0.001 else f"p = {labels.number(p, 2)}"
+                text, at = f"D = {distance:.2f}\n{small}", (0.04, 0.96)
+                corner = {"xycoords": "axes fraction", "va": "top"}
+                style.note(ax, text, at, (0, 0), warning=False, **corner)
+
+        return along_parameters(sample.runs, "Share of the draws (–)", 40, draw)
+
+    return plot
+
+
+_COUNTS = ("exceeding_draws", "number_of_draws", "missing_draws")
+
+
+def _two_curves(
+    ax: Axes, column: xr.DataArray, outputs: Floats, limit: float, matters: bool
+) -> None:
+    """Draw the cumulative distributions of a parameter (draws,) above the limit and below it.
+
+    Of words, whose order has no meaning, the share of each.
+    """
+    x, above, others = places(column), outputs > limit, outputs <= limit
+    if not above.any() or not others.any():
+        responses_grid.empty(ax, "all draws on one side" if (above | others).any() else "no answer")
+        return
+    kinds = {"above the limit": (above, style.COLOURS[1]), "others": (others, style.COLOURS[0])}
+    for label, (which, colour) in kinds.items():
+        if labels.words(column):
+            values, counts = np.unique(x[which], return_counts=True)
+            look = {"linestyle": "", "marker": "D"}
+            (line,) = ax.plot(values, counts / which.sum(), color=colour, label=label, **look)
+        else:
+            ordered = np.sort(x[which])
+            some = np.array(spread(ordered.size, _MOST))
+            share = (some + 1) / ordered.size
+            (line,) = ax.step(ordered[some], share, where="post", color=colour, label=label)
+        line.set_alpha(None if matters else 0.4)
+    ax.set_ylim(0.0, 1.0)
+    ticks(ax, "x", column)
+    scales.linear(ax, "y", 4)

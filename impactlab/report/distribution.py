@@ -1,0 +1,204 @@
+"""Distributions of the responses of a sample, and limits: tables, sentences and a section."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.distribution import significance
+from impactlab.figures import access, labels
+from impactlab.figures.distributions import exceedance, limited, spread_evenly
+from impactlab.figures.labels import Display, display
+from impactlab.report.page import Cell, Row, Section, Table
+
+PERCENTILES = {"5th percentile": 0.05, "Median": 0.5, "95th percentile": 0.95}
+_NAMED = 2
+"""Largest number of parameters that an answer names."""
+_LEAD = (
+    "A probability is the share of the independent draws of the sample that lie above the limit, "
+    "with the interval of Clopper and Pearson{even}. It is that of the model with these "
+    "distributions of its parameters; the error of the model is not in it."
+)
+_MISSING = (
+    " Missing answers may lie on either side of the limit: the interval reaches from the case that "
+    "none of them is above it to the case that all are."
+)
+_READING = (
+    "Distance of Kolmogorov and Smirnov between the parameter in runs above the limit and in the "
+    "others: 0 where both have the same distribution, 1 where they do not overlap (of words: half "
+    "the sum of the differences of their shares). Larger, smaller: in runs above the limit. Grey: "
+    "no significant difference at the level of the intervals, shared among the parameters "
+    "(Bonferroni)."
+)
+
+
+def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str]]:
+    """Return one entry per limit: its probability, and the parameters that lead beyond it."""
+    found = []
+    for name in limited(runs, analysis):
+        text, led = probability(analysis.sel(response=name)), _leading(analysis, name)
+        found.append(
+            (_above(runs, analysis, name), text + f"; runs above it have {led}" * bool(led))
+        )
+    return found
+
+
+def limit_note(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    """Return what the numbers of `limit_entries` are."""
+    level = access.confidence(analysis)
+    return f"Above a limit: probability and its {level} interval{spread_evenly(runs)}. "
+
+
+def probability(found: xr.Dataset) -> str:
+    """Return the probability that one response exceeds its limit, with its interval, in words.
+
+    found: the analysis of the response.
+    """
+    total, missing, above = (
+        int(np.nan_to_num(found[key]))
+        for key in ("number_of_draws", "missing_draws", "exceeding_draws")
+    )
+    low, high = (float(found[f"exceedance_{end}"]) for end in ("low", "high"))
+    if np.isnan(low):
+        return f"unknown, for none of {labels.counted(total, 'draw')} has an answer"
+    if not missing and above in (0, total):
+        bound = f"at most {_percent(high, high)}" if above == 0 else ""
+        bound = bound or f"at least {_percent(low, 1 - low)}"
+        return f"{bound} ({'all' if above else 'none'} of {labels.counted(total, 'draw')})"
+    mean, none, every = (
+        _percent(float(found[f"exceedance_{key}"]), high - low)
+        for key in ("probability", "if_none", "if_all")
+    )
+    ends = f"{_percent(low, high - low).removesuffix(' %')} to {_percent(high, high - low)}"
+    if not missing:
+        return f"{mean} ({ends})"
+    lacking = f"{missing:,} of {labels.counted(total, 'draw')} {'is' if missing == 1 else 'are'}"
+    return (
+        f"{mean} ({ends}; {lacking} missing: {none} if none of them is above, {every} if all are)"
+    )
+
+
+def _percent(share: float, width: float) -> str:
+    """Return a share in per cent, with the digits that an interval of this width leaves."""
+    decimals = int(np.clip(1 - np.floor(np.log10(100 * width)), 0, 8)) if width > 0 else 0
+    return f"{100 * share:.{decimals}f} %"
+
+
+def _above(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
+    response = labels.sentence(labels.response(name))
+    return f"{response} above {_limit(runs, analysis, name)}"
+
+
+def _limit(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
+    unit, limit = display(runs[name]), float(analysis["limit"].sel(response=name))
+    return f"{labels.number(float(unit(limit)))} {unit.symbol}".strip()
+
+
+def _leading(analysis: xr.Dataset, name: str) -> str:
+    """Return the parameters that differ most in runs above the limit; "" where none does."""
+    found = analysis.sel(response=name)
+    matters = (found["exceedance_p_value"] < significance(analysis)).values
+    distances = np.where(matters, found["exceedance_distance"].values, 0.0)
+    told = []
+    for at in np.argsort(-distances, kind="stable")[:_NAMED].tolist():
+        if matters[at]:
+            parameter = labels.parameter(str(found["varied_parameter"].values[at]))
+            told.append(f"{_direction(found, at)} {parameter} (distance {distances[at]:.2f})")
+    return labels.listing(told)
+
+
+def _direction(found: xr.Dataset, at: int) -> str:
+    return {1: "larger", -1: "smaller"}.get(int(found["exceedance_direction"][at]), "another")
+
+
+def limit_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
+    """Return the section on the limits of the study; none where it has none."""
+    if not (names := limited(runs, analysis)):
+        return []
+    gaps = bool((analysis["missing_draws"].sel(response=names) > 0).any())
+    rows: list[Row] = []
+    apart: list[Row] = []
+    for name in names:
+        found = analysis.sel(response=name)
+        counts = [
+            Cell(f"{int(np.nan_to_num(found[key])):,}", "number")
+            for key in ("number_of_draws", "missing_draws", "exceeding_draws")
+        ]
+        response = labels.sentence(labels.response(name))
+        text = Cell(probability(found), "number")
+        rows.append([response, _limit(runs, analysis, name), *counts, text])
+        if found["exceedance_distance"].notnull().any():
+            apart.append([response, *_distances(analysis, found)])
+    parameters = [
+        labels.sentence(labels.parameter(str(each))) for each in analysis["varied_parameter"].values
+    ]
+    level = access.confidence(analysis)
+    head = ["Response", "Limit", "Draws", "Missing", "Above the limit", f"Probability ({level})"]
+    tables = [Table("Probability that a response exceeds its limit", head, rows)]
+    if apart:
+        caption, head = "Parameters in runs above the limit beside the others", ["Response"]
+        tables.append(Table(caption, [*head, *parameters], apart, [_READING]))
+    lead = _LEAD.format(even=spread_evenly(runs)) + _MISSING * gaps
+    drawn = [exceedance(name).name for name in names]
+    return [Section("limits", "Limits", lead, tables=tables, figures=drawn)]
+
+
+def _distances(analysis: xr.Dataset, found: xr.Dataset) -> list[Cell]:
+    cells = []
+    for at, distance in enumerate(found["exceedance_distance"].values.tolist()):
+        matters = float(found["exceedance_p_value"][at]) < significance(analysis)
+        cells.append(
+            Cell(f"{distance:.2f}", "number" if matters else "muted", _direction(found, at))
+        )
+    return cells
+
+
+def summary(analysis: xr.Dataset, name: str, unit: Display) -> list[Cell]:
+    """Return mean, standard deviation and PERCENTILES of a response, with their intervals below."""
+    found, cells = analysis.sel(response=name), []
+    for key in ("mean", "standard_deviation"):
+        value, margin = (float(unit(found[each])) for each in (key, f"{key}_interval"))
+        cells.append(_number(value, f"± {labels.number(margin, 2)}"))
+    for at in PERCENTILES.values():
+        one = found.sel(probability=at)
+        value, low, high = (
+            float(unit(one[key])) for key in ("quantile", "quantile_low", "quantile_high")
+        )
+        cells.append(_number(value, _range(low, high)))
+    return cells
+
+
+def _number(value: float, detail: str) -> Cell:
+    if np.isnan(value):
+        return Cell("missing", "warning")
+    return Cell(labels.number(value), "number", "" if "missing" in detail else detail)
+
+
+def _range(low: float, high: float) -> str:
+    if np.isnan(low) and np.isnan(high):
+        return "no bound"
+    if np.isnan(low) or np.isnan(high):
+        return f"above {labels.number(low)}" if np.isnan(high) else f"below {labels.number(high)}"
+    return f"{labels.number(low)} to {labels.number(high)}"
+
+
+def remarks(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    """Return what the numbers of `summary` are."""
+    total, gaps = (analysis[key].max().item() for key in ("number_of_draws", "missing_draws"))
+    rows = f"the {labels.counted(int(total), 'independent draw')} of the sample"
+    told = [
+        f"Mean, standard deviation and percentiles are those of {rows}, below them their "
+        f"{access.confidence(analysis)} intervals{spread_evenly(runs)}: by Student's t, by the "
+        "fourth moment, and by order statistics."
+    ]
+    missing = (
+        "Where answers are missing, mean and standard deviation are those of the others; intervals "
+        "of percentiles allow for any value that a missing answer could have."
+    )
+    return told + [missing] * bool(gaps)
+
+
+HEADS: Sequence[str] = ("Mean", "Standard deviation", *PERCENTILES)
+"""Heads of the columns of `summary`."""
