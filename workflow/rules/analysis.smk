@@ -1,7 +1,7 @@
 # From solved runs, or the findings of checks, to figures and report.
 
 
-# Of a sample indices.csv, indices.nc and surrogate.nc come with it: no outputs, for a grid has none.
+# Of a sample indices.csv, indices.nc, distribution.csv and surrogate.nc come with it: no outputs, for a grid has none.
 rule analysis:
     input:
         code=code(*MODEL, "analysis/**/*.py"),
