@@ -49,7 +49,7 @@ def draws(sample: Sample) -> NDArray[np.int64]:
 
 def drawn_outputs(runs: xr.Dataset, response: str) -> Floats:
     """Return a response of the draws, (draws,), in SI units, NaN where it is missing."""
-    sample = Sample.of(runs)
+    sample = Sample.of(runs.assign_attrs(responses=response))  # whatever else they lack
     return np.asarray(usable(sample.runs, response).values[0][draws(sample)])
 
 

@@ -92,8 +92,9 @@ def exceedance(response: str) -> Figure:
         unit = display(runs[response])
         limit = f"{labels.number(float(unit(found['limit'])))} {unit.symbol}".strip()
         return (
-            f"Cumulative distribution of each parameter (of words: their shares) in the {above:,} draws with a "
-            f"{labels.response(response)} above {limit}, and in the other {others:,}.",
+            "Cumulative distribution of each parameter, of words the share of each, in the "
+            f"{above:,} draws with a {labels.response(response)} above {limit}, and in the other "
+            f"{others:,}.",
             "D: largest distance of the two (Kolmogorov and Smirnov); p: probability of such a "
             "distance if the parameter does not matter. Pale: not significant at the level of the "
             "intervals, shared among the parameters (Bonferroni).",

@@ -65,3 +65,20 @@ def test_without_a_draw_on_either_side_there_is_no_figure(study: Study) -> None:
     runs, _ = study
     runs = runs.assign_attrs(limits=1e6)
     assert "exceedance_peak_force" not in applicable(runs, distribution.analysis(runs))
+
+
+def test_words_have_shares(study: Study) -> None:
+    runs, _ = study
+    words = np.where(runs["peak_force"] > LIMIT, "mjg", "hertz").astype("U7")
+    words[:40] = "stronge"
+    given = {"distribution": "choice", "values": ["stronge", "mjg", "hertz"]}
+    runs = runs.drop_vars("contact").assign_coords(contact=("run", words, given))
+    runs.attrs["varied"] = ["velocity", "contact"]
+    analysis = distribution.analysis(runs)
+    figure = applicable(runs, analysis)["exceedance_peak_force"].plot(runs, analysis)
+    above, others = list(data.drawn(figure))[2:]
+    drawn = runs["peak_force"].values > LIMIT
+    expected = [(words[drawn] == word).mean() for word in ("stronge", "mjg")]
+    np.testing.assert_allclose(above.y, expected)
+    assert others.x.tolist() == [0.0, 2.0]
+    assert [text.get_text() for text in figure.axes[1].get_xticklabels()][2] == "hertz"
