@@ -150,8 +150,7 @@ def _two_curves(
     for label, (which, colour) in kinds.items():
         if labels.words(column):
             values, counts = np.unique(x[which], return_counts=True)
-            look = {"linestyle": "", "marker": "D"}
-            (line,) = ax.plot(values, counts / which.sum(), color=colour, label=label, **look)
+            (line,) = ax.plot(values, counts / which.sum(), "D", color=colour, label=label)
         else:
             ordered = np.sort(x[which])
             some = np.array(spread(ordered.size, _MOST))
