@@ -135,7 +135,7 @@ def test_refused_beside_words(problems, text, given, key, words):
 
 def test_runs_are_those_of_the_words(text, tmp_path):
     """Against the same impacts one by one, and stored words against drawn ones."""
-    models = {"distribution": "choice", "values": ["elastic", "rigid"]}
+    models = {"distribution": "choice", "values": ["euler_bernoulli", "timoshenko"]}
     study = il.Study._of(
         study_of_text("some", text("pawn", parameters={"beam_model": models}, samples=80)), tmp_path
     )
