@@ -149,7 +149,7 @@ _VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
     "exceedance_p_value": (
         ("varied_parameter",),
         "1",
-        "probability of such a distance or a larger one for a parameter that does not matter",
+        "probability of this distance, or of more, if the parameter does not matter",
     ),
 }
 """By name: dimensions beside `response`, units ("": those of the response), meaning."""

@@ -253,7 +253,7 @@ def test_digits_follow_the_interval(value: float, margin: float, text: str) -> N
 
 
 def test_limits_open_the_answer_and_the_report(report: Any) -> None:
-    """Of 40 failed runs of 400, all may exceed, or none."""
+    """The 40 failed runs of 400 may all exceed it, or none."""
     runs = samples.sample(400, 4, failures=40)[["peak_force", "status"]]
     limit = {"limited": "peak_force", "limits": 35e3}
     runs = runs.assign_attrs(method="delta", responses="peak_force", **limit)
