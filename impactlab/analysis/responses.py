@@ -15,6 +15,15 @@ def listed(runs: xr.Dataset, attribute: str) -> list[str]:
     return [str(entry) for entry in np.atleast_1d(runs.attrs[attribute])]
 
 
+def correlations(runs: xr.Dataset) -> list[tuple[str, str, float]]:
+    """Return pairs of parameters and the rank correlation that they were drawn with."""
+    if "correlated" not in runs.attrs:
+        return []
+    ranks = np.atleast_1d(runs.attrs["rank_correlations"]).tolist()
+    pairs = [entry.split() for entry in listed(runs, "correlated")]
+    return [(one, other, float(rank)) for (one, other), rank in zip(pairs, ranks, strict=True)]
+
+
 def usable(runs: xr.Dataset, response: str | None = None) -> xr.DataArray:
     """Return the requested responses in SI units on (response, *design dims).
 

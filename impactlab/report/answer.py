@@ -17,7 +17,7 @@ from impactlab.report import measured
 from impactlab.report.cautions import beside
 from impactlab.report.convergence import ORDERED, Needs, finest, needed
 from impactlab.report.distribution import limit_entries, limit_note
-from impactlab.report.sensitivity import in_units, share, uncertainty, with_margin
+from impactlab.report.sensitivity import in_units, share, shared, uncertainty, with_margin
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 
@@ -63,6 +63,8 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
         analysis = analyse(runs)
     lines, _ = entries(runs, analysis)
     told = ["; ".join(": ".join(entry) for entry in line) + "." for line in lines]
+    if told and (correlated := shared(runs)):
+        told[0] += f" {correlated}"
     return told or ["There is no answer in these runs."]
 
 
@@ -74,7 +76,7 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
     elif families := [one for one in RANKED if one.given(analysis) and analysed(runs, analysis)]:
         found, kind = _ranking(runs, analysis, families[0]), measures.ranking(families[0]).words
         note = f"{families[0].title}, {kind}, ± the half-width of the"
-        note += f" {access.confidence(analysis)} interval."
+        note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
     elif needs := needed(runs, analysis):
         found = _convergence(analysis, needs)
         note = "± the difference to the finest grid and the numerical uncertainty of that grid."

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.distribution import significance
+from impactlab.analysis.responses import correlations
 from impactlab.figures import access, labels
 from impactlab.figures.distributions import exceedance, limited, spread_evenly
 from impactlab.figures.labels import Display, display
@@ -32,6 +33,11 @@ _READING = (
     "no significant difference at the level of the intervals, shared among the parameters "
     "(Bonferroni)."
 )
+
+
+def _of_correlated(runs: xr.Dataset) -> str:
+    words = " Of correlated parameters each distance includes what one shares with the others."
+    return words * bool(correlations(runs))
 
 
 def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str]]:
@@ -139,7 +145,9 @@ def limit_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     tables = [Table("Probability that a response exceeds its limit", head, rows)]
     if apart:
         caption, head = "Parameters in runs above the limit beside the others", ["Response"]
-        tables.append(Table(caption, [*head, *parameters], apart, [_READING]))
+        tables.append(
+            Table(caption, [*head, *parameters], apart, [_READING + _of_correlated(runs)])
+        )
     lead = _LEAD.format(even=spread_evenly(runs)) + _MISSING * gaps
     drawn = [exceedance(name).name for name in names]
     return [Section("limits", "Limits", lead, tables=tables, figures=drawn)]

@@ -13,6 +13,7 @@ from itertools import combinations
 import numpy as np
 import xarray as xr
 
+from impactlab.analysis.responses import correlations
 from impactlab.figures import access, labels, measures
 from impactlab.figures.labels import display
 from impactlab.figures.measures import MORRIS, RANKED, SOBOL, SURROGATE, Family, Index, analysed
@@ -59,8 +60,8 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
     if families := [family for family in RANKED if family.given(analysis)]:
         lead = (
             "A rank is a range where intervals overlap; they are widened by the numerical error "
-            "where it is known."
-        )
+            f"where it is known. {shared(runs)}"
+        ).rstrip()
         ranks = [_ranks(runs, analysis, families[0])]
         yield Section("ranking", "Ranking", lead, tables=ranks, file="indices.csv")
     yield from _of_sobol(runs, analysis)
@@ -75,10 +76,28 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             )
     if "surrogate_q2" in analysis:
         yield surrogate(runs, analysis)
+    elif correlations(runs):
+        lead = "There is none, nor an explorer: its terms assume independent parameters."
+        yield Section("surrogate", "Surrogate", lead)
     elif drawn := [name for name in access.varied(runs) if labels.words(runs[name])]:
         listed = labels.listing([labels.parameter(name) for name in drawn])
         lead = f"There is none, nor an explorer: no polynomial follows words ({listed})."
         yield Section("surrogate", "Surrogate", lead)
+
+
+def shared(runs: xr.Dataset) -> str:
+    """Return a sentence on what correlations mean for the indices; "" where there are none."""
+    if not (pairs := correlations(runs)):
+        return ""
+    joined = dict.fromkeys(name for one, other, _ in pairs for name in (one, other))
+    meaning = "the index of each includes what it shares with the others, and indices overlap"
+    if runs.attrs.get("method") == "regression":
+        meaning = (
+            "a coefficient is the effect of one while the others are held, and squares of "
+            "coefficients are no shares"
+        )
+    listed = labels.listing([labels.parameter(name) for name in joined])
+    return f"The inputs are correlated ({listed}): {meaning}."
 
 
 def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy  # its stats are loaded when first used
 import xarray as xr
 
 from impactlab import wings
+from impactlab.analysis.responses import correlations
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, design_dims, is_sample, names, responses, usable, varied
 from impactlab.figures.labels import display
@@ -150,9 +152,21 @@ def _inputs(runs: xr.Dataset) -> Section:
             fixed.append([label, text, Cell(name, "muted")])
     head = ["Parameter", "Values", "Number", *["Group"] * bool(groups), "Key"]
     tables = [Table("Varied parameters", head, changed)] if changed else []
+    tables += [_correlations(runs, pairs)] if (pairs := correlations(runs)) else []
     caption = "Parameters that are the same in every run"
     folded = [Table(caption, ["Parameter", "Value", "Key"], fixed)] if fixed else []
     return Section("runs", "What was varied", tables=tables, folded=folded)
+
+
+def _correlations(runs: xr.Dataset, pairs: list[tuple[str, str, float]]) -> Table:
+    """Return one row per pair of correlated parameters: as stated, and as found in the sample."""
+    rows: list[Row] = []
+    for one, other, stated in pairs:
+        found = float(scipy.stats.spearmanr(runs[one].values, runs[other].values).statistic)
+        pair = labels.sentence(f"{labels.parameter(one)} and {labels.parameter(other)}")
+        rows.append([pair, *(Cell(f"{rank:.2f}", "number") for rank in (stated, found))])
+    caption = "Rank correlations, by a Gaussian copula; all other pairs vary independently"
+    return Table(caption, ["Parameters", "As stated", "In the sample"], rows)
 
 
 def _described(runs: xr.Dataset, name: str) -> xr.DataArray:

@@ -21,6 +21,7 @@ from impactlab.study import steps
 from impactlab.study.engine import Engine
 from impactlab.study.errors import Problem, StudyError, unknown
 from impactlab.study.execute import execute
+from impactlab.study.sampling.samples import Latin
 from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.files import of_impacts, study_of_text
 from impactlab.study.schema.measurements import Given, read_measurements
@@ -64,6 +65,9 @@ def calibrate(
             "weighed against each other)"
         )
         raise StudyError(Problem(str(study.path), f"sampling.parameters.{words[0]}", reason))
+    if isinstance(study.sampling, Latin) and study.sampling.correlations:
+        reason = f"{study.sampling.no_surrogate}: take them out"
+        raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
     models = list(_models(study, folder, laws))  # all of them right before one is solved
     runs = {name: _solved(each, where, engine) for name, each, where in models}
     first = next(iter(runs.values()))

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.responses import labels, listed, usable
+from impactlab.analysis.responses import correlations, labels, listed, usable
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity import delta, fast, morris, pawn, regression, sobol, verdict
 from impactlab.analysis.sensitivity.method import BY_SAMPLES, PAIR, Index, SensitivityMethod
@@ -127,10 +127,11 @@ def imputed(outputs: Floats, sample: Sample, response: str) -> Floats | None:
     gaps = np.isnan(outputs)
     if not gaps.any() or sample.settings.get("failed_runs") != "impute":
         return outputs
-    if sample.words:
+    over = f"words ({', '.join(sample.words)})" if sample.words else ""
+    if over := over or "correlated parameters" * bool(correlations(sample.runs)):
         raise ValueError(
-            f"{sample.study}: no surrogate is fitted over words ({', '.join(sample.words)}), so it "
-            "cannot supply values: set failed_runs: fail"
+            f"{sample.study}: no surrogate is fitted over {over}, so it cannot supply values: set "
+            "failed_runs: fail"
         )
     enough = np.count_nonzero(~gaps) >= FEWEST_PER_PARAMETER * len(sample.parameters)
     if not enough or np.count_nonzero(gaps) > MOST_IMPUTED * outputs.size:

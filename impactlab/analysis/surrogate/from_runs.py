@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from impactlab.analysis.responses import labels, listed, usable
+from impactlab.analysis.responses import correlations, labels, listed, usable
 from impactlab.analysis.sample import Sample
 from impactlab.analysis.surrogate.chaos import drawn, fewest_runs, fit, indices, influence
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, distinct, flagged
@@ -27,10 +27,14 @@ _LENGTHS = {"fast": "samples"}
 
 
 def applies(runs: xr.Dataset) -> bool:
-    """Return True if the runs are a sample, by any method, with distributions of parameters."""
-    return "run" in runs.dims and all(
-        name in runs.coords and runs[name].attrs.get("distribution") in ARGUMENTS
-        for name in listed(runs, "varied")
+    """Return True if the runs are a sample of independent numbers with distributions."""
+    return (
+        "run" in runs.dims
+        and not correlations(runs)
+        and all(
+            name in runs.coords and runs[name].attrs.get("distribution") in ARGUMENTS
+            for name in listed(runs, "varied")
+        )
     )
 
 

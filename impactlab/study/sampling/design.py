@@ -16,7 +16,7 @@ from impactlab.analysis.responses import listed
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.samples import Sobol
+from impactlab.study.sampling.samples import Latin, Sobol
 from impactlab.study.sampling.sections import Grouped
 from impactlab.study.schema.checks import has_solid_runs
 from impactlab.study.schema.files import study_of_text
@@ -127,6 +127,9 @@ def _common_attributes(study: StudyBase) -> dict[str, Any]:
         attrs |= {"limited": list(study.limits), "limits": list(study.limits.values())}
     if isinstance(sampling, Grouped) and sampling.groups:
         attrs["groups"] = list(sampling.group_of.values())
+    if isinstance(sampling, Latin) and sampling.correlations:
+        attrs["correlated"] = [f"{one} {other}" for one, other, _ in sampling.correlations]
+        attrs["rank_correlations"] = [rank for *_, rank in sampling.correlations]
     if isinstance(sampling, Sobol) and (until := sampling.until):
         attrs |= {"until_interval": until.interval, "until_runs": until.runs}
         attrs |= {"until_responses": list(until.responses)} if until.responses else {}

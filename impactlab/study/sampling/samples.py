@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, Field, StrictBool, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, StrictStr, model_validator
 
+from impactlab.study.errors import unknown
+from impactlab.study.sampling.copula import contradicting, correlated, matrix
 from impactlab.study.sampling.sections import MOST_RUNS, Grouped, Sample
 from impactlab.study.schema.section import Names, Number, Section, Whole, at_key, requires
 from impactlab.types import Floats
@@ -167,14 +169,28 @@ class Fast(Sample):
         return self.by_salib("fast_sampler", self.samples, "dummy", M=self.harmonics)[:, :-1]
 
 
-class Latin(Sample):
-    """Latin hypercube: the one sample of delta, PAWN and regression. samples: number of runs.
+def _check_triples(data: Any) -> Any:
+    if not isinstance(data, list) or not all(isinstance(e, list) and len(e) == 3 for e in data):
+        raise ValueError("expected a list of entries such as [beam_depth, beam_width, 0.5]")
+    return data
 
-    Raises ValueError where too few runs draw a word to tell the distribution of a response.
+
+class Latin(Sample):
+    """Latin hypercube: the one sample of delta, PAWN and regression.
+
+    samples: number of runs. correlations: two varied numbers and their rank correlation (Spearman);
+    a Gaussian copula joins them.
+
+    Raises ValueError where too few runs draw a word to tell the distribution of a response, and
+    for correlations that no sample has.
     """
 
     method: Literal["delta", "pawn", "regression"]
     samples: Annotated[Whole, Field(ge=64, le=MOST_RUNS)]
+    correlations: Annotated[
+        tuple[tuple[StrictStr, StrictStr, Annotated[Number, Field(gt=-1, lt=1)]], ...],
+        BeforeValidator(_check_triples),
+    ] = ()
 
     @property
     def runs(self) -> int:
@@ -195,6 +211,48 @@ class Latin(Sample):
                 raise at_key(f"parameters.{name}", reason)
         return self
 
+    @model_validator(mode="after")
+    def _check_correlations(self) -> Self:
+        seen: set[frozenset[str]] = set()
+        for at, (*pair, _) in enumerate(self.correlations):
+            for end, name in enumerate(pair):
+                if name in self.fixed:
+                    reason = "is fixed, so nothing correlates with it: take the entry out"
+                elif name in self.words:
+                    reason = "takes words, which have no order to correlate: take the entry out"
+                elif name not in self.varied:
+                    reason = unknown("varied parameter", name, self.varied)
+                elif end and name == pair[0]:
+                    reason = "is named twice: name two different parameters"
+                else:
+                    continue
+                raise at_key(f"correlations.{at}.{end}", reason)
+            if frozenset(pair) in seen:
+                raise at_key(f"correlations.{at}", "is given before: state each pair once")
+            seen.add(frozenset(pair))
+        if wrong := contradicting(list(self.varied), self.correlations):
+            inside = [each for each in self.correlations if {*each[:2]} <= {*wrong}]
+            listed = ", ".join(f"{one} with {other} {rank:g}" for one, other, rank in inside)
+            reason = (
+                f"contradict each other ({listed}; pairs that are not listed have 0): the matrix "
+                f"of {', '.join(wrong)} is not positive definite: bring them closer to 0, or state "
+                "the pairs left out"
+            )
+            raise at_key("correlations", reason)
+        return self
+
+    @property
+    def no_surrogate(self) -> str:
+        """The reason why no surrogate is fitted to the runs; "" where one is."""
+        reason = "no surrogate is fitted over correlated parameters: its terms assume independence"
+        return reason if self.correlations else super().no_surrogate
+
     def draws(self) -> Floats:
-        """Draw one value in each of equal strata of every parameter, whatever the method."""
-        return self.by_salib("latin", self.samples)
+        """Draw one value in each of equal strata of every parameter, whatever the method.
+
+        Correlations change the order of these values alone.
+        """
+        unit = self.by_salib("latin", self.samples)
+        if not self.correlations:
+            return unit
+        return correlated(unit, matrix(list(self.varied), self.correlations))

@@ -80,6 +80,11 @@ class Sampling(Section):
         """Names of the parameters that are drawn among words."""
         return [name for name, each in self.parameters.items() if isinstance(each, Choice)]
 
+    @property
+    def no_surrogate(self) -> str:
+        """The reason why no surrogate is fitted to the runs; "" where one is."""
+        return "no surrogate is fitted over words, which have no order" if self.words else ""
+
     @abstractmethod
     def bounds(self) -> dict[str, tuple[Value, ...]]:
         """Return the least and greatest value of each bounded parameter, or its words."""
@@ -106,7 +111,7 @@ class Sampling(Section):
 
 
 class Sample(Sampling):
-    """Draws of two or more independent parameters.
+    """Draws of two or more parameters.
 
     seed: equal seeds give equal draws; 0 is a seed like any other. parameters: a distribution, a
     choice of words or one fixed value each.
@@ -156,7 +161,7 @@ class Sample(Sampling):
     @property
     def settings(self) -> dict[str, Any]:
         """Other keys of the section: the attributes of the design that describe its draws."""
-        keys = self.model_dump(exclude={"method", "parameters", "groups", "until"})
+        keys = self.model_dump(exclude={"method", "parameters", "groups", "until", "correlations"})
         return {key: int(value) for key, value in keys.items()}
 
     def bounds(self) -> dict[str, tuple[Value, ...]]:

@@ -26,7 +26,6 @@ Reasons = Iterator[tuple[str, str]]
 
 _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
 """Parameters that move the places at which profiles are given."""
-NO_SURROGATE = "no surrogate is fitted over words, which have no order"
 _TAILS = np.array([1e-3, 1 - 1e-3])
 
 
@@ -111,10 +110,11 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
     for name in file.analyses if file.analyses != tuple(ANALYSES) else ():
         if not possible[name]:
             yield "analyses", f"{name} needs {ANALYSES[name]}: take it out, or change the sampling"
-        elif name == "surrogate" and file.sampling.words:
-            yield "analyses", f"{NO_SURROGATE}: take out surrogate"
-    if file.analysis is not None and file.analysis.failed_runs == "impute" and file.sampling.words:
-        yield "analysis.failed_runs", f"{NO_SURROGATE}: set failed_runs: fail"
+        elif name == "surrogate" and (reason := file.sampling.no_surrogate):
+            yield "analyses", f"{reason}: take out surrogate"
+    imputed = file.analysis is not None and file.analysis.failed_runs == "impute"
+    if imputed and (reason := file.sampling.no_surrogate):
+        yield "analysis.failed_runs", f"{reason}: set failed_runs: fail"
 
 
 def limit_reasons(

@@ -16,13 +16,7 @@ from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.checks import (
-    CHECKS,
-    NO_SURROGATE,
-    has_solid_runs,
-    limit_reasons,
-    values_of,
-)
+from impactlab.study.schema.checks import CHECKS, has_solid_runs, limit_reasons, values_of
 from impactlab.study.schema.section import Heading, Names, names, validated
 from impactlab.study.schema.study import (
     Analysis,
@@ -240,8 +234,8 @@ def _own_function_study(source: Source, key: str) -> FunctionStudy:
     responses = [str(name) for name in given] if isinstance(given, list) else ["value"]
     units = _units(dict.fromkeys(responses, key))
     file = validated(_OwnFunctionFile, source.data, path, parameters, units)
-    if file.sampling.words and file.analysis.failed_runs == "impute":
-        reason = f"{NO_SURROGATE}: set failed_runs: fail"
+    if (reason := file.sampling.no_surrogate) and file.analysis.failed_runs == "impute":
+        reason += ": set failed_runs: fail"
         raise StudyError(Problem(path, "analysis.failed_runs", reason))
     return _of_function(source, file, file.responses)
 

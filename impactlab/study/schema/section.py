@@ -141,6 +141,7 @@ _WORDS = {
     "missing": "is required",
     "greater_than": "must be above {gt:,}",
     "greater_than_equal": "must be at least {ge:,}",
+    "less_than": "must be below {lt:,}",
     "less_than_equal": "must be at most {le:,}",
     "string_type": "expected text: put it in quotes",
     "bool_type": "expected true or false",
@@ -152,9 +153,10 @@ _WORDS = {
 """Messages for pydantic's types of error, with its numbers; any other keeps its own message."""
 _NOT_HERE = {
     r".*(correlat|covarian|copula).*": (
-        "correlated parameters are not possible, because the indices divide the variance among "
-        "independent parameters: vary the quantities that they depend on, give them one index "
-        "together (groups), or fix all but one ({distribution: fixed, value: ...})"
+        "parameters correlate by the key correlations of the section sampling with method: delta, "
+        "pawn or regression alone; Sobol, Morris and FAST indices assume independent parameters: "
+        "for these vary the quantities that they depend on, give them one index together "
+        "(groups), or fix all but one ({distribution: fixed, value: ...})"
     ),
     "groups?": "groups belong to the section sampling with method: sobol or morris",
     "until": "belongs to the section sampling with method: sobol",
@@ -192,7 +194,8 @@ def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]])
     parent, present, value = _value_at(data, path)
     if kind == "extra_forbidden":
         looked_for = (say for like, say in _NOT_HERE.items() if re.fullmatch(like, str(path[-1])))
-        reason = next(looked_for, None) or unknown("key", path[-1], keys[id(parent)])
+        other = unknown("key", path[-1], keys[id(parent)])
+        reason = other if "correlations" in keys[id(parent)] else next(looked_for, None) or other
     elif kind == "value_error":
         reason = str(context["error"])
     else:

@@ -206,36 +206,39 @@ class Fast(_Sample):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Delta(_Sample):
+class _Latin(_Sample):
+    samples: int
+    correlations: Sequence[tuple[str, str, float]] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Delta(_Latin):
     """A Latin hypercube for Borgonovo's delta; `samples` runs.
+
+    correlations: two parameters and their rank correlation each, `[("beam_depth", "velocity",
+    0.5)]`; by default all vary independently.
 
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.Delta(samples=128, parameters={"velocity": speed, "beam_depth": depth})
     """
 
-    samples: int
-
 
 @dataclass(frozen=True, kw_only=True)
-class Pawn(_Sample):
-    """A Latin hypercube for PAWN indices; `samples` runs.
+class Pawn(_Latin):
+    """A Latin hypercube for PAWN indices; `samples` runs. correlations: as for Delta.
 
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.Pawn(samples=128, parameters={"velocity": speed, "beam_depth": depth})
     """
 
-    samples: int
-
 
 @dataclass(frozen=True, kw_only=True)
-class Regression(_Sample):
-    """A Latin hypercube for regression coefficients; `samples` runs.
+class Regression(_Latin):
+    """A Latin hypercube for regression coefficients; `samples` runs. correlations: as for Delta.
 
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.Regression(samples=128, parameters={"velocity": speed, "beam_depth": depth})
     """
-
-    samples: int
 
 
 def plain(value: Any) -> Any:
