@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import samples
 import xarray as xr
+from scipy.stats import spearmanr
 
 from impactlab.analysis import distribution
 from impactlab.analysis.numerical import NumericalFrom
@@ -83,6 +84,20 @@ def test_words_have_means_and_no_surrogate(report: Any, study: Study) -> None:
     varied = _table(page, "Varied parameters")
     assert varied[-1][:2] == ["Contact law", "choice: mjg 75 %, brake 25 %"]
     assert "no polynomial follows words (contact law)" in page.text
+
+
+def test_correlated_inputs_are_stated(report: Any, study: Study) -> None:
+    runs, analysis = study
+    first, second = runs.attrs["varied"][:2]
+    runs = runs.assign_attrs(method="delta", rank_correlations=0.5, correlated=f"{first} {second}")
+    found = spearmanr(runs[first], runs[second]).statistic
+    page = report(runs, analysis[["delta", "delta_interval", "sensitivity_verdict"]])
+    (_, row) = _table(page, "Rank correlations, by a Gaussian copula")
+    assert row[1:] == ["0.50", f"{found:.2f}"]
+    meaning = "the index of each includes what it shares with the others"
+    assert page.text.count("The inputs are correlated (") == page.text.count(meaning) == 2
+    assert meaning in answers(runs, analysis[["delta", "delta_interval"]])[0]
+    assert "its terms assume independent parameters" in page.text
 
 
 def test_figures_are_numbered_as_they_stand(study: Study, tmp_path: Path, page: Any) -> None:

@@ -130,7 +130,7 @@ def test_impossible_correlations_name_those_that_contradict(problem):
 
 
 def test_a_matrix_of_ranks_may_be_possible_where_its_copula_is_not():
-    """Of three ranks -r, the ranks allow r = 1/2; normal variables, r = 6/π asin(1/4) = 0.483."""
+    """Ranks allow three times -1/2; three normal variables end at -6/π asin(1/4) = -0.483."""
     for rank, none in ((-0.482, True), (-0.484, False)):
         pairs = [("a", "b", rank), ("b", "c", rank), ("a", "c", rank)]
         assert (contradicting("abcd", pairs) == []) is none
@@ -138,14 +138,8 @@ def test_a_matrix_of_ranks_may_be_possible_where_its_copula_is_not():
 
 @pytest.mark.parametrize("method", METHODS.keys() - {"delta", "pawn", "regression"})
 def test_other_methods_refuse_with_the_reason(problem, method):
-    numbers = (
-        {name: [1.0, 2.0] for name in ("velocity", "gravity")}
-        if method == "grid"
-        else {
-            name: {"distribution": "uniform", "low": 1, "high": 2}
-            for name in ("velocity", "gravity")
-        }
-    )
+    uniform = {"distribution": "uniform", "low": 1, "high": 2}
+    numbers = dict.fromkeys(("velocity", "gravity"), [1, 2] if method == "grid" else uniform)
     given = [["velocity", "gravity", 0.5]]
     section = {"method": method, "correlations": given, "parameters": numbers}
     where, said = problem(study={"sampling": section | OWN.get(method, {})})
@@ -183,9 +177,10 @@ def test_indices_of_a_linear_model_are_known(sample, tmp_path, monkeypatch):
     study = il.Study(
         title="Correlated",
         function=model,
-        analysis={"resamples": 40},
+        analysis={"resamples": 20},
         sampling=sample(
             samples=1000,
+            seed=2,
             parameters={"x": normal, "y": normal, "idle": normal},
             correlations=[("x", "y", RANK), ("y", "idle", RANK)],
         ),
@@ -197,14 +192,12 @@ def test_indices_of_a_linear_model_are_known(sample, tmp_path, monkeypatch):
         slopes = [1 + 2 * LINEAR, 2 + LINEAR, 2 * LINEAR]
         name, exact = "delta_first_order", np.square(slopes) / variance
         assert exact.sum() > 1
+        tolerance = 0.1  # three standard errors, and the bias of few classes
     else:
         name, exact = "regression", np.array([*SLOPES, 0]) / np.sqrt(variance)
+        tolerance = 0.03
     found = indices.isel(response=0)
-    assert (abs(found[name] - exact) < found[f"{name}_interval"] + 1e-9).all()
+    np.testing.assert_allclose(found[name], exact, atol=tolerance)
     assert found["sensitivity_verdict"] == 0
     assert not any(str(key).startswith("surrogate") for key in indices)
     assert "The inputs are correlated (x, y and idle): " in il.answers(runs, indices)[0]
-    study.report("report.html")
-    page = (tmp_path / "report.html").read_text("utf-8")
-    assert page.count("The inputs are correlated (x, y and idle): ") == 2
-    assert "Rank correlations, by a Gaussian copula" in page
