@@ -193,9 +193,13 @@ def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]])
     path = [*line["loc"], *context["key"].split(".")] if kind == "at_key" else [*line["loc"]]
     parent, present, value = _value_at(data, path)
     if kind == "extra_forbidden":
-        looked_for = (say for like, say in _NOT_HERE.items() if re.fullmatch(like, str(path[-1])))
-        other = unknown("key", path[-1], keys[id(parent)])
-        reason = other if "correlations" in keys[id(parent)] else next(looked_for, None) or other
+        here, key = keys[id(parent)], str(path[-1])
+        elsewhere = (
+            say
+            for like, say in _NOT_HERE.items()
+            if re.fullmatch(like, key) and not any(re.fullmatch(like, own) for own in here)
+        )
+        reason = next(elsewhere, None) or unknown("key", path[-1], here)
     elif kind == "value_error":
         reason = str(context["error"])
     else:

@@ -118,6 +118,12 @@ def test_a_mistake_is_one_problem_at_its_key(problem, given, key, words):
     assert words in said
 
 
+def test_a_misspelt_key_is_told_the_right_one(problem):
+    where, said = problem(study={"sampling": PAWN | {"correlation": GIVEN}})
+    assert where == "correlation"
+    assert "did you mean 'correlations'?" in said
+
+
 def test_impossible_correlations_name_those_that_contradict(problem):
     follows = [["velocity", "gravity", 0.3]]
     for last, others in ((-0.9, 1), (None, 0)):  # left out: 0, which is as impossible
