@@ -110,11 +110,18 @@ sampling:
 """
 
 
-def test_words_are_refused_before_a_run_is_solved(tmp_path):
-    given = {"kind": il.Choice(["soft", "hard"]), "rate": il.Uniform(0, 1)}
-    sampling = il.Pawn(samples=100, parameters=given)
+@pytest.mark.parametrize(
+    ("kind", "joined", "words"),
+    [
+        (il.Choice(["soft", "hard"]), None, "kind: draws words, and no surrogate is fitted"),
+        (il.Uniform(0, 1), [("kind", "rate", 0.5)], "correlations: no surrogate is fitted over"),
+    ],
+)
+def test_what_has_no_surrogate_is_refused_before_a_run_is_solved(tmp_path, kind, joined, words):
+    given = {"kind": kind, "rate": il.Uniform(0, 1)}
+    sampling = il.Pawn(samples=100, parameters=given, correlations=joined)
     study = il.Study(title="Words", function=decay, sampling=sampling, results=tmp_path)
-    with pytest.raises(il.StudyError, match="kind: draws words, and no surrogate is fitted"):
+    with pytest.raises(il.StudyError, match=words):
         il.calibrate(study, values(), workers=1)
     assert study.status().done == 0
 
