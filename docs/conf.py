@@ -34,6 +34,7 @@ nb_execution_timeout = 240
 nb_execution_raise_on_error = True
 nb_execution_in_temp = True
 nb_merge_streams = True
+os.environ["IMPACTLAB_DOCS"] = str(Path(__file__).parent)  # where notebooks find files of docs
 os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")
 
 autodoc_member_order = "bysource"
