@@ -36,7 +36,7 @@ ANSWERS = (
     convergence.element_size_convergence,
     convergence.points_convergence,
     convergence.convergence_cost,
-    samples.response_distributions,
+    distributions.response_distributions,
     distributions.cumulative_distributions,
 )
 INDICES = (

@@ -1,4 +1,4 @@
-"""Figures of a sample: distributions, scatter plots, tests of surrogates, and where runs fail."""
+"""Figures of a sample: scatter plots, tests of surrogates, and where runs fail."""
 
 from __future__ import annotations
 
@@ -14,19 +14,14 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FixedFormatter
 from numpy.typing import NDArray
 
-from impactlab.analysis.verdicts import ROUND_OFF
 from impactlab.figures import access, labels, record, responses_grid, scales, style
-from impactlab.figures.access import is_sample, responses, usable, varied
+from impactlab.figures.access import is_sample, usable, varied
 from impactlab.figures.curves import spread
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.record import Figure
 from impactlab.types import Floats
 
-_FEW = 10
-"""Number of distinct values up to which each has a bar."""
-_MOSTLY = 0.5
-"""Share of the runs from which on a common value is left out, as it would hide the rest."""
 _WARNING = style.COLOURS[1]
 _SHOWN = 2000
 """Largest number of runs drawn as points; the mean is over all runs."""
@@ -49,76 +44,6 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "good": {"color": "0.65", "marker": ".", "markersize": 2.0, "markeredgewidth": 0.0},
     "failed": {"color": _WARNING, "marker": "x", "markersize": 3.0, "markeredgewidth": 0.8},
 }
-
-
-@record.figure(
-    "Distributions of the responses",
-    "Histograms of the responses over all runs of the sample.",
-    lambda runs, analysis: is_sample(runs) and bool(responses(runs)),
-    lambda runs, analysis: (
-        "Line: median; shaded: from the 5th to the 95th percentile of the independent draws."
-        * ("quantile" in analysis),
-        *_jumps(runs),
-        access.missing_note(runs, responses(runs)),
-    ),
-)
-def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
-    """Draw a panel per response, of the runs that have it."""
-    figure, axes = responses_grid.panels(responses(runs), height=40)
-    for name, ax in axes.items():
-        values, label = responses_grid.shown(runs, name)
-        ax.set_title(label, loc="left")
-        percentiles = None
-        if analysed(runs, analysis, "quantile") and access.known(analysis, name):
-            found = analysis["quantile"].sel(response=name, probability=[0.05, 0.5, 0.95])
-            percentiles = display(usable(runs, name))(found)
-        _distribution(ax, values.values[np.isfinite(values.values)], percentiles)
-    figure.supylabel("Number of runs (–)")
-    return figure
-
-
-def _distribution(ax: Axes, values: Floats, percentiles: Floats | None) -> None:
-    if values.size == 0 or np.ptp(values) <= ROUND_OFF * np.abs(values).max():
-        text = f"constant: {labels.number(float(values[0]))}" if values.size else "no finite values"
-        responses_grid.empty(ax, text)
-        return
-    distinct, counts = np.unique(values, return_counts=True)
-    if distinct.size <= _FEW:
-        width = 0.5 * float(np.diff(distinct).min())
-        ax.bar(distinct, counts, width=width, color=style.COLOURS[0], zorder=2)
-        scales.at(ax, "x", distinct)
-        scales.linear(ax, "y")
-        return
-    if counts.max() >= _MOSTLY * values.size:
-        common, total = float(distinct[counts.argmax()]), values.size
-        values = values[values != common]
-        share = 100 * (1 - values.size / total)
-        text = f"{share:.0f} % of the runs: {labels.number(common)}\n(not drawn)"
-        ax.margins(y=0.35)
-        ax.text(0.98, 0.98, text, transform=ax.transAxes, ha="right", va="top", color=_WARNING)
-    elif percentiles is not None:
-        low, middle, high = percentiles
-        ax.axvspan(low, high, color="0.93", zorder=0)
-        ax.axvline(middle, color=style.COLOURS[1], linewidth=1.0, zorder=3)
-    bins = int(np.clip(np.sqrt(values.size), 10, 40))
-    ax.hist(values, bins=bins, color=style.COLOURS[0], zorder=2)
-    scales.linear(ax, "xy")
-
-
-def _jumps(runs: xr.Dataset) -> list[str]:
-    """Return sentences on the responses that take few values, or mostly one."""
-    few, mostly = [], []
-    for name in responses(runs):
-        values = usable(runs, name).values
-        distinct, counts = np.unique(values[np.isfinite(values)], return_counts=True)
-        if 1 < distinct.size <= _FEW:
-            few.append(labels.response(name))
-        elif distinct.size > 1 and counts.max() >= _MOSTLY * counts.sum():
-            mostly.append(labels.response(name))
-    return [
-        f"Bars, for there are few values: {labels.listing(few)}." if few else "",
-        f"Mostly one value, drawn without it: {labels.listing(mostly)}." if mostly else "",
-    ]
 
 
 def scatter(response: str) -> Figure:
