@@ -20,6 +20,7 @@ from impactlab.figures import (
     indices,
     labels,
     measures,
+    over_time,
     responses_grid,
     samples,
     single_runs,
@@ -29,7 +30,17 @@ from impactlab.figures.curves import plan
 from impactlab.study.errors import unknown
 from impactlab.study.schema.measurements import read_measurements
 
-__all__ = ["delta", "figure", "morris", "pawn", "regression", "response", "run", "sobol"]
+__all__ = [
+    "delta",
+    "figure",
+    "morris",
+    "pawn",
+    "regression",
+    "response",
+    "run",
+    "sobol",
+    "sobol_over_time",
+]
 
 
 def response(
@@ -121,6 +132,30 @@ def sobol(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None 
     >>> ax = il.plot.sobol(il.analyse(study.run(workers=1)), "value")
     """
     return _indices(measures.SOBOL, analysis, response, ax)
+
+
+def sobol_over_time(analysis: xr.Dataset) -> Any:
+    """Draw Sobol indices of contact force and deflection against time, above their means.
+
+    Returns an array of axes, a column per history. Raises ValueError where the analysis has none:
+    they need a Sobol sample with stored histories.
+
+    >>> study = il.Study(
+    ...     title="Over time", impact=il.paper_impact(), discretisation=il.Discretisation(nodes=21),
+    ...     duration="0.3 ms", responses=["peak_force"], store={"histories": True, "samples": 30},
+    ...     sampling=il.Sobol(base_samples=8, parameters={
+    ...         "velocity": il.Uniform("1 m/s", "2 m/s"),
+    ...         "beam_depth": il.Uniform("26 mm", "29 mm")}))
+    >>> indices = il.analyse(study.run(workers=1))
+    >>> indices.first_order_over_time.dims, len(il.plot.sobol_over_time(indices))
+    (('history', 'time', 'parameter'), 6)
+    """
+    if not over_time.shown(analysis):
+        raise ValueError(
+            "the analysis holds no first_order_over_time: it needs a Sobol sample with "
+            "store: {histories: true}"
+        )
+    return figure(over_time.indices_over_time.name, xr.Dataset(), analysis)
 
 
 def delta(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:

@@ -121,6 +121,7 @@ ANALYSES: dict[str, str] = {
     "`elements_per_radius` over at least 3 values",
     "convergence_in_points": "a grid that varies `points` over at least 2 values",
     "sensitivity": "a sample (any method but grid)",
+    "sensitivity_over_time": "a Sobol sample with histories (store: {histories: true})",
     "distribution": "a sample that represents it (any method but grid, morris and fast)",
     "surrogate": "a sample (any method but grid)",
 }

@@ -33,6 +33,7 @@ ASKED = (
     "plastic_zone_length",
     "plastic_dissipation",
 )
+TIMES = np.linspace(0.0, 1e-3, 60)
 VERDICTS = ("usable", "mostly_constant", "constant", "failed_runs")
 _PAIR = ("response", "parameter")
 _PLAIN = ("first_order", "total_order", "delta", "delta_first_order", "pawn", "pawn_maximum")
@@ -138,9 +139,43 @@ def indices(runs: xr.Dataset, parameters: list[str] | None = None) -> xr.Dataset
         "imputed_share": ("response", np.zeros(shape[0])),
         "sensitivity_verdict": _verdicts(asked),
     }
+    data |= _over_time(lead[0])
     coords = {"response": asked, "parameter": names, "other_parameter": names}
+    coords |= {
+        "history": ["contact_force", "midspan_deflection"],
+        "history_units": ("history", ["N", "m"]),
+        "time": ("time", TIMES, {"units": "s"}),
+    }
     nested = {"base_samples": [1, 2, 4, 8, 16, 32]}
     return xr.Dataset(data, coords | nested, runs.attrs)
+
+
+def _over_time(lead: np.ndarray) -> dict[str, Any]:
+    """A pulse of force, whose deviation is a tenth; the deflection is left with few runs."""
+    dims, pulse = ("history", "time", "parameter"), np.maximum(np.sin(TIMES / 2e-4), 0.0)
+    within = np.where(pulse > 0, 1.0, np.nan)[:, None]
+    data: dict[str, Any] = {}
+    for name, scale in (("first_order", 1.0), ("total_order", 1.1)):
+        values = np.stack([scale * lead * within] * 2)
+        data[f"{name}_over_time"] = dims, values
+        data[f"{name}_over_time_interval"] = dims, np.full_like(values, 0.05)
+        data[f"generalised_{name}"] = ("history", "parameter"), np.stack([scale * lead] * 2)
+        half = np.full((2, lead.size), 0.03)
+        data[f"generalised_{name}_interval"] = ("history", "parameter"), half
+    mean = np.stack([2e4 * pulse, 4e-3 * pulse])
+    judged = {"flag_values": np.arange(2, dtype=np.int8), "sound_flags": "usable"}
+    told = "runs_left_out: runs failed"
+    return data | {
+        "history_mean": (dims[:2], mean),
+        "history_deviation": (dims[:2], 0.1 * mean),
+        "base_samples_left_out": ("history", [0, 3]),
+        "time_verdict": (dims[:2], np.stack([np.where(pulse > 0, 0, 2)] * 2)),
+        "history_verdict": (
+            "history",
+            np.array([0, 1], np.int8),
+            judged | {"flag_meanings": "usable runs_left_out", "flag_descriptions": told},
+        ),
+    }
 
 
 def _second(shape: tuple[int, int]) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.axes import ELEMENT_SIZE, NODES, TIME_STEP
 from impactlab.analysis.numerical import numerical
 from impactlab.analysis.responses import failures
+from impactlab.analysis.sensitivity import over_time
 from impactlab.variables import ANALYSES
 
 _TABLE: dict[str, tuple[Callable[[xr.Dataset], bool], Callable[[xr.Dataset], xr.Dataset]]] = {
@@ -24,11 +25,12 @@ _TABLE: dict[str, tuple[Callable[[xr.Dataset], bool], Callable[[xr.Dataset], xr.
         lambda runs: runs.attrs.get("method") in sensitivity.METHODS,
         sensitivity.analysis,
     ),
+    "sensitivity_over_time": (over_time.applies, over_time.analysis),
     "distribution": (distribution.applies, distribution.analysis),
     "surrogate": (surrogate.applies, surrogate.analysis),
 }
 """Every analysis by its name: whether the runs are of the kind that it is about, and its variables,
-with `response` among their coordinates. A new one is one line here and one in variables.ANALYSES.
+with `response` or `history` among their coordinates. A new one is one line here and one in variables.ANALYSES.
 """
 
 

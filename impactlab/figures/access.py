@@ -141,7 +141,12 @@ def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | Non
     """
     if variable not in analysis or not known(analysis, response):
         return None
-    return _read(analysis[variable], int(analysis[variable].sel(response=response)))
+    return read(analysis[variable].sel(response=response))
+
+
+def read(flag: xr.DataArray) -> Verdict:
+    """Return the verdict in a variable of CF flags that holds one value."""
+    return _read(flag, int(flag))
 
 
 def occurring(flags: xr.DataArray) -> list[Verdict]:

@@ -14,9 +14,19 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.responses import correlations
-from impactlab.figures import access, labels, measures
+from impactlab.analysis.sensitivity.over_time import TimeVerdict
+from impactlab.figures import access, labels, measures, over_time
 from impactlab.figures.labels import display
-from impactlab.figures.measures import MORRIS, RANKED, SOBOL, SURROGATE, Family, Index, analysed
+from impactlab.figures.measures import (
+    MORRIS,
+    RANKED,
+    SOBOL,
+    SURROGATE,
+    Family,
+    Index,
+    Measure,
+    analysed,
+)
 from impactlab.report.page import Cell, Row, Section, Table, largest
 
 _COARSE = 0.02
@@ -130,6 +140,49 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             "its drift.",
             figures=[f"{measure.name}_convergence" for measure in SOBOL.measures],
         )
+    if histories := over_time.shown(analysis):
+        yield Section(
+            "over-time",
+            "Indices over time",
+            "A history has indices at each time, and generalised indices: shares of its variance "
+            "added up over all times, so that times at which the runs differ most count most.",
+            [_left_out(analysis, name) for name in histories],
+            [_generalised(analysis, histories, measure) for measure in SOBOL.measures],
+            [over_time.indices_over_time.name],
+        )
+
+
+def _left_out(analysis: xr.Dataset, history: str) -> str:
+    """Return a sentence on the base samples left out, and on the times without an index."""
+    found = analysis.sel(history=history)
+    left, times = int(found["base_samples_left_out"]), found["time_verdict"]
+    alike = int((times == TimeVerdict.CONSTANT).sum())
+    name, total = labels.sentence(labels.response(history)), int(analysis.attrs["base_samples"])
+    text = f"{name}: {left or 'none'} of {total} base samples left out"
+    text += " because a run of theirs failed" * bool(left)
+    if alike:
+        text += f"; no index at {alike} of {times.size} times, at which all runs have one value"
+    return f"{text}."
+
+
+def _generalised(analysis: xr.Dataset, histories: list[str], measure: Measure) -> Table:
+    """Return one row per history: the generalised index of each parameter, grey within noise."""
+    rows: list[Row] = []
+    for history in histories:
+        found = analysis.sel(history=history)
+        verdict = access.read(found[over_time.VERDICT])
+        words = "" if verdict.sound else verdict.words
+        name = labels.sentence(labels.response(history))
+        row = [Cell(name, "warning" if words else "", words)]
+        for at in range(analysis.sizes["parameter"]):
+            text, significant = _index(found.isel(parameter=at), f"generalised_{measure.name}")
+            row.append(Cell(text, "number" if significant else "muted"))
+        rows.append(row)
+    names = [labels.sentence(labels.parameter(name)) for name in measures.parameters(analysis)]
+    caption = _caption(f"Generalised Sobol indices, {measure.words}", analysis)
+    flags = access.occurring(analysis[over_time.VERDICT])
+    meanings = [(flag.words, flag.meaning) for flag in flags if flag.meaning]
+    return Table(caption, ["History", *names], rows, meanings=meanings)
 
 
 def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:

@@ -160,6 +160,8 @@ def _places(sample: Sample, runs: NDArray[np.int64]) -> Floats:
 
 
 _BESIDE = ("sensitivity_verdict", "sensitivity_remarks", "imputed_share")
+_HISTORIES = "history"
+"""The dimension of the indices of histories, which have no response."""
 _LABELS = ("response", "parameter", "other_parameter", "base_samples")
 COLUMNS = (*_LABELS, "index", "value", "low", "high", "units", "verdict")
 """Of the table. low, high: ends of the interval of the value. units: of all three."""
@@ -171,6 +173,7 @@ def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
         name
         for name, array in analysis.items()
         if name in _BESIDE
+        or _HISTORIES in array.dims
         or (
             {"response"} <= set(array.dims) <= set(_LABELS)
             and ("estimator" in array.attrs or "parameter" in array.dims)
@@ -182,23 +185,29 @@ def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
 def table_rows(analysis: xr.Dataset) -> Iterator[dict[str, Any]]:
     """Yield every index of every response by COLUMNS; that of a pair of parameters once.
 
-    Columns that have no meaning for an index are left out; low and high are NaN without interval.
+    A history stands in the column of the responses; of it the table has the generalised indices
+    alone. Columns that have no meaning for an index are left out; low and high are NaN without
+    interval.
     """
     for name, index in sensitivity_variables(analysis).items():
+        of_history = _HISTORIES in index.dims
         if str(name).endswith("_interval") or name in _BESIDE:
             continue
+        if of_history and ("time" in index.dims or "parameter" not in index.dims):
+            continue
         margin = analysis.get(f"{name}_interval", xr.full_like(index, np.nan))
-        meanings = analysis["sensitivity_verdict"].attrs["flag_meanings"].split()
+        judged = analysis["history_verdict" if of_history else "sensitivity_verdict"]
         columns = {
             "value": index,
             "low": index - margin,
             "high": index + margin,
             "units": index.attrs.get("units", analysis.get("response_units", "")),
-            "verdict": ("response", np.array(meanings)[analysis["sensitivity_verdict"]]),
+            "verdict": (judged.dims, np.array(judged.attrs["flag_meanings"].split())[judged]),
         }
         frame = xr.Dataset(columns).to_dataframe([str(dim) for dim in index.dims])
         order = analysis.get("parameter", analysis["response"]).values.tolist()
-        for row in frame.reset_index().to_dict("records"):
+        table = frame.reset_index().rename(columns={_HISTORIES: "response"})
+        for row in table.to_dict("records"):
             if "other_parameter" not in row or (
                 order.index(row["parameter"]) < order.index(row["other_parameter"])
             ):

@@ -104,6 +104,7 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
         "convergence_in_element_size": any(counts.get(name, 0) >= 3 for name in ELEMENTS),
         "convergence_in_points": counts.get("points", 0) >= 2,
         "sensitivity": not grid,
+        "sensitivity_over_time": file.sampling.method == "sobol" and file.store.histories,
         "surrogate": not grid,
         "distribution": file.sampling.method not in NO_DISTRIBUTION,
     }
@@ -244,7 +245,7 @@ def _solid_rate(file: StudyFile) -> Reasons:
 CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (_mass_and_density, {"impact", "sampling"}),
     (_one_mesh_for_profiles, {"store", "sampling"}),
-    (_runs_for_the_analyses, {"analyses", "analysis", "sampling"}),
+    (_runs_for_the_analyses, {"analyses", "analysis", "sampling", "store"}),
     (_limits, {"limits", "responses", "analyses", "sampling"}),
     (_automatic_discretisation, {"discretisation", "responses", "sampling"}),
     (_indices_to_grow_by, {"analyses", "responses", "sampling"}),

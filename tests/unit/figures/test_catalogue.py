@@ -81,6 +81,7 @@ EXPECTED = {
         "sobol_second_order",
         "first_order_convergence",
         "total_order_convergence",
+        "indices_over_time",
         "morris_plane",
         "delta_indices",
         "pawn_indices",

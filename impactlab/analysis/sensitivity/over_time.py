@@ -1,0 +1,333 @@
+"""Sobol indices of histories at each time, and generalised indices of whole histories.
+
+At each time the estimators are those of the scalar responses. A generalised index is the integral
+over time of the numerator of an index, over that of the variance: Gamboa et al. (2014), Electron.
+J. Stat. 8, 575, section 3 (for functional outputs); of a history on a grid of times it is the index
+of Lamboni et al. (2011), Reliab. Eng. Syst. Saf. 96, 450, eq. 15. (Both are recalled, not read.)
+
+The histories of all runs need not fit into memory: sums over groups of base samples are kept, which
+is all that indices and intervals need, for as many times together as a bound on memory allows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.sample import Sample
+from impactlab.analysis.sensitivity.indices import MOST_IMPUTED
+from impactlab.analysis.sensitivity.method import counts
+from impactlab.analysis.sensitivity.sobol import FEWEST, check, step
+from impactlab.analysis.sensitivity.verdict import WIDE
+from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
+from impactlab.types import Floats
+from impactlab.variables import attributes, status_bits
+
+SHOWN = ("contact_force", "midspan_deflection")
+"""The histories that get indices."""
+GROUPS = 512
+"""Most groups of base samples, which are what is resampled: their number leaves an interval
+uncertain by sqrt(1 / (2 groups)), 3 %."""
+CELLS = 4_000_000
+"""Numbers of an array in memory, 32 MB: it bounds the times that are treated together."""
+_2010 = "Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2"
+_2014 = "Gamboa et al. (2014), Electron. J. Stat. 8, 575"
+_ORDERS = {"first_order": ("first-order", f"{_2010} (b)"), "total_order": ("total", f"{_2010} (f)")}
+
+
+class HistoryVerdict(Verdict):
+    """Verdicts on the generalised indices of a history; the worst counts."""
+
+    USABLE = 0, True, "every run has its history, and the history varies"
+    WIDE_INTERVALS = (
+        1,
+        False,
+        "the sample is small: an interval is wider than 0.1 to either side, or cannot be given",
+    )
+    RUNS_LEFT_OUT = 2, False, "runs failed: their base samples are left out"
+    CONSTANT = 3, False, "the history is the same in all runs: indices are undefined"
+    TOO_FEW_RUNS = 4, False, "too many runs failed: no index is given"
+
+
+class TimeVerdict(Verdict):
+    """Verdicts on the indices at one time."""
+
+    GIVEN = 0, True, "the runs differ at this time"
+    NO_INTERVAL = 1, False, "so few runs differ at this time that no interval can be given"
+    CONSTANT = 2, False, "all runs have the same value at this time: indices are undefined"
+    TOO_FEW_RUNS = 3, False, "too many runs failed: no index is given"
+
+
+def histories(runs: xr.Dataset) -> list[str]:
+    """Return the histories of runs that get indices: those stored of a Sobol sample."""
+    of_sample = runs.attrs.get("method") == "sobol"
+    return [name for name in SHOWN if of_sample and name in runs and "time" in runs[name].dims]
+
+
+def applies(runs: xr.Dataset) -> bool:
+    """Return True for a Sobol sample that stores histories."""
+    return bool(histories(runs))
+
+
+def analysis(runs: xr.Dataset) -> xr.Dataset:
+    """Return the indices of contact force and deflection on `time`, and their generalised indices.
+
+    Returns first_order_over_time and total_order_over_time (history, time, parameter),
+    generalised_first_order and generalised_total_order (history, parameter), all with <name>
+    _interval, the half-width of the bootstrap interval; time_verdict (history, time) and
+    history_verdict (history), which say why there is none; history_mean and history_deviation
+    (history, time), in the unit of each history; and base_samples_left_out (history), those with a
+    failed run. `parameter` holds the varied parameters, or their groups.
+
+    Raises ValueError when the runs are not the sample that their attributes describe.
+    """
+    sample, names = Sample.of(runs), histories(runs)
+    check(sample)
+    found = [_of_history(sample, name) for name in names]
+    factors = list(sample.factors)
+    what = "group of varied parameters" if sample.groups else "varied parameter"
+    told = [attributes(name) for name in names]
+    coordinates: dict[str, Any] = {
+        "parameter": ("parameter", factors, {"long_name": what}),
+        "time": runs["time"].variable,
+        "history": ("history", names, {"long_name": "history"}),
+        "history_units": ("history", [each["units"] for each in told]),
+        "history_long_name": ("history", [each["long_name"] for each in told]),
+    }
+    variables: dict[str, Any] = {
+        key: (dims, np.stack([one[key] for one in found]), attrs)
+        for key, (dims, attrs) in _described(sample).items()
+    }
+    dataset = xr.Dataset(variables, coordinates)
+    for key, dims, kind, words in (
+        ("time_verdict", ("history", "time"), TimeVerdict, "indices at each time"),
+        ("history_verdict", ("history",), HistoryVerdict, "generalised indices"),
+    ):
+        codes = xr.DataArray(np.stack([one[key] for one in found]), dims=dims)
+        dataset[key] = flagged(codes, kind, f"verdict on the {words}")
+    return dataset
+
+
+def _described(sample: Sample) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
+    """Return dimensions and attributes of all variables but the verdicts."""
+    settings = {"confidence": sample.confidence, "resamples": sample.resamples}
+    found: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {}
+    for order, (words, source) in _ORDERS.items():
+        over = ("history", "time", "parameter"), f"{words} Sobol index at each time", source
+        whole = ("history", "parameter"), f"generalised {words} Sobol index", f"{_2014}; {source}"
+        names = f"{order}_over_time", f"generalised_{order}"
+        for name, (dims, long_name, estimator) in zip(names, (over, whole), strict=True):
+            attrs = {"long_name": long_name, "units": "1", "estimator": estimator}
+            width = f"half-width of the {100 * sample.confidence:g} % interval of the {long_name}"
+            found[name] = dims, attrs
+            found[f"{name}_interval"] = dims, attrs | {"long_name": width} | settings
+    by_time = ("history", "time")
+    comment = "in the unit that history_units states"
+    for name, words in (
+        ("history_mean", "mean over the runs of the two base samples, A and B"),
+        ("history_deviation", "standard deviation over the runs of A and B"),
+    ):
+        found[name] = by_time, {"long_name": words, "comment": comment}
+    left = {"long_name": "base samples left out, for a run of theirs failed", "units": "1"}
+    return found | {"base_samples_left_out": (("history",), left)}
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Sums over groups of base samples, and over those that are in none, at some times.
+
+    Values are counted from `origin` (time,), one run's, so that their squares do not cancel.
+    groups: (group, column, time); rest: (column, time). Columns: number of base samples; mean of
+    all runs of one; a, b, a^2, b^2 of the runs at A and B; then for each factor: the run ab at A
+    with the factor from B; b (ab - a); (a - ab)^2 / 2.
+    """
+
+    groups: Floats
+    rest: Floats
+    origin: Floats
+
+    def indices(self) -> tuple[Parts, Floats, Floats, Floats]:
+        """Return the parts of the indices, and mean, deviation and base samples at each time."""
+        whole = self.groups.sum(axis=0) + self.rest
+        number = whole[0]
+        with np.errstate(invalid="ignore", divide="ignore"):  # no base sample at all: NaN
+            means = whole / number
+        centre = means[1]
+        parts = Parts.of(means, centre, self.origin)
+        mean = self.origin + (means[2] + means[3]) / 2
+        return parts, mean, np.sqrt(np.where(parts.varies, parts.variance, 0.0)), number
+
+    def resampled(self, sample: Sample, name: str) -> Iterator[Parts]:
+        """Yield the parts of resamples of the groups, some at a time; the same at all times."""
+        groups, columns, times = self.groups.shape
+        whole = self.groups.sum(axis=0) + self.rest
+        with np.errstate(invalid="ignore", divide="ignore"):
+            centre = whole[1] / whole[0]
+        for tally in counts(groups, sample.resamples, sample.rng(name, "over time")):
+            drawn = (tally @ self.groups.reshape(groups, -1)).reshape(-1, columns, times)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                means = drawn / drawn[:, :1]
+            yield Parts.of(means, centre, self.origin)
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Numerators of first order and total (..., 2 factors, time), and variances (..., time)."""
+
+    numerators: Floats
+    variance: Floats
+    varies: Any
+
+    @classmethod
+    def of(cls, means: Floats, centre: Floats, origin: Floats) -> Parts:
+        """Return the parts from means of the columns of `Sums`, (..., column, time).
+
+        Outputs are centred on the mean of all runs, as for scalar responses: `centre` (time,).
+        """
+        a, b, squared_a, squared_b = (means[..., at, :] for at in range(2, 6))
+        squares = (squared_a + squared_b) / 2
+        variance = squares - ((a + b) / 2) ** 2
+        ab, first, total = np.split(means[..., 6:, :], 3, axis=-2)
+        first = first - centre * (ab - a[..., None, :])
+        level = ROUND_OFF**2 * (origin + (a + b) / 2) ** 2
+        varies = variance > np.maximum(level, ROUND_OFF * squares)
+        return cls(np.concatenate([first, total], axis=-2), variance, varies)
+
+    def at_times(self) -> Floats:
+        """Return the indices at each time, (..., 2 factors, time); NaN where nothing varies."""
+        variance = np.where(self.varies, self.variance, np.nan)
+        return np.asarray(self.numerators / variance[..., None, :])
+
+
+def trapezoid(times: Floats) -> Floats:
+    """Return the weights of the trapezoidal rule, (time,)."""
+    steps = np.diff(times)
+    return 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))
+
+
+def sums(sample: Sample, name: str, good: Any, times: slice, most: int | None = None) -> Sums:
+    """Return the sums of a history at some times, read block by block.
+
+    good: base samples without a failed run, (base samples,). most: base samples that are read
+    together; the sums do not depend on it.
+    """
+    base, size, factors = len(good), step(sample), len(sample.factors)
+    column = sample.runs[name].variable.transpose("run", "time")[:, times]
+    members = -(-base // GROUPS)
+    groups = base // members
+    rng = sample.rng(name, "groups")
+    # base samples are drawn into groups: neighbours in a low-discrepancy sequence are not
+    # independent draws
+    place = np.concatenate([rng.permutation(groups) for _ in range(members)])
+    first = int(np.argmax(good)) * size
+    origin = np.nan_to_num(np.asarray(column[first].values, float))
+    total = np.zeros((groups, 6 + 3 * factors, len(origin)))
+    rest = np.zeros(total.shape[1:])
+    for start in range(0, base, most or groups):
+        end = min(start + (most or groups), base)
+        block = np.asarray(column[start * size : end * size].values, float)
+        block = block.reshape(end - start, size, -1)
+        rows = _statistics(block - origin, good[start:end], factors)
+        for row, at in zip(rows, range(start, end), strict=True):
+            if at < len(place):
+                total[place[at]] += row
+            else:
+                rest += row
+    return Sums(total, rest, origin)
+
+
+def _statistics(block: Floats, good: Any, factors: int) -> Floats:
+    """Return the columns of `Sums`, (base samples, column, time), 0 of those to leave out.
+
+    block: (base samples, runs of one, time), in SALib's order.
+    """
+    kept = np.isfinite(block).all(axis=1) & good[:, None]
+    block = np.where(kept[:, None], block, 0.0)
+    a, ab, b = block[:, :1], block[:, 1 : 1 + factors], block[:, -1:]
+    columns = [kept[:, None], block.mean(axis=1, keepdims=True), a, b, a**2, b**2]
+    return np.concatenate([*columns, ab, b * (ab - a), (a - ab) ** 2 / 2], axis=1)
+
+
+def _of_history(sample: Sample, name: str) -> dict[str, Any]:
+    """Return the variables of one history, by name."""
+    runs, factors = sample.runs, len(sample.factors)
+    failed = (runs["status"].values & status_bits([])) != 0
+    good = ~failed.reshape(-1, step(sample)).any(axis=1)
+    times = np.asarray(runs["time"].values, float)
+    size, columns = len(times), 6 + 3 * factors
+    found: dict[str, Any] = {
+        "at_times": np.full((size, 2 * factors), np.nan),
+        "at_times_interval": np.full((size, 2 * factors), np.nan),
+        "history_mean": np.full(size, np.nan),
+        "history_deviation": np.full(size, np.nan),
+    }
+    weights, numbers = trapezoid(times), np.zeros(size)
+    over = np.zeros(2 * factors + 1)  # integrals: of the numerators and of the variance
+    again = np.zeros((sample.resamples, 2 * factors + 1))
+    together = max(1, CELLS // (columns * max(min(GROUPS, len(good)), sample.resamples)))
+    for start in range(0, size if good.any() else 0, together):
+        part = slice(start, min(start + together, size))
+        kept = sums(sample, name, good, part)
+        whole, mean, deviation, numbers[part] = kept.indices()
+        found["at_times"][part] = whole.at_times().T
+        found["history_mean"][part], found["history_deviation"][part] = mean, deviation
+        over += _integrated(whole, weights[part])
+        replicates, row = [], 0
+        for drawn in kept.resampled(sample, name):
+            replicates.append(drawn.at_times())
+            again[row : row + len(drawn.variance)] += _integrated(drawn, weights[part])
+            row += len(drawn.variance)
+        margins = sample.half_width(np.concatenate(replicates)).T
+        found["at_times_interval"][part] = np.where(whole.varies[:, None], margins, np.nan)
+    left_out = len(good) - int(numbers.min())
+    return _named(found, over, again, left_out, sample)
+
+
+def _integrated(parts: Parts, weights: Floats) -> Floats:
+    """Return integrals over time of numerators and variance, (..., 2 factors + 1)."""
+    together = np.concatenate([parts.numerators, parts.variance[..., None, :]], axis=-2)
+    return np.asarray(np.where(parts.varies[..., None, :], together, 0.0) @ weights)
+
+
+def _named(
+    found: dict[str, Any], over: Floats, again: Floats, left_out: int, sample: Sample
+) -> dict[str, Any]:
+    """Return the variables of a history, with their verdicts."""
+    base, factors = sample.number("base_samples"), len(sample.factors)
+    few = base - left_out < FEWEST or left_out > MOST_IMPUTED * base
+    with np.errstate(invalid="ignore", divide="ignore"):  # where nothing varies
+        whole = np.where(over[-1] > 0, over[:-1] / over[-1], np.nan)
+        drawn = np.where(again[:, -1:] > 0, again[:, :-1] / again[:, -1:], np.nan)
+    margins = np.where(np.isfinite(whole), sample.half_width(drawn), np.nan)
+    at_times, at_margins = found["at_times"], found["at_times_interval"]
+    if few:
+        for each in (whole, margins, at_times, at_margins, found["history_mean"]):
+            each[...] = np.nan
+        found["history_deviation"][...] = np.nan
+    undefined = np.isnan(at_times).any(axis=1)
+    codes = np.where(np.isnan(at_margins).any(axis=1), TimeVerdict.NO_INTERVAL, TimeVerdict.GIVEN)
+    codes = np.where(undefined, TimeVerdict.CONSTANT, codes)
+    holds = {
+        HistoryVerdict.WIDE_INTERVALS: not (margins <= WIDE).all(),
+        HistoryVerdict.RUNS_LEFT_OUT: left_out > 0,
+        HistoryVerdict.CONSTANT: np.isnan(whole).any(),
+        HistoryVerdict.TOO_FEW_RUNS: few,
+    }
+    named: dict[str, Any] = {
+        "history_mean": found["history_mean"],
+        "history_deviation": found["history_deviation"],
+        "base_samples_left_out": left_out,
+        "time_verdict": np.full_like(codes, TimeVerdict.TOO_FEW_RUNS) if few else codes,
+        "history_verdict": max((kind for kind, held in holds.items() if held), default=0),
+    }
+    for at, order in enumerate(_ORDERS):
+        columns = slice(at * factors, (at + 1) * factors)
+        named[f"{order}_over_time"] = at_times[:, columns]
+        named[f"{order}_over_time_interval"] = at_margins[:, columns]
+        named[f"generalised_{order}"] = whole[columns]
+        named[f"generalised_{order}_interval"] = margins[columns]
+    return named
