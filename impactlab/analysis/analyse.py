@@ -30,7 +30,8 @@ _TABLE: dict[str, tuple[Callable[[xr.Dataset], bool], Callable[[xr.Dataset], xr.
     "surrogate": (surrogate.applies, surrogate.analysis),
 }
 """Every analysis by its name: whether the runs are of the kind that it is about, and its variables,
-with `response` or `history` among their coordinates. A new one is one line here and one in variables.ANALYSES.
+with `response` or `history` among their coordinates. A new one is one line here and one in
+variables.ANALYSES.
 """
 
 

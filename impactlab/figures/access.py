@@ -105,12 +105,16 @@ def missing_note(runs: xr.Dataset, variables: Sequence[str]) -> str:
     """Return a caption's sentence on the runs that lack one of the variables; "" without any."""
     held = [absent(usable(runs, name)) for name in variables if name in runs]
     mask = xr.concat(held, "variable").any("variable") if held else xr.DataArray(False)
+    return missing_words(runs, mask, "here" if len(held) == 1 else "in one panel or more")
+
+
+def missing_words(runs: xr.Dataset, mask: xr.DataArray, where: str) -> str:
+    """Return a sentence on the marked runs and the reasons; "" without any."""
     if not bool(mask.any()):
         return ""
     found = [f"{number} × “{why}”" for why, number in causes(runs, mask).items()]
     total = int(mask.sum())
     verb = "is" if total == 1 else "are"
-    where = "here" if len(held) == 1 else "in one panel or more"
     return f"{total} of {count(runs)} runs {verb} missing {where}: {labels.listing(found)}."
 
 

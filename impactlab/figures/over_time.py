@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from impactlab.figures import access, labels, record, scales, style
 from impactlab.figures.labels import Display, display
 from impactlab.figures.measures import parameters
+from impactlab.variables import status_bits
 
 _ORDERS = {"first_order_over_time": "first order", "total_order_over_time": "total order"}
 _ENDS = (-0.25, 1.25)
@@ -24,12 +25,12 @@ def shown(analysis: xr.Dataset) -> list[str]:
 
 
 def _sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
-    held = [name for name in shown(analysis) if name in runs]
+    failed = (runs["status"] & status_bits([])) != 0  # no history is read
     return (
         f"Bands of the indices: {access.confidence(analysis)} intervals, cut off outside "
         "−0.25 to 1.25; of the mean: one standard deviation to either side.",
         "Where all runs have the same value, as after the last contact, there is no index.",
-        access.missing_note(runs, held),
+        access.missing_words(runs, failed, "here, and all others of their base samples"),
     )
 
 

@@ -48,7 +48,9 @@ def oscillating(sample_runs: Build) -> Build:
         base: int, *, second_order: bool = False, offset: float = 50.0, times: Any = TIMES
     ) -> xr.Dataset:
         problem = {"num_vars": 2, "names": ["x0", "x1"], "bounds": [[-1, 1]] * 2}
-        x = sampler.sample(problem, base, calc_second_order=second_order, seed=7)
+        power = 1 << (base - 1).bit_length()  # a sample is nested
+        x = sampler.sample(problem, power, calc_second_order=second_order, seed=7)
+        x = x[: len(x) // power * base]
         force = oscillation(x, times) + offset
         runs = sample_runs(["x0", "x1"], base, second_order=second_order, peak_force=force[:, 3])
         runs = runs.assign_attrs(histories=1, history_samples=len(times))
@@ -58,7 +60,7 @@ def oscillating(sample_runs: Build) -> Build:
 
 
 def test_known_indices_at_each_time_and_in_all(oscillating: Build) -> None:
-    found = analyse(oscillating(4096)).sel(history="contact_force")
+    found = over_time.analysis(oscillating(4096)).sel(history="contact_force")
     variance, *parts = known(TIMES)
     for order, part in zip(ORDERS, parts, strict=True):
         standard = found[f"{order}_over_time_interval"].values[1:] / Z95
@@ -115,7 +117,8 @@ def test_base_samples_with_a_failed_run_are_left_out_and_counted(oscillating: Bu
     alone = over_time.analysis(kept.assign_attrs(base_samples=254)).isel(history=0)
     for order in ORDERS:
         name = f"{order}_over_time"
-        np.testing.assert_allclose(found[name][1:], alone[name][1:], rtol=1e-10)
+        np.testing.assert_allclose(found[name][1:5], alone[name][1:5], rtol=1e-10)
+        assert np.isfinite(found[name][5:]).all()
     assert found["base_samples_left_out"] == 3
     assert found["history_verdict"] == HistoryVerdict.RUNS_LEFT_OUT
 
@@ -165,10 +168,10 @@ def test_memory_does_not_grow_with_the_runs(
     oscillating: Build, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(over_time, "GROUPS", 64)
-    monkeypatch.setattr(over_time, "CELLS", 200_000)
+    monkeypatch.setattr(over_time, "CELLS", 50_000)
 
     def peak(base: int) -> float:
-        runs = oscillating(base, times=np.linspace(0.0, 1.0, 200))
+        runs = oscillating(base, times=np.linspace(0.0, 1.0, 100)).assign_attrs(resamples=50)
         write_netcdf(runs, tmp_path / "runs.nc", "runs")
         del runs
         with checked(tmp_path / "runs.nc", "runs") as stored:
@@ -179,7 +182,7 @@ def test_memory_does_not_grow_with_the_runs(
         return most
 
     peak(64)  # whatever is loaded once
-    assert peak(4096) < 1.3 * peak(512)
+    assert peak(1024) < 1.3 * peak(128)
 
 
 def test_the_table_has_generalised_indices_and_the_file_all(oscillating: Build) -> None:
