@@ -29,7 +29,7 @@ def _sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
     return (
         f"Bands of the indices: {access.confidence(analysis)} intervals, cut off outside "
         "−0.25 to 1.25; of the mean: one standard deviation to either side.",
-        "Where all runs have the same value, as after the last contact, there is no index.",
+        "Gaps: times at which all runs, or all but a few, have the same value.",
         access.missing_words(runs, failed, "here, and all others of their base samples"),
     )
 
@@ -61,11 +61,12 @@ def indices_over_time(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def _indices(ax: Axes, found: xr.Dataset, order: str, time: Display) -> None:
-    """Draw a line with its band per parameter; gaps where there is no index."""
+    """Draw a line with its band per parameter; gaps where there is no index, or no interval."""
     x = time(found["time"].values)
     for at, name in enumerate(parameters(found)):
         one = found.isel(parameter=at)
-        y, margin = one[order].values, one[f"{order}_interval"].values
+        margin = one[f"{order}_interval"].values
+        y = np.where(np.isfinite(margin), one[order].values, np.nan)
         look = style.distinct(at) | {"marker": "", "linewidth": 0.9}
         if np.isfinite(y).any():
             ax.plot(x, y, label=labels.parameter(name), **look)

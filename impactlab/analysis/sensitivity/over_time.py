@@ -22,7 +22,7 @@ from impactlab.analysis.sample import Sample
 from impactlab.analysis.sensitivity.indices import MOST_IMPUTED
 from impactlab.analysis.sensitivity.method import counts
 from impactlab.analysis.sensitivity.sobol import FEWEST, check, step
-from impactlab.analysis.sensitivity.verdict import WIDE
+from impactlab.analysis.sensitivity.verdict import WIDE, inconsistent
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
 from impactlab.types import Floats
 from impactlab.variables import attributes, status_bits
@@ -48,9 +48,15 @@ class HistoryVerdict(Verdict):
         False,
         "the sample is small: an interval is wider than 0.1 to either side, or cannot be given",
     )
-    RUNS_LEFT_OUT = 2, False, "runs failed: their base samples are left out"
-    CONSTANT = 3, False, "the history is the same in all runs: indices are undefined"
-    TOO_FEW_RUNS = 4, False, "too many runs failed: no index is given"
+    INCONSISTENT = (
+        2,
+        False,
+        "the sample is too small: by more than their intervals, first-order indices add up to "
+        "more than 1, are below zero, or exceed their total",
+    )
+    RUNS_LEFT_OUT = 3, False, "runs failed: their base samples are left out"
+    CONSTANT = 4, False, "the history is the same in all runs: indices are undefined"
+    TOO_FEW_RUNS = 5, False, "too many runs failed: no index is given"
 
 
 class TimeVerdict(Verdict):
@@ -313,6 +319,9 @@ def _named(
     codes = np.where(undefined, TimeVerdict.CONSTANT, codes)
     holds = {
         HistoryVerdict.WIDE_INTERVALS: not (margins <= WIDE).all(),
+        HistoryVerdict.INCONSISTENT: inconsistent(
+            whole[:factors], margins[:factors], whole[factors:], margins[factors:]
+        ),
         HistoryVerdict.RUNS_LEFT_OUT: left_out > 0,
         HistoryVerdict.CONSTANT: np.isnan(whole).any(),
         HistoryVerdict.TOO_FEW_RUNS: few,

@@ -115,18 +115,22 @@ def of_indices(found: Mapping[str, Floats]) -> list[SensitivityVerdict]:
         if max(map(float, explained)) < LINEAR:
             verdicts.append(SensitivityVerdict.NOT_LINEAR)
     if "total_order" in found:
-        first, first_margin = found["first_order"], found["first_order_interval"]
-        total, total_margin = found["total_order"], found["total_order_interval"]
-        # Below zero by twice the interval: of many that are zero, some lie outside of it once.
-        if (
-            first.sum() - 1 > first_margin.sum()
-            or (first < -2 * first_margin).any()
-            or (first - total > first_margin + total_margin).any()
-        ):
+        orders = ("first_order", "first_order_interval", "total_order", "total_order_interval")
+        if inconsistent(*(found[name] for name in orders)):
             verdicts.append(SensitivityVerdict.INCONSISTENT)
     if "delta" in found and np.isnan(found["delta"]).any():
         verdicts.append(SensitivityVerdict.NO_DENSITY)
     return verdicts
+
+
+def inconsistent(first: Floats, first_margin: Floats, total: Floats, total_margin: Floats) -> bool:
+    """Return True where indices (parameter,) contradict each other by more than their intervals."""
+    # Below zero by twice the interval: of many that are zero, some lie outside of it once.
+    return bool(
+        first.sum() - 1 > first_margin.sum()
+        or (first < -2 * first_margin).any()
+        or (first - total > first_margin + total_margin).any()
+    )
 
 
 def remarks(verdicts: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:

@@ -49,6 +49,7 @@ def test_sections_stand_in_the_order_of_sensobol(report: Any, study: Study) -> N
         "sensitivity",
         "second-order",
         "index-convergence",
+        "over-time",
         "morris",
         "delta",
         "pawn",
@@ -63,6 +64,17 @@ def test_sections_stand_in_the_order_of_sensobol(report: Any, study: Study) -> N
         "notes",
         "provenance",
     ]
+
+
+def test_indices_over_time_are_told_with_what_was_left_out(report: Any, study: Study) -> None:
+    page = report(*study)
+    told = "Midspan deflection: 3 of 32 base samples left out because a run of theirs failed; no"
+    assert f"{told} index at 23 of 60 times, at which all runs have one value." in page.text
+    assert "Contact force: none of 32 base samples left out; no index" in page.text
+    rows = _table(page, "Generalised Sobol indices, first order")
+    assert rows[1][:2] == ["Contact force", "0.71 ± 0.03"]
+    assert rows[2][0].startswith("Midspan deflection")
+    assert "runs left out" in rows[2][0]
 
 
 def test_words_have_means_and_no_surrogate(report: Any, study: Study) -> None:
