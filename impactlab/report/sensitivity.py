@@ -153,7 +153,7 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
 
 
 def _left_out(analysis: xr.Dataset, history: str) -> str:
-    """Return a sentence on the base samples left out, and on the times without an index."""
+    """Return a sentence on the base samples left out, and on times that have no index."""
     found = analysis.sel(history=history)
     left, times = int(found["base_samples_left_out"]), found["time_verdict"]
     alike = int((times == TimeVerdict.CONSTANT).sum())

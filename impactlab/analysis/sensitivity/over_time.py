@@ -212,7 +212,7 @@ class Parts:
 def trapezoid(times: Floats) -> Floats:
     """Return the weights of the trapezoidal rule, (time,)."""
     steps = np.diff(times)
-    return 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))
+    return np.asarray(0.5 * (np.append(steps, 0.0) + np.append(0.0, steps)))
 
 
 def sums(sample: Sample, name: str, good: Any, times: slice, most: int | None = None) -> Sums:

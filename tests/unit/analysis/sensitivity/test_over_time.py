@@ -82,7 +82,7 @@ def test_known_indices_at_each_time_and_in_all(oscillating: Build) -> None:
 
 @pytest.mark.parametrize("second_order", [False, True])
 def test_one_time_has_the_indices_of_that_number(oscillating: Build, second_order: bool) -> None:
-    """Of a small sample, whose indices depend on the mean that outputs are centred on."""
+    """Indices of a small sample depend on the mean that outputs are centred on."""
     runs = oscillating(512, second_order=second_order)
     scalar = sensitivity.analysis(runs).sel(response="peak_force")
     at = over_time.analysis(runs).isel(history=0, time=3)
