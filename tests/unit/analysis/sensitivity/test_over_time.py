@@ -22,7 +22,7 @@ from impactlab.files import checked, write_netcdf
 from impactlab.variables import STATUS_FLAGS
 
 Build = Callable[..., xr.Dataset]
-TIMES = np.array([0.0, 0.1, 0.3, 0.6, 0.8, 1.0, 1.4])  # in no even steps
+TIMES = np.array([0.0, 0.4, 0.8, 1.3, 1.5, 1.55, 1.6])  # dense where the indices differ most
 Z95 = 1.959964
 ORDERS = ("first_order", "total_order")
 
@@ -70,7 +70,7 @@ def test_known_indices_at_each_time_and_in_all(oscillating: Build) -> None:
         whole = np.trapezoid(part, TIMES, axis=0) / np.trapezoid(variance, TIMES)
         standard = found[f"generalised_{order}_interval"].values / Z95
         assert (np.abs(found[f"generalised_{order}"].values - whole) <= 3 * standard).all()
-        assert (standard < 0.02).all()
+        assert (standard < 0.025).all()
     np.testing.assert_allclose(found["history_mean"], 50.0, atol=0.02)
     np.testing.assert_allclose(found["history_deviation"], np.sqrt(variance), rtol=0.01)
     assert found["history_verdict"] == HistoryVerdict.USABLE
@@ -137,7 +137,8 @@ def test_too_many_failed_runs_give_no_index(oscillating: Build, failed: int) -> 
 
 def test_a_history_that_is_the_same_in_all_runs_has_no_index(oscillating: Build) -> None:
     runs = oscillating(64)
-    runs["contact_force"][:] = 0.1 * TIMES
+    round_off = 1 + 1e-13 * np.random.default_rng(1).normal(size=runs["contact_force"].shape)
+    runs["contact_force"][:] = 0.1 * TIMES * round_off
     found = over_time.analysis(runs).isel(history=0)
     assert found["history_verdict"] == HistoryVerdict.CONSTANT
     assert found["generalised_total_order"].isnull().all()
