@@ -114,6 +114,13 @@ def test_an_analysis_asked_for_by_name_must_be_possible(problems, read, grid, sa
     read(grid({"sampling.parameters": several} | asked))
 
 
+def test_indices_over_time_need_stored_histories(problems, read, sample):
+    wanted = {"analyses": ["sensitivity_over_time"]}
+    ((key, said),) = problems(sample(wanted))
+    assert (key, "store: {histories: true}" in said) == ("analyses", True)
+    assert read(sample(wanted | {"store.histories": True})).store.histories
+
+
 @pytest.mark.parametrize("method", NO_DISTRIBUTION)
 def test_limits_need_runs_that_are_draws(problems, sampled, grid, method):
     number = {"morris": {"trajectories": 8}, "fast": {"samples": 128}}
