@@ -1,9 +1,11 @@
 """Sobol indices of histories at each time, and generalised indices of whole histories.
 
 At each time the estimators are those of the scalar responses. A generalised index is the integral
-over time of the numerator of an index, over that of the variance: Gamboa et al. (2014), Electron.
-J. Stat. 8, 575, section 3 (for functional outputs); of a history on a grid of times it is the index
-of Lamboni et al. (2011), Reliab. Eng. Syst. Saf. 96, 450, eq. 15. (Both are recalled, not read.)
+over time of the numerator of an index, divided by the integral of the variance: the mean of the
+indices, weighted by the variance. Lamboni et al. (2011), Reliab. Eng. Syst. Saf. 96, 450, define it
+for outputs on a grid of times; Gamboa et al. (2014), Electron. J. Stat. 8, 575 (arXiv:1311.1797),
+for functions. (Of both, no more than abstracts was read; R's sensitivity::sobolMultOut has the
+same.)
 
 The histories of all runs need not fit into memory: sums over groups of base samples are kept, which
 is all that indices and intervals need, for as many times together as a bound on memory allows.
