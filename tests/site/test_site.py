@@ -134,7 +134,7 @@ CODE = [
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
     if PYTHON.search(text := path.read_text(encoding="utf-8")) or COMMAND.search(text)
 ]
-LEFT_OUT = re.compile(r"verify|witness(?!.* --(dry-run|deck))|\.\.\.")
+LEFT_OUT = re.compile(r"verify|calibrate|witness(?!.* --(dry-run|deck))|\.\.\.")
 """Commands of minutes, and those with an ellipsis."""
 
 
