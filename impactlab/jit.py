@@ -285,7 +285,7 @@ def precompile(kernel: Any, program: str) -> None:
         with FileLock(cache.folder / f"{cache.name}.lock"):
             if any(_read(path) for path in cache.folder.glob(cache.files.format("*"))):
                 return
-            print("impactlab: compiling kernels, once, about 10 s", file=sys.stderr, flush=True)
+            print("impactlab: compiling kernels, once, about 15 s", file=sys.stderr, flush=True)
             done = subprocess.run(
                 [sys.executable, "-c", f"import gc; gc.disable()\n{program}"],  # 5 % of the time
                 env=os.environ | {_COMPILES: cache.name, "PYTHONPATH": paths},

@@ -100,11 +100,12 @@ def axis_label(column: xr.DataArray) -> str:
 
 
 def places(column: xr.DataArray) -> Floats:
-    """Return a parameter in its display unit, (runs,), or the places of its words."""
+    """Return a parameter in its display unit, (runs,), or the places of its words (else NaN)."""
     if not labels.words(column):
         return display(column)(column.values)
     listed = np.atleast_1d(column.attrs["values"])
-    return np.asarray(sum(at * (column.values == word) for at, word in enumerate(listed)), float)
+    found = column.values[:, None] == listed
+    return np.where(found.any(axis=1), found.argmax(axis=1).astype(float), np.nan)
 
 
 def _beside(column: xr.DataArray, places: Floats) -> Floats:
