@@ -42,7 +42,7 @@ def analyse(
 
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
     attribute `analyses` lists the wanted ones (without it: all). resolution, refinement: results of
-    adaptive.recommendation and adaptive.refining for this study, which add the numerical
+    adaptive.recommendation and adaptive.sobol for this study, which add the numerical
     uncertainty of sensitivity indices (see `numerical`). Returns the variables that the applying
     analyses document, on `response` and the dimensions that they leave, with the attributes of the
     runs.

@@ -51,7 +51,7 @@ def numerical(
     """Return the numerical uncertainty of each response, and of its indices; no unit.
 
     runs: a sample; analysis: its indices; resolution, refinement: see adaptive.recommendation and
-    adaptive.refining, of the same study.
+    adaptive.sobol, of the same study.
 
     Returns of a resolution numerical_uncertainty (response), relative, the worst over the corner
     cases, and numerical_share (response), (u/sigma)^2 with u the root mean square of the

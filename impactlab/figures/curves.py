@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import access, labels, measured, style
+from impactlab.figures import access, labels, measured, scales, style
 from impactlab.figures.access import design_dims, usable
 from impactlab.model.impact import SOLID
 from impactlab.types import Floats
@@ -80,7 +80,7 @@ def plan(
     dims = [dim for dim in design_dims(runs, runs[variable].dims) if dim not in along]
     panels = [Choice({}, "")]
     if panel is not None and panel in dims:
-        places = spread(runs.sizes[panel], _MOST)
+        places = scales.spread(runs.sizes[panel], _MOST)
         panels = [Choice({panel: at}, labels.value(runs[panel], at)) for at in places]
     rank = {dim: at for at, dim in enumerate(prefer)}
     left = sorted((dim for dim in dims if dim != panel), key=lambda dim: rank.get(dim, len(rank)))
@@ -94,7 +94,7 @@ def plan(
     room = min(most, max(most // 2, 2)) if len(several) > 1 else most
     for dim in several[:2]:
         if room > 1:
-            shown[dim] = spread(runs.sizes[dim], room)
+            shown[dim] = scales.spread(runs.sizes[dim], room)
         room = most // len(shown.get(dim, [0]))
     held = {d: _held(runs[d]) for d in left if d not in shown and runs.sizes[d] > 1}
     single = {dim: 0 for dim in left if runs.sizes[dim] == 1}
@@ -105,11 +105,6 @@ def plan(
         colour, line = (*ordinals, *ordinals, 0, 0)[:2]
         curves.append(Choice(held | where | single, label, (colour, line)))
     return Plan(panels, curves, shown, held)
-
-
-def spread(size: int, most: int) -> list[int]:
-    """Return at most `most` positions of `size`, evenly spread, with the first and the last."""
-    return [int(at) for at in np.unique(np.linspace(0, size - 1, min(size, most)).round())]
 
 
 def _held(coordinate: xr.DataArray) -> int:

@@ -18,7 +18,6 @@ from impactlab.analysis.sample import Sample
 from impactlab.analysis.verdicts import ROUND_OFF
 from impactlab.figures import access, labels, record, responses_grid, scales, style
 from impactlab.figures.access import is_sample, responses, usable
-from impactlab.figures.curves import spread
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.record import Figure
@@ -146,7 +145,7 @@ def cumulative_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         if not values.size:
             responses_grid.empty(ax, "no finite values")
             continue
-        some = spread(values.size, _MOST)
+        some = scales.spread(values.size, _MOST)
         x = unit(values[some])
         ax.fill_between(x, low[some], high[some], step="post", color="0.87", label="band")
         ax.step(x, share[some], where="post", color=style.COLOURS[0], label="share of the draws")
@@ -232,7 +231,7 @@ def _two_curves(
             (line,) = ax.plot(values, counts / which.sum(), "D", color=colour, label=label)
         else:
             ordered = np.sort(x[which])
-            some = np.array(spread(ordered.size, _MOST))
+            some = np.array(scales.spread(ordered.size, _MOST))
             share = (some + 1) / ordered.size
             (line,) = ax.step(ordered[some], share, where="post", color=colour, label=label)
         line.set_alpha(None if matters else 0.4)

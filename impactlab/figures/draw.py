@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -22,7 +21,6 @@ from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 
 FORMATS = ("svg", "png")
-CAPTIONS = "captions.json"
 OVERVIEW = "overview"
 """Name of the figure of all comparisons; the others are named for their checks."""
 
@@ -70,7 +68,7 @@ def draw(
     folder.mkdir(parents=True, exist_ok=True)
     before: set[str] = set()
     with suppress(OSError, ValueError):  # it is written anew
-        before.update(listed(folder))
+        before.update(record.listed(folder))
     written: list[Path] = []
     captions: dict[str, dict[str, str]] = {}
     for each, pair in drawings:
@@ -90,23 +88,12 @@ def draw(
         except Exception as error:
             error.add_note(f"while drawing the figure {each.name} of study {study}")
             raise
-    with replaced(folder / CAPTIONS) as path:
+    with replaced(folder / record.CAPTIONS) as path:
         path.write_text(json.dumps(captions, indent=2, ensure_ascii=False) + "\n", "utf-8")
     for name in before - captions.keys():
         for kind in (*FORMATS, *data.FORMATS):
             (folder / f"{name}.{kind}").unlink(missing_ok=True)
-    return [*written, folder / CAPTIONS]
-
-
-def listed(folder: Path) -> dict[str, dict[str, str]]:
-    """Return what captions.json says of each figure. Raises ValueError where it was damaged."""
-    path = folder / CAPTIONS
-    with suppress(ValueError, TypeError, AttributeError):
-        entries: dict[str, dict[str, str]] = json.loads(path.read_bytes())
-        sound = {"title", "caption", "alt"}.issubset
-        if all(re.fullmatch(r"\w+", name) and sound(each) for name, each in entries.items()):
-            return entries
-    raise ValueError(f"{path}: is damaged: draw the figures again (impactlab figures)")
+    return [*written, folder / record.CAPTIONS]
 
 
 def save(

@@ -1,15 +1,20 @@
-"""The record of a figure."""
+"""The record of a figure, and what its folder says of those drawn."""
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 
 import xarray as xr
 from matplotlib.figure import Figure as Drawing
 
 from impactlab.figures import style
 
+CAPTIONS = "captions.json"
 Drawer = Callable[[xr.Dataset, xr.Dataset], Drawing]
 
 
@@ -47,3 +52,14 @@ def figure(
         style.paper(plot),
         lambda runs, analysis: " ".join(filter(None, (text, *sentences(runs, analysis)))),
     )
+
+
+def listed(folder: Path) -> dict[str, dict[str, str]]:
+    """Return what captions.json says of each figure. Raises ValueError where it was damaged."""
+    path = folder / CAPTIONS
+    with suppress(ValueError, TypeError, AttributeError):
+        entries: dict[str, dict[str, str]] = json.loads(path.read_bytes())
+        sound = {"title", "caption", "alt"}.issubset
+        if all(re.fullmatch(r"\w+", name) and sound(each) for name, each in entries.items()):
+            return entries
+    raise ValueError(f"{path}: is damaged: draw the figures again (impactlab figures)")

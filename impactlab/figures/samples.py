@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from impactlab.figures import access, labels, record, responses_grid, scales, style
 from impactlab.figures.access import is_sample, usable, varied
-from impactlab.figures.curves import spread
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.record import Figure
@@ -208,7 +207,7 @@ def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> No
     unit = display(answers)
     ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
     found = analysis["surrogate_held_out"].sel(response=name)
-    found = found[spread(found.size, _MOST)]
+    found = found[scales.spread(found.size, _MOST)]
     computed = unit(answers.set_index(run="run").sel(run=found["held_out"].values))
     predicted = unit(found)
     given = np.isfinite(computed) & np.isfinite(predicted)

@@ -95,3 +95,8 @@ def apart(values: ArrayLike) -> list[float]:
         if not kept or np.log(kept[-1] / value) >= least:
             kept.append(value)
     return kept
+
+
+def spread(size: int, most: int) -> list[int]:
+    """Return at most `most` positions of `size`, evenly spread, with the first and the last."""
+    return [int(at) for at in np.unique(np.linspace(0, size - 1, min(size, most)).round())]

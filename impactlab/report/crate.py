@@ -14,7 +14,7 @@ from typing import Any
 import xarray as xr
 from ruamel.yaml import YAML
 
-from impactlab.figures.draw import CAPTIONS, listed
+from impactlab.figures.record import CAPTIONS, listed
 from impactlab.files import replaced
 
 METADATA = "ro-crate-metadata.json"

@@ -20,8 +20,8 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from impactlab.figures import labels
-from impactlab.figures.draw import listed
 from impactlab.figures.measures import RANKED
+from impactlab.figures.record import listed
 from impactlab.files import identity, replaced
 
 _PROVENANCE = {

@@ -10,7 +10,8 @@ from urllib.parse import quote
 
 import xarray as xr
 
-from impactlab.figures.draw import CAPTIONS, draw_all, draw_findings, listed
+from impactlab.figures.draw import draw_all, draw_findings
+from impactlab.figures.record import CAPTIONS, listed
 from impactlab.files import check_source, opened, read_netcdf
 from impactlab.report import study, verification
 from impactlab.report.page import described, leading, write_page

@@ -173,7 +173,7 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
             (shards / _STUDY).write_text(f"{file.resolve()}\n")
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse
-        from impactlab.study.adaptive.extending import extend_sample
+        from impactlab.study.adaptive.sobol import extend_sample
 
         with locked(shards), ExitStack() as last:  # locked over all its stages
 
@@ -253,7 +253,7 @@ def _stale(file: Path, shards: Path) -> dict[Path, str]:
 
 def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = None) -> None:
     """Solve the first runs of a Sobol sample on finer grids and write them to `path`."""
-    from impactlab.study.adaptive.refining import refine_cases
+    from impactlab.study.adaptive.sobol import refine_cases
     from impactlab.study.execute import execute
 
     part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)

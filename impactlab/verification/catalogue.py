@@ -5,9 +5,8 @@ from __future__ import annotations
 from impactlab.verification import (
     beam_limits,
     contact,
-    contact_compliance,
-    contact_patch,
     energy,
+    local_contact,
     modal_series,
     plasticity,
     schemes,
@@ -36,9 +35,9 @@ _CHECKS = (
     beam_limits.slender_limit,
     contact.spring_mass,
     contact.rigid_beam,
-    contact_patch.contact_patch,
+    local_contact.contact_patch,
     strain_rate.strain_rate,
-    contact_compliance.contact_compliance,
+    local_contact.contact_compliance,
     energy.balances,
 )
 CATALOGUE: dict[str, Check] = {check.name: check for check in _CHECKS}

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.numerical import measured, numerical
-from impactlab.study.adaptive.refining import refine_cases
+from impactlab.study.adaptive.sobol import refine_cases
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.figures.curves import broken, plan, spread
+from impactlab.figures.curves import broken, plan
+from impactlab.figures.scales import spread
 from impactlab.solver.contact import CONTACT_LAWS
 
 Study = Any

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.analyse import analyse
-from impactlab.study.adaptive.extending import extend_sample, largest_interval
+from impactlab.study.adaptive.sobol import extend_sample, largest_interval
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.analysis.analyse import analyse
-from impactlab.study.adaptive.refining import base_samples, refine_cases
+from impactlab.study.adaptive.sobol import base_samples, refine_cases
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.sampling.design import design
