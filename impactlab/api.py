@@ -12,7 +12,7 @@ import xarray as xr
 
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.measurements import compared
-from impactlab.files import opened, read_netcdf, replaced
+from impactlab.files import checked, opened, read_netcdf, replaced
 from impactlab.model.checks import integer
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
@@ -250,7 +250,8 @@ class Study:
         from impactlab.report.results import RUNS
 
         found = self.analyse()
-        return RUNS.draw(read_netcdf(self._runs(), "runs"), found, self.folder / "figures")
+        with checked(self._runs(), "runs", blocks=True) as solved:
+            return RUNS.draw(solved, found, self.folder / "figures")
 
     def report(self, path: str | Path | None = None) -> Path:
         """Analyse, draw, and write the report, one file; return it (default: folder/report.html).
@@ -264,10 +265,10 @@ class Study:
 
         path = self.folder / "report.html" if path is None else Path(path)
         found, figures = self.analyse(), self.folder / "figures"
-        solved = read_netcdf(self._runs(), "runs")
-        RUNS.draw(solved, found, figures)
-        RUNS.write(solved, found, figures, path)
-        write_crate(solved, self.folder, figures, path)
+        with checked(self._runs(), "runs", blocks=True) as solved:
+            RUNS.draw(solved, found, figures)
+            RUNS.write(solved, found, figures, path)
+            write_crate(solved, self.folder, figures, path)
         return path
 
     def _runs(self) -> Path:

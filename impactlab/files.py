@@ -13,7 +13,6 @@ import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
-from functools import partial
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
@@ -74,7 +73,9 @@ CONTENTS = {
 _CACHE = 1_000_000
 """Bytes per variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
 _BLOCK = 1 << 20
-"""Numbers that are checked together."""
+"""Numbers that are in memory together where a variable is read or written in blocks."""
+_TOGETHER = 128
+"""Most times in a chunk of a file: few times of all runs are read without the others."""
 _ATTRIBUTES = "attributes"
 """The name of the digest of a dataset's own attributes."""
 _UNCHECKED = {"created", "versions", "source_revision", "processor", "history", "checksums"}
@@ -100,6 +101,7 @@ def write_netcdf(
     )
     digests = {_ATTRIBUTES: _digest(dataset.attrs)}
     encoding: dict[str, dict[str, Any]] = {}
+    hashes: dict[str, blake2b] = {}
     for name, variable in dataset.variables.items():
         attrs = dict(variable.attrs)
         if "Conventions" in attrs:  # from arithmetic with whole datasets
@@ -115,16 +117,47 @@ def write_netcdf(
         if variable.chunks is None:
             digests[str(name)] = _digest(_head(variable), variable.data)
         else:  # in the one pass in which the values are computed
-            whole = variable.data.rechunk(-1)
-            note = partial(_note_digest, digests, str(name), _head(variable))
-            variable.data = whole.map_blocks(note, dtype=whole.dtype, meta=whole._meta)
+            hashes[str(name)] = hashed = _hash(_head(variable))
+            variable.data = _noted(variable.data, hashed)
+            if variable.data.npartitions > 1 and "zlib" in (storage := encoding.get(str(name), {})):
+                *rows, last = variable.data.chunksize  # a chunk of the file is within one block
+                storage["chunksizes"] = (*rows, min(last, _TOGETHER))
     dataset.attrs["checksums"] = json.dumps(digests, sort_keys=True)
     set_chunk_cache(_CACHE)
     with replaced(path, dataset.nbytes) as unfinished:
         dataset.to_netcdf(unfinished, engine="netcdf4", encoding=encoding)
-        if dataset.chunks:  # only now are all digests known
+        if hashes:  # only now are all digests known
+            digests |= {name: hashed.hexdigest() for name, hashed in hashes.items()}
             with Dataset(unfinished, "a") as file:
                 file.setncattr("checksums", json.dumps(digests, sort_keys=True))
+
+
+def _noted(values: Any, hashed: blake2b) -> Any:
+    """Return an array that updates its hash, block by block along its first dimension."""
+    import dask.array as da  # takes long to load
+    from dask.delayed import delayed
+
+    def note(block: Any, before: None) -> Any:
+        _update(hashed, block)
+        return block
+
+    blocks = values.rechunk({axis: -1 for axis in range(1, values.ndim)})
+    shapes = [(rows, *values.shape[1:]) for rows in blocks.chunks[0]] if values.ndim else [()]
+    parts, before = [], None
+    for shape, one in zip(shapes, blocks.to_delayed().ravel(), strict=True):
+        noted = delayed(note)(one, before)  # after the block before it
+        before = delayed(_nothing)(noted)
+        parts.append(da.from_delayed(noted, shape, values.dtype))  # type: ignore[no-untyped-call]
+    return da.concatenate(parts) if len(parts) > 1 else parts[0]  # type: ignore[no-untyped-call]
+
+
+def _nothing(block: Any) -> None:
+    """Return nothing, so that no block is kept for the next one."""
+
+
+def block_rows(shape: tuple[int, ...]) -> int:
+    """Return how many rows of this shape are in memory together."""
+    return max(1, _BLOCK // max(1, math.prod(shape)))
 
 
 @contextmanager
@@ -163,11 +196,12 @@ def read_netcdf(path: Path, *contents: str) -> xr.Dataset:
 
 
 @contextmanager
-def checked(path: Path, *contents: str) -> Iterator[xr.Dataset]:
+def checked(path: Path, *contents: str, blocks: bool = False) -> Iterator[xr.Dataset]:
     """Give a dataset whose file is open; it was read once, in blocks, to check it.
 
     Its values are read each time that they are used, and `run` has no index: memory need not hold
-    all variables. Raises as `read_netcdf` does.
+    all variables. blocks: large histories and profiles are arrays of dask, of which memory need
+    not hold any whole. Raises as `read_netcdf` does.
     """
     with opened(path, *contents, indexed=False) as lazy:
         with _readable(path):
@@ -176,7 +210,18 @@ def checked(path: Path, *contents: str) -> Iterator[xr.Dataset]:
         for dim in map(str, lazy.dims):
             if dim in lazy.coords and dim != "run":
                 lazy = lazy.set_xindex(dim)
-        yield lazy
+        large = [each for each in lazy.values() if each.ndim > 1 and each.size > _BLOCK]
+        if not (blocks and large):
+            yield lazy
+            return
+        import dask  # takes long to load
+
+        memory = {"array.chunk-size": 8 * _BLOCK, "scheduler": "synchronous"}  # as HDF5 is
+        with dask.config.set(memory):
+            for each in large:
+                *others, last = each.dims
+                lazy[each.name] = each.chunk(dict.fromkeys(others, "auto") | {last: -1})
+            yield lazy
 
 
 def _digests(dataset: xr.Dataset) -> dict[str, str]:
@@ -218,12 +263,6 @@ def _readable(path: Path) -> Iterator[None]:
         raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
 
 
-def _note_digest(digests: dict[str, str], name: str, head: Mapping[Any, Any], values: Any) -> Any:
-    """Put the digest of a variable into `digests`, and return its values."""
-    digests[name] = _digest(head, values)
-    return values
-
-
 def _head(variable: xr.Variable) -> dict[str, Any]:
     """Return what is known of a variable beside its values."""
     kind = "text" if variable.dtype.kind in "OUS" else variable.dtype.name
@@ -232,13 +271,21 @@ def _head(variable: xr.Variable) -> dict[str, Any]:
 
 def _digest(attrs: Mapping[Any, Any], values: Any = None) -> str:
     """Return a hash of attributes and values, the same before writing and after reading."""
-    plain = {key: np.ravel(each).tolist() for key, each in attrs.items() if key not in _UNCHECKED}
-    digest = blake2b(json.dumps(plain, sort_keys=True, default=str).encode(), digest_size=16)
+    digest = _hash(attrs)
     if values is not None and values.dtype.kind in "OUS":
         digest.update(json.dumps(np.asarray(values).tolist(), default=str).encode())
     elif values is not None:
-        rows = max(1, _BLOCK // max(1, math.prod(values.shape[1:])))
-        starts = range(0, len(values), rows) if values.ndim else ()
-        for block in (values[at : at + rows] for at in starts) if values.ndim else (values,):
-            digest.update(np.ascontiguousarray(block).data)
+        _update(digest, values)
     return digest.hexdigest()
+
+
+def _hash(attrs: Mapping[Any, Any]) -> blake2b:
+    plain = {key: np.ravel(each).tolist() for key, each in attrs.items() if key not in _UNCHECKED}
+    return blake2b(json.dumps(plain, sort_keys=True, default=str).encode(), digest_size=16)
+
+
+def _update(hashed: blake2b, values: Any) -> None:
+    rows = block_rows(values.shape[1:])
+    starts = range(0, len(values), rows) if values.ndim else ()
+    for block in (values[at : at + rows] for at in starts) if values.ndim else (values,):
+        hashed.update(np.ascontiguousarray(block).data)

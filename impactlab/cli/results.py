@@ -72,13 +72,13 @@ def predict(
 def figures(stored: StoredFiles, output: Pictures = None) -> None:
     """Draw every figure that a study's answers, or findings, allow."""
     from impactlab.report.answer import answers
-    from impactlab.report.results import read_stored
+    from impactlab.report.results import open_stored
 
-    kind, datasets = read_stored(stored)
     folder = output or stored[0].with_name("figures")
-    drawn = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder))
-    figures = "1 figure" if drawn == 1 else f"{drawn} figures"
-    print(f"{folder}: {figures}. {answers(*datasets)[0]}")
+    with open_stored(stored) as (kind, datasets):
+        drawn = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder))
+        figures = "1 figure" if drawn == 1 else f"{drawn} figures"
+        print(f"{folder}: {figures}. {answers(*datasets)[0]}")
 
 
 def report(
@@ -91,14 +91,14 @@ def report(
     """Write a study's report, and, beside the runs, ro-crate-metadata.json: what made each file."""
     from impactlab.report.answer import answers
     from impactlab.report.crate import write_crate
-    from impactlab.report.results import read_stored
+    from impactlab.report.results import open_stored
 
-    kind, datasets = read_stored(stored)
     path = output or stored[0].with_name("report.html")
     drawn = figures or stored[0].with_name("figures")
-    kind.write(*datasets, drawn, path)
-    write_crate(datasets[0], stored[0].parent, drawn, path)
-    print(f"{path}: {answers(*datasets)[0]}")
+    with open_stored(stored) as (kind, datasets):
+        kind.write(*datasets, drawn, path)
+        write_crate(datasets[0], stored[0].parent, drawn, path)
+        print(f"{path}: {answers(*datasets)[0]}")
 
 
 def index(

@@ -77,7 +77,7 @@ def usable(runs: xr.Dataset, name: str) -> xr.DataArray:
 
 def absent(array: xr.DataArray) -> xr.DataArray:
     """Return True for each run (design dimensions) in which the variable has no finite value."""
-    present: xr.DataArray = xr.apply_ufunc(np.isfinite, array)
+    present: xr.DataArray = xr.apply_ufunc(np.isfinite, array, dask="allowed")
     return ~present.any([dim for dim in array.dims if dim in SAMPLED])
 
 

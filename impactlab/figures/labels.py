@@ -88,8 +88,8 @@ def display(array: xr.DataArray) -> Display:
     if "plastic_strain" in str(array.name):
         return Display(100.0, "%")
     units = str(array.attrs.get("units", "1"))
-    numbers = array.values if array.dtype.kind in "if" else np.empty(0)
-    largest = np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0)
+    numbers = array.data if array.dtype.kind in "if" and array.size else np.zeros(1)
+    largest = float(np.where(np.isfinite(numbers), np.abs(numbers), 0.0).max())  # also of dask's
     steps = _STEPS.get(units, ((0.0, 1.0, units),))
     return next(Display(scale, symbol) for least, scale, symbol in steps if largest >= least)
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
@@ -12,7 +13,7 @@ import xarray as xr
 
 from impactlab.figures.draw import draw_all, draw_findings
 from impactlab.figures.record import CAPTIONS, listed
-from impactlab.files import check_source, opened, read_netcdf
+from impactlab.files import check_source, checked, opened, read_netcdf
 from impactlab.report import study, verification
 from impactlab.report.page import described, leading, write_page
 
@@ -38,22 +39,24 @@ FINDINGS = Kind(
 )
 
 
-def read_stored(paths: Sequence[Path]) -> tuple[Kind, list[xr.Dataset]]:
-    """Return the kind of a study's results, and their datasets.
+@contextmanager
+def open_stored(paths: Sequence[Path]) -> Iterator[tuple[Kind, list[xr.Dataset]]]:
+    """Give the kind of a study's results, and their datasets, runs as `files.checked` in blocks.
 
     Raises OSError naming a file that cannot be read, ValueError where files are missing or too
     many, were changed, or do not belong together.
     """
-    first = read_netcdf(paths[0], "runs", "findings")
-    kind = FINDINGS if first.attrs["content"] == "findings" else RUNS
-    if len(paths) != len(kind.files):
-        expected = " and ".join(kind.files)
-        raise ValueError(f"{paths[0]}: expected {expected}, but got {len(paths)} files")
-    if kind is FINDINGS:
-        return kind, [first]
-    analysis = read_netcdf(paths[1], "analysis")
-    check_source(analysis, paths[1], first, paths[0])
-    return kind, [first, analysis]
+    with checked(paths[0], "runs", "findings", blocks=True) as first:
+        kind = FINDINGS if first.attrs["content"] == "findings" else RUNS
+        if len(paths) != len(kind.files):
+            expected = " and ".join(kind.files)
+            raise ValueError(f"{paths[0]}: expected {expected}, but got {len(paths)} files")
+        if kind is FINDINGS:
+            yield kind, [first.load()]
+        else:
+            analysis = read_netcdf(paths[1], "analysis")
+            check_source(analysis, paths[1], first, paths[0])
+            yield kind, [first, analysis]
 
 
 def write_index(results: Path, path: Path) -> None:

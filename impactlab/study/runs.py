@@ -8,7 +8,7 @@ import time
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from stat import S_ISREG
 from typing import Any
@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 from dask.delayed import delayed
 
-from impactlab.files import unfinished_files
+from impactlab.files import block_rows, unfinished_files
 from impactlab.study.netcdf import DAMAGE, KEYS, Array, Shard
 from impactlab.study.solvers import SOLVERS, Solver, run_shape, solver_named, solver_of
 from impactlab.study.store import (
@@ -69,37 +69,46 @@ def open_answers(
 ) -> Iterator[dict[str, da.Array]]:
     """Give the answers of a design by name as a context, each of shape (runs, ...).
 
-    Each is one block, read when it is computed. Raises OSError where a run has no answer, or a
-    shard is damaged.
+    Each is read when it is computed: one number per run as one block, histories and profiles in
+    blocks of runs. Raises OSError where a run has no answer, or a shard is damaged.
     """
-    parts: list[tuple[Path, Array, Array]] = []
-    found = np.zeros(index.size, dtype=bool)
+    paths = shard_files(shards.folder)
+    shard_of, row_of = np.full(index.size, -1), np.zeros(index.size, dtype=int)
     kept: dict[Path, Shard] = {}
     with ExitStack() as stack:
         opened = partial(_open_shard, kept=kept, stack=stack)
-        for path in shard_files(shards.folder):
+        for at, path in enumerate(paths):
             with opened(path) as shard:
                 requested, runs = index.find(shard.read(KEYS))
-            if runs.size:
-                parts.append((path, np.flatnonzero(requested), runs))
-                found[runs] = True
-        if not index.spread(found).all():
+            shard_of[runs], row_of[runs] = at, np.flatnonzero(requested)
+        if (index.spread(shard_of) < 0).any():
             raise OSError(f"{shards.folder}: shards disappeared while they were read: {_AGAIN}")
+        index.spread(row_of)
 
-        def read(name: str, shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
+        @lru_cache(maxsize=1)  # the same for each column
+        def places(start: int, stop: int) -> list[Array]:
+            """Return the runs of a block in each shard that has some, counted from `start`."""
+            order = np.argsort(shard_of[start:stop], kind="stable")
+            cuts = np.flatnonzero(np.diff(shard_of[start:stop][order])) + 1
+            return np.split(order, cuts)
+
+        def read(name: str, start: int, shape: tuple[int, ...], kind: np.dtype[Any]) -> Array:
             values = np.empty(shape, kind)
-            for path, rows, runs in parts:
-                with opened(path) as shard:
-                    values[runs] = shard.read(name)[rows]
-            return index.spread(values)
+            for runs in places(start, start + len(values)):
+                with opened(paths[shard_of[start + runs[0]]]) as shard:
+                    values[runs] = shard.read(name)[row_of[start + runs]]
+            return values
 
         columns = {}
-        with opened(parts[0][0]) as shard:
+        with opened(paths[shard_of[0]]) as shard:
             for name in names:
                 row, kind = shard.layout(name)
-                shape = (index.size, *row)
-                block = delayed(read)(name, shape, kind)
-                columns[name] = da.from_delayed(block, shape, kind)  # type: ignore[no-untyped-call]
+                size, parts = block_rows(row) if row else index.size, []
+                for start in range(0, index.size, size):
+                    shape = (min(size, index.size - start), *row)
+                    part = delayed(read)(name, start, shape, kind)
+                    parts.append(da.from_delayed(part, shape, kind))  # type: ignore[no-untyped-call]
+                columns[name] = da.concatenate(parts)  # type: ignore[no-untyped-call]
         yield columns
 
 

@@ -11,7 +11,7 @@ import xarray as xr
 
 from impactlab.figures.draw import draw_findings
 from impactlab.files import write_netcdf
-from impactlab.report.results import FINDINGS, RUNS, read_stored, write_index
+from impactlab.report.results import FINDINGS, RUNS, open_stored, write_index
 from impactlab.report.verification import write_verification
 from impactlab.verification.stored import packed
 
@@ -127,9 +127,9 @@ def test_the_index_lists_it_with_its_counts(
 def test_stored_files_tell_their_kind(findings: xr.Dataset, results: Path) -> None:
     path, runs = results / "findings.nc", results / "velocity" / "runs.nc"
     write_netcdf(findings, path, "findings")
-    assert read_stored([path])[0] is FINDINGS
-    assert read_stored([runs, runs.with_name("analysis.nc")])[0] is RUNS
-    with pytest.raises(ValueError, match=r"runs\.nc: expected runs\.nc and analysis\.nc"):
-        read_stored([runs])
-    with pytest.raises(ValueError, match=r"findings\.nc: expected findings\.nc"):
-        read_stored([path, path])
+    for kind, paths in (FINDINGS, [path]), (RUNS, [runs, runs.with_name("analysis.nc")]):
+        with open_stored(paths) as (found, _):
+            assert found is kind
+        expected = r"{0}: expected {0}".format(paths[0].name.replace(".", r"\."))
+        with pytest.raises(ValueError, match=expected), open_stored([paths[0]] * (3 - len(paths))):
+            pass
