@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from impactlab.analysis.calibration import SILENT
 from impactlab.analysis.measurements import COVERAGE
 from impactlab.figures import labels, scales, style
+from impactlab.solver.contact import CONTACT_LAWS
 
 _BINS = 25
 _PRIOR = "0.75"
@@ -31,14 +32,12 @@ def calibration(found: xr.Dataset) -> Figure:
         order = np.argsort(found["model_weight"].values, kind="stable")
         rows = np.arange(order.size)
         axes[-1].barh(rows, found["model_weight"].values[order], color=style.COLOURS[0])
-        axes[-1].set_yticks(rows, [_law(found["model"].values[at]) for at in order])
+        axes[-1].set_yticks(
+            rows, [CONTACT_LAWS[name].short for name in found["model"].values[order]]
+        )
         axes[-1].set(xlabel="weight (–)", xlim=(0.0, 1.0), ylabel="contact law")
     style.legend(figure)
     return figure
-
-
-def _law(name: str) -> str:
-    return str(name).replace("_", " ")
 
 
 def _parameter(ax: Axes, one: xr.Dataset) -> None:

@@ -191,6 +191,8 @@ def words(coordinate: xr.DataArray) -> list[str]:
     if coordinate.attrs.get("distribution") != CHOICE:
         return []
     listed = [str(word) for word in np.atleast_1d(coordinate.attrs["values"])]
+    if coordinate.name == "contact":
+        return [CONTACT_LAWS[word].short for word in listed]
     if coordinate.name == "beam_model":
         return [beam_model(word) for word in listed]
     return [_SPELLED.get(word, word.replace("_", " ")) for word in listed]

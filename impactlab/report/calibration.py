@@ -13,6 +13,7 @@ from impactlab.analysis.measurements import COVERAGE
 from impactlab.figures import labels
 from impactlab.figures.calibration import calibration
 from impactlab.figures.draw import save
+from impactlab.solver.contact import CONTACT_LAWS
 
 
 def draw_and_tell(found: xr.Dataset, folder: Path) -> list[str]:
@@ -95,7 +96,7 @@ def _value(one: xr.Dataset, key: str) -> str:
 def _model(one: xr.Dataset) -> str:
     """Return a law with its weight, and the parameters under it where it has some weight."""
     weight, doubt = float(one["model_weight"]), str(one["model_doubt"].item())
-    text = f"{str(one['model'].item()).replace('_', ' ')} {labels.number(weight, 2)}"
+    text = f"{CONTACT_LAWS[one['model'].item()].short} {labels.number(weight, 2)}"
     text += f", {labels.number(float(one['model_weight_before']), 2)} before"
     if doubt:
         return f"{text} (though {doubt})"

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 class ContactLaw:
     """A contact law: its name, where it comes from, how far it holds, and how sure we are.
 
-    title: in words. source: whom it follows, and where its equations are from. holds_for: its
-    range. unconfirmed: what of it was not confirmed by the primary source or by public code written
-    after it; "" where all was. flaws: jumps, energy that it creates, dents below zero, for steel
-    where the law is not free of such; "" if there are none.
+    short: the name as figures write it. title: in words. source: whom it follows, and where its
+    equations are from. holds_for: its range. unconfirmed: what of it was not confirmed by the
+    primary source or by public code written after it; "" where all was. flaws: jumps, energy that
+    it creates, dents below zero, for steel where the law is not free of such; "" if there are none.
 
     The tests hold the law to numbers, for steel (E* = 115 GPa, S_y = 345 MPa, nu = 0.3).
     yield_pressure: the largest Hertz pressure at first yield over S_y. jumps: of the loading force:
@@ -29,6 +29,7 @@ class ContactLaw:
     """
 
     name: str
+    short: str
     title: str
     source: str
     holds_for: str
@@ -51,12 +52,14 @@ _READ = "read in public code written after the paper, not in the paper itself"
 _REGISTRY = (
     ContactLaw(
         name="hertz",
+        short="Hertz",
         title="Hertz",
         source="Hertz 1881; Johnson, Contact Mechanics (1985), eq. 4.23",
         holds_for=f"elastic bodies, {_CIRCLE} (indentation up to the sphere's radius)",
     ),
     ContactLaw(
         name="stronge",
+        short="Stronge",
         title="Stronge, unloading after Wang et al.",
         source=(
             "Stronge, Impact Mechanics (2000), chapter 6; unloading with force continuity after "
@@ -76,6 +79,7 @@ _REGISTRY = (
     ),
     ContactLaw(
         name="stronge_original",
+        short="Stronge, original",
         title="Stronge",
         source="Stronge, Impact Mechanics (2000), chapter 6, with its own unloading",
         holds_for=f"{_CIRCLE} (indentation up to half its radius)",
@@ -95,6 +99,7 @@ _REGISTRY = (
     ),
     ContactLaw(
         name="jackson_green",
+        short="Jackson-Green",
         title="Jackson and Green",
         source=(
             "Jackson and Green 2005 (J. Tribology 127, 343); unloading: Jackson, Chusoipin and "
@@ -110,6 +115,7 @@ _REGISTRY = (
     ),
     ContactLaw(
         name="mjg",
+        short="MJG",
         title="Modified Jackson and Green",
         source=(
             "loading: Ghaednia, Brake, Berryhill and Jackson 2019 (J. Tribology 141), eqs. 5, 6, "
@@ -130,6 +136,7 @@ _REGISTRY = (
     ),
     ContactLaw(
         name="thornton",
+        short="Thornton",
         title="Thornton",
         source="Thornton 1997 (J. Applied Mechanics 64, 383); Thornton and Ning 1998",
         holds_for=f"{_CIRCLE} (indentation up to its radius)",
@@ -142,6 +149,7 @@ _REGISTRY = (
     ),
     ContactLaw(
         name="kogut_etsion",
+        short="Kogut-Etsion",
         title="Kogut and Etsion, unloading after Etsion, Kligerman and Kadin",
         source=(
             "Kogut and Etsion 2002 (J. Applied Mechanics 69, 657); Etsion, Kligerman and Kadin "
@@ -167,6 +175,7 @@ _REGISTRY = (
     ),
     ContactLaw(
         name="brake",
+        short="Brake",
         title="Brake's unloading on the modified Jackson and Green loading",
         source=(
             "loading: that of mjg; unloading: Brake 2015 (Int. J. Solids and Structures 62, 104)"
@@ -187,6 +196,7 @@ _REGISTRY = (
     ),
     ContactLaw(
         name="abbott_firestone",
+        short="Abbott-Firestone",
         title="Abbott and Firestone, after Hertz",
         source=(
             "Abbott and Firestone 1933 (Mechanical Engineering 55, 569), as in Jackson and Green "
@@ -203,6 +213,7 @@ _REGISTRY = (
     ),
     ContactLaw(
         name="stronge_consistent",
+        short="Stronge, consistent",
         title="Stronge, loading capped by Hertz",
         source=(
             "stronge, its loading at most Hertz's force; unloading with force continuity after "
@@ -217,6 +228,7 @@ _REGISTRY = (
     ),
     ContactLaw(
         name="finite_element",
+        short="finite elements",
         title="Fit to finite elements",
         source=(
             "an axisymmetric quasi-static finite-element solve, loading and unloading: "

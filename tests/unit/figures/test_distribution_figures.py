@@ -81,4 +81,4 @@ def test_words_have_shares(study: Study) -> None:
     expected = [(words[drawn] == word).mean() for word in ("stronge", "mjg")]
     np.testing.assert_allclose(above.y, expected)
     assert others.x.tolist() == [0.0, 2.0]
-    assert [text.get_text() for text in figure.axes[1].get_xticklabels()][2] == "hertz"
+    assert [text.get_text() for text in figure.axes[1].get_xticklabels()][2] == "Hertz"

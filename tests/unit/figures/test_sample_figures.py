@@ -151,10 +151,10 @@ def of_words(study: Study) -> xr.Dataset:
 def test_words_are_categories_with_names(of_words: xr.Dataset) -> None:
     figure = scatter("peak_force").plot(of_words, xr.Dataset())
     ax = figure.axes[4]
-    assert [text.get_text() for text in ax.get_xticklabels()] == ["mjg", "kogut etsion"]
+    assert [text.get_text() for text in ax.get_xticklabels()] == ["MJG", "Kogut-Etsion"]
     assert ax.get_xlabel() == "Contact law"
     means = next(each for each in data.drawn(figure) if each.curve == "mean by word")
-    assert means.category == ["mjg", "kogut etsion"]
+    assert means.category == ["MJG", "Kogut-Etsion"]
     force = 1e-3 * of_words["peak_force"].groupby("contact").mean()
     np.testing.assert_allclose(means.y, force.sel(contact=["mjg", "kogut_etsion"]))
     assert "mean by word: largest for" in alt(figure)

@@ -86,7 +86,7 @@ def test_words_have_means_and_no_surrogate(report: Any, study: Study) -> None:
     kept = ["first_order", "total_order", "sensitivity_verdict"]
     page = report(runs, analysis[kept])
     ((head), *rows) = _table(page, "Mean of each response by contact law")
-    assert head == ["Response", "mjg", "brake"]
+    assert head == ["Response", "MJG", "Brake"]
     force = 1e-3 * runs["peak_force"].groupby("contact").mean()
     assert rows[0] == [
         "Peak force (kN)",
@@ -94,7 +94,7 @@ def test_words_have_means_and_no_surrogate(report: Any, study: Study) -> None:
         f"{force.sel(contact='brake'):.1f}",
     ]
     varied = _table(page, "Varied parameters")
-    assert varied[-1][:2] == ["Contact law", "choice: mjg 75 %, brake 25 %"]
+    assert varied[-1][:2] == ["Contact law", "choice: MJG 75 %, Brake 25 %"]
     assert "no polynomial follows words (contact law)" in page.text
 
 
