@@ -17,7 +17,14 @@ from impactlab.report import measured
 from impactlab.report.cautions import beside
 from impactlab.report.convergence import ORDERED, Needs, finest, needed
 from impactlab.report.distribution import limit_entries, limit_note
-from impactlab.report.sensitivity import in_units, share, shared, uncertainty, with_margin
+from impactlab.report.sensitivity import (
+    history_entries,
+    in_units,
+    share,
+    shared,
+    uncertainty,
+    with_margin,
+)
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 
@@ -90,8 +97,13 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
         note = limit_note(runs, analysis) + note
     first = _packed(limits, _LIMITS)
     last = [] if analysis is None else measured.entries(analysis)
-    rest = _packed(found, LINES - len(first) - bool(last))
-    return first + rest + [last] * bool(last), note
+    over = [] if analysis is None else history_entries(analysis)
+    if over:
+        note += " Over time: generalised total order, of the variance added up over all times."
+    room = LINES - len(first) - bool(last)
+    histories = _packed(over, 2 if room >= len(found) + len(over) else 1)
+    rest = _packed(found, room - len(histories))
+    return first + rest + histories + [last] * bool(last), note
 
 
 def _packed(found: list[Entry], lines: int) -> list[list[Entry]]:

@@ -39,6 +39,8 @@ _FINE = 0.005
 """Half-width below which a third decimal means something."""
 _LEAST = 0.001
 """Magnitude below which an index and its half-width are not printed separately."""
+_NAMED = 3
+"""Most parameters that are named for a history."""
 _TINY = 0.001
 """Share below which an uncertainty is only bounded."""
 _LEAD = (
@@ -152,6 +154,27 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
         )
 
 
+def history_entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
+    """Return one entry per history: the parameters that matter over all times, or why none."""
+    entries: list[tuple[str, str]] = []
+    for history in over_time.shown(analysis):
+        found = analysis.sel(history=history)
+        verdict = access.read(found[over_time.VERDICT])
+        total, margin = (found[f"generalised_total_order{end}"].values for end in ("", "_interval"))
+        named = [
+            f"{labels.parameter(name)} {_share(total[at], margin[at])}"
+            for at, name in enumerate(measures.parameters(analysis))
+            if total[at] > margin[at]
+        ]
+        ranked = np.argsort(-total[total > margin], kind="stable")[:_NAMED]
+        told = [labels.listing([named[at] for at in ranked]) or "no parameter exceeds its interval"]
+        if named and not entries:
+            told[0] += " of the variance"
+        told = told * bool(np.isfinite(total).any()) + [verdict.meaning] * (not verdict.sound)
+        entries.append((f"{labels.sentence(labels.response(history))} over time", "; ".join(told)))
+    return entries
+
+
 def _left_out(analysis: xr.Dataset, history: str) -> str:
     """Return a sentence on the base samples left out, and on times that have no index."""
     found = analysis.sel(history=history)
@@ -257,9 +280,10 @@ def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
 
 def share(index: Index, at: int) -> str:
     """Return a share with the half-width of its interval and the numerical error, if known."""
-    value, margin, error = (
-        float(each[at]) for each in (index.values, index.margins, index.numerical)
-    )
+    return _share(*(float(each[at]) for each in (index.values, index.margins, index.numerical)))
+
+
+def _share(value: float, margin: float, error: float = 0.0) -> str:
     decimals = 0 if margin >= _COARSE and value >= _SMALL else 1
     numerically = f", numerically {uncertainty(error)}" if error else ""
     within = f"± {100 * margin:.{decimals}f}" if margin >= 0.0005 else uncertainty(margin)

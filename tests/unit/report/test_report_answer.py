@@ -19,7 +19,7 @@ def test_of_a_sample_names_what_matters_with_share_interval_and_verdict() -> Non
     analysis["total_order_numerical"][:] = 0.0
     analysis["total_order"].loc["peak_force"] = [0.71, 0.12, 0.001, 0.0]
     analysis["total_order_interval"].loc["peak_force"] = [0.03, 0.02, 0.0001, 0.01]
-    first, second = answers(runs, analysis)
+    first, second, *_ = answers(runs, analysis)
     assert first.startswith(
         "Peak force (usable): impact velocity 71 % (± 3) of the variance, yield"
     )

@@ -73,6 +73,13 @@ def test_indices_over_time_are_told_with_what_was_left_out(report: Any, study: S
     assert "Contact force: none of 32 base samples left out; no index" in page.text
     rows = _table(page, "Generalised Sobol indices, first order")
     assert rows[1][:2] == ["Contact force", "0.71 ± 0.03"]
+    force, deflection = answers(*study)[-2:]
+    told = "over time: impact velocity 78 % (± 3) and yield stress of the beam 13 % (± 3)"
+    assert force == f"Contact force {told} of the variance."
+    assert deflection == f"Midspan deflection {told}; runs failed."
+    runs, analysis = study
+    none = {name: np.nan * analysis[name] for name in analysis if name.startswith("generalised")}
+    assert answers(runs, analysis.assign(none))[-1] == "Midspan deflection over time: runs failed."
     assert rows[2][0].startswith("Midspan deflection")
     assert "runs left out" in rows[2][0]
 
