@@ -81,7 +81,7 @@ def _judge_changes(case: str, gaps: Sequence[Number], limit: float) -> Judgement
     test=(
         "|f(rate)/f(static) − 1| − U ≤ limit for the peak force and the duration of the first "
         "contact; f(rate): with the yield stress after Cowper and Symonds in fibres and contact, "
-        "q = 5 and D from 40.4/s (mild steel) to 3200/s (high-tensile steel; both as remembered). "
+        "q = 5 and D from 40.4/s (mild steel) to 3200/s (high-tensile steel; as remembered). "
         "The value is the middle between the smallest and the largest change over D, U half of "
         f"their distance with the numerical uncertainty. {_LIMITS}"
     ),
