@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
@@ -15,6 +15,7 @@ from impactlab.figures.draw import draw_all, draw_findings
 from impactlab.figures.record import CAPTIONS, listed
 from impactlab.files import check_source, checked, opened, read_netcdf
 from impactlab.report import study, verification
+from impactlab.report.answer import answers
 from impactlab.report.page import described, leading, write_page
 
 
@@ -60,7 +61,7 @@ def open_stored(paths: Sequence[Path]) -> Iterator[tuple[Kind, list[xr.Dataset]]
 
 
 def write_index(results: Path, path: Path) -> None:
-    """Write a page with a link to each report under `results` (results/NAME/report.html).
+    """Write a page with each report under `results` (results/NAME/report.html): link and answer.
 
     The page on the paper (results/paper) is linked where it exists. A report without the stored
     results that it was made from is left out. Raises OSError when `path` cannot be written.
@@ -75,7 +76,12 @@ def write_index(results: Path, path: Path) -> None:
             if report.with_name(kind.files[0]).exists():
                 with opened(report.with_name(kind.files[0]), "runs", "findings") as stored:
                     size, failed = kind.counts(stored)
-                    entry = described(stored) | {"size": size, "failed": failed}
+                    entry = described(stored) | {"size": size, "failed": failed, "answer": ""}
+                with (
+                    suppress(OSError, ValueError),  # no analysis, or that of other runs
+                    open_stored([report.with_name(name) for name in kind.files]) as (_, datasets),
+                ):
+                    entry["answer"] = answers(*datasets)[0]
                 figures = report.with_name("figures")
                 drawn = listed(figures) if (figures / CAPTIONS).exists() else {}
                 name = leading(drawn)  # the figure that answers the study's question

@@ -13,8 +13,9 @@ import pytest
 import xarray as xr
 
 from impactlab.files import write_netcdf
+from impactlab.report.answer import answers
 from impactlab.report.page import drawn_data
-from impactlab.report.results import write_index
+from impactlab.report.results import RUNS, open_stored, write_index
 from impactlab.report.study import write_report
 
 Study = Any
@@ -125,6 +126,8 @@ def test_links_every_report(results: Path, page: Any) -> None:
     assert links == ["velocity/report.html"]
     assert "The velocity study" in found.text
     assert "6 runs (grid), none failed" in found.text
+    with open_stored([results / "velocity" / name for name in RUNS.files]) as (_, datasets):
+        assert answers(*datasets)[0] in found.text
 
 
 def test_addresses_are_relative_and_exist(results: Path, page: Any) -> None:
