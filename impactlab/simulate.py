@@ -13,7 +13,7 @@ import numpy as np
 
 from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
-from impactlab.model.contact_compliance import contact_compliance
+from impactlab.model.contact_compliance import axis_compliance, contact_compliance, width_inertia
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
@@ -282,7 +282,7 @@ def compile_kernels(
 ) -> Path | None:
     """Compile the kernels of these models and schemes side by side, unless they are compiled.
 
-    extended: whether those with strain rate and a load over the contact patch, those without, or
+    extended: whether those with what leapfrog.is_extended names, those without, or
     both.
 
     Returns the folder of the compiled kernels, None where they cannot be kept.
@@ -363,6 +363,8 @@ def _table(
             numbered = enumerate(entry.choices)
             values[name] = sum(at * (values[name] == word) for at, word in numbered)
     values["compliance"], values["bending_compliance"] = contact_compliance(impact)
+    values["width_inertia"] = width_inertia(impact)
+    values["axis_compliance"], values["axis_bending"] = axis_compliance(impact)
     cases = np.zeros(runs, dtype=CASE)
     for name in CASE.names or ():
         cases[name] = values[name]

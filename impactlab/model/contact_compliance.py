@@ -16,6 +16,14 @@ statics takes back too much.
 
 Left out: what the section does in waves across the width or shorter than it, and c_s for other
 circles than R/16 (from R/33 to R/8, 6 % of it).
+
+`contact_compliance: strip` gives the section's bending across the width its inertia
+(solver/strip.py). What that does in statics, on a long beam, is then no part of c and gamma:
+
+    c_w = B^2/D C/(2 sqrt(e t)),   gamma_w = B^2 (1 - nu^2) G,
+    t = 2/3 (1 - nu),  e = 4 (1 - nu^2),  G = (t - nu/3 - 4 t/e)/e,  C = 1/144 - G t
+
+(deflection of the strip's middle by waves cos(k x): parts in k^-2 and in 1/(e + t (k B)^2)).
 """
 
 from __future__ import annotations
@@ -55,8 +63,30 @@ MOMENT = np.array(
     ]
 )
 """g = gamma/H^2 at these."""
+AXIS_FORCE = np.array(
+    [
+        [1.62, 3.3521, 5.0012],
+        [0.8512, 1.5578, 2.1774],
+        [0.4255, 0.7031, 0.9179],
+        [0.1307, 0.2189, 0.273],
+        [-0.0535, -0.0347, -0.0324],
+    ]
+)
+"""As FORCE of the beam's axis, not its surface, for the first five depths."""
+AXIS_MOMENT = np.array(
+    [
+        [-0.0064, -0.6773, -1.356],
+        [-0.0015, -0.2994, -0.5884],
+        [-0.0004, -0.1376, -0.2636],
+        [-0.0004, -0.0655, -0.1217],
+        [-0.0002, -0.041, -0.0747],
+    ]
+)
+"""As MOMENT of the axis."""
 SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
+FREE_STRIP = 720.0 / 4.730041**4
+"""Inertia of the shape y^2 - B^2/12 that swings as fast as a strip of plate with free edges."""
 TIMOSHENKO_ALONE = "is what a beam adds to Timoshenko's deflection: set beam_model: timoshenko"
 LEAST_SPAN = 3.0
 """Of the beam, over the larger of depth and width: the table's shortest."""
@@ -75,13 +105,17 @@ def _at_ratio(nu: Floats, values: Floats) -> Floats:
 def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     """Return c (m/N) and gamma (m2) of an impact, or of many; zero for half-spaces.
 
-    Raises ValueError where the beam is none of Timoshenko's, or outside the table.
+    Of a strip: without what its bending across the width does.
+
+    Raises ValueError where the beam is none of Timoshenko's, outside the table, or a strip that is
+    deeper than wide.
     """
-    asked = np.equal(impact.contact_compliance, "beam")
+    asked = np.not_equal(impact.contact_compliance, "half_space")
     if not np.any(asked):
         return np.zeros(()), np.zeros(())
-    beam, sphere, steel = impact.beam, impact.sphere, impact.beam.material
-    refused = "Impact.contact_compliance = 'beam': "
+    beam, sphere = impact.beam, impact.sphere
+    strip = np.equal(impact.contact_compliance, "strip")
+    refused = f"Impact.contact_compliance = {'strip' if np.any(strip) else 'beam'!r}: "
     if np.any(asked & np.not_equal(impact.beam_model, "timoshenko")):
         raise ValueError(f"{refused}{TIMOSHENKO_ALONE}")
     shape = np.asarray(beam.depth / beam.width)
@@ -91,13 +125,57 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
         )
     if np.any(asked & (beam.span < LEAST_SPAN * np.maximum(beam.depth, beam.width))):
         raise ValueError(f"{refused}needs a span of {LEAST_SPAN:g} depths and widths at least")
+    if np.any(strip & (shape > 1.0)):
+        raise ValueError(f"{refused}needs a beam as wide as deep at least: set 'beam'")
+    c, gamma = _of_beam(impact, FORCE, MOMENT)
+    ball = _at_ratio(np.asarray(sphere.material.poissons_ratio), np.asarray(SPHERE))
+    c = c + ball / (sphere.material.youngs_modulus * sphere.radius)
+    across = _across_width(impact)
+    c, gamma = (
+        np.where(strip, whole - part, whole) for whole, part in zip((c, gamma), across, strict=True)
+    )
+    return np.where(asked, c, 0.0), np.where(asked, gamma, 0.0)
+
+
+def axis_compliance(impact: Impact) -> tuple[Floats, Floats]:
+    """Return how far a strip's axis lies below the middle of its section, of one impact or of many.
+
+    Per force (m/N) and per M/(EI) (m2), beyond the bending across the width; zero for others, whose
+    indentation is the approach of the sphere and the mean of the section.
+    """
+    strip = np.equal(impact.contact_compliance, "strip")
+    if not np.any(strip):
+        return np.zeros(()), np.zeros(())
+    found = zip(_of_beam(impact, AXIS_FORCE, AXIS_MOMENT), _across_width(impact), strict=True)
+    c, gamma = (np.where(strip, whole - part, 0.0) for whole, part in found)
+    return c, gamma
+
+
+def _of_beam(impact: Impact, force: Floats, moment: Floats) -> tuple[Floats, Floats]:
+    """Return c (m/N) and gamma (m2) of the beam from two tables."""
     from scipy.interpolate import CubicSpline  # half a second to import, for few
 
-    nu, depth = np.asarray(steel.poissons_ratio), beam.depth
-    tables = (CubicSpline(np.log(DEPTHS), table)(np.log(shape)) for table in (FORCE, MOMENT))
-    force, moment = (_at_ratio(nu, table) for table in tables)
-    ball = _at_ratio(np.asarray(sphere.material.poissons_ratio), np.asarray(SPHERE))
-    c = force / (steel.youngs_modulus * depth)
-    c = c + ball / (sphere.material.youngs_modulus * sphere.radius)
+    beam, nu = impact.beam, np.asarray(impact.beam.material.poissons_ratio)
+    log = np.log(np.asarray(beam.depth / beam.width))
+    both = (CubicSpline(np.log(DEPTHS[: len(each)]), each)(log) for each in (force, moment))
+    c, g = (_at_ratio(nu, each) for each in both)
     shear = (1.0 / beam.shear_coefficient - 6.0 / 5.0) * (1.0 + nu) / 6.0
-    return np.where(asked, c, 0.0), np.where(asked, (moment - shear) * depth * depth, 0.0)
+    c = c / (beam.material.youngs_modulus * beam.depth)
+    return c, (g - shear) * beam.depth * beam.depth
+
+
+def _across_width(impact: Impact) -> tuple[Floats, Floats]:
+    """Return c_w (m/N) and gamma_w (m2) of bending across the width."""
+    beam, nu = impact.beam, np.asarray(impact.beam.material.poissons_ratio)
+    t, e = 2.0 / 3.0 * (1.0 - nu), 4.0 * (1.0 - nu * nu)
+    moment = (t - nu / 3.0 - 4.0 * t / e) / e
+    force = (1.0 / 144.0 - moment * t) / (2.0 * np.sqrt(e * t))
+    square, per_plate = beam.width * beam.width, 0.25 * e * beam.width / beam.bending_stiffness
+    return square * per_plate * force, square * 0.25 * e * moment
+
+
+def width_inertia(impact: Impact) -> Floats:
+    """Return m of a strip (kg m3, solver/strip.py), of an impact or of many; zero for others."""
+    beam = impact.beam
+    mass = FREE_STRIP * beam.mass_per_length * beam.width**4 / 720.0
+    return np.where(np.equal(impact.contact_compliance, "strip"), mass, 0.0)

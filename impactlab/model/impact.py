@@ -159,8 +159,9 @@ class Impact:
     one degree of freedom), "rigid" (the beam does not move) or "solid" (3-D finite elements of both
     bodies, in which `contact` and `load` play no part). load: "point" (the contact force acts at
     mid-span) or "contact_patch" (over the contact circle, see solver/contact_patch.py; not on
-    lumped beams). contact_compliance: of the contact law's "half_space", or of this "beam" and
-    sphere (Timoshenko's beam alone; see model/contact_compliance.py).
+    lumped beams). contact_compliance: of the contact law's "half_space", of this "beam" and sphere,
+    or of a "strip", a beam that bends across its width, too (both Timoshenko's beam alone; see
+    model/contact_compliance.py).
 
     Raises ValueError naming the field when a value is not physical or a name is unknown.
 

@@ -13,7 +13,7 @@ LUMPED_MODELS = BEAM_MODELS[3:]
 """Those that move as one mass."""
 LOADS = ("point", "contact_patch")
 """Where the contact force acts on the beam; the index is the kernels' switch."""
-COMPLIANCES = ("half_space", "beam")
+COMPLIANCES = ("half_space", "beam", "strip")
 """What the contact laws' half-spaces stand for (model/contact_compliance.py)."""
 BENDING_MODELS = BEAM_MODELS[:2]
 """Those that have every scheme in time; the others have leapfrog alone."""

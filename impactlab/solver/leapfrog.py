@@ -20,6 +20,7 @@ from impactlab.solver import (
     lumped,
     modal,
     responses,
+    strip,
     timoshenko,
 )
 from impactlab.solver.beam import Beam, make_beam, make_grid, rest_beam
@@ -119,7 +120,8 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
 
 def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C901 one loop
     """Return the time loop of a model of the beam; extended: see _kernel."""
-    _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight, _ = model
+    _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight, _ = model[:9]
+    sag, beneath = model.sag, model.beneath
     fly = None if flight is None else _leaps(flight)
 
     @compiled
@@ -147,7 +149,7 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
         return abs(falling + in_beam + kept + lost - start) / start
 
     @compiled
-    def march(
+    def march(  # noqa: C901 as above
         case: Record, state: State, contact: Record, events: Record, samples: Array, steps: int
     ) -> int:
         """March from first touch to the end; return which row of beam.w is the last, or -1.
@@ -169,15 +171,19 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
         while step <= steps:
             w_mid, u_mid = w[now, mid], u[mid]
             delta = w_s - w_mid - ahead
+            if sag is not None:
+                delta -= sag(state)
             approach = delta
             if pair.bending != 0.0:
                 contact.shift_before = contact.shift
                 kappa = mid_curvature(state, now)
                 contact.shift = pair.bending * (plastic.M_0[mid] / section.stiffness - kappa)
                 approach = delta - contact.shift
-                contact.largest = max(contact.largest, delta)
             F = contact_force(contact, events, pair, approach, step * dt, dt)
+            if beneath is not None:
+                delta -= beneath(state, now, F)
             if pair.bending != 0.0:
+                contact.largest = max(contact.largest, delta)
                 grown = contact.shift - contact.shift_before
                 contact.bending_work += 0.5 * (F + events.F) * grown
             v_after = v_s + dt * (case.gravity - F * per_mass)
@@ -298,8 +304,8 @@ def _run(model: Model, extended: bool) -> Callable[..., int]:
 def _kernel(name: str, model: Model, extended: bool = False) -> Callable[..., None]:
     """Return the kernel of a model of the beam.
 
-    extended: with a load over the contact patch and strain rate, which other kernels are free of,
-    so that they compile sooner.
+    extended: with a load over the contact patch, strain rate and bending across the width, which
+    other kernels are free of, so that they compile sooner.
 
     It solves every case of R, by records and arrays of as many rows. cases: CASE records. answers:
     blank RESPONSE records, filled. contacts, events: zeros, CONTACT and EVENTS records to work in.
@@ -367,14 +373,15 @@ _EXTENDED_EULER_BERNOULLI = _kernel("extended_euler_bernoulli", euler_bernoulli.
 _EXTENDED = _LEAPFROG | {
     "euler_bernoulli": _EXTENDED_EULER_BERNOULLI,
     "elastic": _EXTENDED_EULER_BERNOULLI,
-    "timoshenko": _kernel("extended_timoshenko", timoshenko.MODEL, True),
+    "timoshenko": _kernel("extended_timoshenko", strip.MODEL, True),
 }
 _MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", modal.MODEL, True))
 
 
 def is_extended(cases: Array) -> Array:
-    """Return which cases need an extended kernel: a spread load, or fibres with a strain rate."""
-    return (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
+    """Return which cases need an extended kernel: a spread load, strain rate, or a strip."""
+    spread = (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
+    return spread | (cases["width_inertia"] > 0.0)
 
 
 def kernel_of(beam_model: int, scheme: int, extended: bool = False) -> Callable[..., None]:

@@ -50,7 +50,8 @@ class Model(NamedTuple):
     now, F, a): spread the force of a step just made over the contact radius a (contact_patch.py);
     return how far the mean under it has moved beyond mid-span (m), and what `energy` lacks (J).
     flight_stride: steps between two audits of the energy without contact, at least. flight: see
-    above.
+    above. sag(state): how far the middle of mid-span's section lies below its mean, m; None: not at
+    all. beneath(state, now, F): how far the axis lies below that, m.
     """
 
     make: Callable[..., Any]
@@ -62,3 +63,5 @@ class Model(NamedTuple):
     flight_stride: int = 1
     flight: Flight | None = None
     renew: Callable[..., None] | None = None
+    sag: Callable[..., float] | None = None
+    beneath: Callable[..., float] | None = None

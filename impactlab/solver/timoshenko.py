@@ -54,7 +54,7 @@ def shear_stiffness(case: Record) -> float:
 
 
 @allocating
-def _make(case: Record, section: Section, grid: Grid) -> Shear:
+def make(case: Record, section: Section, grid: Grid) -> Shear:
     """Return the state at rest."""
     area, size = case.beam_width * case.beam_depth, grid.mid + 3
     return Shear(
@@ -69,9 +69,11 @@ def _make(case: Record, section: Section, grid: Grid) -> Shear:
 
 
 @inlined
-def _step(state: State, now: int, F: float) -> None:
-    _, section, grid, beam, plastic, shear = state
-    psi, Q, mid = shear.psi, shear.Q, grid.mid
+def bend_sections(
+    section: Section, grid: Grid, beam: Beam, plastic: PlasticState, shear: Shear, now: int
+) -> float:
+    """Set the moments of the fibres where a step begins; return 1/dx."""
+    psi, mid = shear.psi, grid.mid
     if plastic.on_tangent[0] > 0 and follow_tangents(
         beam.w, now, psi, beam.plastic, plastic.M_0, plastic.on_tangent, plastic.tangent, grid
     ):
@@ -81,10 +83,24 @@ def _step(state: State, now: int, F: float) -> None:
     if outside > 0.0:
         begin_tangents(beam, now, psi, outside, plastic, section, grid, beam.du, beam.du[:0])
         _moments(shear, plastic, EI, per_dx, mid)
+    return per_dx
+
+
+@inlined
+def move(grid: Grid, beam: Beam, shear: Shear, now: int, F: float, per_dx: float) -> None:
+    """Move rotation and deflection by one step, under the moments and the contact force F (N)."""
+    psi, Q, mid = shear.psi, shear.Q, grid.mid
     _rotate(beam.w, now, shear, grid.dt**2 / shear.inertia, per_dx, mid)
     psi[mid], Q[mid] = -psi[mid - 1], -Q[mid - 1]
     _shift(beam.w, now, beam.u, beam.du, Q, grid.push, F, mid)
     mirror(beam.w, now, grid)
+
+
+@inlined
+def _step(state: State, now: int, F: float) -> None:
+    _, section, grid, beam, plastic, shear = state
+    per_dx = bend_sections(section, grid, beam, plastic, shear, now)
+    move(grid, beam, shear, now, F, per_dx)
 
 
 @vectorised
@@ -129,7 +145,7 @@ def _shift(
 
 
 @vectorised
-def _shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) -> float:
+def shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) -> float:
     """Return the beam's energy in J after a step, at its beginning, without plastic strains'.
 
     Kinetic as in beam.py, of deflection and rotation; elastic of bending (see there) and shear.
@@ -157,7 +173,7 @@ def _curvature(state: State, now: int) -> float:
 def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
     EI = state.section.stiffness
-    elastic = _shear_energy(state.beam, state.own, state.plastic.M_0, EI, state.grid)
+    elastic = shear_energy(state.beam, state.own, state.plastic.M_0, EI, state.grid)
     return stored + dissipated + elastic
 
 
@@ -167,4 +183,4 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     return ahead, 0.0
 
 
-MODEL = Model(_make, _step, _curvature, _energy, deflected, _spread)
+MODEL = Model(make, _step, _curvature, _energy, deflected, _spread)

@@ -43,6 +43,7 @@ CASE = record(
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent courant
     compliance bending_compliance
+    width_inertia axis_compliance axis_bending
     """,
     whole="contact beam_model load nodes points rule scheme",
 )

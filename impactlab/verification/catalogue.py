@@ -38,6 +38,7 @@ _CHECKS = (
     local_contact.contact_patch,
     strain_rate.strain_rate,
     local_contact.contact_compliance,
+    local_contact.strip,
     energy.balances,
 )
 CATALOGUE: dict[str, Check] = {check.name: check for check in _CHECKS}

@@ -52,11 +52,13 @@ MODELS = {
     "Timoshenko, law": TIMOSHENKO | {"contact": "finite_element"},
     "Timoshenko, law, compliance": CORRECTED | {"contact": "finite_element"},
     "all": CORRECTED | {"contact": "finite_element", "load": "contact_patch"},
+    "all, strip": TIMOSHENKO
+    | {"contact_compliance": "strip", "contact": "finite_element", "load": "contact_patch"},
 }
 MESHES = (5.0, 5.25, 5.5, 5.75)
 """Elements over the radius of the contact."""
 UNCERTAINTY = "3-D, half the range of the meshes"
-SHOWN = ("the paper's model", "contact law", "Timoshenko, law", "Timoshenko, law, compliance")
+SHOWN = ("the paper's model", "Timoshenko, law", "all", "all, strip")
 RESPONSES = {
     "peak_force": "peak force",
     "contact_duration": "contact duration",

@@ -1,15 +1,15 @@
 """Make the table of `contact_compliance: beam` by 3-D elastic statics (scikit-fem, no dependency).
 
     pip install scikit-fem
-    python tests/benchmarks/contact_compliance.py            # prints the table, some 20 minutes
+    python tests/benchmarks/contact_compliance.py            # prints the tables, some 20 minutes
 
 Beam: a quarter of a beam under a unit point force on its upper face, its ends held by the
 parabolic shear of beam theory. Boussinesq's half-space is taken out before the solve: the finite
 elements see what its tractions on the beam's other faces leave, which is smooth, and give the
 surface under the force less the half-space's displacement. From that the deflection of
 Timoshenko's beam is subtracted, L^3/(48 EI) + L/(4 k G A) with k = 5/6, measured from the ends,
-each weighted with its shear. The rest is straight in L: c + gamma M/(EI) with M = L/4. Two spans
-give both, in c E H and gamma/H^2.
+each weighted with its shear; from that of the axis, half a depth below, as well. The rest is
+straight in L: c + gamma M/(EI) with M = L/4. Two spans give both, in c E H and gamma/H^2.
 
 Sphere: Hertz's pressure on its pole, balanced by an even deceleration: the patch's displacement,
 weighted with the pressure, from the centre of mass, less the half-space's; c E R.
@@ -76,8 +76,11 @@ def stress(at: Array, nu: float, step: float = 1e-4) -> Array:
     return found
 
 
-def beam(B: float, L: float, nu: float, n: int = 4) -> float:
-    """Return surface less half-space less Timoshenko for H = E = F = 1; n elements over H."""
+def beam(B: float, L: float, nu: float, n: int = 4) -> Array:
+    """Return surface less half-space less Timoshenko, and axis less Timoshenko, at mid-width.
+
+    H = E = F = 1; n elements over H, an even number.
+    """
     most = 1.5 / n * max(1.0, 0.5 * B)
     width = np.linspace(0, B / 2, max(int(np.ceil(n * B / 2)), 3) + 1)
     if len(width) > 9:
@@ -110,7 +113,9 @@ def beam(B: float, L: float, nu: float, n: int = 4) -> float:
     ]
     u = solve(*condense(K, f, D=np.unique(np.concatenate(held))))
     timoshenko = L**3 / (4 * B) + L * (1 + nu) / (2 * 5 / 6 * B)
-    return float(u[pin[0]] - weights @ u - ends - timoshenko)
+    axis = [d for d in basis.nodal_dofs[2] if np.allclose(basis.doflocs[:, d], (0, 0, 0.5))]
+    below = boussinesq(np.array([0.0, 0.0, 0.5]), nu)[2]
+    return np.array([u[pin[0]], u[axis[0]] + below]) - weights @ u - ends - timoshenko
 
 
 def sphere(nu: float, a: float = 0.06, n: int = 12) -> float:
@@ -156,8 +161,8 @@ def sphere(nu: float, a: float = 0.06, n: int = 12) -> float:
 
 
 def main() -> None:
-    """Print the table as Python tuples: c E H and gamma/H^2 by H/B and nu, c E R by nu."""
-    rows: dict[str, list[list[float]]] = {"BEAM": [], "BENDING": []}
+    """Print the tables as Python tuples: c E H and gamma/H^2 by H/B and nu, c E R by nu."""
+    rows: dict[str, list[list[float]]] = {}
     for depth in DEPTHS:
         B, found = 1.0 / depth, []
         spans = [3.0 * max(B, 1.0), 5.0 * max(B, 1.0)]
@@ -165,9 +170,10 @@ def main() -> None:
             near, far = (beam(B, L, nu) for L in spans)
             slope = (far - near) / (spans[1] - spans[0])
             found.append((near - slope * spans[0], slope * B / 3.0))  # M/(EI) = 3 L/B
-        print(depth, [(round(c, 4), round(g, 4)) for c, g in found], flush=True)
-        rows["BEAM"].append([round(c, 4) for c, _ in found])
-        rows["BENDING"].append([round(g, 4) for _, g in found])
+        print(depth, [np.round(each, 4).tolist() for each in found], flush=True)
+        for at, name in enumerate(("", "AXIS_")):
+            rows.setdefault(f"{name}FORCE", []).append([round(c[at], 4) for c, _ in found])
+            rows.setdefault(f"{name}MOMENT", []).append([round(g[at], 4) for _, g in found])
     print(rows)
     print("SPHERE", [round(sphere(nu), 4) for nu in RATIOS])
 

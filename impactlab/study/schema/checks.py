@@ -191,11 +191,10 @@ def _impacts(file: StudyFile) -> Reasons:
     if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
         yield key_of("load", sampling), f"{reason}, or take out the beam model"
-    given = file.impact.contact_compliance
-    if set(models) - {"timoshenko", SOLID} and "beam" in values_of(
-        sampling, "contact_compliance", given
-    ):
-        yield key_of("contact_compliance", sampling), f"beam {TIMOSHENKO_ALONE}"
+    given = values_of(sampling, "contact_compliance", file.impact.contact_compliance)
+    ours = sorted(set(map(str, given)) - {"half_space"})
+    if ours and set(models) - {"timoshenko", SOLID}:
+        yield key_of("contact_compliance", sampling), f"{ours[0]} {TIMOSHENKO_ALONE}"
 
 
 def _solid(file: StudyFile) -> Reasons:

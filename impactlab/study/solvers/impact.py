@@ -84,8 +84,9 @@ def prepare(design: xr.Dataset) -> None:
     schemes = np.unique(design.get("scheme", grid.scheme)).tolist()
     patch = np.atleast_1d(design.get("load", given.load)) == "contact_patch"
     rate = np.atleast_1d(design.get("beam_rate_coefficient", given.beam.material.rate_coefficient))
-    extended = np.unique(np.logical_or.outer(patch.ravel(), rate.ravel() > 0.0)).tolist()
-    compile_kernels(models, schemes, extended)
+    strip = np.atleast_1d(design.get("contact_compliance", given.contact_compliance)) == "strip"
+    options = np.meshgrid(patch, rate > 0.0, strip)
+    compile_kernels(models, schemes, np.unique(np.logical_or.reduce(options)).tolist())
 
 
 SOLVER = Solver(

@@ -113,6 +113,71 @@ def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
     return BeamModes(beam, both, np.sqrt(squares), flexibilities, curvatures, 1.0 / a)
 
 
+@dataclass(frozen=True)
+class StripModes(BeamModes):
+    """Modes of a strip (solver/strip.py): y_n (m) of its middle; no mode's deflection is w alone.
+
+    statics: deflection (m/N) and curvature (1/(m N)) per load at rest.
+    """
+
+    statics: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def residual_flexibility(self) -> float:
+        """Mid-span deflection per load of the modes left out, in m/N."""
+        return float(self.statics[0] - self.flexibilities.sum())
+
+    @property
+    def residual_curvature(self) -> float:
+        """Mid-span curvature per load of the modes left out, in 1/(m N)."""
+        return float(self.statics[1] - self.curvatures @ self.flexibilities)
+
+
+def strip_odd_modes(beam: Beam, count: int, inertia: float) -> StripModes:
+    """Return the three spectra of the first `count` odd n of a strip; inertia: of s, in kg m3.
+
+    With s = S sin(q x) beside W and Psi, n gives three oscillators: the Hessians of the energies of
+    solver/strip.py are their masses and springs. The load is 2 F/L on the middle W - S B^2/24.
+    The shape of zero mean is a quadrature's over the width, not a closed form's. Statics: 100 times
+    as many n.
+    """
+    steel, B = beam.material, beam.width
+    nu, a, mu = steel.poissons_ratio, shear_stiffness(beam), beam.mass_per_length
+    EI, D = beam.bending_stiffness, beam.bending_stiffness / (B * (1.0 - nu**2))
+    points, weights = np.polynomial.legendre.leggauss(5)
+    shape = (0.5 * B * points) ** 2
+    shape = 0.5 * (shape - 0.5 * weights @ shape)
+    middle = np.array([1.0, 0.0, shape[2]])
+    slopes = float(0.5 * B * weights @ (0.5 * B * points) ** 2)
+
+    def springs(q: Floats) -> Floats:
+        K = np.zeros((q.size, 3, 3))
+        K[:, 0, 0], K[:, 1, 1] = a * q**2, a + EI * q**2 + nu**2 * D * B * q**2
+        K[:, 0, 1] = K[:, 1, 0] = -a * q
+        K[:, 1, 2] = K[:, 2, 1] = -nu * D * B * q
+        K[:, 2, 2] = D * B + 2.0 * (1.0 - nu) * D * slopes * q**2
+        return K
+
+    q = _odd_wave_numbers(beam, count)
+    roots = np.sqrt([mu, mu * beam.depth**2 / 12.0, inertia])
+    squares, vectors = np.linalg.eigh(springs(q) / np.outer(roots, roots))
+    shapes = vectors / roots[:, None]
+    y = np.einsum("i,nij->nj", middle, shapes)
+    flexibilities = 2.0 / beam.span * y**2 / squares
+    curvatures = -q[:, None] * shapes[:, 1, :] / y
+    many = _odd_wave_numbers(beam, 100 * count)
+    rest = np.linalg.solve(springs(many), np.broadcast_to(middle[:, None], (many.size, 3, 1)))
+    statics = 2.0 / beam.span * np.array([np.sum(rest[:, :, 0] @ middle), -many @ rest[:, 1, 0]])
+    return StripModes(
+        beam,
+        np.tile(q, 3),
+        np.sqrt(squares).T.ravel(),
+        flexibilities.T.ravel(),
+        curvatures.T.ravel(),
+        statics=(float(statics[0]), float(statics[1])),
+    )
+
+
 def shear_stiffness(beam: Beam) -> float:
     """Return k G A in N, k the shear coefficient, G = E/(2 (1 + nu))."""
     modulus = beam.material.youngs_modulus / (2.0 * (1.0 + beam.material.poissons_ratio))

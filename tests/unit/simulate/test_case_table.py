@@ -39,7 +39,7 @@ RANDOM = np.random.default_rng(3)
 TOGETHER = tuple(name for name in PARAMETERS if name != ELEMENTS[1])
 """But for what contradicts another."""
 WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "load": LOADS}
-WORDS["contact_compliance"] = COMPLIANCES[:1]  # the other is Timoshenko's beam's alone
+WORDS["contact_compliance"] = COMPLIANCES[:1]  # the others are Timoshenko's beam's alone
 WORDS |= {"rule": RULES, "scheme": SCHEMES}
 COUNTS = {"nodes": (5, 19, 1201), "points": (2, 3, 64)}
 

@@ -14,8 +14,8 @@ OF_KERNELS = {
     for name, entry in PARAMETERS.items()
     if name not in (*ELEMENTS, "contact_compliance")
 }
-"""Without those of the 3-D model alone, and that which becomes two numbers."""
-DERIVED = ("compliance", "bending_compliance")
+"""Without those of the 3-D model alone, and that which becomes five numbers."""
+DERIVED = ("compliance", "bending_compliance", "width_inertia", "axis_compliance", "axis_bending")
 
 
 def test_fields_are_the_parameters_and_the_duration():

@@ -6,11 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import impactlab as il
-from impactlab.model.contact_compliance import contact_compliance
+from impactlab.model.contact_compliance import contact_compliance, width_inertia
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, Pair, energies, force, load_to
+from impactlab.verification.solutions.beam_modes import strip_odd_modes, timoshenko_odd_modes
 
 E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
 DEEP = 60e-6
@@ -97,10 +99,47 @@ def test_another_shear_coefficient_moves_only_its_own_deflection():
     assert np.diff(gammas) * moment == pytest.approx(-np.diff(deflections), rel=1e-9)
 
 
+WIDE = replace(
+    TIMOSHENKO,
+    beam=replace(TIMOSHENKO.beam, depth=0.015),
+    contact_compliance="strip",
+)
+
+
+def test_a_strip_takes_over_what_it_does_in_statics():
+    """Its modal series, of another derivation, has the rest of the table's beam at rest."""
+    table = np.array(contact_compliance(replace(WIDE, contact_compliance="beam")))
+    rest = np.array(contact_compliance(WIDE))
+    beam = WIDE.beam
+    modes = strip_odd_modes(beam, 100, float(width_inertia(WIDE)))
+    timoshenko = timoshenko_odd_modes(beam, 100)
+    alone = timoshenko.residual_flexibility + timoshenko.flexibilities.sum()
+    moment = 0.25 * beam.span / beam.bending_stiffness
+    expected = (table - rest) @ [1.0, moment]
+    assert modes.statics[0] - alone == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_section_swings_as_fast_as_a_free_strip_of_plate():
+    beam, root = WIDE.beam, brentq(lambda x: np.cos(x) * np.cosh(x) - 1.0, 4.0, 5.0)
+    D = beam.bending_stiffness / (beam.width * (1.0 - 0.3**2))
+    plate = root**4 / beam.width**4 * D / (beam.material.density * beam.depth)
+    assert D * beam.width / width_inertia(WIDE) == pytest.approx(plate, rel=1e-6)
+
+
+@pytest.mark.parametrize("load", ["point", "contact_patch"])
+def test_a_strip_that_yields_keeps_its_energy(load):
+    """At the critical step, through several contacts."""
+    impact = replace(WIDE, velocity=20.0, load=load)
+    run = il.simulate(impact, il.Discretisation(nodes=101, courant=1.0), duration="2 ms")
+    assert run.plastic_dissipation > 1.0
+    assert run.energy_error < 1e-3
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
         ({"beam_model": "euler_bernoulli"}, "beam_model: timoshenko"),
+        ({"contact_compliance": "strip", "beam_depth": 0.07}, "as wide as deep at least"),
         ({"beam_width": 0.15}, "depth over width from 0.2 to 4"),
         ({"beam_span": 0.1}, "span of 3 depths and widths"),
     ],
@@ -118,8 +157,14 @@ def test_a_factor_of_a_study_as_any_other():
         replace(il.paper_impact(contact="hertz"), beam_model="timoshenko"),
         il.Discretisation(nodes=41),
         duration="0.3 ms",
-        varied={"contact_compliance": ["half_space", "beam"]},
+        varied={"contact_compliance": ["half_space", "beam", "strip"]},
     )
+    alone = il.simulate(
+        replace(TIMOSHENKO, contact="hertz", contact_compliance="strip"),
+        il.Discretisation(nodes=41),
+        duration="0.3 ms",
+    )
+    assert both.peak_force[2] == alone.peak_force
     assert both.peak_force[1] / both.peak_force[0] == pytest.approx(1.04, abs=0.01)
     assert both.contact_duration[1] / both.contact_duration[0] == pytest.approx(0.97, abs=0.01)
     assert both.energy_error.max() < 1e-3

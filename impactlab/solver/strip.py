@@ -1,0 +1,182 @@
+"""The Timoshenko beam whose section bends across its width, with the inertia of that.
+
+A bent beam curves across its width, by -nu kappa (Saint-Venant). A blow at mid-width bends the
+section across, too, and both take the time of a wave across the width, which on a wide beam is
+that of the contact. With one shape, of mean zero over the width,
+
+    w(x, y) = w + s (y^2 - B^2/12)/2,
+
+Kirchhoff's plate of the stiffness D = E H^3/(12 (1 - nu^2)) has per length
+
+    2 U = EI kappa^2 + D B (s + nu kappa)^2 + T s_x^2,   T = (1 - nu) D B^3/6,   2 K = m s_t^2
+
+beside the beam's own shear and inertias, so that, with F under the middle of the width,
+
+    m s_tt = T s_xx - D B (s + nu kappa) - (B^2/24) F delta(x - L/2),
+    M = M_0 - EI kappa - nu D B (s + nu kappa).
+
+Waves as long as the beam leave s = -nu kappa, and the beam's EI; the shortest bend a plate's D B.
+With m = rho H B^5/720 the section alone would swing faster than a plate strip with free edges does,
+sqrt(720) for 4.730^2 in sqrt(D/(rho H))/B^2: m is raised to meet that. Left out: s_xx^2 of the
+plate's energy, and shear across the width. s = 0 at the supports.
+
+Source: the plate's energy, Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells (1959),
+eq. 47; the free strip's frequency, the same as a free beam's, Rayleigh, Theory of Sound, art. 173
+(both recalled).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from impactlab.solver import timoshenko
+from impactlab.solver.beam import Grid
+from impactlab.solver.fibre_plasticity import curvature, plastic_energy
+from impactlab.solver.jit import allocating, compiled, inlined, vectorised
+from impactlab.solver.section import Section
+from impactlab.solver.state import State
+from impactlab.solver.timoshenko import Shear
+from impactlab.solver.types import ONE, Array, Record
+
+
+class Strip(NamedTuple):
+    """The state of a strip besides Beam; all arrays (n + 4,), at nodes.
+
+    inertia: m (kg m3), 0 where nothing bends across; stiffness = D B (N m2); twist = T (N m4);
+    lever = B^2/24 (m2). axis (m/N, m2): how much lower than the middle of the section the axis
+    lies, per F and per M/(EI). s (1/m): the curvature across the width, rate = dt s_t its
+    increment, d_rate the last change of that; bent = s + nu kappa, where the step began.
+    """
+
+    shear: Shear
+    inertia: float
+    stiffness: float
+    twist: float
+    lever: float
+    axis: tuple[float, float]
+    nu: float
+    s: Array
+    rate: Array
+    d_rate: Array
+    bent: Array
+
+
+@compiled
+def across_width(case: Record) -> tuple[float, float, float]:
+    """Return D B (N m2), T (N m4) and B^2/24 (m2)."""
+    nu, B = case.beam_poissons_ratio, case.beam_width
+    DB = case.beam_youngs_modulus * B * case.beam_depth**3 / (12.0 * (1.0 - nu * nu))
+    return DB, (1.0 - nu) * DB * B * B / 6.0, B * B / 24.0
+
+
+@allocating
+def _make(case: Record, section: Section, grid: Grid) -> Strip:
+    """Return the state at rest."""
+    shear, size = timoshenko.make(case, section, grid), grid.mid + 3
+    DB, twist, lever = across_width(case)
+    return Strip(
+        shear,
+        case.width_inertia,
+        DB,
+        twist,
+        lever,
+        (case.axis_compliance, case.axis_bending),
+        case.beam_poissons_ratio,
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+    )
+
+
+@inlined
+def _step(state: State, now: int, F: float) -> None:
+    _, section, grid, beam, plastic, strip = state
+    per_dx = timoshenko.bend_sections(section, grid, beam, plastic, strip.shear, now)
+    if strip.inertia > 0.0:
+        _stretch(strip, per_dx, grid.mid)
+        _push_back(strip, -1.0, grid.mid)
+        _swing(strip, grid.dt**2 / strip.inertia, per_dx, F, grid.mid)
+    timoshenko.move(grid, beam, strip.shear, now, F, per_dx)
+
+
+@vectorised
+def _stretch(strip: Strip, per_dx: float, mid: int) -> None:
+    psi = strip.shear.psi
+    for i in range(np.uint64(2), np.uint64(mid + 1)):
+        strip.bent[i] = strip.s[i] + strip.nu * (psi[i] - psi[i - ONE]) * per_dx
+
+
+@vectorised
+def _push_back(strip: Strip, sign: float, mid: int) -> None:
+    """Add nu D B bent to the beam's moments, or take it away."""
+    M, share = strip.shear.M, sign * strip.nu * strip.stiffness
+    for i in range(np.uint64(2), np.uint64(mid + 1)):
+        M[i] += share * strip.bent[i]
+
+
+@vectorised
+def _swing(strip: Strip, push: float, per_dx: float, F: float, mid: int) -> None:
+    """Move s by one step; push = dt^2/m."""
+    s, rate, d_rate, bent = strip.s, strip.rate, strip.d_rate, strip.bent
+    T, DB = strip.twist * per_dx * per_dx, strip.stiffness
+    s[mid + 1] = s[mid - 1]
+    for i in range(np.uint64(2), np.uint64(mid + 1)):
+        d_rate[i] = push * (T * (s[i - ONE] - 2.0 * s[i] + s[i + ONE]) - DB * bent[i])
+    d_rate[mid] -= push * strip.lever * F * per_dx
+    for i in range(np.uint64(2), np.uint64(mid + 1)):
+        rate[i] += d_rate[i]
+        s[i] += rate[i]
+
+
+@vectorised
+def _width_energy(strip: Strip, grid: Grid) -> float:
+    """Return kinetic and elastic energy (J) of s after a step, at its beginning."""
+    s, rate, d_rate, bent, mid = strip.s, strip.rate, strip.d_rate, strip.bent, grid.mid
+    moved, bending, twisted = 0.0, 0.0, 0.0
+    for i in range(np.uint64(2), np.uint64(mid)):
+        moved += rate[i] * (rate[i] - d_rate[i])
+        bending += bent[i] * bent[i]
+    moved += 0.5 * rate[mid] * (rate[mid] - d_rate[mid])
+    bending += 0.5 * bent[mid] * bent[mid]
+    for i in range(np.uint64(1), np.uint64(mid)):
+        slope = (s[i + ONE] - rate[i + ONE] - s[i] + rate[i]) / grid.dx
+        twisted += slope * slope
+    kinetic = strip.inertia * moved / grid.dt**2
+    return grid.dx * (kinetic + strip.stiffness * bending + strip.twist * twisted)
+
+
+@compiled
+def _curvature(state: State, now: int) -> float:
+    psi, grid = state.own.shear.psi, state.grid
+    return curvature(state.beam.w, now, psi, grid, np.uint64(grid.mid))
+
+
+@compiled
+def _energy(state: State, now: int, F: float, u_mid: float) -> float:
+    _, section, grid, beam, plastic, strip = state
+    stored, dissipated = plastic_energy(plastic, section, grid)
+    total = stored + dissipated
+    if strip.inertia > 0.0:
+        _push_back(strip, 1.0, grid.mid)  # the fibres' own moments; the next step sets them anew
+        total += _width_energy(strip, grid)
+    return total + timoshenko.shear_energy(beam, strip.shear, plastic.M_0, section.stiffness, grid)
+
+
+@compiled
+def _sag(state: State) -> float:
+    return -state.own.lever * state.own.s[state.grid.mid]
+
+
+@compiled
+def _beneath(state: State, now: int, F: float) -> float:
+    c, gamma = state.own.axis
+    elastic = state.plastic.M_0[state.grid.mid] / state.section.stiffness - _curvature(state, now)
+    return float(c * F + gamma * elastic)
+
+
+MODEL = timoshenko.MODEL._replace(
+    make=_make, step=_step, curvature=_curvature, energy=_energy, sag=_sag, beneath=_beneath
+)
