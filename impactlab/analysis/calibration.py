@@ -98,13 +98,15 @@ class Model:
             )
         if reasons:
             raise ValueError("\n".join(dict.fromkeys(reasons)))
+        keys = [json.dumps(each) for each in stated]
+        _, firsts, place = np.unique(keys, return_index=True, return_inverse=True)
         places = []
-        for given in {json.dumps(each): each for each in stated}.values():
+        for at, first in enumerate(firsts.tolist()):
             unit = {
-                name: float(surrogate.probability(name, value)) for name, value in given.items()
+                name: float(surrogate.probability(name, value))
+                for name, value in stated[first].items()
             }
-            members = np.array([at for at, each in enumerate(stated) if each == given])
-            places.append((unit, members))
+            places.append((unit, np.flatnonzero(place == at)))
         found = surrogate.dataset.sel(response=[one.quantity for one in measurements])
         error = found["rmse"].values.astype(float)
         for unit, members in places:  # at an end of a range the error may be larger
@@ -113,9 +115,6 @@ class Model:
                     error[members] *= found["outer"].sel(parameter=name).values[members]
         measured = np.array([one.value for one in measurements])
         names = np.array([one.quantity for one in measurements])
-        place = np.empty(len(measurements), int)
-        for at, (_, members) in enumerate(places):
-            place[members] = at
         alike = names[:, None] == names
         covariance = np.diag([one.standard_uncertainty**2 for one in measurements])
         # the same prediction has the same error, however often it is measured
@@ -264,41 +263,34 @@ def _packed(
         if doubt and not weight < NEGLIGIBLE
     ]:
         raise ValueError("\n".join(reasons))
-    free = next(iter(models.values())).free
+    first = next(iter(models.values()))
+    free = first.free
     weights = np.concatenate(
         [w * each.weights for w, each in zip(share, found.values(), strict=True)]
     )
-    values = np.concatenate([models[name].values(each.points) for name, each in found.items()])
-    predicted = np.concatenate(
-        [models[name].predicted(each.points) for name, each in found.items()]
-    )
-    squared = np.concatenate(
-        [models[name].squared(models[name].predicted(each.points)) for name, each in found.items()]
-    )
+    of_each = [
+        (models[name].values(each.points), models[name].predicted(each.points))
+        for name, each in found.items()
+    ]
+    values, predicted = (np.concatenate(each) for each in zip(*of_each, strict=True))
+    squares = [model.squared(y) for model, (_, y) in zip(models.values(), of_each, strict=True)]
     of_model = np.repeat(np.arange(len(found)), [each.weights.size for each in found.values()])
     even = (np.arange(20_000) + 0.5) / 20_000
-    prior = next(iter(models.values())).values(np.column_stack([even] * len(free)))
+    prior = first.values(np.column_stack([even] * len(free)))
     mean, deviation = _moments(values, weights)
-    of_each = [
-        _moments(models[name].values(one.points), one.weights) for name, one in found.items()
+    moments = [
+        _moments(each, one.weights) for (each, _), one in zip(of_each, found.values(), strict=True)
     ]
     prior_mean, prior_deviation = prior.mean(axis=0), prior.std(axis=0)
-    low, high = (_quantile(values, weights, p) for p in (0.025, 0.975))
+    low, high = np.quantile(values, (0.025, 0.975), axis=0, weights=weights, method="inverted_cdf")
     predicted_mean, predicted_deviation = _moments(predicted, weights)
     # systematic resampling: draws of equal weight, in a random order
     rng = np.random.default_rng(_SEED)
     ends = np.cumsum(weights)
     picked = np.searchsorted(ends / ends[-1], (np.arange(DRAWS) + rng.random()) / DRAWS)
     picked = rng.permutation(picked.clip(max=weights.size - 1))
-    p_value = float(weights @ scipy.stats.chi2.sf(squared, len(measurements)))
-    first = next(iter(models.values()))
+    p_value = float(weights @ scipy.stats.chi2.sf(np.concatenate(squares), len(measurements)))
     units = [first.surrogate.units(name) for name in free]
-    words = {
-        "quantity": [one.quantity for one in measurements],
-        "units": [one.units for one in measurements],
-        "conditions": [json.dumps(dict(one.conditions)) for one in measurements],
-        "source": [one.source for one in measurements],
-    }
     uncertainty = COVERAGE * np.array([one.standard_uncertainty for one in measurements])
     variables: dict[str, Any] = {
         "posterior_mean": ("parameter", mean),
@@ -311,8 +303,8 @@ def _packed(
         "parameter_units": ("parameter", units),
         "model_weight": ("model", share),
         "model_weight_before": ("model", [before[name] for name in found]),
-        "model_mean": (("model", "parameter"), np.array([each for each, _ in of_each])),
-        "model_deviation": (("model", "parameter"), np.array([each for _, each in of_each])),
+        "model_mean": (("model", "parameter"), np.array([each for each, _ in moments])),
+        "model_deviation": (("model", "parameter"), np.array([each for _, each in moments])),
         "log_evidence": ("model", evidence),
         "effective_samples": ("model", [each.effective for each in found.values()]),
         "model_doubt": ("model", doubts),
@@ -322,14 +314,21 @@ def _packed(
         "predicted_deviation": ("measurement", predicted_deviation),
         "surrogate_error": (
             "measurement",
-            np.max([model.error for model in models.values()], axis=0),
+            np.max([each.error for each in models.values()], axis=0),
         ),
         "draws": (("draw", "parameter"), values[picked]),
         "draw_model": ("draw", np.array(list(found))[of_model[picked]]),
         "draw_predicted": (("draw", "measurement"), predicted[picked]),
         "prior_draws": (("prior_draw", "parameter"), prior[::20]),
         "predictive_p": ((), p_value),
-    } | {f"measured_{name}": ("measurement", each) for name, each in words.items()}
+        "measured_quantity": ("measurement", [one.quantity for one in measurements]),
+        "measured_units": ("measurement", [one.units for one in measurements]),
+        "measured_conditions": (
+            "measurement",
+            [json.dumps(dict(one.conditions)) for one in measurements],
+        ),
+        "measured_source": ("measurement", [one.source for one in measurements]),
+    }
     dataset = xr.Dataset(variables, {"parameter": list(free), "model": list(found)})
     for name, words_of in _LONG_NAMES.items():
         dataset[name].attrs["long_name"] = words_of
@@ -387,14 +386,3 @@ def _doubt(model: Model, found: Posterior) -> str:
 def _moments(values: Floats, weights: Floats) -> tuple[Floats, Floats]:
     mean = weights @ values
     return mean, np.sqrt(weights @ (values - mean) ** 2)
-
-
-def _quantile(values: Floats, weights: Floats, probability: float) -> Floats:
-    order = np.argsort(values, axis=0)
-    found = []
-    for column, at in zip(values.T, order.T, strict=True):
-        ends = np.cumsum(weights[at])
-        found.append(
-            column[at][np.searchsorted(ends, probability * ends[-1]).clip(max=at.size - 1)]
-        )
-    return np.array(found)

@@ -76,7 +76,7 @@ def compared(
 
     runs, analysis: as in runs.nc and analysis.nc. A run is of the measurement's conditions to
     within 1e-6; there is no interpolation. It is that on the finest grid, with the numerical
-    uncertainty that the analysis found there along all refined axes.
+    uncertainty that the analysis found there along all refined axes, or pilot runs of `auto`.
 
     Returns, on `comparison`, a row for each measurement and each combination of varied words
     (contact law, beam model, ...), in SI units: compared_quantity, _units, _conditions (JSON),
@@ -180,7 +180,10 @@ def _judged(one: Measurement, case: str, answer: float, error: float, status: in
         why = "; ".join(reasons(status & FAILED)) or "no reason is recorded"
         return _Row(Agreement.NOT_JUDGED, f"the run has no answer: {why}", case)
     if not np.isfinite(error):
-        reason = "nothing bounds the numerical error: vary nodes over three values or more"
+        reason = (
+            "nothing bounds the numerical error: vary nodes over three values or more, or take "
+            "discretisation: auto"
+        )
         return _Row(Agreement.NOT_JUDGED, reason, case, answer)
     difference = abs(answer - one.value)
     within = difference <= np.hypot(COVERAGE * one.standard_uncertainty, error)

@@ -50,12 +50,12 @@ def numerical(
 ) -> xr.Dataset:
     """Return the numerical uncertainty of each response, and of its indices; no unit.
 
-    runs: a sample; analysis: its indices; resolution, refinement: see adaptive.recommendation and
-    adaptive.sobol, of the same study.
+    runs: a sample or a grid; analysis: of them; resolution, refinement: see
+    adaptive.recommendation and adaptive.sobol, of the same study.
 
     Returns of a resolution numerical_uncertainty (response), relative, the worst over the corner
-    cases, and numerical_share (response), (u/sigma)^2 with u the root mean square of the
-    uncertainty over the corner cases and sigma the standard deviation over the runs; of a
+    cases, and of a sample numerical_share (response), (u/sigma)^2 with u the root mean square of
+    the uncertainty over the corner cases and sigma the standard deviation over the runs; of a
     refinement <order>_change (response, parameter) and its interval, see `measured`. Of either
     <order>_numerical (response, parameter), by how much the first_order and the total_order may be
     off, and numerical_from (response). An index S lies between 0 and 1: it is off by no more than
@@ -111,15 +111,17 @@ def _of_responses(runs: xr.Dataset, resolution: xr.Dataset) -> dict[str, xr.Data
     if runs.attrs.get("study_sha256") != resolution.attrs.get("study_sha256"):
         raise ValueError(f"the resolution was found for another text of the study file: {again}")
     names = listed(runs, "responses")
+    asked = resolution.sel(response=names).reset_coords(drop=True)
+    long_name = "relative numerical uncertainty, the worst of the corner cases"
+    relative = asked["grid_relative"].assign_attrs(long_name=long_name, units="1")
+    if "run" not in runs.dims:
+        return {"numerical_uncertainty": relative}
     deviations = [usable(runs, name).std(set(runs["status"].dims)) for name in names]
     deviation = xr.concat(deviations, "response", coords="minimal", compat="override")
-    asked = resolution.sel(response=names).reset_coords(drop=True)
     squares = (asked["grid_uncertainty"] ** 2).mean("case")
     share = (squares / deviation.where(deviation > 0) ** 2).where(squares > 0, 0.0)
     return {
-        "numerical_uncertainty": asked["grid_relative"].assign_attrs(
-            long_name="relative numerical uncertainty, the worst of the corner cases", units="1"
-        ),
+        "numerical_uncertainty": relative,
         "numerical_share": share.fillna(np.inf)
         .reset_coords(drop=True)
         .assign_attrs(long_name="share of the variance that may be numerical error", units="1"),

@@ -17,7 +17,7 @@ from impactlab.analysis.responses import in_order, listed, usable
 from impactlab.analysis.surrogate.stored import Surrogate
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.solver.contact import LAWS
-from impactlab.study import steps
+from impactlab.study import CALIBRATION, steps
 from impactlab.study.engine import Engine
 from impactlab.study.errors import Problem, StudyError, unknown
 from impactlab.study.execute import execute
@@ -29,8 +29,8 @@ from impactlab.study.schema.parameters import Choice
 from impactlab.study.schema.written import text_of
 from impactlab.study.schema.yaml_file import read_mapping
 
-FOLDER, CONFIRMING = "calibration", "confirming"
-"""Folders of results: of the runs under other contact laws, and of the runs that confirm."""
+CONFIRMING = "confirming"
+"""Folder in that of calibration, of the runs that confirm."""
 RUNS = 16
 """Draws of the posterior that are solved."""
 OFF = 2.0
@@ -89,7 +89,7 @@ def calibrate(
     before = _drawn(study)
     known = before.keys() == surrogates.keys()
     found = calibrated(surrogates, measurements, numerical, model_error, before if known else None)
-    found = _confirmed(found, runs, measurements, folder / FOLDER, engine)
+    found = _confirmed(found, runs, measurements, folder / CALIBRATION, engine)
     about = {key: first.attrs[key] for key in ("study", "title", "study_text", "study_sha256")}
     found = found.assign_attrs(about | {"model_error": model_error})
     write_netcdf(found, folder / "calibration.nc", "calibration")
@@ -119,7 +119,7 @@ def _models(
         else:
             data["impact"]["contact"] = law
         under = study_of_text(study.name, text_of(data), study.path)
-        yield law, replace(under, path=Path(f"{study.name}_{law}.yaml")), folder / FOLDER / law
+        yield law, replace(under, path=Path(f"{study.name}_{law}.yaml")), folder / CALIBRATION / law
 
 
 def _drawn(study: steps.AnyStudy) -> dict[str, float]:

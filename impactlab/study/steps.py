@@ -24,9 +24,8 @@ from impactlab.files import (
     replaced,
     write_netcdf,
 )
-from impactlab.study import REFINEMENT, RESOLUTION, SHARDS, TRIALS
+from impactlab.study import CALIBRATION, REFINEMENT, RESOLUTION, SHARDS, TRIALS
 from impactlab.study.errors import StudyError
-from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.study import Auto, FunctionStudy, Study, Verification
 from impactlab.study.schema.yaml_file import check_name
 
@@ -226,28 +225,34 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
     kinds = (SHARDS, TRIALS, REFINEMENT)
     with ExitStack() as locks:
         found: dict[Path, str] = {}
-        for shards in sorted(path for kind in kinds for path in results.glob(f"*/{kind}")):
+        places = {path for kind in kinds for path in results.glob(f"*/{kind}")}
+        places |= {lock.parent for lock in results.glob(f"*/{CALIBRATION}/**/lock")}
+        for shards in sorted(places):
             locks.enter_context(locked(shards))
-            found |= _stale(studies / f"{shards.parent.name}.yaml", shards)
+            home = results / shards.relative_to(results).parts[0]
+            found |= _stale(studies / f"{home.name}.yaml", shards, home)
         yield found
 
 
-def _stale(file: Path, shards: Path) -> dict[Path, str]:
-    """Return the files to remove of one study; file: the study, perhaps gone from there."""
+def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
+    """Return the files to remove of one study; file: the study, perhaps gone from there.
+
+    home: its folder of results.
+    """
     from impactlab.study.runs import removable_files
     from impactlab.study.sampling.design import design, stages
     from impactlab.study.schema.files import read_study
 
     with suppress(OSError, ValueError):
         if not file.exists():
-            file = Path((shards.with_name(SHARDS) / _STUDY).read_text().strip())
+            file = Path((home / SHARDS / _STUDY).read_text().strip())
     if not file.is_file():
         return removable_files(shards, ())
     if file.name == PYTHON:
         return {}
-    if shards.name != SHARDS:
+    if shards != home / SHARDS:
         return removable_files(shards, None)
-    declared = resolved_before(read_study(file), shards.parent)
+    declared = resolved_before(read_study(file), home)
     return {} if declared is None else removable_files(shards, list(stages(design(declared))))
 
 
@@ -264,11 +269,11 @@ def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = No
 def evidence(study: AnyStudy, runs: Path) -> dict[str, Path]:
     """Return the files beside solved runs on their numerical uncertainty, for `analyse_runs`.
 
-    They hold what pilot runs of `auto` found for a sample, and `refine` of these very runs.
+    They hold what pilot runs of `auto` found, and `refine` of these very runs.
     """
     found = {}
     resolution, refinement = runs.with_name(RESOLUTION), runs.with_name(f"{REFINEMENT}.nc")
-    if isinstance(study, Study) and study.auto and isinstance(study.sampling, Sample):
+    if isinstance(study, Study) and study.auto:
         found = {"resolution": resolution} if resolution.exists() else {}
     if refinement.exists():
         with opened(refinement, "refinement") as made, opened(runs, "runs") as solved:

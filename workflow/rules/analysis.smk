@@ -6,8 +6,8 @@ rule analysis:
     input:
         code=code(*MODEL, "analysis/**/*.py"),
         runs="results/{study}/runs.nc",
-        resolution=where("sample", "resolution.nc"),
-        refinement=where("sobol", "refinement.nc"),
+        resolution=where("resolution.nc", "sample", "auto"),
+        refinement=where("refinement.nc", "sobol"),
         measurements=lambda wildcards: DESCRIBED.get(wildcards.study, {}).get("measurements", []),
     output:
         "results/{study}/analysis.nc",

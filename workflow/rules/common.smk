@@ -62,9 +62,9 @@ def asked_studies(asked):
     return names
 
 
-def has(study, trait):
-    """Return whether the program ascribes this trait to a study."""
-    return trait in DESCRIBED.get(study, {}).get("traits", ())
+def has(study, *traits):
+    """Return whether the program ascribes one of these traits to a study."""
+    return not set(traits).isdisjoint(DESCRIBED.get(study, {}).get("traits", ()))
 
 
 def code(*patterns):
@@ -72,9 +72,9 @@ def code(*patterns):
     return sorted(str(path) for pattern in patterns for path in PACKAGE.glob(pattern))
 
 
-def where(trait, name):
-    """Return an input function: the file `name` of a study that has the trait, else nothing."""
-    return lambda wildcards: [f"results/{wildcards.study}/{name}"] * has(wildcards.study, trait)
+def where(name, *traits):
+    """Return an input function: the file `name` of a study that has such a trait, else nothing."""
+    return lambda wildcards: [f"results/{wildcards.study}/{name}"] * has(wildcards.study, *traits)
 
 
 def stored(wildcards):

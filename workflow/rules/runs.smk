@@ -23,7 +23,7 @@ rule design:
     input:
         code=code(*MODEL, "study/**/*.py"),
         study="studies/{study}.yaml",
-        resolution=where("auto", "resolution.nc"),
+        resolution=where("resolution.nc", "auto"),
     output:
         "results/{study}/design.nc",
     log:

@@ -157,6 +157,24 @@ def test_what_is_not_judged_says_why(study):
     assert cases == ["hertz", "stronge"], "one row per law, where none is stated"
 
 
+@pytest.mark.parametrize(("value", "verdict"), [(2.2e4, 0), (2.3e4, 1), (np.inf, 2)])
+def test_pilot_runs_of_auto_bound_the_error_of_a_grid(study, value, verdict):
+    grid = {"nodes": 201, "points": 5, "courant": 0.5}
+    runs = study[0].sel(nodes=201).assign_coords(grid).assign_attrs(study_sha256="f")
+    error = 0.04 if np.isfinite(value) else np.inf
+    found = xr.Dataset(
+        {"grid_relative": ("response", [error])},
+        {"response": ["peak_force"]},
+        {f"grid_{name}": each for name, each in grid.items()} | {"study_sha256": "f"},
+    )
+    measured = value if np.isfinite(value) else 2.2e4
+    ours = judged((runs, il.analyse(runs, found)), measured, velocity=2.0, contact="hertz")
+    assert ours[0][0] == list(Agreement)[verdict]
+    other = found.assign_attrs(grid_nodes=101)
+    with pytest.raises(ValueError, match="found for nodes = 101"):
+        il.analyse(runs, other)
+
+
 def test_report_and_figures_show_them(study):
     runs, analysis = study
     given = [

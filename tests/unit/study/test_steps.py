@@ -6,7 +6,7 @@ import pytest
 
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.schema.study import Verification
-from impactlab.study.steps import check, failure
+from impactlab.study.steps import check, failure, removable
 from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.finding import Check, Finding, relative
 from impactlab.verification.stored import unpacked
@@ -34,6 +34,23 @@ def verification(monkeypatch):
 def test_an_error_does_not_stop_the_others(verification):
     found = unpacked(check(verification))
     assert [outcome.verdict for outcome in found] == ["passed", "error", "failed"]
+
+
+@pytest.mark.parametrize("place", ["shards", "calibration/mjg/shards", "calibration/confirming"])
+def test_clean_finds_runs_of_a_calibration_too(tmp_path, place):
+    studies, results = tmp_path / "studies", tmp_path / "results"
+    studies.mkdir()
+    folder = results / "mine" / place
+    shard = folder / ("a" * 16) / ("b" * 32 + ".nc")
+    shard.parent.mkdir(parents=True)
+    shard.touch()
+    (folder / "lock").touch()
+    for name, reason in ("other", "its study does not exist"), ("mine", "another version"):
+        text = (Path(__file__).parents[3] / "studies" / "smoke.yaml").read_text()
+        (studies / f"{name}.yaml").write_text(text)
+        with removable(studies, results) as found:
+            assert list(found) == [shard]
+            assert reason in found[shard]
 
 
 def test_findings_say_where_they_come_from(verification):
