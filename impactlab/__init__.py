@@ -4,11 +4,12 @@
 >>> run = il.simulate(il.paper_impact("5 m/s"), duration="1 ms")
 
 One impact
-    paper_impact    the source paper's sphere and beam, at a velocity
-    Impact          any other one, of Sphere, Beam and Material
-    Discretisation  nodes, points and scheme in time
-    simulate        solve it: an xarray.Dataset
-    simulate_many   solve lists of parameters, in pairs or all combinations
+    paper_impact      the source paper's sphere and beam, at a velocity
+    corrected_impact  the same in the beam model that is nearest to 3-D
+    Impact            any other one, of Sphere, Beam and Material
+    Discretisation    nodes, points and scheme in time
+    simulate          solve it: an xarray.Dataset
+    simulate_many     solve lists of parameters, in pairs or all combinations
 
 A study
     Study           sample, solve, resume, analyse and report many impacts

@@ -9,6 +9,7 @@ from .model.impact import Beam as Beam
 from .model.impact import Impact as Impact
 from .model.impact import Material as Material
 from .model.impact import Sphere as Sphere
+from .model.impact import corrected_impact as corrected_impact
 from .model.impact import paper_impact as paper_impact
 from .report.answer import answers as answers
 from .simulate import simulate as simulate

@@ -23,10 +23,16 @@ def simulate(
     velocity: Annotated[
         str, typer.Option(help="Impact velocity, such as 0.99 or '99 cm/s'.")
     ] = "0.99",
-    contact: Annotated[str, typer.Option(help="Contact law.")] = "stronge",
+    base: Annotated[
+        str, typer.Option(help="paper, or corrected: the beam model that is nearest to 3-D.")
+    ] = "paper",
+    contact: Annotated[str | None, typer.Option(help="Contact law, if not the base's.")] = None,
     beam_model: Annotated[
-        str, typer.Option(help="euler_bernoulli, elastic, timoshenko, spring_mass or rigid.")
-    ] = "euler_bernoulli",
+        str | None,
+        typer.Option(
+            help="euler_bernoulli, elastic, timoshenko, spring_mass or rigid, if not the base's."
+        ),
+    ] = None,
     nodes: Annotated[int, typer.Option(help="Nodes along the span, odd.")] = 601,
     points: Annotated[int, typer.Option(help="Integration points over the depth.")] = 9,
     rule: Annotated[str, typer.Option(help="lobatto, legendre or layers.")] = "lobatto",
@@ -44,8 +50,8 @@ def simulate(
 
     values: dict[str, Value] = {
         "velocity": given("--velocity", velocity, "m s-1"),
-        "contact": contact,
-        "beam_model": beam_model,
+        **({"contact": contact} if contact else {}),
+        **({"beam_model": beam_model} if beam_model else {}),
         "nodes": nodes,
         "points": points,
         "rule": rule,
@@ -54,7 +60,7 @@ def simulate(
     seconds = given("--duration", duration, "s")
     if plot and plot.suffix not in (".png", ".svg", ".pdf"):
         raise ValueError(f"--plot = {str(plot)!r}: its name must end in .png, .svg or .pdf")
-    impact, grid = _checked(values)
+    impact, grid = _checked(base, values)
     if output is None and plot is None:
         from impactlab.simulate import case_table, solve
 
@@ -78,22 +84,24 @@ def simulate(
         print(f"Picture: {plot}")
 
 
-def _checked(values: dict[str, Value]) -> tuple[Impact, Discretisation]:
-    """Return the paper's impact with these values, and log warnings of implausible ones.
+def _checked(base: str, values: dict[str, Value]) -> tuple[Impact, Discretisation]:
+    """Return the base with these values, and log warnings of implausible ones.
 
     Raises ValueError naming the option that the model refuses, or whose value is impossible.
     """
     from impactlab.model.discretisation import Discretisation
-    from impactlab.model.impact import paper_impact
+    from impactlab.model.impact import BASES
     from impactlab.model.parameters import with_values
     from impactlab.model.plausibility import implausibilities, numbers
     from impactlab.study.validity import refusal
 
-    base = paper_impact(), Discretisation()
-    if found := refusal(base, values):
+    if base not in BASES:
+        raise ValueError(f"--base = {base!r}: is none of {', '.join(BASES)}")
+    start = BASES[base](), Discretisation()
+    if found := refusal(start, values):
         option = f"--{found.name.replace('_', '-')} = {values[found.name]!r}"
         raise ValueError(f"{option}: {found.reason}")
-    case = with_values(*base, values)
+    case = with_values(*start, values)
     for each in implausibilities(numbers(*case)):
         if each.impossible:
             raise ValueError(f"--{each.name}: {each.reason}")

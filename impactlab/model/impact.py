@@ -7,7 +7,7 @@ hold SI numbers.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.model.quantities import SI, Quantity, engineering
@@ -227,3 +227,26 @@ def paper_impact(velocity: Quantity = 0.99, contact: str = "stronge") -> Impact:
         velocity=velocity,
         contact=contact,
     )
+
+
+def corrected_impact(velocity: Quantity = 0.99) -> Impact:
+    """Return the paper's sphere and beam in the beam model that is nearest to 3-D; velocity in m/s.
+
+    Timoshenko's beam, a contact law from finite elements, the local compliance of sphere and beam,
+    and the force over the circle of contact: docs/agreement.md has what each of them brings.
+
+    Raises ValueError when velocity is not valid.
+
+    >>> il.corrected_impact("2 m/s").contact
+    'finite_element'
+    """
+    return replace(
+        paper_impact(velocity, "finite_element"),
+        beam_model="timoshenko",
+        contact_compliance="beam",
+        load="contact_patch",
+    )
+
+
+BASES = {"paper": paper_impact, "corrected": corrected_impact}
+"""Impacts to start from, by name."""

@@ -20,7 +20,7 @@ from pydantic import (
 )
 
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact, paper_impact
+from impactlab.model.impact import BASES, Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.model.quantities import duration
 from impactlab.solver import SCHEMES
@@ -42,9 +42,6 @@ from impactlab.study.schema.section import (
 )
 from impactlab.study.validity import Base, refusal
 from impactlab.variables import ANALYSES, RESPONSES
-
-BASES = {"paper": paper_impact}
-"""Impacts that a study may start from, by name."""
 
 
 class Auto(Section):
@@ -93,7 +90,7 @@ def read_impact(data: Any, info: ValidationInfo) -> Impact:
     values = {name: own[name] for name in own if PARAMETERS[name].path[0] == "impact"}
     values |= _given_values(section, "impact")
     if missing := [_key(name) for name, value in values.items() if value is MISSING]:
-        raise ValueError(f"without `base: paper` these are required too: {', '.join(missing)}")
+        raise ValueError(f"without a `base` these are required too: {', '.join(missing)}")
     return _changed((BASES[section.base or "paper"](), Discretisation()), values)[0]
 
 
