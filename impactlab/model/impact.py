@@ -232,8 +232,9 @@ def paper_impact(velocity: Quantity = 0.99, contact: str = "stronge") -> Impact:
 def corrected_impact(velocity: Quantity = 0.99) -> Impact:
     """Return the paper's sphere and beam in the beam model that is nearest to 3-D; velocity in m/s.
 
-    Timoshenko's beam, a contact law from finite elements, the local compliance of sphere and beam,
-    and the force over the circle of contact: docs/agreement.md has what each of them brings.
+    Timoshenko's beam, a contact law from finite elements, the local compliance of sphere and beam
+    with bending across the width, and the force over the circle of contact: docs/agreement.md has
+    what each of them brings.
 
     Raises ValueError when velocity is not valid.
 
@@ -243,7 +244,7 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
     return replace(
         paper_impact(velocity, "finite_element"),
         beam_model="timoshenko",
-        contact_compliance="beam",
+        contact_compliance="strip",
         load="contact_patch",
     )
 
