@@ -19,7 +19,7 @@ import numpy as np
 
 import impactlab as il
 from impactlab.verification.solutions import contact_laws, quadrature
-from impactlab.verification.solutions.beam_modes import modes_on_nodes
+from impactlab.verification.solutions.beam_modes import modes_left_out, modes_on_nodes
 
 Array = np.ndarray[Any, Any]
 
@@ -61,12 +61,15 @@ class Matrices(NamedTuple):
     """Matrices of the modal scheme for the inner nodes, not differences; empty for leapfrog.
 
     curve: from deflections (m) to curvatures (1/m); pull, push: from
-    moments (N m) and from forces per length (N/m) to accelerations (m/s2).
+    moments (N m) and from forces per length (N/m) to accelerations (m/s2). flexibility (m/N), D: of
+    the modes left out, which together are an oscillator of their own at mid-span.
     """
 
     curve: Array
     pull: Array
     push: Array
+    flexibility: float
+    D: float
 
 
 class Run(NamedTuple):
@@ -191,8 +194,9 @@ def march(bar, contact, v_0, g, m_s, dt, steps, scheme, histories, w, plastic_st
     v, M, p, a = np.zeros(w.size), np.zeros(w.size), np.zeros(w.size), np.zeros(w.size)
     kappa = np.zeros(w.size)
     w_s, v_s, deepest, before, here = 0.0, v_0, 0.0, 0.0, 0.0
+    beyond, gain = 0.0, 0.0  # of the modes left out
     for step in range(steps + 1):
-        d = w_s - w[middle]
+        d = w_s - w[middle] - beyond
         if here == deepest and before <= here and d < here:
             deepest = top_of_parabola(before, here, d)
         deepest = max(deepest, d)
@@ -204,7 +208,7 @@ def march(bar, contact, v_0, g, m_s, dt, steps, scheme, histories, w, plastic_st
         for i in range(1, last):
             M[i] = moment(bar, kappa[i], plastic_strain[i], peeq[i])
         row = histories[:, step]
-        row[0], row[1], row[2], row[3], row[4] = F, w[middle], kappa[middle], w_s, d
+        row[0], row[1], row[2], row[3], row[4] = F, w[middle] + beyond, kappa[middle], w_s, d
         row[5], row[6] = deepest, unloading(contact, deepest)[1]
         if step == steps:
             break
@@ -216,6 +220,8 @@ def march(bar, contact, v_0, g, m_s, dt, steps, scheme, histories, w, plastic_st
             a[1:last] = scheme.pull @ M[1:last] + scheme.push @ p[1:last]
         else:
             a[1:last] = ((M[:-2] - 2.0 * M[1:last] + M[2:]) / bar.dx**2 + p[1:last]) / bar.mu
+        gain += kick / dt * scheme.D * (scheme.flexibility * F - beyond)
+        beyond += gain
         v += kick * a
         w += dt * v
         before, here = here, d
@@ -253,13 +259,15 @@ def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:
 def make_matrices(impact: il.Impact, bar: Bar, grid: il.Discretisation, dt: float) -> Matrices:
     """Return what the scheme of the grid does to the inner nodes."""
     if grid.scheme == "leapfrog":
-        return Matrices(*np.zeros((3, 0, 0)))
+        return Matrices(*np.zeros((3, 0, 0)), 0.0, 0.0)
     stiffness = bar.E * (bar.area @ bar.z**2)
     k, shapes, inertias = modes_on_nodes(impact.beam, grid.nodes, stiffness, dt)
     shapes = shapes[1:-1]
     to_modes = np.linalg.pinv(shapes)
     back = shapes / inertias
-    return Matrices(shapes * -(k**2) @ to_modes, back * -(k**2) @ to_modes, back @ to_modes)
+    left_out = modes_left_out(impact.beam, grid.nodes, stiffness, dt)
+    pull = back * -(k**2) @ to_modes
+    return Matrices(shapes * -(k**2) @ to_modes, pull, back @ to_modes, *left_out)
 
 
 def solve(impact: il.Impact, grid: il.Discretisation, dt: float, steps: int) -> Run:

@@ -16,15 +16,15 @@ def node_steps(cases: Any) -> Any:
     """Return the estimated cost of a run, or of each: half the nodes times the time steps.
 
     cases: a record of solver.types.CASE, or an array of them. Their largest step is that of bending
-    for the paper's beam by leapfrog; half a bar wave's for the other schemes and, roughly, for the
-    other models of the beam.
+    for the paper's beam by leapfrog, a bar wave's over a spacing for the modal scheme, and half of
+    it, roughly, for the other models of the beam.
     """
     dx = cases["beam_span"] / (cases["nodes"] - 1)
-    wave = 0.5 * dx * np.sqrt(cases["beam_density"] / cases["beam_youngs_modulus"])
-    bending = wave * dx * np.sqrt(12.0) / cases["beam_depth"]
+    wave = dx * np.sqrt(cases["beam_density"] / cases["beam_youngs_modulus"])
+    bending = 0.5 * wave * dx * np.sqrt(12.0) / cases["beam_depth"]
     bends = cases["beam_model"] <= BEAM_MODELS.index("elastic")
-    bends = bends & (cases["scheme"] == SCHEMES.index("leapfrog"))
-    largest = np.where(bends, bending, wave)
+    modal = cases["scheme"] == SCHEMES.index("modal")
+    largest = np.where(modal, wave, np.where(bends, bending, 0.5 * wave))
     return 0.5 * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
 
 

@@ -21,8 +21,8 @@ class Discretisation:
     Zhang et al.). scheme: "leapfrog" (the paper: explicit, cost growing with nodes^3), "modal"
     (sine modes, the same answers from far fewer nodes; see solver/modal.py), or "auto": modal where
     every beam model in question has it, else leapfrog. courant: time step over the scheme's
-    largest, in (0, 1]: over the critical one of leapfrog; over half of the time in which a bar wave
-    crosses a spacing, unless the contact allows less, of modal.
+    largest, in (0, 1]: over the critical one of leapfrog; over the time in which a bar wave crosses
+    a spacing, unless the contact allows less, of modal.
     element_size, elements_per_radius: of the "solid" model alone, which needs one of them and
     nothing else of these: the size of its elements about the contact, in m; or how many lie over
     the contact radius to expect (fem3d.solver.estimates), so that it follows the velocity.

@@ -124,7 +124,7 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
     sag, beneath = model.sag, model.beneath
     fly = None if flight is None else _leaps(flight)
 
-    @compiled
+    @inlined
     def imbalance(
         case: Record,
         state: State,
@@ -148,7 +148,7 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
         kept, lost = contact_history.energies(contact, state.pair, approach, flight is not None)
         return abs(falling + in_beam + kept + lost - start) / start
 
-    @compiled
+    @inlined
     def march(  # noqa: C901 as above
         case: Record, state: State, contact: Record, events: Record, samples: Array, steps: int
     ) -> int:
@@ -270,7 +270,7 @@ def _run(model: Model, extended: bool) -> Callable[..., int]:
     march = _time_loop(model, extended)
     largest_deflection = None if model.flight is None else model.flight.largest
 
-    @compiled
+    @inlined
     def run(
         case: Record,
         answer: Record,

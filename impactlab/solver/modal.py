@@ -13,6 +13,10 @@ M_0 = M + (EI)_q kappa. D is exact for forces that are constant from t - dt to t
 1961); for others the step is of second order. Beyond omega dt = pi/2, D stays at 2: such modes
 follow quasi-statically in the mean of two steps, which bounds the time step by the contact alone.
 
+So do the modes left out: all with D = 2 obey one equation, so that their sum, which adds to w at
+mid-span, goes as one mode under F alone. It has the flexibility that the others lack of
+L^3/(48 (EI)_q), and the D of the first of them.
+
 It is leapfrog with the masses K dt^2/D, so it conserves as exactly the energy
 
     sum of u_before u_after K/(2 D) + K q^2/2 - source q, u = dt dq/dt at half steps
@@ -151,7 +155,7 @@ def _curvature(state: State, now: int) -> float:
     return mode_curvature(state.own.q, state.own.bent, state.grid.mid)
 
 
-@compiled
+@inlined
 def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
     q, u, _, D, push, source = state.own[:6]
@@ -297,7 +301,7 @@ def _retrace(state: State) -> tuple[float, float]:
     return w, mode_curvature(q, state.own.bent, state.grid.mid)
 
 
-@compiled
+@inlined
 def _largest(state: State, w_max: float) -> float:
     return largest_deflection(state.own.leaps, state.own.D, w_max)
 

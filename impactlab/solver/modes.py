@@ -1,6 +1,7 @@
 """The sine modes of a half beam: what a run keeps of them, and the loops over them.
 
-The scheme's equations are in modal.py; see there for D.
+The scheme's equations are in modal.py; see there for D, and for the last entry, which stands for
+all modes left out.
 """
 
 from __future__ import annotations
@@ -17,15 +18,15 @@ from impactlab.solver.types import Array
 
 
 class Modes(NamedTuple):
-    """The modes of a run, n of them.
+    """The modes of a run, n of them, and the sum of those left out in entry n.
 
     q: amplitude (m). u: dt dq/dt half a step before (m). k2: k_p^2 (1/m2). D: see modal.py. push:
-    D/K (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n,). bent:
-    curvature of node i per amplitude, (n + 4, n), 1/m2; nodes as in beam.py. seen: q when all
-    sections were last looked at, (n,). near: the number of sections that could yield before the
-    next such look, then which they are, (n + 1,). slack: what the curvature of any other may have
-    changed by until that look, and can have changed by now (1/m), (2,). cosine: of quarter turns
-    over n, (4 n,). leaps: see flight.py.
+    D/K (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n + 1,).
+    bent: curvature of node i per amplitude, (n + 4, n + 1), 1/m2; nodes as in beam.py. seen: q when
+    all sections were last looked at, (n + 1,). near: the number of sections that could yield before
+    the next such look, then which they are, (n + 1,). slack: what the curvature of any other may
+    have changed by until that look, and can have changed by now (1/m), (2,). cosine: of quarter
+    turns over n, (4 n,). leaps: see flight.py.
     """
 
     q: Array
@@ -44,7 +45,7 @@ class Modes(NamedTuple):
 
 @allocating
 def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
-    """Return the n modes of a half beam of n spacings, at rest."""
+    """Return the modes of a half beam of n spacings, at rest."""
     cosine = np.zeros(4 * n)
     for i in range(n):
         cosine[i] = math.cos(0.5 * math.pi * i / n)
@@ -52,18 +53,18 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
     for i in range(2 * n + 1, 4 * n):
         cosine[i] = cosine[4 * n - i]
     modes = Modes(
-        np.empty(n),
-        np.empty(n),
-        np.empty(n),
-        np.empty(n),
-        np.empty(n),
-        np.empty(n),
-        np.zeros((grid.mid + 3, n)),
-        np.empty(n),
+        np.empty(n + 1),
+        np.empty(n + 1),
+        np.empty(n + 1),
+        np.empty(n + 1),
+        np.empty(n + 1),
+        np.empty(n + 1),
+        np.zeros((grid.mid + 3, n + 1)),
+        np.empty(n + 1),
         np.empty(n + 1, dtype=np.int64),
         np.empty(2),
         cosine,
-        make_leaps(n),
+        make_leaps(n + 1),
     )
     rest_modes(modes, grid, EI, yield_curvature)
     return modes
@@ -72,13 +73,18 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
 @compiled
 def rest_modes(modes: Modes, grid: Grid, EI: float, yield_curvature: float) -> None:
     """Make the modes those of another half beam of as many spacings, at rest."""
-    n, speed = modes.q.size, grid.dt * math.sqrt(EI / grid.mu)
+    n, speed = modes.q.size - 1, grid.dt * math.sqrt(EI / grid.mu)
     length = n * grid.dx
-    for p in range(n):
+    left = length**3 / (6.0 * EI)  # of the static deflection per force, less the modes so far
+    for p in range(n + 1):
         k2 = ((2 * p + 1) * (0.5 * math.pi / length)) ** 2
         D = 4.0 * math.sin(0.5 * min(speed * k2, 0.5 * math.pi)) ** 2
-        modes.k2[p], modes.D[p], modes.push[p] = k2, D, D / (EI * length * k2 * k2)
+        flexibility = 1.0 / (EI * length * k2 * k2)
+        flexibility = flexibility if p < n else max(flexibility, left)
+        modes.k2[p], modes.D[p], modes.push[p] = k2, D, D * flexibility
         modes.q[p] = modes.u[p] = modes.source[p] = modes.seen[p] = 0.0
+        left -= flexibility
+    modes.k2[n] = 0.0  # it bends no section
     for i in range(n):
         angle = i  # in quarter turns over n, less whole turns
         for p in range(n):
@@ -150,5 +156,5 @@ def deflect(modes: Modes, w: Array, now: int, mid: int) -> None:
     """Set the nodes' deflections w[now] (m) at the beginning of the last step."""
     for i in range(2, mid + 1):
         w[now, i] = 0.0
-        for p in range(modes.q.size):
+        for p in range(modes.q.size - 1):
             w[now, i] -= modes.bent[i, p] / modes.k2[p] * (modes.q[p] - modes.u[p])

@@ -9,10 +9,10 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
                       their largest omega^2
     lumped            k_c/m_s, and (k_c + k)/m_b of the spring-mass model; a thousandth of it is
                       taken, for accuracy: no wave asks for small steps here
-The modal scheme takes half of the time in which a bar wave crosses a spacing, for accuracy. For
-stability D (modal.py) and dt^2 times the contact's term above must not exceed 4 together; D is at
-most 2, and the modes together are no lighter at mid-span than the node: dt <= sqrt(2/contact). That
-is mostly far beyond, which few indentations show.
+The modal scheme takes the time in which a bar wave crosses a spacing, for accuracy. For stability
+D (modal.py) and dt^2 times the contact's term above must not exceed 4 together; D is at most 2:
+dt <= sqrt(2/contact), where n modes and the sum of those left out count 4/3 + 7/(6 n) times
+1/(rho A dx) at most (docs/modal.md). That is mostly far beyond, which few indentations show.
 """
 
 from __future__ import annotations
@@ -90,12 +90,14 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
     EI: the integration rule's (N m2); dx: node spacing (m).
     """
     mu = case.beam_density * case.beam_width * case.beam_depth
-    wave = 0.5 * dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
     push = 1.0 / (mu * dx) + 1.0 / case.sphere_mass
     if case.scheme == MODAL:
+        wave = dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
+        push += (1.0 / 3.0 + 7.0 / (6.0 * (case.nodes // 2))) / (mu * dx)
         about = _SAFETY * stiffest_contact(case, pair, _COARSE_GROWTH)
         if about * push * wave * wave < 2.0:
             return wave
+        return min(wave, math.sqrt(2.0 / (stiffest_contact(case, pair) * push)))
     k_c = stiffest_contact(case, pair)
     if case.beam_model >= SPRING_MASS:
         omega_squared = k_c / case.sphere_mass
@@ -104,8 +106,6 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
             omega_squared += (k_c + stiffness) / mass
         return 2.0 / math.sqrt(omega_squared) / _LUMPED_STEPS
     contact = k_c * push
-    if case.scheme == MODAL:
-        return min(wave, math.sqrt(2.0 / contact))
     if case.beam_model == TIMOSHENKO:
         inertia, kGA = mu * case.beam_depth**2 / 12.0, shear_stiffness(case)
         omega_squared = (4.0 * EI / dx**2 + kGA) / inertia

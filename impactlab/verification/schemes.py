@@ -96,11 +96,14 @@ CASES_IN_TIME = {
 """The yielding case ends before sections unload and yield again, each at some point within a step.
 Left out, because the grid's fastest modes weigh most in them: the mid-span curvature and what
 follows from it, the plastic strain."""
-NODES_IN_TIME = {"leapfrog": 101, "modal": 51}
+NODES_IN_TIME = {"leapfrog": 101, "modal": 25}
 _TO_THE_END = (*_LOADING, "contact duration")
 CASES_IN_SPACE = {
     "elastic, Hertz, 0.99 m/s": Case(
-        elastic(paper_impact(0.99)), 3, 0.4e-3, _TO_THE_END, {"leapfrog": 2.0, "modal": 3.0}
+        elastic(paper_impact(0.99)), 3, 0.4e-3, _TO_THE_END, {"leapfrog": 2.0}
+    ),
+    "elastic, Hertz, 0.99 m/s, histories": Case(
+        elastic(paper_impact(0.99)), 3, 0.4e-3, _LOADING[:3], {"modal": 6.0}
     ),
     "yielding, Stronge, 12 m/s": Case(
         _hardening(12.0), 64, 0.2e-3, (*_TO_THE_END, "plastic dissipation"), {"leapfrog": 2.0}
@@ -109,15 +112,18 @@ CASES_IN_SPACE = {
 """All with the same number of time steps. The points are many, because each fibre that yields bends
 M(kappa). The peak plastic strain is left out here, too: it need not converge. Where sections yield,
 the modal scheme has no order: its curvature beneath the sphere is rounded over a spacing, so that
-it matters where between the nodes yielding ends."""
+it matters where between the nodes yielding ends. Its peaks and times of the elastic beam are left
+out, since they depend on the phase in which the modes left out ring."""
 NODES_IN_SPACE = {"leapfrog": (101, 201, 401, 801), "modal": (25, 49, 97, 193)}
+_SHORTER = {"leapfrog": 1.0, "modal": 8.0}
+"""Divisors of the finest grid's time step there, so that no mode turns by more than pi/2 in it."""
 
 
 @check(
     "Order of convergence in time and in space",
     "Theory: central differences are of second order (Hairer, Lubich, Wanner, Geometric Numerical "
     "Integration, 2006, section I.1.4), as is a force held constant in the modes' exact step; the "
-    "static deflections of the modes left out are together of third order",
+    "modes left out, in one oscillator, ring at the wrong frequencies by the sixth order",
 )
 def observed_order() -> Finding:
     """Compare the orders in which the differences between successive runs fall with theory."""
@@ -137,7 +143,7 @@ def observed_order() -> Finding:
             # All grids with the finest one's steps, so many that each sample falls on a step.
             where, numbers = f"{scheme}, space alone: {name}", NODES_IN_SPACE[scheme]
             grids = [Discretisation(nodes=n, points=case.points, scheme=scheme) for n in numbers]
-            largest = grids[-1].courant * case.critical_step(grids[-1])
+            largest = grids[-1].courant * case.critical_step(grids[-1]) / _SHORTER[scheme]
             steps = math.ceil(case.duration / largest / (_SAMPLES - 1)) * (_SAMPLES - 1)
             runs = [case.run(grid, steps, _SAMPLES) for grid in grids]
             found += _orders(where, case, runs[-3:], order)
@@ -204,7 +210,7 @@ TOLERANCES = {
 """A few times leapfrog's error at 601 nodes against the fine run, where some errors pass through
 zero. The peak plastic strain is left out, because it need not converge."""
 
-YIELDING_NODES = {"leapfrog": 601, "modal": 301}
+YIELDING_NODES = {"leapfrog": 601, "modal": 401}
 HINGED = 5.0
 """How many times the tolerances the modal scheme's may be where mid-span yields at the peak force:
 at 20 m/s."""

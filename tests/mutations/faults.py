@@ -146,6 +146,12 @@ FAULTS = (
         "min(speed * k2, math.pi)",
     ),
     Fault(
+        "modal: of the modes left out the first alone",
+        "modes.py",
+        "max(flexibility, left)",
+        "flexibility",
+    ),
+    Fault(
         "modal: sections that come near their limit late",
         "modal.py",
         "near[0] > 0 or slack[1] >= slack[0]:",

@@ -87,6 +87,17 @@ def modes_on_nodes(
     return k, shapes, stiffness * k**4 * (0.5 * dt / np.sin(0.5 * turn)) ** 2
 
 
+def modes_left_out(beam: Beam, nodes: int, stiffness: float, dt: float) -> tuple[float, float]:
+    """Return (flexibility in m/N, D) of all odd modes that nodes cannot tell apart, as one.
+
+    flexibility: of mid-span under a static force, summed over them. D: 4 sin^2(omega dt/2) of the
+    first, as central differences in time have it, 2 at most. stiffness: EI in N m2.
+    """
+    k = _odd_wave_numbers(beam, 100_000)[nodes // 2 :]
+    turn = min(dt * k[0] ** 2 * math.sqrt(stiffness / beam.mass_per_length), 0.5 * math.pi)
+    return float(np.sum(2.0 / (stiffness * beam.span * k**4))), 4.0 * math.sin(0.5 * turn) ** 2
+
+
 def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
     """Return both spectra of the first `count` odd n: the lower frequencies, then the higher.
 

@@ -30,9 +30,10 @@ def swinging(n, turn, seed, slope=3.0):
     k = (2 * n - 1) * np.pi / SPAN
     grid = grid._replace(dt=turn / (k**2 * np.sqrt(EI / MU)))
     modes = make_modes(n, grid, EI, FAR)
-    size = 1e-3 / np.arange(1, 2 * n, 2) ** slope
+    size = 1e-3 / np.arange(1, 2 * n + 2, 2) ** slope
     modes.q[:], modes.u[:] = random.normal(0, size), random.normal(0, size * np.sqrt(modes.D))
-    modes.source[:] = random.normal(0, size) * modes.D / modes.push
+    modes.source[:n] = (random.normal(0, size) * modes.D / modes.push)[:n]
+    modes.source[n] = 0.0
     leaps = modes.leaps
     bound_swing(
         *(modes.q, modes.u, modes.k2, modes.D, modes.push, modes.source),
