@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
 import xarray as xr
@@ -73,6 +74,26 @@ def usable(runs: xr.Dataset, name: str) -> xr.DataArray:
     if "status" not in runs:
         return runs[name]
     return runs[name].where((runs["status"] & status_bits([name])) == 0).rename(name)
+
+
+def means_by_word(
+    runs: xr.Dataset, parameter: str, response: str
+) -> dict[str, tuple[float, float]]:
+    """Return the mean of a response by word of a parameter, with the half-width of its interval.
+
+    In SI units, NaN for a word without an answer. Of a Sobol sample only base samples count as
+    independent draws.
+    """
+    values, found = usable(runs, response).values, {}
+    confidence = float(runs.attrs.get("confidence", 0.95))
+    share = float(runs.attrs.get("base_samples", values.size)) / values.size
+    for word in np.atleast_1d(runs[parameter].attrs["values"]).tolist():
+        given = values[(runs[parameter].values == word) & np.isfinite(values)]
+        half = np.nan
+        if (number := share * given.size) > 1:
+            half = NormalDist().inv_cdf((1 + confidence) / 2) * given.std() / np.sqrt(number)
+        found[str(word)] = float(given.mean()) if given.size else np.nan, float(half)
+    return found
 
 
 def absent(array: xr.DataArray) -> xr.DataArray:

@@ -167,14 +167,12 @@ def _of_words(runs: xr.Dataset, parameter: str, response: str) -> str:
     listed = labels.words(runs[parameter]) if parameter in runs.coords else []
     if not listed:
         return ""
-    unit, values = display(runs[response]), usable(runs, response).values
-    stored = np.atleast_1d(runs[parameter].attrs["values"])
-    given = [values[(runs[parameter].values == word) & np.isfinite(values)] for word in stored]
-    means = {word: each.mean() for word, each in zip(listed, given, strict=True) if each.size}
-    least, most = min(means, key=means.__getitem__), max(means, key=means.__getitem__)
-    low, high = (labels.number(float(unit(means[word])), 3) for word in (least, most))
-    symbol = labels.unit(runs[response])
-    return f" (on average {low}{symbol} with {least} to {high}{symbol} with {most})"
+    found = access.means_by_word(runs, parameter, response).values()
+    given = [(each, word) for word, each in zip(listed, found, strict=True) if each[0] == each[0]]
+    low, high = (
+        f"{in_units(runs[response], *each)} with {word}" for each, word in (min(given), max(given))
+    )
+    return f" (on average {low} to {high})"
 
 
 def _written(

@@ -9,6 +9,7 @@ import xarray as xr
 
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
+from impactlab.model.distributions import CHOICE
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
 from impactlab.variables import MARKS, WARNINGS
 
@@ -33,6 +34,16 @@ def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
                     f"{number} of {count(runs)} runs went beyond the range of the contact law "
                     f"“{law}”, which holds for {CONTACT_LAWS[law].holds_for}. Their responses are "
                     "kept, but they are extrapolated."
+                )
+    for name in access.varied(runs):
+        drawn = (
+            set(runs[name].values.flat) if runs[name].attrs.get("distribution") == CHOICE else ()
+        )
+        for word in np.atleast_1d(runs[name].attrs["values"]) if drawn else ():
+            if word not in drawn:
+                yield (
+                    f"No run draws “{word}” for the {labels.parameter(name)}, so rare is it by its "
+                    "weight: what it does is in none of these numbers."
                 )
     for bit, text in WARNINGS.values() if "remarks" in runs else ():
         if number := int(((runs["remarks"] & bit) != 0).sum()):

@@ -205,15 +205,17 @@ def _words(runs: xr.Dataset, name: str) -> list[str]:
 
 def _by_word(runs: xr.Dataset, name: str) -> Table:
     """Return one row per response: its mean over the runs of each word that a parameter takes."""
-    listed = np.atleast_1d(runs[name].attrs["values"])
     rows: list[Row] = []
     for response in responses(runs):
-        unit, values = display(runs[response]), usable(runs, response).values
-        here = [values[(runs[name].values == word) & np.isfinite(values)] for word in listed]
-        means = [float(unit(each.mean())) if each.size else np.nan for each in here]
-        cells = [Cell(labels.number(mean, 3), "number") for mean in means]
+        unit, cells = display(runs[response]), []
+        for mean, half in access.means_by_word(runs, name, response).values():
+            margin = f" ± {labels.number(float(unit(half)), 2)}" * bool(np.isfinite(half))
+            cells.append(Cell(labels.number(float(unit(mean)), 3) + margin, "number"))
         rows.append([labels.axis(labels.response(response), unit.symbol), *cells])
-    caption = f"Mean of each response by {labels.parameter(name)}, over the runs that have it"
+    caption = (
+        f"Mean of each response by {labels.parameter(name)}, over the runs that have it, with the "
+        "half-width of its interval"
+    )
     return Table(caption, ["Response", *_words(runs, name)], rows)
 
 

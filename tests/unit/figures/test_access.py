@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 import xarray as xr
 
 from impactlab.figures import access
@@ -30,6 +31,25 @@ def test_missing_runs_are_counted_with_their_reasons(velocity_study: Study, fail
     assert note.startswith("2 of 16 runs are missing here: ")
     assert f"1 × “{words}”" in note
     assert f"1 × “{STATUS_FLAGS['diverged'][1]}”" in note
+
+
+@pytest.mark.parametrize("method", ["delta", "sobol"])
+def test_intervals_of_means_by_word_cover_the_means(method: str) -> None:
+    random, covered = np.random.default_rng(3), []
+    choice = {"distribution": "choice", "values": ["a", "b"]}
+    for _ in range(200):
+        x, word = random.random((2, 128, 1)), random.integers(0, 2, (2, 128, 1))
+        if method == "sobol":  # A, AB of x, AB of the word, B
+            x, word = x[[0, 1, 0, 1]], word[[0, 0, 1, 1]]
+        words, y = np.array(["a", "b"])[word.ravel()], (word * (1 + 9 * x)).ravel()
+        attrs = {"base_samples": 128} if method == "sobol" else {}
+        runs = xr.Dataset({"y": ("run", y)}, {"word": ("run", words, choice)}, attrs)
+        means = access.means_by_word(runs, "word", "y")
+        assert means["a"] == (0.0, 0.0)
+        covered.append(abs(means["b"][0] - 5.5) <= means["b"][1])
+    assert 0.91 <= np.mean(covered) <= 1.0
+    runs["y"][:] = np.where(words == "a", np.nan, y)
+    assert np.isnan(access.means_by_word(runs, "word", "y")["a"]).all()
 
 
 def test_a_gap_without_a_status_is_not_silent(velocity_study: Study) -> None:

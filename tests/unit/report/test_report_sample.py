@@ -86,22 +86,23 @@ def test_indices_over_time_are_told_with_what_was_left_out(report: Any, study: S
 
 def test_words_have_means_and_no_surrogate(report: Any, study: Study) -> None:
     runs, analysis = study
-    choice = {"distribution": "choice", "values": ["mjg", "brake"], "weights": [0.75, 0.25]}
+    words = ["mjg", "brake", "thornton"]  # the last is never drawn
+    choice = {"distribution": "choice", "values": words, "weights": [0.75, 0.25, 1e-9]}
     law = ("run", np.where(np.arange(64) % 4, "mjg", "brake"), choice)
     runs = runs.drop_vars("contact").assign_coords(contact=law)
     runs.attrs["varied"] = [*runs.attrs["varied"], "contact"]
     kept = ["first_order", "total_order", "sensitivity_verdict"]
     page = report(runs, analysis[kept])
     ((head), *rows) = _table(page, "Mean of each response by contact law")
-    assert head == ["Response", "MJG", "Brake"]
+    assert head == ["Response", "MJG", "Brake", "Thornton"]
     force = 1e-3 * runs["peak_force"].groupby("contact").mean()
-    assert rows[0] == [
-        "Peak force (kN)",
-        f"{force.sel(contact='mjg'):.1f}",
-        f"{force.sel(contact='brake'):.1f}",
-    ]
+    for cell, word in zip(rows[0][1:], words[:2], strict=False):
+        assert cell.startswith(f"{force.sel(contact=word):.1f} ± ")
+    assert rows[0][3] == "missing"
+    assert "No run draws “thornton” for the contact law" in page.text
     varied = _table(page, "Varied parameters")
-    assert varied[-1][:2] == ["Contact law", "choice: MJG 75 %, Brake 25 %"]
+    assert varied[-1][0] == "Contact law"
+    assert varied[-1][1].startswith("choice: MJG 75 %, Brake 25 %, Thornton")
     assert "no polynomial follows words (contact law)" in page.text
 
 
