@@ -156,9 +156,10 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
         subject = labels.sentence(labels.response(name))
         undefined = not np.isfinite(index.values).any()
         none = "no index is defined" if undefined else "no parameter stands out from the noise"
-        found.append(
-            (f"{subject} ({verdict.words})" if verdict else subject, ", ".join(listed) or none)
-        )
+        told = ", ".join(listed) or none
+        if gaps := int(access.absent(usable(runs, name)).sum()):
+            told += f" ({gaps:,} of {labels.counted(access.count(runs), 'run')} missing)"
+        found.append((f"{subject} ({verdict.words})" if verdict else subject, told))
     return found
 
 

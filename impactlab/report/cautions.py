@@ -55,7 +55,8 @@ def endings(runs: xr.Dataset) -> str:
     gaps = [access.absent(usable(runs, name)) for name in responses(runs)]
     empty = xr.concat(gaps, "gap").all("gap") if gaps else access.failed(runs)
     failed, lacking = int(empty.sum()), int((access.failed(runs) & ~empty).sum())
-    told = [f"{failed} failed"] * bool(failed) + [f"{lacking} without an answer"] * bool(lacking)
+    told = [f"{failed:,} failed"] * bool(failed)
+    told += [f"{lacking:,} without an answer"] * bool(lacking)
     return ", ".join(told)
 
 

@@ -26,6 +26,8 @@ def test_of_a_sample_names_what_matters_with_share_interval_and_verdict() -> Non
     assert "yield stress of the beam 12 % (± 2)" in first
     assert first.count("%") == 2, "what holds less than 1 % of the largest is not named"
     assert second.startswith("Remote plastic strain (mostly constant): ")
+    runs["peak_force"][:2] = np.nan
+    assert answers(runs, analysis)[0].endswith("(± 2) (2 of 64 runs missing).")
 
 
 def test_of_a_grid_gives_ranges_by_what_drives_them(velocity_study: Any) -> None:
