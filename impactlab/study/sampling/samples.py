@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, StrictStr, model_validator
 
+from impactlab.model.distributions import contradicting, correlated, correlation_matrix
 from impactlab.study.errors import unknown
-from impactlab.study.sampling.copula import contradicting, correlated, matrix
 from impactlab.study.sampling.sections import MOST_RUNS, Grouped, Sample
 from impactlab.study.schema.section import Names, Number, Section, Whole, at_key, requires
 from impactlab.types import Floats
@@ -255,4 +255,4 @@ class Latin(Sample):
         unit = self.by_salib("latin", self.samples)
         if not self.correlations:
             return unit
-        return correlated(unit, matrix(list(self.varied), self.correlations))
+        return correlated(unit, correlation_matrix(list(self.varied), self.correlations))

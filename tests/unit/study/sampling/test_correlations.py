@@ -11,9 +11,9 @@ from scipy import stats
 
 import impactlab as il
 from impactlab.analysis.responses import correlations
+from impactlab.model.distributions import contradicting
 from impactlab.study.errors import StudyError
 from impactlab.study.sampling import METHODS
-from impactlab.study.sampling.copula import contradicting
 from impactlab.study.schema.files import study_of_text
 
 NUMBERS = {
