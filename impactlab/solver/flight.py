@@ -62,8 +62,9 @@ class Leaps(NamedTuple):
     whether `kappa` holds; the highest level of the tables.
     top: the largest deflection met between leaps, and found within (m). Of the leaps held, each of
     which may hide a larger one: levels (-1: none), the most that it can be (m), both (8,);
-    held_bounds, its bounds, (8, 2, MOST + 1); held, its q, u and rest, (8, 3, n). path: work space,
-    (2, 2, n).
+    held_bounds, its bounds, (8, 2, MOST + 1); held, its q, u and rest, (8, 3, n). path,
+    spans: a stack of parts of a leap, q and u before each, (MOST + 2, 2, n); mid-span's deflection
+    and last step there, the deflection after it (m), and its level, (MOST + 2, 4).
     """
 
     D: Array
@@ -82,6 +83,7 @@ class Leaps(NamedTuple):
     held_bounds: Array
     held: Array
     path: Array
+    spans: Array
 
 
 @allocating
@@ -103,7 +105,8 @@ def make_leaps(n: int) -> Leaps:
         np.empty(_ROOM),
         np.empty((_ROOM, 2, MOST + 1)),
         np.empty((_ROOM, 3, n)),
-        np.empty((2, 2, n)),
+        np.empty((MOST + 2, 2, n)),
+        np.empty((MOST + 2, 4)),
     )
 
 
@@ -295,37 +298,35 @@ def largest_deflection(leaps: Leaps, D: Array, w_max: float) -> float:
 def _search(leaps: Leaps, D: Array, held: Array, bounds: Array, level: int) -> None:
     """Find the largest vertex within a leap held.
 
-    First by halves to near the highest peak, or one of nearly its height: that of a parabola is on
-    the side of the higher end. Then from its start, in leaps that hide none and single steps.
+    By halves, on a stack, and the half with the higher end first; those that can hold no larger one
+    than is seen are dropped.
     """
-    (q, u), (q_after, u_after), rest, top = leaps.path[0], leaps.path[1], held[2], leaps.top
-    w, _ = _begin(held, q, u)
-    w_end, _ = leap_modes(q, u, D, rest, leaps.D, leaps.S, level, q_after, u_after)
-    for half in range(level - 1, -1, -1):
-        w_mid, _ = leap_modes(q, u, D, rest, leaps.D, leaps.S, half, q_after, u_after)
-        top[_SEEN] = max(top[_SEEN], w_mid)
-        if w < w_end:
-            w = w_mid
-            for p in range(rest.size):
-                q[p], u[p] = q_after[p], u_after[p]
-        else:
-            w_end = w_mid
-    w, U = _begin(held, q, u)
-    left, level = 1 << level, level - 1
-    while left > 0:
-        w_after, U_after = leap_modes(q, u, D, rest, leaps.D, leaps.S, level, q_after, u_after)
-        if level > 0 and _most(bounds, w, w_after, level) > top[_SEEN]:
-            level -= 1
+    path, spans, rest, top, k = leaps.path, leaps.spans, held[2], leaps.top, 0
+    w, U = _begin(held, path[0, 0], path[0, 1])
+    state = path[0, 0], path[0, 1], D, rest, leaps.D, leaps.S
+    w_end, _ = leap_modes(*state, level, path[1, 0], path[1, 1])
+    spans[0, 0], spans[0, 1], spans[0, 2], spans[0, 3] = w, U, w_end, level
+    while k >= 0:
+        w, U, w_end, level = spans[k, 0], spans[k, 1], spans[k, 2], int(spans[k, 3])
+        if level == 0 or _most(bounds, w, w_end, level) <= top[_SEEN]:
+            if level == 0 and U > 0.0 and w_end <= w:
+                _, value = vertex(w - U, w, w_end)
+                top[_FOUND] = max(top[_FOUND], value)
+                top[_SEEN] = max(top[_SEEN], value)
+            k -= 1
             continue
-        if level == 0 and U > 0.0 and w_after <= w:
-            _, value = vertex(w - U, w, w_after)
-            top[_FOUND] = max(top[_FOUND], value)
-        w, U, left = w_after, U_after, left - (1 << level)
-        top[_SEEN] = max(top[_SEEN], w, top[_FOUND])
-        for p in range(rest.size):
-            q[p], u[p] = q_after[p], u_after[p]
-        while left > 0 and left % (2 << level) == 0:
-            level += 1
+        state = path[k, 0], path[k, 1], D, rest, leaps.D, leaps.S
+        w_mid, U_mid = leap_modes(*state, level - 1, path[k + 1, 0], path[k + 1, 1])
+        top[_SEEN] = max(top[_SEEN], w_mid)
+        left, right = (k + 1, k) if w > w_end else (k, k + 1)
+        if left > right:
+            for p in range(rest.size):
+                path[k, 0, p], path[k + 1, 0, p] = path[k + 1, 0, p], path[k, 0, p]
+                path[k, 1, p], path[k + 1, 1, p] = path[k + 1, 1, p], path[k, 1, p]
+        spans[left, 0], spans[left, 1], spans[left, 2] = w, U, w_mid
+        spans[right, 0], spans[right, 1], spans[right, 2] = w_mid, U_mid, w_end
+        spans[left, 3] = spans[right, 3] = level - 1
+        k += 1
 
 
 @compiled
