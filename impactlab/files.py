@@ -71,7 +71,8 @@ CONTENTS = {
 }
 """What a dataset's file may hold, and the command that makes it."""
 _CACHE = 1_000_000
-"""Bytes per variable that HDF5 holds until a file is closed: each chunk is written once, whole."""
+"""Bytes per variable that HDF5 holds until a file is closed (64 MB by default): chunks are written
+and read whole."""
 _BLOCK = 1 << 20
 """Numbers that are in memory together where a variable is read or written in blocks."""
 _TOGETHER = 128
@@ -168,6 +169,7 @@ def opened(path: Path, *contents: str, indexed: bool = True) -> Iterator[xr.Data
     which is held in memory. Raises OSError naming an unreadable
     file, ValueError naming one that holds something else.
     """
+    set_chunk_cache(_CACHE)
     with _readable(path):
         dataset = xr.open_dataset(
             path, engine="netcdf4", cache=False, create_default_indexes=indexed
