@@ -126,6 +126,7 @@ def test_a_section_swings_as_fast_as_a_free_strip_of_plate():
     assert D * beam.width / width_inertia(WIDE) == pytest.approx(plate, rel=1e-6)
 
 
+@pytest.mark.long  # it compiles a kernel that no other does
 @pytest.mark.parametrize("load", ["point", "contact_patch"])
 def test_a_strip_that_yields_keeps_its_energy(load):
     """At the critical step, through several contacts."""
@@ -133,6 +134,11 @@ def test_a_strip_that_yields_keeps_its_energy(load):
     run = il.simulate(impact, il.Discretisation(nodes=101, courant=1.0), duration="2 ms")
     assert run.plastic_dissipation > 1.0
     assert run.energy_error < 1e-3
+    varied = {"contact_compliance": ["half_space", "strip", "beam"]}
+    grid = il.Discretisation(nodes=101, courant=1.0)
+    three = il.simulate_many(impact, grid, duration="2 ms", varied=varied)
+    assert three.peak_force[1] == run.peak_force
+    assert np.unique(three.peak_force).size == 3
 
 
 @pytest.mark.parametrize(
@@ -157,14 +163,8 @@ def test_a_factor_of_a_study_as_any_other():
         replace(il.paper_impact(contact="hertz"), beam_model="timoshenko"),
         il.Discretisation(nodes=41),
         duration="0.3 ms",
-        varied={"contact_compliance": ["half_space", "beam", "strip"]},
+        varied={"contact_compliance": ["half_space", "beam"]},
     )
-    alone = il.simulate(
-        replace(TIMOSHENKO, contact="hertz", contact_compliance="strip"),
-        il.Discretisation(nodes=41),
-        duration="0.3 ms",
-    )
-    assert both.peak_force[2] == alone.peak_force
     assert both.peak_force[1] / both.peak_force[0] == pytest.approx(1.04, abs=0.01)
     assert both.contact_duration[1] / both.contact_duration[0] == pytest.approx(0.97, abs=0.01)
     assert both.energy_error.max() < 1e-3
