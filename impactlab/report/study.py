@@ -122,7 +122,10 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             "results",
             "Distribution of each response",
             lead,
-            tables=[ranges, *(_by_word(runs, name) for name in varied(runs) if _words(runs, name))],
+            tables=[
+                ranges,
+                *(_by_word(runs, name) for name in varied(runs) if labels.words(runs[name])),
+            ],
             figures=drawn,
         ),
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),
@@ -199,10 +202,6 @@ def _values(coordinate: xr.DataArray) -> Row:
     return [" to ".join(labels.values(coordinate, ends)) + unit, str(size)]
 
 
-def _words(runs: xr.Dataset, name: str) -> list[str]:
-    return labels.words(runs[name])
-
-
 def _by_word(runs: xr.Dataset, name: str) -> Table:
     """Return one row per response: its mean over the runs of each word that a parameter takes."""
     rows: list[Row] = []
@@ -216,7 +215,7 @@ def _by_word(runs: xr.Dataset, name: str) -> Table:
         f"Mean of each response by {labels.parameter(name)}, over the runs that have it, with the "
         "half-width of its interval"
     )
-    return Table(caption, ["Response", *_words(runs, name)], rows)
+    return Table(caption, ["Response", *labels.words(runs[name])], rows)
 
 
 def _outcome(runs: xr.Dataset, analysis: xr.Dataset, figures: list[str] | None = None) -> Section:
