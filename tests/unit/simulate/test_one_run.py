@@ -150,6 +150,7 @@ def test_whole_floats_count(run, count):
     assert np.array_equal(other.deflection, run.deflection)
 
 
+@pytest.mark.long  # a kernel of its own is compiled
 def test_the_corrected_impact_is_nearer_to_3d_than_the_papers():
     """By the values that measurements/fem3d.yaml has at 0.99 m/s."""
     solid = {
