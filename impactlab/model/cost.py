@@ -28,7 +28,7 @@ def node_steps(cases: Any) -> Any:
     return 0.5 * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
 
 
-_RATES = (1.0, 1.0, 3.0, 4.0, 4.0)
+_RATES = (1.0, 1.0, 1.5, 4.0, 4.0)
 """Cost of a node per step over the paper's, by beam model."""
 _BESIDES = 20.0
 """Cost of a step beside its nodes, in nodes."""
