@@ -17,7 +17,8 @@ from typing import NamedTuple
 from PIL import Image
 
 import impactlab as il
-from impactlab.figures.draw import OVERVIEW, listed
+from impactlab.figures.draw import OVERVIEW
+from impactlab.figures.record import listed
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.page import leading
 from impactlab.report.results import FINDINGS

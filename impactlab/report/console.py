@@ -159,9 +159,10 @@ def print_recommendation(found: xr.Dataset) -> None:
     found: the dataset of study.adaptive.recommendation.
     """
     best, tolerance = int(found["recommended"]), f"{100 * found.attrs['tolerance']:g} %"
+    none = f"No discretisation up to {int(found['nodes'].max())} nodes meets {tolerance} for"
+    missed = found["response"].values[(found["asked"] & ~found["reached"]).values]
     if best < 0:
-        most = int(found["nodes"].max())
-        head = f"No discretisation up to {most} nodes meets {tolerance} for any requested response."
+        head = f"{none} any requested response."
     else:
         chosen = found.isel(candidate=best)
         grid = ", ".join(f"{axis} = {chosen[f'candidate_{axis}'].item():g}" for axis in _AXES)
@@ -169,6 +170,8 @@ def print_recommendation(found: xr.Dataset) -> None:
             f"The cheapest discretisation for {tolerance} is {grid}; it costs "
             f"{chosen['candidate_cost'].item():.2g} times as much as the study's own."
         )
+        if missed.size:
+            head = f"{none} {', '.join(missed)}. Without them: t{head[1:]}"
     console = Console()
     console.print(head, markup=False)
     evidence = _evidence(found, best)

@@ -2,11 +2,13 @@
 
 import os
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from impactlab.files import write_netcdf
+from impactlab.report.console import print_recommendation
 from impactlab.study import RESOLUTION
 from impactlab.study.adaptive import recommendation
 from impactlab.study.adaptive.recommendation import (
@@ -22,6 +24,7 @@ from impactlab.study.steps import resolved_before
 from impactlab.study.store import holder
 from impactlab.verification.solutions import modal
 
+ROOT = Path(__file__).parents[4]
 ELASTIC = """
 title: Elastic impacts
 impact: {base: paper, contact: hertz, beam_model: elastic}
@@ -117,7 +120,7 @@ def test_auto_becomes_what_was_recommended(study, tmp_path):
     assert (trials["grid_relative"] <= 0.01).all()
 
 
-def test_what_cannot_be_reached_is_named(study, tmp_path):
+def test_what_cannot_be_reached_is_named(study, tmp_path, capsys):
     declared = study(PLASTIC)
     trials = recommend(declared, tmp_path / "trials", Engine(workers=2))
     with pytest.raises(StudyError) as caught:
@@ -126,6 +129,17 @@ def test_what_cannot_be_reached_is_named(study, tmp_path):
     assert problem.key == "discretisation.auto"
     assert "meets 10 % for peak_plastic_strain" in problem.reason
     assert "contact_duration" not in problem.reason
+    print_recommendation(trials)
+    told = " ".join(capsys.readouterr().out.split())
+    assert "meets 10 % for peak_plastic_strain. Without them: the cheapest" in told
+
+
+@pytest.mark.long
+def test_the_grid_of_the_largest_study_is_found(tmp_path):
+    """Its corner cases yield widely, where no scheme has a clean order."""
+    declared = read_study(ROOT / "studies" / "sobol_large.yaml")
+    found = recommend(declared, tmp_path / "trials", Engine(workers=2))
+    assert apply_recommendation(declared, found).discretisation.nodes <= 145
 
 
 @pytest.mark.parametrize(
