@@ -67,6 +67,7 @@ def printed(process: subprocess.Popen[str]) -> tuple[list[str], str]:
     return out.split(), errors
 
 
+@pytest.mark.chaos
 def test_processes_that_compile_at_once_leave_a_sound_cache(call: Start) -> None:
     started = [call() for _ in range(3)]
     assert {printed(process)[0][0] for process in started} == {"6.0"}
@@ -117,6 +118,7 @@ def test_no_damage_passes_for_a_kernel(damage: str, tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.chaos
 def test_a_damaged_kernel_is_removed_reported_and_compiled_again(
     call: Start, tmp_path: Path
 ) -> None:
@@ -131,6 +133,7 @@ def test_a_damaged_kernel_is_removed_reported_and_compiled_again(
     assert printed(call()) == (["6.0", "1"], "")
 
 
+@pytest.mark.chaos
 def test_a_write_that_fails_half_way_leaves_nothing(call: Start, tmp_path: Path) -> None:
     """The limit on file size stops it in the middle, as a full disk would."""
     limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))"
@@ -141,6 +144,7 @@ def test_a_write_that_fails_half_way_leaves_nothing(call: Start, tmp_path: Path)
     assert not list((tmp_path / "cache").rglob("*.kernel*"))
 
 
+@pytest.mark.chaos
 def test_a_file_half_written_by_a_killed_process_is_not_read(call: Start, tmp_path: Path) -> None:
     assert printed(call())[0] == ["6.0", "0"]
     (file,) = (tmp_path / "cache").rglob("*.kernel")
