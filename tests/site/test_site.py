@@ -95,7 +95,7 @@ def test_no_page_asks_for_anything_outside() -> None:
 
 
 @pytest.mark.parametrize(
-    ("page", "figures"), [("one_impact", 2), ("sensitivity", 2), ("velocity", 1)]
+    ("page", "figures"), [("one_impact", 2), ("sensitivity", 3), ("velocity", 1)]
 )
 def test_notebooks_show_their_figures(page: str, figures: int) -> None:
     text = (SITE / "tutorials" / f"{page}.html").read_text(encoding="utf-8")
