@@ -26,7 +26,7 @@ echo $$
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_step_is_a_job_with_what_the_profile_asks_for(tmp_path):
     pytest.importorskip("snakemake_executor_plugin_slurm")
     folder, tools, said = tmp_path / "copy", tmp_path / "bin", tmp_path / "said"

@@ -47,7 +47,7 @@ for law in range(len(LAWS)):
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_each_law_is_itself_when_loaded_from_the_cache(tmp_path):
     """numba mixes up functions made in a loop when it finds them in its cache."""
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
