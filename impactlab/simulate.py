@@ -13,7 +13,7 @@ import numpy as np
 
 from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
-from impactlab.model.contact_compliance import axis_compliance, contact_compliance, width_inertia
+from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
@@ -216,24 +216,18 @@ def case_table(
         cases = np.concatenate(tables)
     else:
         cases = _table(*many, duration, lengths.pop() if lengths else 1)
-    leapfrog_only = cases["beam_model"] >= len(BENDING_MODELS)
-    wrong = np.flatnonzero(leapfrog_only & (cases["scheme"] != SCHEMES.index("leapfrog")))
-    if wrong.size:
-        case = cases[wrong[0]]
-        raise ValueError(
-            f"{f'run {first_run + wrong[0]}: ' if varied else ''}scheme = "
-            f"{SCHEMES[case.scheme]!r}: beam_model = {BEAM_MODELS[case.beam_model]!r} has "
-            "'leapfrog' alone"
-        )
-    lumped = cases["beam_model"] >= BEAM_MODELS.index(LUMPED_MODELS[0])
-    wrong = np.flatnonzero(lumped & (cases["load"] != LOADS.index("point")))
-    if wrong.size:
-        case = cases[wrong[0]]
-        raise ValueError(
-            f"{f'run {first_run + wrong[0]}: ' if varied else ''}load = {LOADS[case.load]!r}: "
-            f"beam_model = {BEAM_MODELS[case.beam_model]!r} has 'point' alone, because it moves as "
-            "one mass"
-        )
+    lumped = BEAM_MODELS.index(LUMPED_MODELS[0])
+    for name, words, first, only, reason in (
+        ("scheme", SCHEMES, len(BENDING_MODELS), "leapfrog", ""),
+        ("load", LOADS, lumped, "point", ", because it moves as one mass"),
+    ):
+        refused = (cases["beam_model"] >= first) & (cases[name] != words.index(only))
+        for at in np.flatnonzero(refused)[:1]:
+            model, word = BEAM_MODELS[cases[at].beam_model], words[cases[at][name]]
+            run = f"run {first_run + at}: " * bool(varied)
+            raise ValueError(
+                f"{run}{name} = {word!r}: beam_model = {model!r} has {only!r} alone{reason}"
+            )
     return cases
 
 
@@ -362,9 +356,7 @@ def _table(
         if entry.choices:
             numbered = enumerate(entry.choices)
             values[name] = sum(at * (values[name] == word) for at, word in numbered)
-    values["compliance"], values["bending_compliance"] = contact_compliance(impact)
-    values["width_inertia"] = width_inertia(impact)
-    values["axis_compliance"], values["axis_bending"] = axis_compliance(impact)
+    values |= case_fields(impact)
     cases = np.zeros(runs, dtype=CASE)
     for name in CASE.names or ():
         cases[name] = values[name]

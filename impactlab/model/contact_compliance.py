@@ -102,6 +102,18 @@ def _at_ratio(nu: Floats, values: Floats) -> Floats:
     return total
 
 
+def case_fields(impact: Impact) -> dict[str, Floats]:
+    """Return the fields of solver.types.CASE that hold the local compliance, zero for half-spaces.
+
+    Raises ValueError as `contact_compliance`.
+    """
+    names = "compliance", "bending_compliance", "width_inertia", "axis_compliance", "axis_bending"
+    if not np.any(np.not_equal(impact.contact_compliance, "half_space")):
+        return dict.fromkeys(names, np.zeros(()))
+    values = (*contact_compliance(impact), width_inertia(impact), *axis_compliance(impact))
+    return dict(zip(names, values, strict=True))
+
+
 def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     """Return c (m/N) and gamma (m2) of an impact, or of many; zero for half-spaces.
 
@@ -111,8 +123,6 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     deeper than wide.
     """
     asked = np.not_equal(impact.contact_compliance, "half_space")
-    if not np.any(asked):
-        return np.zeros(()), np.zeros(())
     beam, sphere = impact.beam, impact.sphere
     strip = np.equal(impact.contact_compliance, "strip")
     refused = f"Impact.contact_compliance = {'strip' if np.any(strip) else 'beam'!r}: "
@@ -144,8 +154,6 @@ def axis_compliance(impact: Impact) -> tuple[Floats, Floats]:
     indentation is the approach of the sphere and the mean of the section.
     """
     strip = np.equal(impact.contact_compliance, "strip")
-    if not np.any(strip):
-        return np.zeros(()), np.zeros(())
     found = zip(_of_beam(impact, AXIS_FORCE, AXIS_MOMENT), _across_width(impact), strict=True)
     c, gamma = (np.where(strip, whole - part, 0.0) for whole, part in found)
     return c, gamma

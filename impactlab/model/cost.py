@@ -71,21 +71,14 @@ def work(cases: Any) -> Any:
     in_contact = _CONTACTS * 2.94 * indentation / cases["velocity"] / cases["duration"]
     touching = 0.5 * nodes * _MODE + _MODES_BESIDES
     yielding = 0.5 * nodes * _YIELDING + _MODES_BESIDES
-    modal = np.minimum(in_contact, 1.0) * touching + _share_yielding(cases) * yielding
-    return np.where(cases["scheme"] == SCHEMES.index("modal"), steps * modal, leapfrog)
-
-
-def _share_yielding(cases: Any) -> Any:
-    """Return the estimated share of steps in which sections yield or are about to.
-
-    A beam that is given the velocity v at a point has there the strain sqrt(3) v/c, c of a bar wave
-    (Boussinesq). The share grows from none where this yields to all at four times it, as fitted to
-    measured times.
-    """
-    elastic = cases["beam_model"] == BEAM_MODELS.index("elastic")
+    # A beam that is given the velocity v at a point has there the strain sqrt(3) v/c, c of a bar
+    # wave (Boussinesq). The share of steps in which sections yield, or are about to, grows from
+    # none where this yields to all at four times it, as fitted to measured times.
     stress = np.sqrt(3.0 * cases["beam_density"] * cases["beam_youngs_modulus"]) * cases["velocity"]
     beyond = np.clip((stress / cases["beam_yield_stress"] - 1.0) / 3.0, 0.0, 1.0)
-    return np.where(elastic, 0.0, beyond * beyond)
+    share = np.where(model == BEAM_MODELS.index("elastic"), 0.0, beyond * beyond)
+    modal = np.minimum(in_contact, 1.0) * touching + share * yielding
+    return np.where(cases["scheme"] == SCHEMES.index("modal"), steps * modal, leapfrog)
 
 
 def memory(cases: Any) -> Any:

@@ -50,19 +50,23 @@ def si(value: object, units: str) -> float:
 
     Raises ValueError when the value is no number, not finite, or of another dimension.
     """
-    value = as_text(value)
-    if isinstance(value, str):
-        result = _parsed(value.strip(), units)
-    elif isinstance(value, int | float | Real) and type(value) is not bool:
-        try:
+    value, reason = as_text(value), "must be finite; "
+    try:
+        if isinstance(value, str):
+            result = _parsed(value.strip(), units)
+        elif isinstance(value, int | float | Real) and type(value) is not bool:
             result = float(value)
-        except OverflowError:
-            result = math.inf
-    else:
-        raise ValueError(expected(units))
-    if not math.isfinite(result):
-        raise ValueError(f"must be finite; {expected(units)}")
-    return result
+        else:
+            result, reason = math.nan, ""
+    except OverflowError:
+        result = math.inf
+    except ValueError as error:
+        result, reason = math.nan, f"{error}; "
+    if math.isfinite(result):
+        return result
+    kind, example = KINDS.get(units, (f"a quantity in {units}", f"1 {units}"))
+    such = example if units == "1" else f"{example!r}, or a number in {symbol(units)}"
+    raise ValueError(f"{reason}expected {kind} such as {such}")
 
 
 def as_text(value: Any) -> Any:
@@ -139,22 +143,14 @@ def whole(value: object) -> int:
     return int(result)
 
 
-def expected(units: str) -> str:
-    """Return a sentence on the values that are valid for a quantity in these units."""
-    kind, example = KINDS.get(units, (f"a quantity in {units}", f"1 {units}"))
-    if units == "1":
-        return f"expected {kind} such as {example}"
-    return f"expected {kind} such as {example!r}, or a number in {symbol(units)}"
-
-
 def _parsed(text: str, units: str) -> float:
     match = _QUANTITY.fullmatch(text.translate(_SUPERSCRIPTS)) if len(text) <= _LONGEST else None
     if match is None:
-        raise ValueError(f"cannot be read as one number and one unit; {expected(units)}")
+        raise ValueError("cannot be read as one number and one unit")
     number, written = Decimal(match[1]), match[2]
     if written is None:
         return float(number)
-    wrong = f"{written!r} has the wrong dimension; {expected(units)}"
+    wrong = f"{written!r} has the wrong dimension"
     if written == "%" or units == "1":
         if written != "%" or units != "1":
             raise ValueError(wrong)
@@ -178,19 +174,19 @@ def _factors(written: str) -> list[tuple[str, int]]:
 
 
 def _by_pint(number: Decimal, written: str, units: str) -> float:
-    unit, target = _unit(written, units), _unit(units, units)
+    unit, target = _unit(written), _unit(units)
     if unit.dimensionality != target.dimensionality:
-        raise ValueError(f"{written!r} has the wrong dimension; {expected(units)}")
+        raise ValueError(f"{written!r} has the wrong dimension")
     return float(_registry().Quantity(number, unit).m_as(target))
 
 
-def _unit(written: str, units: str) -> Unit:
+def _unit(written: str) -> Unit:
     result = _registry().Unit("")
     for name, power in _factors(written):
         try:
             result *= _registry().parse_units(name) ** power
         except Exception:  # pint's parser raises many kinds, which all mean the same here
-            raise ValueError(f"unknown unit {name!r}; {expected(units)}") from None
+            raise ValueError(f"unknown unit {name!r}") from None
     return result
 
 

@@ -22,7 +22,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.progress import items_done
 from impactlab.study.runs import Work, open_answers
-from impactlab.study.solvers import functions_of, solver_named, solver_of
+from impactlab.study.solvers import solver_named, solver_of
 from impactlab.study.store import OutputSpec, RunIndex, Shards, joined, locked
 
 log = logging.getLogger(__name__)
@@ -87,7 +87,7 @@ def solve_batch(
 ) -> Result:
     """Return the answers and the seconds that they took: the task that dask runs.
 
-    functions: of `solvers.functions_of`, for a worker that may not know them.
+    functions: of the solver, for a worker that may not know them.
 
     Raises RuntimeError where the solver has another version than the caller's.
     """
@@ -158,13 +158,14 @@ class WorkerPool:
             if before and not self.threads:
                 log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
         workers, work, futures = max(1, self.threads), self.work, []
+        name, solver = solver_of(work.design), work.solver
         while len(self.under_way) < _AHEAD * workers:
             runs = self.batches.take(workers)
             if not runs.size:
                 break
-            cases, solver = work.solver.cases(work.design, runs), solver_of(work.design)
-            task = solve_batch, solver, cases, work.output, work.solver.version
-            future = self.client.submit(*task, functions_of(solver), pure=False)
+            cases = solver.cases(work.design, runs)
+            task = solve_batch, name, cases, work.output, solver.version, solver.functions
+            future = self.client.submit(*task, pure=False)
             self.under_way[future.key] = runs
             futures.append(future)
         return futures

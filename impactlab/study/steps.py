@@ -84,28 +84,26 @@ def resolved(study: AnyStudy, folder: Path, engine: Engine, tell: Tell) -> AnySt
         return study
     from impactlab.study.adaptive.recommendation import apply_recommendation
 
-    found = _kept(study, folder / RESOLUTION)
-    if found is None:
-        found = recommend(study, folder / RESOLUTION, engine)
+    if ready := resolved_before(study, folder, tell):
+        return ready
+    found = recommend(study, folder / RESOLUTION, engine)
     tell(found)
     return apply_recommendation(study, found)
 
 
-def resolved_before(study: AnyStudy, folder: Path) -> AnyStudy | None:
-    """Return the study with its discretisation; None where pilot runs have still to find it."""
+def resolved_before(
+    study: AnyStudy, folder: Path, tell: Tell = lambda found: None
+) -> AnyStudy | None:
+    """Return the study with its discretisation; None where pilot runs have still to find it.
+
+    What they found before is kept for this very study, and these kernels.
+    """
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
-    from impactlab.study.adaptive.recommendation import apply_recommendation
-
-    found = _kept(study, folder / RESOLUTION)
-    return None if found is None else apply_recommendation(study, found)
-
-
-def _kept(study: Study, file: Path) -> xr.Dataset | None:
-    """Return what was found before for this very study, by these kernels, if anything."""
-    if not file.exists():
+    if not (file := folder / RESOLUTION).exists():
         return None
     from impactlab.solver.jit import SOURCES_HASH
+    from impactlab.study.adaptive.recommendation import apply_recommendation
 
     try:
         found = read_netcdf(file, "resolution")
@@ -113,7 +111,10 @@ def _kept(study: Study, file: Path) -> xr.Dataset | None:
         log.warning("%s; the pilot runs are solved again", error)
         return None
     made_for = found.attrs.get("study_sha256"), found.attrs.get("kernels_sha256")
-    return found if made_for == (study.sha256, SOURCES_HASH) else None
+    if made_for != (study.sha256, SOURCES_HASH):
+        return None
+    tell(found)
+    return apply_recommendation(study, found)
 
 
 def run(
@@ -133,32 +134,32 @@ def run(
     `solve`.
     """
     from impactlab.study.sampling.design import design
-    from impactlab.study.schema.measurements import read_all
+    from impactlab.study.schema.measurements import read_measurements
 
-    if isinstance(study, Study):
-        read_all(study.measurements)  # mistakes there are told before hours of runs
+    for file in study.measurements if isinstance(study, Study) else ():
+        read_measurements(file)  # mistakes there are told before hours of runs
     cost = price(study, path.parent, engine.workers)
     for problem in cost.implausible:
         log.warning("%s", problem)
     if (exceeded := cost.exceeded()) and not force:
         raise StudyError(*exceeded)
     if drawn is None:
-        drawn = design(resolved(study, path.parent, engine, tell))
-        file = study.path
-        if not file.is_file():  # made in Python: `clean` finds its text there
-            file = path.with_name(PYTHON if study.python else f"{study.name}.yaml")
-            with replaced(file) as unfinished:
+        drawn, source = design(resolved(study, path.parent, engine, tell)), study.path
+        if not source.is_file():  # made in Python: `clean` finds its text there
+            source = path.with_name(PYTHON if study.python else f"{study.name}.yaml")
+            with replaced(source) as unfinished:
                 unfinished.write_text(study.text, encoding="utf-8")
-        solve(drawn, path, engine, file)
-    else:
-        solve(drawn, path, engine)
+        path.with_name(SHARDS).mkdir(parents=True, exist_ok=True)
+        with suppress(OSError):  # a full disk is reported where more of it is needed
+            path.with_name(SHARDS).joinpath(_STUDY).write_text(f"{source.resolve()}\n")
+    solve(drawn, path, engine)
 
 
-def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = None) -> None:
+def solve(samples: xr.Dataset, path: Path, engine: Engine) -> None:
     """Solve the runs of a design that have not been solved yet, and write all to `path` (runs.nc).
 
     Finished batches are kept in shards/ beside it. A sample that grows is solved until its
-    intervals are narrow enough. file: the study file, noted beside the shards.
+    intervals are narrow enough.
 
     Raises ValueError, OSError and BlockingIOError as execute.open_runs does.
     """
@@ -166,10 +167,6 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine, file: Path | None = N
     from impactlab.study.store import locked
 
     shards = path.with_name(SHARDS)
-    if file is not None:
-        shards.mkdir(parents=True, exist_ok=True)
-        with suppress(OSError):  # a full disk is reported where more of it is needed
-            (shards / _STUDY).write_text(f"{file.resolve()}\n")
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse
         from impactlab.study.adaptive.sobol import extend_sample
@@ -298,7 +295,7 @@ def analyse_runs(
     from impactlab.analysis.responses import listed
     from impactlab.analysis.sensitivity.indices import sensitivity_variables, write_csv
     from impactlab.analysis.surrogate import packed
-    from impactlab.study.schema.measurements import read_all
+    from impactlab.study.schema.measurements import read_measurements
 
     given = {"resolution": resolution, "refinement": refinement}
     evidence = {name: read_netcdf(file, name) for name, file in given.items() if file}
@@ -308,7 +305,8 @@ def analyse_runs(
         sources = solved, *evidence.values()
         found = analyse(solved, **evidence)
         if "measurements" in solved.attrs:
-            measured = read_all(listed(solved, "measurements"), solved)
+            files = listed(solved, "measurements")
+            measured = [each for file in files for each in read_measurements(file, solved)]
             found = found.merge(compared(solved, found, measured))
         write_netcdf(found, path, "analysis", *sources)
         names = ("indices.csv", "indices.nc", "distribution.csv", "surrogate.nc")
@@ -339,14 +337,8 @@ def check(verification: Verification) -> xr.Dataset:
         for name in verification.checks:
             outcomes.append(CATALOGUE[name].run())
             advance(1, int(outcomes[-1].verdict != "passed"))
-    attrs = {
-        "study": verification.name,
-        "title": verification.title,
-        "description": verification.description,
-        "study_text": verification.text,
-        "study_sha256": verification.sha256,
-    }
-    return packed(outcomes).assign_attrs(attrs | provenance() | {"kernels_sha256": SOURCES_HASH})
+    kernels = {"kernels_sha256": SOURCES_HASH}
+    return packed(outcomes).assign_attrs(verification.attributes() | provenance() | kernels)
 
 
 def failure(outcomes: Sequence[Outcome]) -> str:

@@ -109,12 +109,7 @@ def _check_draws(study: Study, drawn: dict[str, np.ndarray[Any, Any]]) -> None:
 def _common_attributes(study: StudyBase) -> dict[str, Any]:
     """Return the attributes that do not depend on the solver."""
     sampling = study.sampling
-    attrs: dict[str, Any] = {
-        "study": study.name,
-        "title": study.title,
-        "description": study.description,
-        "study_text": study.text,
-        "study_sha256": study.sha256,
+    attrs: dict[str, Any] = study.attributes() | {
         "method": sampling.method,
         "varied": list(sampling.varied),
         "responses": list(study.responses),

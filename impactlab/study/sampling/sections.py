@@ -14,7 +14,6 @@ from pydantic import (
     Field,
     PlainValidator,
     ValidationInfo,
-    create_model,
     field_validator,
     model_validator,
 )
@@ -29,7 +28,7 @@ from impactlab.study.schema.parameters import (
     Fixed,
     distribution_section,
 )
-from impactlab.study.schema.section import Names, Section, Whole, at_key, name_at
+from impactlab.study.schema.section import Names, Section, Whole, at_key, by_name, name_at
 from impactlab.types import Floats
 
 MOST_RUNS = 10_000_000
@@ -92,13 +91,11 @@ class Sampling(Section):
     @field_validator("parameters", mode="plain")
     @classmethod
     def _read_parameters(cls, data: Any, info: ValidationInfo) -> dict[str, Any]:
-        entries: Any = {
-            name: (Annotated[Any, PlainValidator(partial(cls.read_entry, parameter))], None)
+        types = {
+            name: Annotated[Any, PlainValidator(partial(cls.read_entry, parameter))]
             for name, parameter in info.context["parameters"].items()  # type: ignore[index]
         }
-        section = create_model("Parameters", __base__=Section, **entries)
-        found = section.model_validate(data, context=info.context)
-        return {name: getattr(found, name) for name in data}  # in the file's order
+        return by_name("Parameters", types, data, info)
 
     @model_validator(mode="after")
     def _check_counts(self) -> Self:

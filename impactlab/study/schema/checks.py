@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample, Sampling
 from impactlab.study.schema.parameters import Choice, Distribution
-from impactlab.study.schema.study import Study, StudyFile
+from impactlab.study.schema.study import FunctionStudy, Study, StudyFile
 from impactlab.study.validity import Base, refused_corner
 from impactlab.variables import ANALYSES, NO_DISTRIBUTION
 
@@ -118,28 +118,17 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
         yield "analysis.failed_runs", f"{reason}: set failed_runs: fail"
 
 
-def limit_reasons(
-    limits: Collection[str],
-    responses: Collection[str],
-    analyses: Collection[str],
-    sampling: Sampling,
-) -> Reasons:
+def limit_reasons(file: StudyFile | FunctionStudy) -> Reasons:
     """Check that limits are of responses, with runs that tell the probability to exceed them."""
-    for name in limits:
-        if name not in responses:
-            yield f"limits.{name}", unknown("response", name, responses)
-    if limits and (reason := NO_DISTRIBUTION.get(sampling.method)):
-        methods = "sobol, delta, pawn or regression"
-        yield (
-            "limits",
-            f"give no probabilities with method {sampling.method}: {reason} (use {methods})",
-        )
-    elif limits and "distribution" not in analyses:
+    for name in file.limits:
+        if name not in file.responses:
+            yield f"limits.{name}", unknown("response", name, file.responses)
+    method = file.sampling.method
+    if file.limits and (reason := NO_DISTRIBUTION.get(method)):
+        others = "sobol, delta, pawn or regression"
+        yield "limits", f"give no probabilities with method {method}: {reason} (use {others})"
+    elif file.limits and "distribution" not in file.analyses:
         yield "limits", "need the analysis distribution: list it in analyses"
-
-
-def _limits(file: StudyFile) -> Reasons:
-    return limit_reasons(file.limits, file.responses, file.analyses, file.sampling)
 
 
 def _automatic_discretisation(file: StudyFile) -> Reasons:
@@ -245,7 +234,7 @@ CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (_mass_and_density, {"impact", "sampling"}),
     (_one_mesh_for_profiles, {"store", "sampling"}),
     (_runs_for_the_analyses, {"analyses", "analysis", "sampling", "store"}),
-    (_limits, {"limits", "responses", "analyses", "sampling"}),
+    (limit_reasons, {"limits", "responses", "analyses", "sampling"}),
     (_automatic_discretisation, {"discretisation", "responses", "sampling"}),
     (_indices_to_grow_by, {"analyses", "responses", "sampling"}),
     (_impacts, {"impact", "discretisation", "sampling"}),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any
@@ -102,13 +102,10 @@ def describe(path: Path) -> dict[str, Any]:
         "sobol": impacts and isinstance(sampling, Sobol),
         "fem3d": isinstance(study, Study) and has_solid_runs(study),
     }
-    measured = study.measurements if isinstance(study, Study) else ()
-    return {
-        "name": study.name,
-        "title": study.title,
-        "size": study.size,
-        "traits": [name for name, has in traits.items() if has],
-    } | ({"measurements": list(measured)} if measured else {})
+    listed = [name for name, has in traits.items() if has]
+    found = {"name": study.name, "title": study.title, "size": study.size, "traits": listed}
+    measured = list(getattr(study, "measurements", ()))
+    return found | ({"measurements": measured} if measured else {})
 
 
 def _kind(source: Source) -> str:
@@ -134,10 +131,8 @@ _STAND_INS: dict[str, Any] = {
 
 def _study(source: Source) -> Study:
     """Return a study of impacts. Raises StudyError with every problem of the file."""
-    path = str(source.path)
-    python = _python_responses(source.data, path)
-    units = _units(python)
-    data = {key: value for key, value in source.data.items() if key != "python_responses"}
+    path, data = str(source.path), dict(source.data)
+    python, units = _python_responses(data.pop("python_responses", {}), path)
     problems: list[Problem] = []
     try:
         file = validated(StudyFile, data, path, responses=units)
@@ -158,33 +153,21 @@ def _study(source: Source) -> Study:
     if python and has_solid_runs(file):
         reason = f"are given beam runs, which those with beam_model: {SOLID} are not"
         raise StudyError(Problem(path, "python_responses", reason))
-    own: dict[str, Any] = {"discretisation": grid, "auto": auto}
-    own |= {"analysis": file.analysis or Analysis(), "python": python}
-    return Study(name=source.name, path=source.path, text=source.text, **dict(file) | own)
+    own: dict[str, Any] = dict(file) | {"discretisation": grid, "auto": auto, "python": python}
+    own["analysis"] = file.analysis or Analysis()
+    return Study(name=source.name, path=source.path, text=source.text, **own)
 
 
-def _python_responses(data: Mapping[str, Any], path: str) -> dict[str, str]:
-    """Return the keys of the responses that are Python functions.
-
-    Raises StudyError for functions that this process does not know.
-    """
-    if "python_responses" not in data:
-        return {}
+def _python_responses(given: Any, path: str) -> tuple[dict[str, str], dict[str, str]]:
+    """Return keys and units of the responses that are Python functions, known in this process."""
+    if given == {}:
+        return {}, {}
     from impactlab.study.solvers.own import KNOWN
 
-    python = data["python_responses"]
-    if not isinstance(python, dict) or not {*map(str, python.values())} <= KNOWN.keys():
+    if not isinstance(given, dict) or not {*map(str, given.values())} <= KNOWN.keys():
         raise StudyError(Problem(path, "python_responses", _NOT_KNOWN))
-    return {str(name): str(key) for name, key in python.items()}
-
-
-def _units(python: Mapping[str, str]) -> dict[str, str]:
-    """Return the units of Python functions, by response; python: their keys."""
-    if not python:
-        return {}
-    from impactlab.study.solvers.own import KNOWN
-
-    return {name: KNOWN[key].units for name, key in python.items()}
+    keys = {str(name): str(key) for name, key in given.items()}
+    return keys, {name: KNOWN[key].units for name, key in keys.items()}
 
 
 _NOT_KNOWN = "holds a Python function, which is in no file: build the study in Python"
@@ -207,12 +190,12 @@ def _function_study(source: Source) -> FunctionStudy:
 
 def _of_function(source: Source, file: _FunctionFile, responses: tuple[str, ...]) -> FunctionStudy:
     """Return the study. Raises StudyError where its limits have no meaning."""
-    analyses, path = ("sensitivity", "distribution", "surrogate"), str(source.path)
-    reasons = limit_reasons(file.limits, responses, analyses, file.sampling)
-    if problems := [Problem(path, *reason) for reason in reasons]:
+    own: dict[str, Any] = dict(file) | {"responses": responses}
+    own["analyses"] = ("sensitivity", "distribution", "surrogate")
+    study = FunctionStudy(name=source.name, path=source.path, text=source.text, **own)
+    if problems := [Problem(str(source.path), *reason) for reason in limit_reasons(study)]:
         raise StudyError(*problems)
-    own: dict[str, Any] = {"responses": responses, "analyses": analyses}
-    return FunctionStudy(name=source.name, path=source.path, text=source.text, **dict(file) | own)
+    return study
 
 
 def _own_function_study(source: Source, key: str) -> FunctionStudy:
@@ -232,7 +215,7 @@ def _own_function_study(source: Source, key: str) -> FunctionStudy:
     }
     given = source.data.get("responses")
     responses = [str(name) for name in given] if isinstance(given, list) else ["value"]
-    units = _units(dict.fromkeys(responses, key))
+    units = dict.fromkeys(responses, KNOWN[key].units)
     file = validated(_OwnFunctionFile, source.data, path, parameters, units)
     if (reason := file.sampling.no_surrogate) and file.analysis.failed_runs == "impute":
         reason += ": set failed_runs: fail"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -13,7 +13,6 @@ from pydantic import (
     Field,
     PlainValidator,
     StrictBool,
-    TypeAdapter,
     ValidationInfo,
     model_validator,
 )
@@ -29,7 +28,7 @@ from impactlab.study.schema.section import (
     Number,
     Section,
     Text,
-    at_key,
+    by_name,
     requires,
     validated,
 )
@@ -56,19 +55,9 @@ def _number(value: Any, info: ValidationInfo) -> float | None:
 
 
 def _conditions(data: Any, info: ValidationInfo) -> Conditions:
-    if not isinstance(data, dict):
-        raise ValueError("expected a mapping such as {velocity: 2 m/s}")
     parameters: Mapping[str, Parameter] = info.context["parameters"]  # type: ignore[index]
-    found = {}
-    for name, value in data.items():
-        if name not in parameters:
-            raise at_key(str(name), unknown("parameter", name, parameters))
-        try:
-            found[name] = TypeAdapter(value_type(parameters[name])).validate_python(value)
-        except ValueError as error:
-            words = [str(line["msg"]).removeprefix("Value error, ") for line in error.errors()]  # type: ignore[attr-defined]
-            raise at_key(name, "; ".join(words)) from None
-    return found
+    types = {name: value_type(parameter) for name, parameter in parameters.items()}
+    return by_name("Conditions", types, data, info)
 
 
 class _Entry(Section):
@@ -153,8 +142,3 @@ def read_measurements(given: Given, runs: xr.Dataset | None = None) -> tuple[Mea
         )
         for each in found.measurements
     )
-
-
-def read_all(given: Sequence[Given], runs: xr.Dataset | None = None) -> tuple[Measurement, ...]:
-    """Read several files, or mappings, in their order; see `read_measurements`."""
-    return tuple(each for one in given for each in read_measurements(one, runs))

@@ -18,6 +18,7 @@ from pydantic import (
     TypeAdapter,
     ValidationError,
     ValidationInfo,
+    create_model,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
@@ -94,6 +95,16 @@ def name_at(key: str, choices: Collection[str], data: Any) -> str:
     if not isinstance(name, str) or name not in choices:
         raise at_key(key, unknown(key, name, choices))
     return name
+
+
+def by_name(
+    title: str, types: Mapping[str, Any], data: Any, info: ValidationInfo
+) -> dict[str, Any]:
+    """Read a mapping of some of these keys, each with its type; return it in the file's order."""
+    fields: Any = {name: (kind, None) for name, kind in types.items()}
+    section = create_model(title, __base__=Section, **fields)
+    found = section.model_validate(data, context=info.context)
+    return {name: getattr(found, name) for name in data}
 
 
 def requires(test: Callable[[Any], bool], words: str) -> AfterValidator:

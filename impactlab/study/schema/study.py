@@ -36,6 +36,7 @@ from impactlab.study.schema.section import (
     Section,
     Whole,
     at_key,
+    by_name,
     names,
     one_of,
     quantity,
@@ -161,10 +162,7 @@ def read_limits(known: Mapping[str, str]) -> PlainValidator:
 
     def read(data: Any, info: ValidationInfo) -> dict[str, float]:
         units = {**known, **(info.context or {}).get("responses", {})}
-        keys: dict[str, Any] = {name: (quantity(unit), None) for name, unit in units.items()}
-        section = create_model("Limits", __base__=Section, **keys)
-        found = section.model_validate(data, context=info.context)
-        return {name: getattr(found, name) for name in data}  # in the file's order
+        return by_name("Limits", {name: quantity(each) for name, each in units.items()}, data, info)
 
     return PlainValidator(read)
 
@@ -209,6 +207,11 @@ class Declared:
     def sha256(self) -> str:
         """SHA-256 of the text, in hexadecimal digits."""
         return hashlib.sha256(self.text.encode()).hexdigest()
+
+    def attributes(self) -> dict[str, Any]:
+        """Return the attributes by which datasets keep it."""
+        given = {"study": self.name, "title": self.title, "description": self.description}
+        return given | {"study_text": self.text, "study_sha256": self.sha256}
 
 
 @dataclass(frozen=True)

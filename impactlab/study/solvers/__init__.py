@@ -73,6 +73,8 @@ class Solver:
     """Return the bits of the answer `status` with which a run lacks a requested response."""
     prepare: Callable[[xr.Dataset], object] = lambda design: None
     """Compile what the runs of a design need, before threads ask for it at once."""
+    functions: Any = None
+    """Python functions that a worker has to know (own.Task)."""
 
 
 SOLVERS = {
@@ -92,11 +94,6 @@ def solver_named(name: str) -> Solver:
         return own
     found: Solver = resolve_name(SOLVERS[name])
     return found
-
-
-def functions_of(name: str) -> Any:
-    """Return what a worker has to know for a solver of Python functions; None for any other."""
-    return resolve_name("impactlab.study.solvers.own:TASKS")[name] if name[:4] == "own " else None
 
 
 def solver_of(design: xr.Dataset) -> str:

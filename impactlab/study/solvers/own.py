@@ -71,7 +71,6 @@ KNOWN: dict[str, Function] = {}
 """Functions that studies of this process were built with, by their keys."""
 TASKS: dict[str, Task] = {}
 """The same for solvers, by their names."""
-SOLVER_NAME = "own"
 
 
 def register(name: str, function: Function | Callable[..., Any]) -> str:
@@ -107,7 +106,7 @@ def solver_name(study: Study | FunctionStudy) -> str:
         functions = {name: KNOWN[key] for name, key in study.python.items()}
         task = Task(functions, study.store.samples)
     told = f"{keys} {task.samples} {task.parameters} {task.responses}"
-    name = f"{SOLVER_NAME} {sha256(told.encode()).hexdigest()}"
+    name = f"own {sha256(told.encode()).hexdigest()}"
     TASKS[name] = task
     return name
 
@@ -128,6 +127,7 @@ def solver(name: str) -> Solver:
             values=lambda cases, output: len(task.responses) + 1,
             solve=partial(_model, task),
             labelled=partial(_labelled_model, task),
+            functions=task,
         )
     return replace(
         IMPACT,
@@ -135,6 +135,7 @@ def solver(name: str) -> Solver:
         cost=lambda cases: IMPACT.cost(cases) + _COST,
         solve=partial(_responses, task),
         labelled=partial(_labelled_responses, task),
+        functions=task,
     )
 
 
