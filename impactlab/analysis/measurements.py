@@ -21,8 +21,7 @@ from impactlab.variables import FAILED, MARKED, reasons
 
 COVERAGE = 2.0
 """Coverage factor of every expanded uncertainty in datasets: about 95 % of a normal error."""
-_SAME = 1e-6
-"""Relative difference up to which two conditions are the same."""
+_SAME = 1e-6  # relative difference up to which two conditions are the same
 _AXES = {
     "nodes": ("nodes", True),
     "points": ("points", True),

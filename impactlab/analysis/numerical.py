@@ -135,8 +135,7 @@ TAIL_SHARE = 0.25
 Above, single runs decide, such as those in which a further impact falls into the first contact:
 which of them another grid moves, and whether it moves one, so few base samples cannot tell.
 """
-_TO_LIMIT = 2.0
-"""Distance to the limit over change, where each refinement takes half of the error."""
+_TO_LIMIT = 2.0  # distance to the limit over change, where each refinement takes half of the error
 
 
 def _check_refinement(runs: xr.Dataset, refinement: xr.Dataset) -> None:

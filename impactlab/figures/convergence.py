@@ -26,8 +26,7 @@ from impactlab.types import Floats
 
 _DIFFERENCE = "Relative difference (–)"
 _FEWEST = 3
-_NAMED = 3
-"""Largest number of cases per response that a caption names."""
+_NAMED = 3  # largest number of cases per response that a caption names
 _CAPTION = (
     "Difference to the limit, relative to it: Richardson's value, or where there is none that of "
     "the least-squares fit, or else the finest value. Thin dashes: the order p of that limit (in "

@@ -19,8 +19,7 @@ from impactlab.types import Floats
 
 _LARGE, _SMALL = ("nodes", "points", "elements_per_radius"), ("courant", "element_size")
 _JUMP, _FEW_STEPS = 5.0, 4
-_MOST = 6
-"""Largest number of panels, and of curves if no other is asked for."""
+_MOST = 6  # largest number of panels, and of curves if no other is asked for
 
 
 @dataclass(frozen=True)

@@ -25,12 +25,10 @@ from impactlab.figures.samples import along_parameters, places, ticks
 from impactlab.types import Floats
 
 _WARNING = style.COLOURS[1]
-_FEW = 10
-"""Number of distinct values up to which each has a bar."""
+_FEW = 10  # number of distinct values up to which each has a bar
 _MOSTLY = 0.5
 """Share of the runs from which on a common value is left out, as it would hide the rest."""
-_MOST = 300
-"""Largest number of steps drawn of a curve."""
+_MOST = 300  # largest number of steps drawn of a curve
 _EVEN = ("sobol", "delta", "pawn", "regression")
 """Methods whose draws spread more evenly than random ones."""
 

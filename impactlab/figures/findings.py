@@ -16,21 +16,16 @@ from impactlab.figures.labels import Display, display
 from impactlab.types import Floats
 from impactlab.verification.finding import Curve, Outcome, Panel
 
-_ROW = 8.0
-"""Height of a check's row, mm."""
-_LEAST, _MOST = 1e-6, 1e3
-"""Limits of the ratios; those beyond are drawn at the edge."""
-_SPREAD = 0.32
-"""Largest distance of points from the middle of their row, in rows."""
+_ROW = 8.0  # height of a check's row, mm
+_LEAST, _MOST = 1e-6, 1e3  # limits of the ratios; those beyond are drawn at the edge
+_SPREAD = 0.32  # largest distance of points from the middle of their row, in rows
 _LETTERS = 34
 _LOOKS: dict[str, dict[str, Any]] = {
     "passed": {"marker": "o", "color": style.COLOURS[0], "alpha": 0.7},
     "failed": {"marker": "X", "color": style.COLOURS[1], "markersize": 6.0},
 }
-_FEW = 25
-"""Number of points up to which a curve has markers."""
-_TITLE, _LABEL = 46, 32
-"""Letters per line of a panel's title, and of the label at its side."""
+_FEW = 25  # number of points up to which a curve has markers
+_TITLE, _LABEL = 46, 32  # letters per line of a panel's title, and of the label at its side
 
 
 def overview_caption(outcomes: Sequence[Outcome]) -> str:

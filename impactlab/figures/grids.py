@@ -32,13 +32,10 @@ from impactlab.verification.solutions.beam_modes import impact_share
 
 _PEAK, _DURATION, _RESTITUTION = "peak_force", "contact_duration", "restitution"
 _FORCE, _INDENTATION, _DENT = "contact_force", "indentation", "permanent_indentation"
-_FEWEST = 3
-"""Smallest number of values, of a parameter or of contact laws, for a figure."""
+_FEWEST = 3  # smallest number of values, of a parameter or of contact laws, for a figure
 _OUTSIDE = MARKS["outside_contact_law"][0]
-_THRESHOLD = 1.0
-"""Changes by shear that matter, %."""
-_WIDE = 10.0
-"""Largest change in % up to which an axis is linear."""
+_THRESHOLD = 1.0  # changes by shear that matter, %
+_WIDE = 10.0  # largest change in % up to which an axis is linear
 _WITHOUT, _WITH = "euler_bernoulli", "timoshenko"
 _SHEARED = (_PEAK, _DURATION)
 _BEAM = [name for name, entry in PARAMETERS.items() if entry.path[:2] == ("impact", "beam")]

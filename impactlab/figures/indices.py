@@ -20,17 +20,14 @@ from impactlab.figures.measures import MORRIS, Family, Measure, analysed, parame
 from impactlab.figures.record import Figure
 from impactlab.types import Floats
 
-_THICK = 0.76
-"""Thickness of all bars of a row together, in rows."""
-_PALE = 0.45
-"""Opacity of bars that are within the noise or below the numerical error."""
+_THICK = 0.76  # thickness of all bars of a row together, in rows
+_PALE = 0.45  # opacity of bars that are within the noise or below the numerical error
 _VERDICT = "sensitivity_verdict"
 _SAMPLES = "base_samples"
 _ENDS = (-0.25, 1.25)
 """Largest limits of the axis; intervals from few samples can be many times wider."""
 _PAIRS = "second_order"
-_WEAK = 0.1
-"""Smallest upper end of the colour scale."""
+_WEAK = 0.1  # smallest upper end of the colour scale
 
 
 def _missing(runs: xr.Dataset, analysis: xr.Dataset) -> str:

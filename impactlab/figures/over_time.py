@@ -13,8 +13,7 @@ from impactlab.figures.measures import parameters
 from impactlab.variables import status_bits
 
 _ORDERS = {"first_order_over_time": "first order", "total_order_over_time": "total order"}
-_ENDS = (-0.25, 1.25)
-"""Largest limits of an axis of indices."""
+_ENDS = (-0.25, 1.25)  # largest limits of an axis of indices
 VERDICT = "history_verdict"
 
 

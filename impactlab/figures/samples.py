@@ -22,8 +22,7 @@ from impactlab.figures.record import Figure
 from impactlab.types import Floats
 
 _WARNING = style.COLOURS[1]
-_SHOWN = 2000
-"""Largest number of runs drawn as points; the mean is over all runs."""
+_SHOWN = 2000  # largest number of runs drawn as points; the mean is over all runs
 _POINTS: dict[str, Any] = {
     "linestyle": "",
     "marker": ".",
@@ -31,14 +30,10 @@ _POINTS: dict[str, Any] = {
     "markeredgewidth": 0.0,
     "color": "0.6",
 }
-_NAMES = 14.0
-"""Height of the names of words under a panel, mm."""
-_BINS, _FEWEST = 20, 30
-"""Largest number of bins of the mean, and smallest number of runs in a bin."""
-_MOST = 400
-"""Largest number of points in a panel of surrogates; more hide each other."""
-_DRAWN = {"good": 2000, "failed": 1000}
-"""Largest numbers of runs in the map."""
+_NAMES = 14.0  # height of the names of words under a panel, mm
+_BINS, _FEWEST = 20, 30  # largest number of bins of the mean, and smallest number of runs in a bin
+_MOST = 400  # largest number of points in a panel of surrogates; more hide each other
+_DRAWN = {"good": 2000, "failed": 1000}  # largest numbers of runs in the map
 _LOOKS: dict[str, dict[str, Any]] = {
     "good": {"color": "0.65", "marker": ".", "markersize": 2.0, "markeredgewidth": 0.0},
     "failed": {"color": _WARNING, "marker": "x", "markersize": 3.0, "markeredgewidth": 0.8},

@@ -14,8 +14,7 @@ from impactlab.figures import labels
 from impactlab.types import Floats
 
 Which = Literal["x", "y"]
-_WIDE = 30.0
-"""Ratio of the largest to the smallest value from which on an axis is logarithmic."""
+_WIDE = 30.0  # ratio of the largest to the smallest value from which on an axis is logarithmic
 _PLAIN = FuncFormatter(lambda value, _: labels.number(value))
 _POWERS = FuncFormatter(lambda value, _: labels.number(value, plain=(1.0, 10.5)))
 

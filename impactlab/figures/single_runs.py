@@ -20,21 +20,17 @@ from impactlab.types import Floats
 
 _FORCE, _INDENTATION = "contact_force", "indentation"
 _TIME = "time since first touch"
-_COLUMNS = 4
-"""Largest number of force histories side by side."""
+_COLUMNS = 4  # largest number of force histories side by side
 _plan_by_law = partial(plan, variable=_FORCE, panel="velocity", prefer=["contact"])
-_WIDE = 3
-"""Largest number of contact laws whose displacements fit side by side."""
+_WIDE = 3  # largest number of contact laws whose displacements fit side by side
 _DISPLACEMENTS = {
     "sphere_displacement": "sphere",
     "midspan_deflection": "beam at mid-span",
     "indentation": "indentation",
 }
 _STRAIN = "equivalent_plastic_strain"
-_LOWEST = 1e-3
-"""Smallest strain on an axis, in %."""
-_PAPER_LIMIT = 0.2
-"""The plastic strain that the paper compares with, in %."""
+_LOWEST = 1e-3  # smallest strain on an axis, in %
+_PAPER_LIMIT = 0.2  # the plastic strain that the paper compares with, in %
 
 
 def _force_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:

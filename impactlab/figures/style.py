@@ -163,8 +163,7 @@ def panel_legends(figure: Figure) -> None:
     figure.set_figheight(figure.get_figheight() + lines * rows * 4.2 * MILLIMETRE)
 
 
-_MARGIN = 15.0
-"""Left of a panel, for numbers and label, mm."""
+_MARGIN = 15.0  # left of a panel, for numbers and label, mm
 _ABOVE: dict[str, Any] = {
     "loc": "lower left",
     "bbox_to_anchor": (0.0, 1.0),

@@ -13,7 +13,8 @@ from impactlab.figures.draw import OVERVIEW
 from impactlab.figures.labels import Display, display
 from impactlab.report.answer import entries
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
-from impactlab.verification.finding import Comparison, Outcome, gravest_first
+from impactlab.verification.comparisons import Comparison
+from impactlab.verification.finding import Outcome, gravest_first
 from impactlab.verification.stored import unpacked
 
 _SHORT = 12

@@ -11,17 +11,8 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, paper_impact
 from impactlab.simulate import simulate
 from impactlab.verification.cases import elastic, slimmer
-from impactlab.verification.finding import (
-    Comparison,
-    Curve,
-    Finding,
-    Panel,
-    absolute,
-    check,
-    curve,
-    relative,
-    rms_error,
-)
+from impactlab.verification.comparisons import Comparisons, rms_error
+from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions import modal
 from impactlab.verification.solutions.infinite_beam import (
     curvature_under_force,
@@ -64,7 +55,7 @@ def infinite_beam() -> Finding:
         errors.append(rms_error(run.midspan_deflection.values, expected))
     label, where = "order of convergence of the deflection", f"{LONG_NODES[-2]} to {FINEST} nodes"
     observed = float(np.log2(errors[-2] / errors[-1]))
-    order = absolute(label, where, "1", observed, 2.0, 0.2)
+    order = Comparisons(where).absolute(label, "1", observed, 2.0, 0.2)
     convolved, impulsive, panels = _against_closed_forms(runs[-1], beam)
     nodes = np.array(LONG_NODES, dtype=np.float64)
     slope = errors[0] * (nodes[0] / nodes) ** 2
@@ -74,12 +65,12 @@ def infinite_beam() -> Finding:
     ]
     axes = ("nodes", "1"), ("error (root mean square over the largest value)", "1")
     fall = Panel("deflection history", *axes, curves, log=True)
-    return Finding([*convolved, order, *impulsive], [*panels, fall])
+    return Finding([*convolved, *order, *impulsive], [*panels, fall])
 
 
 def _against_closed_forms(
     run: xr.Dataset, beam: Beam
-) -> tuple[list[Comparison], list[Comparison], list[Panel]]:
+) -> tuple[Comparisons, Comparisons, list[Panel]]:
     """Compare a run under the force itself, and under one impulse at the force's centroid.
 
     Histories are those at mid-span. The shape is that near mid-span at the end: under the force,
@@ -97,12 +88,10 @@ def _against_closed_forms(
     since = IMPULSE_DURATION - time[pushed, np.newaxis]
     responses = force[pushed, np.newaxis] * profile_under_impulse(beam, 1.0, since, x)
     shape = np.trapezoid(responses, time[pushed], axis=0)
-    where = f"{FINEST} nodes, under the solver's own force"
-    convolved = [
-        curve("history of deflection", where, "m", w, history, 1e-4),
-        curve("history of curvature", where, "m-1", kappa, curvature, 1e-3),
-        curve("deflected shape", where, "m", profile, shape, 2e-4),
-    ]
+    convolved = Comparisons(f"{FINEST} nodes, under the solver's own force")
+    convolved.curve("history of deflection", "m", w, history, 1e-4)
+    convolved.curve("history of curvature", "m-1", kappa, curvature, 1e-3)
+    convolved.curve("deflected shape", "m", profile, shape, 2e-4)
 
     impulse = float(np.trapezoid(force, time))
     centroid = float(np.trapezoid(force * time, time)) / impulse
@@ -110,11 +99,9 @@ def _against_closed_forms(
     expected = deflection_under_impulse(beam, impulse, rest).item()
     struck = profile_under_impulse(beam, impulse, rest, x)
     end = f"{IMPULSE_DURATION * 1e6:g} us after first touch"
-    where = f"{end}, impulse at the force's centroid"
-    impulsive = [
-        relative("mid-span deflection", where, "m", w[-1].item(), expected, 5e-4),
-        curve("deflected shape", where, "m", profile, struck, 3e-3),
-    ]
+    impulsive = Comparisons(f"{end}, impulse at the force's centroid")
+    impulsive.relative("mid-span deflection", "m", w[-1].item(), expected, 5e-4)
+    impulsive.curve("deflected shape", "m", profile, struck, 3e-3)
 
     later = time[time > centroid]
     at_once = deflection_under_impulse(beam, impulse, later - centroid)
@@ -155,10 +142,10 @@ def slender_limit() -> Finding:
         for each in (replace(impact, beam_model="elastic"), *family)
     )
     one, other = modal.solve_timoshenko(impact, duration), modal.solve(impact, duration)
-    time, where = bare.time.values, "the paper's beam, 0.99 m/s"
-    slender = f"{slenderness[-2]} and {slenderness[-1]} times as slender"
+    time, changes = bare.time.values, Comparisons("the paper's beam, 0.99 m/s")
+    orders = Comparisons(f"{slenderness[-2]} and {slenderness[-1]} times as slender")
     ratios = impact.beam.depth / impact.beam.span / np.array(slenderness, dtype=np.float64)
-    changes, orders, histories, fall = [], [], {}, []
+    histories, fall = {}, []
     for name, quantity, units in (
         ("contact_force", "contact force", "N"),
         ("midspan_deflection", "mid-span deflection", "m"),
@@ -167,7 +154,7 @@ def slender_limit() -> Finding:
         expected = one.at(name, time) - other.at(name, time)
         label = f"what shear and rotary inertia change in the {quantity}"
         # Relative to a change which is itself the difference of two errors of order dx^2.
-        changes.append(curve(label, where, units, ours, expected, 5e-3))
+        changes.curve(label, units, ours, expected, 5e-3)
         histories[name] = [
             Curve("solver", time, ours),
             Curve("modal series", time, expected, independent=True),
@@ -176,10 +163,11 @@ def slender_limit() -> Finding:
         fall.append(Curve(quantity, ratios, sizes))
         observed = float(np.log2(sizes[-2] / sizes[-1]))
         label = f"order in depth/span of the change in the {quantity}"
-        orders.append(absolute(label, slender, "1", observed, 2.0, 0.02))
+        orders.absolute(label, "1", observed, 2.0, 0.02)
     slope = fall[0].y[-1] * (ratios / ratios[-1]) ** 2
     fall.append(Curve("second order", ratios, slope, independent=True))
-    title, force = f"what shear and rotary inertia change: {where}", "change of the contact force"
+    title = f"what shear and rotary inertia change: {changes.where}"
+    force = "change of the contact force"
     axes = ("depth over span", "1"), ("change (root mean square over the largest value)", "1")
     panels = [
         Panel(title, _TIME, (force, "N"), histories["contact_force"]),

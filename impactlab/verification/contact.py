@@ -14,18 +14,8 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import simulate
 from impactlab.verification.cases import Case, elastic, rigid_backed
-from impactlab.verification.finding import (
-    Comparison,
-    Curve,
-    Finding,
-    Panel,
-    absolute,
-    check,
-    curve,
-    relative,
-    responses,
-    worst,
-)
+from impactlab.verification.comparisons import Comparisons
+from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions import hertz, lumped, modal
 from impactlab.verification.solutions.contact_laws import LAWS, LawOnHalfSpace, law_on_half_space
 from impactlab.verification.solutions.stronge import stronge_impact
@@ -43,7 +33,8 @@ def half_space() -> Finding:
     """Compare peak force, largest indentation, contact duration and restitution."""
     impact = rigid_backed(0.99, "hertz")
     run = simulate(impact, _GRID, duration=0.4e-3)
-    return Finding(responses(run, "the paper's sphere at 0.99 m/s", _hertzian(impact), 2e-5))
+    found = Comparisons("the paper's sphere at 0.99 m/s")
+    return Finding(found.responses(run, _hertzian(impact), 2e-5))
 
 
 def _hertzian(impact: Impact) -> dict[str, float]:
@@ -58,13 +49,8 @@ def _hertzian(impact: Impact) -> dict[str, float]:
 
 
 def _compare_law(
-    where: str,
-    velocity: float,
-    run: xr.Dataset,
-    law: LawOnHalfSpace,
-    mass: float,
-    tolerance: float,
-) -> list[Comparison]:
+    where: str, velocity: float, run: xr.Dataset, law: LawOnHalfSpace, mass: float, tolerance: float
+) -> Comparisons:
     """Compare restitution, peak force, dent and dissipation of a sphere of `mass` (kg)."""
     deepest, restitution = law.maximum_indentation(velocity, mass), law.restitution(velocity, mass)
     peak, force = run.peak_force.item(), law.loading_force(deepest)
@@ -73,12 +59,11 @@ def _compare_law(
     left = law.residual_indentation(deepest) / deepest
     lost = run.contact_dissipation.item() / (0.5 * mass * velocity**2)
     share = 1.0 - restitution**2
-    return [
-        absolute("restitution", where, "1", run.restitution.item(), restitution, tolerance),
-        relative("peak force", where, "N", peak, force, tolerance),
-        absolute("dent over indentation", where, "1", dent, left, tolerance),
-        absolute("share of energy lost", where, "1", lost, share, tolerance),
-    ]
+    found = Comparisons(where)
+    found.absolute("restitution", "1", run.restitution.item(), restitution, tolerance)
+    found.relative("peak force", "N", peak, force, tolerance)
+    found.absolute("dent over indentation", "1", dent, left, tolerance)
+    return found.absolute("share of energy lost", "1", lost, share, tolerance)
 
 
 @check(
@@ -107,9 +92,9 @@ def stronge_restitution() -> Finding:
         times = expected / law.yield_indentation
         where = f"{velocity:.3g} m/s, indentation of {times:.3g} delta_y"
         found = _compare_law(where, velocity, run, law, mass, tolerance)
-        indentation = relative("largest indentation", where, "m", depth, expected, tolerance)
-        table.append([*found[:2], indentation, *found[2:]])
-    restitutions, *others = zip(*table, strict=True)
+        found.relative("largest indentation", "m", depth, expected, tolerance)
+        found.insert(2, found.pop())  # beside the peak force
+        table.append(found)
     fine = np.geomspace(1e-3, 20.0, 301)
     closed = np.array([law.restitution(float(v), mass) for v in fine])
     curves = [
@@ -118,7 +103,8 @@ def stronge_restitution() -> Finding:
     ]
     title = "the paper's sphere on a half-space"
     panel = Panel(title, _VELOCITY, _RESTITUTION, curves, log=True)
-    return Finding([*restitutions, *map(worst, others)], [panel])
+    found = Comparisons().worst(row[1:] for row in table)
+    return Finding([*(row[0] for row in table), *found], [panel])
 
 
 VELOCITIES = (0.012, 0.03, 0.1, 0.3, 0.99, 3.0, 10.0)
@@ -138,7 +124,7 @@ def contact_laws() -> Finding:
 
     Laws that create energy do so here, too: a restitution above 1 must appear in both solutions.
     """
-    found: list[Comparison] = []
+    found = Comparisons()
     forces: list[Curve] = []
     against_velocity: dict[str, list[Curve]] = {"restitution": [], "permanent_indentation": []}
     fine = np.geomspace(VELOCITIES[0], VELOCITIES[-1], 61)
@@ -154,7 +140,7 @@ def contact_laws() -> Finding:
             where = f"{name}, {velocity:.3g} m/s"
             # Larger than for smooth laws: a jump of the force falls within a time step.
             table.append(_compare_law(where, velocity, run, law, mass, tolerance=1e-4))
-        found += map(worst, zip(*table, strict=True))
+        found.worst(table)
         forces += _force_curves(runs[DRAWN], law, mass)
         deepest = [law.maximum_indentation(float(v), mass) for v in fine]
         expected = {
@@ -214,20 +200,20 @@ def spring_mass() -> Finding:
     The panel shows the model, its integral, and the elastic beam, whose mass resists only
     gradually.
     """
-    found: list[Comparison] = []
+    found = Comparisons()
     for beam, case in CASES.items():
         table = []
         for velocity in case.velocities:
             impact = replace(case.impact, velocity=velocity)
             table.append(_compare_spring_mass(f"{beam}, {velocity:g} m/s", impact, case.duration))
-        found += map(worst, zip(*table, strict=True))
+        found.worst(table)
     where, duration = "the paper's beam, 0.99 m/s", CASES["the paper's beam"].duration
     exact = lumped.solve_spring_mass(_PAPER, duration)
     runs = [_run_spring_mass(_PAPER, duration, courant) for courant in (1.0, 0.5)]
     gaps = [run.indentation.values - exact.at("indentation", run.time.values) for run in runs]
     coarse, fine = (float(np.sqrt(np.mean(gap**2))) for gap in gaps)
     label, observed = "order of convergence in the time step", float(np.log2(coarse / fine))
-    found.append(absolute(label, where, "1", observed, 2.0, 0.1))
+    found += Comparisons(where).absolute(label, "1", observed, 2.0, 0.1)
     time = np.linspace(0.0, duration, _SAMPLES)
     series = modal.solve(_PAPER, duration)
     curves = [
@@ -244,25 +230,24 @@ def _run_spring_mass(impact: Impact, duration: float, courant: float = 0.5) -> x
     return simulate(model, grid, duration=duration, samples=_SAMPLES)
 
 
-def _compare_spring_mass(where: str, impact: Impact, duration: float) -> list[Comparison]:
+def _compare_spring_mass(where: str, impact: Impact, duration: float) -> Comparisons:
     """Compare one impact; curvature with -12 w/L^2.
 
     Of that curvature the finite differences have (1 - 2/(nodes - 1)^2).
     """
     run = _run_spring_mass(impact, duration)
     exact, time = lumped.solve_spring_mass(impact, duration), run.time.values
-    found = []
+    found = Comparisons(where)
     for name, (quantity, units) in HISTORIES.items():
         values = run[name].values, exact.at(name, time)
-        label = f"history of {quantity}"
-        found.append(curve(label, where, units, *values, SPRING_MASS_TOLERANCE))
+        found.curve(f"history of {quantity}", units, *values, SPRING_MASS_TOLERANCE)
     label, tolerance = "history of mid-span curvature", 2.5 / (_NODES - 1) ** 2
     curvature = -12.0 / impact.beam.span**2 * exact.at("midspan_deflection", time)
-    found.append(curve(label, where, "m-1", run.midspan_curvature.values, curvature, tolerance))
+    found.curve(label, "m-1", run.midspan_curvature.values, curvature, tolerance)
     expected = {"peak_force": exact.peak_force, "contact_duration": exact.contact_duration}
-    found += responses(run, where, expected, SPRING_MASS_TOLERANCE)
+    found.responses(run, expected, SPRING_MASS_TOLERANCE)
     count, contacts = run.number_of_contacts.item(), float(len(exact.contacts))
-    return [*found, absolute("number of contacts", where, "1", count, contacts, 0.0)]
+    return found.absolute("number of contacts", "1", count, contacts, 0.0)
 
 
 RIGID_TOLERANCE = 5e-6
@@ -278,10 +263,9 @@ def rigid_beam() -> Finding:
     hertzian, plastic = [], []
     for velocity in (0.1, 0.99, 5.0, 20.0):
         impact = replace(paper_impact(velocity, "hertz"), gravity=0.0)
-        where, run = f"Hertz contact, {velocity:g} m/s", _run_rigid_beam(impact)
-        deflection = absolute("deflection", where, "m", run.maximum_deflection.item(), 0.0, 0.0)
-        found = responses(run, where, _hertzian(impact), RIGID_TOLERANCE)
-        hertzian.append([*found, deflection])
+        run, found = _run_rigid_beam(impact), Comparisons(f"Hertz contact, {velocity:g} m/s")
+        found.responses(run, _hertzian(impact), RIGID_TOLERANCE)
+        hertzian.append(found.absolute("deflection", "m", run.maximum_deflection.item(), 0.0, 0.0))
 
         impact = replace(impact, contact="stronge")
         law, mass = stronge_impact(impact), impact.sphere.total_mass
@@ -291,27 +275,25 @@ def rigid_beam() -> Finding:
             "maximum_indentation": deepest,
             "restitution": law.restitution(velocity, mass),
         }
-        where, run = f"Stronge contact, {velocity:g} m/s", _run_rigid_beam(impact)
-        plastic.append(responses(run, where, expected, RIGID_TOLERANCE))
-    found = [
-        worst(entries) for table in (hertzian, plastic) for entries in zip(*table, strict=True)
-    ]
+        run, found = _run_rigid_beam(impact), Comparisons(f"Stronge contact, {velocity:g} m/s")
+        plastic.append(found.responses(run, expected, RIGID_TOLERANCE))
     impact = paper_impact(0.02, "hertz")
     run = _run_rigid_beam(impact, samples=401)
     duration, time = run.duration.item(), run.time.values
     exact, bare = (lumped.solve(replace(impact, gravity=g), duration) for g in (9.81, 0.0))
-    where = "Hertz contact under gravity, 0.02 m/s"  # it adds 11 % to the peak force
+    slow = Comparisons("Hertz contact under gravity, 0.02 m/s")  # it adds 11 % to the peak force
     ours, force = run.contact_force.values, exact.at("contact_force", time)
     expected = {"peak_force": exact.peak_force, "contact_duration": exact.contact_duration}
-    found.append(curve("history of contact force", where, "N", ours, force, RIGID_TOLERANCE))
-    found += responses(run, where, expected, RIGID_TOLERANCE)
+    slow.curve("history of contact force", "N", ours, force, RIGID_TOLERANCE)
+    slow.responses(run, expected, RIGID_TOLERANCE)
     curves = [
         Curve("solver", time, ours),
         Curve("DOP853", time, force, independent=True),
         Curve("DOP853 without gravity", time, bare.at("contact_force", time), independent=True),
     ]
     title = "the paper's sphere on a rigid beam, 0.02 m/s"
-    return Finding(found, [Panel(title, *_FORCE_AXES, curves)])
+    found = Comparisons().worst(hertzian).worst(plastic)
+    return Finding([*found, *slow], [Panel(title, *_FORCE_AXES, curves)])
 
 
 def _run_rigid_beam(impact: Impact, samples: int = 2) -> xr.Dataset:

@@ -17,7 +17,8 @@ from impactlab.solver import RULES
 from impactlab.types import Floats
 from impactlab.variables import WARNINGS
 from impactlab.verification.cases import discretised
-from impactlab.verification.finding import Comparison, Curve, Finding, Panel, absolute, check
+from impactlab.verification.comparisons import Comparison, Comparisons
+from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions import quadrature
 from impactlab.verification.solutions.beam_modes import modes_left_out, modes_on_nodes
 from impactlab.verification.solutions.contact_laws import LAWS
@@ -145,8 +146,7 @@ def _strain_energies(
     return float(np.trapezoid(lost @ area, x)), float(np.trapezoid(kept @ area, x))
 
 
-_DRAWN = {"leapfrog": 80, "modal": 40}
-"""Numbers of drawn cases."""
+_DRAWN = {"leapfrog": 80, "modal": 40}  # numbers of drawn cases
 
 
 @check(
@@ -187,7 +187,7 @@ def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
         lost = case.run.contact_dissipation.item() if case.ended else case.contact
         contact.append((lost - case.contact) / case.brought)
         plastic.append((case.run.plastic_dissipation.item() - case.plastic) / case.brought)
-    found = []
+    found: list[Comparison] = []
     for quantity, errors, tolerance in (
         ("energy in excess, the beam elastic", [a.energy for a in audits if not a.plastic], 1e-9),
         ("energy in excess, the beam yielding", [a.energy for a in audits if a.plastic], 2e-3),
@@ -197,15 +197,15 @@ def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
     ):
         where = f"{scheme}: worst of {len(errors)} drawn cases, over what is brought"
         worst = float(np.max(np.abs(errors)))
-        found.append(absolute(quantity, where, "1", worst, 0.0, tolerance))
+        found += Comparisons(where).absolute(quantity, "1", worst, 0.0, tolerance)
     for name, cases in (
         ("plastic_dissipation", audits),
         ("contact_dissipation", [case for case in audits if not case.marked]),
     ):
         least = float(np.nanmin([case.run[name].item() / case.brought for case in cases]))
         where = f"{scheme}: least of {len(cases)} cases, over what is brought"
-        values = min(least, 0.0), 0.0
-        found.append(absolute(name.replace("_", " "), where, "1", *values, 1e-9))
+        label = name.replace("_", " ")
+        found += Comparisons(where).absolute(label, "1", min(least, 0.0), 0.0, 1e-9)
     return found
 
 
@@ -254,10 +254,9 @@ def _created(audits: list[Audit]) -> list[Comparison]:
             known.append(yields and law.released_work(deepest) > law.loading_work(deepest))
     where = "runs marked; runs whose largest indentation says so by the law's closed form"
     wrong = float(np.sum(np.array(marked) != np.array(known)))
-    return [
-        absolute("contact law created energy", where, "1", sum(marked), sum(known), 0.0),
-        absolute("contact law created energy", "runs marked wrongly", "1", wrong, 0.0, 0.0),
-    ]
+    label, wrongly = "contact law created energy", Comparisons("runs marked wrongly")
+    all_runs = Comparisons(where).absolute(label, "1", sum(marked), sum(known), 0.0)
+    return [*all_runs, *wrongly.absolute(label, "1", wrong, 0.0, 0.0)]
 
 
 def _loop_panel(audits: list[Audit]) -> Panel:

@@ -1,108 +1,21 @@
-"""A check, what it finds (numbers beside independent values, curves to draw), and how it ends."""
+"""A check, what it finds (comparisons, and curves to draw), and how it ends."""
 
 from __future__ import annotations
 
 import logging
 import traceback
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
 from typing import Literal
 
-import numpy as np
-import xarray as xr
-
 from impactlab.model.plausibility import ImplausibleWarning
 from impactlab.types import Floats
+from impactlab.verification.comparisons import Comparison
 
 log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """One quantity of the solver beside an independent value.
-
-    ours, independent: in `units` (UDUNITS). error: the difference in the measure that `measure`
-    names ("relative", "absolute", or such as "of the peak"). tolerance: the largest error that
-    passes. where: the case, in words.
-    """
-
-    quantity: str
-    where: str
-    units: str
-    ours: float
-    independent: float
-    error: float
-    tolerance: float
-    measure: str = "relative"
-
-    @property
-    def passed(self) -> bool:
-        """True if the error is within the tolerance; a NaN never is."""
-        return bool(abs(self.error) <= self.tolerance)
-
-    @property
-    def ratio(self) -> float:
-        """Error over tolerance: above 1 the comparison fails; infinite for a NaN."""
-        size = abs(self.error)
-        if size == 0.0:
-            return 0.0
-        return float(size / self.tolerance) if size < np.inf and self.tolerance > 0 else np.inf
-
-
-def relative(
-    quantity: str, where: str, units: str, ours: float, independent: float, tolerance: float
-) -> Comparison:
-    """Compare by the relative difference, which is infinite where the independent value is zero."""
-    error = ours / independent - 1.0 if independent else np.inf
-    return Comparison(quantity, where, units, ours, independent, error, tolerance)
-
-
-def absolute(
-    quantity: str, where: str, units: str, ours: float, independent: float, tolerance: float
-) -> Comparison:
-    """Compare by the difference, in `units`."""
-    error = ours - independent
-    return Comparison(quantity, where, units, ours, independent, error, tolerance, "absolute")
-
-
-def responses(
-    run: xr.Dataset, where: str, expected: Mapping[str, float], tolerance: float
-) -> list[Comparison]:
-    """Compare responses of a run, relatively, with the values `expected` by variable."""
-    found = []
-    for name, value in expected.items():
-        label, units = name.replace("_", " "), run[name].attrs["units"]
-        found.append(relative(label, where, units, run[name].item(), value, tolerance))
-    return found
-
-
-def curve(
-    quantity: str, where: str, units: str, ours: Floats, independent: Floats, tolerance: float
-) -> Comparison:
-    """Compare two curves at the same points by their largest difference over the largest value.
-
-    The comparison holds the values at the point where they differ most.
-    """
-    gap = np.abs(ours - independent)
-    worst = int(np.argmax(gap))  # the first NaN where there is one
-    error = float(gap[worst] / np.max(np.abs(independent)))
-    values = float(ours[worst]), float(independent[worst])
-    return Comparison(quantity, where, units, *values, error, tolerance, "of the largest value")
-
-
-def rms_error(ours: Floats, independent: Floats) -> float:
-    """Return the root mean square of the difference over the largest independent value."""
-    gap = ours - independent
-    return float(np.sqrt(np.mean(gap**2)) / np.max(np.abs(independent)))
-
-
-def worst(entries: Sequence[Comparison]) -> Comparison:
-    """Return the comparison nearest to failing, to shorten a table; a NaN comes first."""
-    entry = max(entries, key=lambda entry: entry.ratio)
-    return replace(entry, where=f"{entry.where} (the worst of {len(entries)})")
 
 
 @dataclass(frozen=True)

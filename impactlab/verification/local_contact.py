@@ -17,16 +17,8 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import simulate
 from impactlab.types import Floats
 from impactlab.verification.cases import elastic
-from impactlab.verification.finding import (
-    Comparison,
-    Curve,
-    Finding,
-    Panel,
-    absolute,
-    check,
-    curve,
-    responses,
-)
+from impactlab.verification.comparisons import Comparison, Comparisons
+from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.beam_modes import (
     BeamModes,
@@ -77,7 +69,8 @@ def strip() -> Finding:
 
 def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> Finding:
     """Compare impacts with this `contact_compliance` with series; show another (its label)."""
-    found, panels = [], []
+    found: list[Comparison] = []
+    panels = []
     for velocity in (0.99, 5.0):
         impact = elastic(paper_impact(velocity, "hertz"))
         ours = replace(
@@ -89,38 +82,27 @@ def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> 
         grid = Discretisation(nodes=nodes, points=3)
         run = simulate(ours, grid, duration=LONGER, samples=SAMPLES)
         exact, beside = (_series(replace(ours, contact_compliance=o)) for o in (option, other[0]))
-        where, time = f"{velocity:g} m/s, {nodes} nodes", run.time.values
+        table, time = Comparisons(f"{velocity:g} m/s, {nodes} nodes"), run.time.values
         force = exact.at("contact_force", time)
         c, gamma = (float(each) for each in axis_compliance(ours))
         beneath = c * exact.contact_force - gamma * exact.midspan_curvature
         exact = replace(exact, indentation=exact.indentation - beneath)
-        indentation = exact.at("indentation", time)
         expected = {
             "peak_force": exact.peak_force,
             "contact_duration": exact.contact_duration,
             "maximum_indentation": float(exact.indentation.max()),
         }
-        found += [
-            curve(
-                "history of contact force", where, "N", run.contact_force.values, force, TOLERANCE
-            ),
-            curve(
-                "history of indentation", where, "m", run.indentation.values, indentation, TOLERANCE
-            ),
-            *responses(run, where, expected, TOLERANCE),
-            absolute("energy error", where, "1", run.energy_error.item(), 0.0, 5e-5),
-        ]
+        table.curve("history of contact force", "N", run.contact_force.values, force, TOLERANCE)
+        indentation = run.indentation.values, exact.at("indentation", time)
+        table.curve("history of indentation", "m", *indentation, TOLERANCE)
+        table.responses(run, expected, TOLERANCE)
+        found += table.absolute("energy error", "1", run.energy_error.item(), 0.0, 5e-5)
         curves = [
             Curve("solver", time, run.contact_force.values),
             Curve("modal series", time, force, independent=True),
-            Curve(
-                f"modal series, {other[1]}",
-                time,
-                np.asarray(beside.at("contact_force", time)),
-                independent=True,
-            ),
+            Curve(f"modal series, {other[1]}", time, beside.at("contact_force", time), True),
         ]
-        panels.append(Panel(where, ("time", "s"), ("contact force", "N"), curves))
+        panels.append(Panel(table.where, ("time", "s"), ("contact force", "N"), curves))
     return Finding(found, panels)
 
 
@@ -163,14 +145,12 @@ def contact_patch() -> Finding:
         hertzian = np.cbrt(run.contact_force.values / hertz.contact_stiffness(impact)) ** 2
         moved = run.sphere_displacement - run.indentation - run.midspan_deflection
         where = f"{model}, {compliance}, {scheme}, {nodes} nodes, {VELOCITY:g} m/s"
-        kappa = run.midspan_curvature.values
-        found += [
-            curve("deflection", where, "m", run.midspan_deflection.values, deflection, 1e-3),
-            curve("curvature", where, "m-1", kappa, bent, 2e-3),
-            curve("mean deflection ahead of mid-span", where, "m", moved.values, ahead, chords),
-            curve("the law's own indentation", where, "m", law.values, hertzian, 2e-3),
-            absolute("energy error", where, "1", run.energy_error.item(), 0.0, 2e-5),
-        ]
+        kappa, table = run.midspan_curvature.values, Comparisons(where)
+        table.curve("deflection", "m", run.midspan_deflection.values, deflection, 1e-3)
+        table.curve("curvature", "m-1", kappa, bent, 2e-3)
+        table.curve("mean deflection ahead of mid-span", "m", moved.values, ahead, chords)
+        table.curve("the law's own indentation", "m", law.values, hertzian, 2e-3)
+        found += table.absolute("energy error", "1", run.energy_error.item(), 0.0, 2e-5)
         if not panels:
             point = simulate(
                 replace(impact, load="point"), grid, duration=DURATION, samples=STEPS + 1

@@ -15,19 +15,8 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import simulate
 from impactlab.types import Floats
 from impactlab.verification.cases import Case, aluminium_impact, elastic, timoshenko_impact
-from impactlab.verification.finding import (
-    Comparison,
-    Curve,
-    Finding,
-    Panel,
-    absolute,
-    check,
-    curve,
-    relative,
-    responses,
-    rms_error,
-    worst,
-)
+from impactlab.verification.comparisons import Comparison, Comparisons, rms_error
+from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.beam_modes import odd_modes
 from impactlab.verification.solutions.modal import ModalSolution, solve, solve_timoshenko
@@ -88,7 +77,7 @@ def _finding(
 
     The panels show the paper's beam at 0.99 m/s; rivals: more curves in them.
     """
-    found: list[Comparison] = []
+    found = Comparisons()
     panels: list[Panel] = []
     for beam, case in cases.items():
         table = []
@@ -101,7 +90,7 @@ def _finding(
             table.append([*chain.from_iterable(row)])
             if (beam, velocity) == ("the paper's beam", 0.99):
                 panels = _panels(title, schemes, runs, {"modal series": series, **rivals})
-        found += map(worst, zip(*table, strict=True))
+        found.worst(table)
     return Finding(found, panels)
 
 
@@ -119,22 +108,22 @@ def _compare(
     middle, finest = (runs[grids.scheme, nodes] for nodes in (grids.middle, grids.nodes[-1]))
     expected = {"peak_force": series.peak_force, "contact_duration": series.contact_duration}
     found = [
-        *_histories(where, grids, middle, series),
-        *responses(middle, f"{where}, {grids.middle} nodes", expected, 1e-3),
+        *_histories(where, grids, middle, series).responses(middle, expected, 1e-3),
         *_histories(where, grids, finest, series),
     ]
     pair = [runs[grids.scheme, nodes] for nodes in grids.pair]
     for (name, (quantity, _)), order in zip(HISTORIES.items(), grids.orders, strict=True):
         coarse, fine = (error(name, series, run) for run in pair)
         label, observed = f"order of convergence of {quantity}", float(np.log2(coarse / fine))
-        found.append(absolute(label, where, "1", observed, order, 0.2))
+        found += Comparisons(where).absolute(label, "1", observed, order, 0.2)
     return found
 
 
 def _histories(
     where: str, grids: Refinement, run: xr.Dataset, series: ModalSolution
-) -> list[Comparison]:
-    nodes, time, found = run.nodes.item(), run.time.values, []
+) -> Comparisons:
+    nodes, time = run.nodes.item(), run.time.values
+    found = Comparisons(f"{where}, {nodes} nodes")
     finer = (grids.middle / nodes) ** 2.0
     for (name, (quantity, units)), tolerance in zip(
         HISTORIES.items(), grids.tolerances, strict=True
@@ -144,10 +133,7 @@ def _histories(
             label += ", the modes left out added"
             modes = odd_modes(series.modes.beam, nodes // 2)
             ours = ours + modes.residual_curvature * run.contact_force.values
-        theirs = series.at(name, time)
-        found.append(
-            curve(label, f"{where}, {nodes} nodes", units, ours, theirs, tolerance * finer)
-        )
+        found.curve(label, units, ours, series.at(name, time), tolerance * finer)
     return found
 
 
@@ -272,16 +258,14 @@ def _compare_contacts(where: str, run: xr.Dataset, series: ModalSolution) -> lis
     theirs = _contacts(series.time, series.indentation, series.contact_force)
     count, total = run.number_of_contacts.item(), run.total_contact_time.item()
     in_contact = sum(end - begin for begin, end, _ in theirs)
-    found = [
-        absolute("number of contacts", where, "1", count, len(theirs), 0.5),
-        relative("total time in contact", where, "s", total, in_contact, 1e-4),
-    ]
+    found = Comparisons(where).absolute("number of contacts", "1", count, len(theirs), 0.5)
+    found.relative("total time in contact", "s", total, in_contact, 1e-4)
     for number, (one, other) in enumerate(zip(ours, theirs, strict=False), 1):
-        place = f"{where}, contact {number}"
+        each = Comparisons(f"{where}, contact {number}")
         if number > 1:  # the first one begins at 0
-            found.append(relative("begin", place, "s", one[0], other[0], 1e-4))
-        found.append(relative("end", place, "s", one[1], other[1], 1e-4))
-        found.append(relative("peak force", place, "N", one[2], other[2], 1e-3))
+            each.relative("begin", "s", one[0], other[0], 1e-4)
+        each.relative("end", "s", one[1], other[1], 1e-4)
+        found += each.relative("peak force", "N", one[2], other[2], 1e-3)
     return found
 
 

@@ -15,16 +15,8 @@ from impactlab.solver import RULES, section
 from impactlab.types import Floats
 from impactlab.variables import HISTORIES
 from impactlab.verification.cases import with_beam_material
-from impactlab.verification.finding import (
-    Comparison,
-    Curve,
-    Finding,
-    Panel,
-    check,
-    curve,
-    relative,
-    responses,
-)
+from impactlab.verification.comparisons import Comparison, Comparisons
+from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions import beam_modes, bending, collapse, fibre_beam, quadrature
 
 _HARDENING = {
@@ -48,7 +40,8 @@ def moment_curvature() -> Finding:
     out = np.linspace(0.0, turn, 41)[1:]
     back = np.linspace(turn, -turn, 101)[1:]
     path = np.concatenate([out, back, back[::-1]])
-    comparisons, curves = [], []
+    found: list[Comparison] = []
+    curves = []
     for name, moduli in _HARDENING.items():
         beam = with_beam_material(paper_impact(), **moduli).beam
         kappa = path * bending.yield_curvature(beam)
@@ -61,12 +54,12 @@ def moment_curvature() -> Finding:
         fibres = np.concatenate(ours), np.concatenate(expected)
         fine, exact = _moments(beam, "legendre", 100, kappa), _exact_moments(beam, kappa)
         whole = f"{name}; 100 Gauss-Legendre points, the exact section"
-        comparisons.append(curve("moment", where, "N m", *fibres, 1e-12))
-        comparisons.append(curve("moment", whole, "N m", fine, exact, 5e-4))
+        found += Comparisons(where).curve("moment", "N m", *fibres, 1e-12)
+        found += Comparisons(whole).curve("moment", "N m", fine, exact, 5e-4)
         curves.append(Curve(name, kappa, fine))
         curves.append(Curve(f"{name}, exact", kappa, exact, independent=True))
     axes = ("curvature", "m-1"), ("bending moment", "N m")
-    return Finding(comparisons, [Panel("Bent to and fro", *axes, curves)])
+    return Finding(found, [Panel("Bent to and fro", *axes, curves)])
 
 
 def _moments(beam: Beam, rule: str, points: int, curvatures: Floats) -> Floats:
@@ -138,13 +131,11 @@ def static_deflection() -> Finding:
 
 def _compare_bending(
     where: str, run: xr.Dataset, beam: Beam, force: Floats, deflection: Floats
-) -> list[Comparison]:
+) -> Comparisons:
     w, kappa = run.midspan_deflection.values, run.midspan_curvature.values
     curvature = -force * beam.span / (4.0 * beam.bending_stiffness)
-    return [
-        curve("deflection at mid-span", where, "m", w, deflection, 1e-3),
-        curve("curvature at mid-span", where, "m-1", kappa, curvature, 1e-3),
-    ]
+    found = Comparisons(where).curve("deflection at mid-span", "m", w, deflection, 1e-3)
+    return found.curve("curvature at mid-span", "m-1", kappa, curvature, 1e-3)
 
 
 def _slow_impact(beam: Beam, mass: float, velocity: float, softness: float) -> Impact:
@@ -175,33 +166,35 @@ def static_collapse() -> Finding:
     hardening = with_beam_material(paper_impact(), isotropic_hardening_modulus=5e9).beam
     run, harder = (_run_collapse(beam, "layers", 40) for beam in (perfect, hardening))
     largest = 30e-3  # m; every run exceeds it
-    found, curves = [], []
+    found: list[Comparison] = []
+    curves = []
     for dataset, beam, where, tolerance, label in (
         (run, perfect, "elastic-perfectly plastic, 40 layers", 8e-3, "perfectly plastic"),
         (harder, hardening, "isotropic hardening 5 GPa, 40 layers", 4e-3, "hardening 5 GPa"),
     ):
         points = np.linspace(0.5e-3, largest, 100)
         ours, expected = np.interp(points, *_on_loading(dataset)), _static(beam, points)
-        found.append(curve("load by deflection", where, "N", ours, expected, tolerance))
+        found += Comparisons(where).curve("load by deflection", "N", ours, expected, tolerance)
         deflection, force = dataset.midspan_deflection.values, dataset.contact_force.values
         points = np.linspace(0.5e-3, largest, 60)
         curves.append(Curve(label, deflection, force))
         curves.append(Curve(f"{label}, static", points, _static(beam, points), independent=True))
     limit = bending.collapse_load(perfect)
-    found.append(relative("collapse load", "40 layers; 4 M_p/L", "N", _plateau(run), limit, 5e-4))
+    layers = Comparisons("40 layers; 4 M_p/L")
+    found += layers.relative("collapse load", "N", _plateau(run), limit, 5e-4)
     far = np.array([1e3 * bending.yield_curvature(perfect)])
     for number in (3, 9):
         rule = quadrature.rule("lobatto", number)
         own = 4.0 / perfect.span * bending.path_moments(perfect, far, *rule).item()
         plateau = _plateau(_run_collapse(perfect, "lobatto", number))
-        where = f"{number} Lobatto points; 4/L times the rule's own plastic moment"
-        found.append(relative("collapse load", where, "N", plateau, own, 5e-4))
+        rules = Comparisons(f"{number} Lobatto points; 4/L times the rule's own plastic moment")
+        found += rules.relative("collapse load", "N", plateau, own, 5e-4)
     # The striker leaves slowly, the beam springs back elastically.
     deflection = run.midspan_deflection.values
     left = float(deflection.max()) - bending.static_deflection(perfect, limit)
-    where = "40 layers; largest deflection less P_c L^3/(48 EI)"
+    layers = Comparisons("40 layers; largest deflection less P_c L^3/(48 EI)")
     permanent = float(deflection[-400:].mean())
-    found.append(relative("permanent deflection", where, "m", permanent, left, 1e-3))
+    found += layers.relative("permanent deflection", "m", permanent, left, 1e-3)
     axes = ("deflection at mid-span", "m"), ("load at mid-span", "N")
     return Finding(found, [Panel("Loading to collapse, and back", *axes, curves)])
 
@@ -251,12 +244,12 @@ def rigid_plastic_mode() -> Finding:
     ratios, heavy = np.array([10.0, 30.0, 100.0, 300.0]), 100.0
     for mass in (heavy, 20.0, 5.0):
         impact, run = _struck(mass, ratio := float(ratios[-1]))
-        where = f"energy ratio {ratio:g}, mass ratio {mass:g}; mode"
+        table = Comparisons(f"energy ratio {ratio:g}, mass ratio {mass:g}; mode")
         left, deflection = _permanent_deflection(run), collapse.mode_deflection(impact)
         stop = float(run.time[int(np.argmax(run.midspan_deflection.values))])
-        time, label = collapse.mode_duration(impact), "time to the largest deflection"
-        found.append(relative("permanent deflection", where, "m", left, deflection, 1e-2))
-        found.append(relative(label, where, "s", stop, time, 1e-2))
+        table.relative("permanent deflection", "m", left, deflection, 1e-2)
+        time = collapse.mode_duration(impact)
+        found += table.relative("time to the largest deflection", "s", stop, time, 1e-2)
     permanents, modes, expected = [], [], []
     for ratio in ratios.tolist():
         impact, run = _struck(heavy, ratio)
@@ -265,7 +258,7 @@ def rigid_plastic_mode() -> Finding:
         expected.append(collapse.elastic_plastic_deflection(impact))
         where = f"energy ratio {ratio:g}, mass ratio {heavy:g}; mode and elastic bending"
         values = permanents[-1], expected[-1]
-        found.append(relative("permanent deflection", where, "m", *values, 5e-3))
+        found += Comparisons(where).relative("permanent deflection", "m", *values, 5e-3)
     final = np.array(modes)
     shortfall = 1.0 - np.array(expected) / final
     curves = [
@@ -334,16 +327,18 @@ def fibre_elements() -> Finding:
         exact = fibre_beam.solve(impact, STRUCK_DURATION, elements=ELEMENTS, steps=STEPS)
         curves = []
         for scheme, nodes in (("leapfrog", 401), ("modal", 201)):
-            where, grid = f"{scheme}: {name}", Discretisation(nodes=nodes, scheme=scheme)
+            table = Comparisons(f"{scheme}: {name}")
+            grid = Discretisation(nodes=nodes, scheme=scheme)
             run = simulate(impact, grid, duration=STRUCK_DURATION, samples=STEPS + 1)
             for variable, tolerance in FIBRE_TOLERANCES.items():
                 theirs = getattr(exact, variable)
                 if variable in HISTORIES:
                     label = f"history of {HISTORIES[variable].long_name}"
                     ours, units = run[variable].values, HISTORIES[variable].units
-                    found.append(curve(label, where, units, ours, theirs, tolerance))
+                    table.curve(label, units, ours, theirs, tolerance)
                 else:
-                    found += responses(run, where, {variable: theirs}, tolerance)
+                    table.responses(run, {variable: theirs}, tolerance)
+            found += table
             curves.append(Curve(f"{scheme}, {nodes} nodes", exact.time, run.contact_force.values))
         curves.append(Curve("fibre elements", exact.time, exact.contact_force, independent=True))
         panels.append(Panel(name, ("time", "s"), ("contact force", "N"), curves))

@@ -18,17 +18,8 @@ from impactlab.simulate import simulate, simulate_many
 from impactlab.solver import RULES, SCHEMES
 from impactlab.types import Floats
 from impactlab.verification.cases import discretised, elastic, with_beam_material
-from impactlab.verification.finding import (
-    Comparison,
-    Curve,
-    Finding,
-    Panel,
-    absolute,
-    check,
-    responses,
-    rms_error,
-    worst,
-)
+from impactlab.verification.comparisons import Comparison, Comparisons, rms_error, worst
+from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions.contact_laws import LAWS
 from impactlab.verification.solutions.modal import solve
 
@@ -151,13 +142,13 @@ def observed_order() -> Finding:
     return Finding(found, panels)
 
 
-def _orders(where: str, case: Case, runs: Sequence[xr.Dataset], order: float) -> list[Comparison]:
+def _orders(where: str, case: Case, runs: Sequence[xr.Dataset], order: float) -> Comparisons:
     """Compare the orders from the first to the last difference, each from a doubling."""
-    found = []
+    found = Comparisons(where)
     for name in case.answers:
         apart = _apart(name, runs)
         observed = float(np.log2(apart[0] / apart[-1])) / (len(apart) - 1)
-        found.append(absolute(name, where, "1", observed, order, 0.2))
+        found.absolute(name, "1", observed, order, 0.2)
     return found
 
 
@@ -263,11 +254,12 @@ def _yielding(impact: Impact, fine: xr.Dataset) -> list[Comparison]:
     """Compare the responses of the paper's perfectly plastic beam with those of a fine run."""
     found: list[Comparison] = []
     for scheme, nodes in YIELDING_NODES.items():
-        where = f"{scheme}: {impact.velocity:g} m/s, {nodes} nodes"
+        table = Comparisons(f"{scheme}: {impact.velocity:g} m/s, {nodes} nodes")
         run = _run(impact, scheme, nodes, DURATION)
         times = HINGED if scheme == "modal" and impact.velocity > 15.0 else 1.0
         for name, tolerance in TOLERANCES.items():
-            found += responses(run, where, {name: fine[name].item()}, times * tolerance)
+            table.responses(run, {name: fine[name].item()}, times * tolerance)
+        found += table
     return found
 
 
@@ -296,13 +288,15 @@ def _stable() -> Comparison:
     """Compare the worst energy balance of the modal scheme; a diverged run has none."""
     grid = Discretisation(scheme="modal")
     runs = simulate_many(paper_impact(), grid, duration=4e-3, varied=drawn(48, seed=1))
-    found = []
+    found: list[Comparison] = []
     for _, run in runs.groupby("run", squeeze=False):
         where = (
             f"modal: {run.velocity.item():.3g} m/s, {run.contact.item()}, "
             f"{run.nodes.item()} nodes, {run.points.item()} points, {run.rule.item()}"
         )
-        found.append(absolute("energy error", where, "1", run.energy_error.item(), 0.0, 1e-2))
+        found += Comparisons(where).absolute(
+            "energy error", "1", run.energy_error.item(), 0.0, 1e-2
+        )
     return worst(found)
 
 

@@ -14,12 +14,12 @@ from impactlab.solver.section import bend_at_rate, make_section
 from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.types import Floats
 from impactlab.verification.cases import with_beam_material
-from impactlab.verification.finding import Comparison, Curve, Finding, Panel, check, relative
+from impactlab.verification.comparisons import Comparison, Comparisons
+from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions import hertz
 
 D, Q = 40.4, 5.0
-_RATES = np.array([0.1, 10.0, 1000.0])
-"""Strain rates of the outermost fibre, 1/s."""
+_RATES = np.array([0.1, 10.0, 1000.0])  # strain rates of the outermost fibre, 1/s
 
 
 @check(
@@ -38,19 +38,20 @@ def strain_rate() -> Finding:
     plastic = 0.25 * static * beam.width * beam.depth**2
     closed = plastic * (1.0 + 2.0 * Q / (2.0 * Q + 1.0) * (_RATES / D) ** (1.0 / Q))
     ours = _moments(impact, _RATES)
-    found: list[Comparison] = [
-        relative("moment", f"{rate:g} 1/s at the surface", "N m", mine, exact, 1e-3)
-        for rate, mine, exact in zip(_RATES, ours, closed, strict=True)
-    ]
+    found: list[Comparison] = []
+    for rate, mine, exact in zip(_RATES, ours, closed, strict=True):
+        at_rate = Comparisons(f"{rate:g} 1/s at the surface")
+        found += at_rate.relative("moment", "N m", mine, exact, 1e-3)
     found += _contacts(impact)
+    impacts = Comparisons("20 m/s, contact patch")
     leapfrog, modal = (_run(impact, scheme) for scheme in ("leapfrog", "modal"))
     for name, tolerance in (("peak_plastic_strain", 0.02), ("plastic_dissipation", 0.02)):
         label, units = f"{name.replace('_', ' ')}, leapfrog beside modal", leapfrog[name].units
         values = leapfrog[name].item(), modal[name].item()
-        found.append(relative(label, "20 m/s, contact patch", units, *values, tolerance))
+        impacts.relative(label, units, *values, tolerance)
     curves = [Curve("solver", _RATES, ours), Curve("closed form", _RATES, closed, independent=True)]
     axes = ("strain rate at the surface", "s-1"), ("moment", "N m")
-    return Finding(found, [Panel("bent at a constant rate", *axes, curves, log=True)])
+    return Finding([*found, *impacts], [Panel("bent at a constant rate", *axes, curves, log=True)])
 
 
 def _moments(impact: Impact, rates: Floats) -> Floats:
@@ -71,7 +72,7 @@ def _moments(impact: Impact, rates: Floats) -> Floats:
 
 def _contacts(impact: Impact) -> list[Comparison]:
     """Compare contacts of the rate with those of the yield stress at the rate that Hertz gives."""
-    found = []
+    found: list[Comparison] = []
     for velocity in (0.99, 10.0):
         dynamic = replace(impact, velocity=velocity, beam_model="elastic")
         mass, radius = dynamic.sphere.total_mass, dynamic.sphere.radius
@@ -81,11 +82,9 @@ def _contacts(impact: Impact) -> list[Comparison]:
         raised = 345e6 * (1.0 + float(rate / D) ** (1.0 / Q))
         still = with_beam_material(dynamic, rate_coefficient=0.0, yield_stress=raised)
         one, other = (_run(each, "modal") for each in (dynamic, still))
-        for name in ("peak_force", "maximum_indentation"):
-            values = one[name].item(), other[name].item()
-            where = f"{velocity:g} m/s, {rate:.0f} 1/s under the contact"
-            label = name.replace("_", " ")
-            found.append(relative(label, where, one[name].units, *values, 1e-5))
+        expected = {name: other[name].item() for name in ("peak_force", "maximum_indentation")}
+        where = f"{velocity:g} m/s, {rate:.0f} 1/s under the contact"
+        found += Comparisons(where).responses(one, expected, 1e-5)
     return found
 
 

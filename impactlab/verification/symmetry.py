@@ -23,16 +23,8 @@ from impactlab.solver.stability import discretise
 from impactlab.types import Floats
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 from impactlab.verification.cases import elastic, with_beam_material
-from impactlab.verification.finding import (
-    Comparison,
-    Curve,
-    Finding,
-    Panel,
-    absolute,
-    check,
-    curve,
-    worst,
-)
+from impactlab.verification.comparisons import Comparison, Comparisons, worst
+from impactlab.verification.finding import Curve, Finding, Panel, check
 
 _DIMENSIONS = {
     "kg": (1, 0, 0),
@@ -144,17 +136,11 @@ def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> l
         responses.append(
             Comparison(label, where, entry.units, *values, TOLERANCE, "of its yardstick")
         )
-    curves = [
-        curve(
-            f"worst curve: {entry.long_name}",
-            where,
-            entry.units,
-            scaled[name].values.ravel() / scale.factor(entry.units),
-            run[name].values.ravel(),
-            TOLERANCE,
-        )
-        for name, entry in (HISTORIES | PROFILES).items()
-    ]
+    curves = Comparisons(where)
+    for name, entry in (HISTORIES | PROFILES).items():
+        ours = scaled[name].values.ravel() / scale.factor(entry.units)
+        label = f"worst curve: {entry.long_name}"
+        curves.curve(label, entry.units, ours, run[name].values.ravel(), TOLERANCE)
     return [worst(responses), worst(curves)]
 
 
@@ -269,6 +255,7 @@ def time_reversal() -> Finding:
         solver = simulate(impact, grid, duration=duration, samples=steps + 1)
         time, newtons = solver.time.values, solver.contact_force.values
         where = f"{grid.scheme}: the paper's case, elastic, {steps} steps there and back"
+        table = Comparisons(where)
         label = "contact force of the march and of simulate()"
         moving, left = (float(np.max(np.abs(values))) for values in (march.u, march.w))
         ends = {
@@ -278,11 +265,11 @@ def time_reversal() -> Finding:
             "deflection left over the largest": (left / largest, 0.0),
         }
         # The force at the turn belongs to the way back, the force at first touch to the way there.
-        found += [
-            curve(label, where, "N", there, newtons[:-1], TOLERANCE),
-            curve("contact force, back and there", where, "N", back[:-1], there[1:], TOLERANCE),
-            *(absolute(name, where, "1", *values, TOLERANCE) for name, values in ends.items()),
-        ]
+        table.curve(label, "N", there, newtons[:-1], TOLERANCE)
+        table.curve("contact force, back and there", "N", back[:-1], there[1:], TOLERANCE)
+        for name, values in ends.items():
+            table.absolute(name, "1", *values, TOLERANCE)
+        found += table
         curves += [
             Curve(f"{grid.scheme}: there", time[:-1], there),
             Curve(f"{grid.scheme}: back, in reverse", time[1:], back, independent=True),

@@ -23,15 +23,8 @@ from made_runs import (
 from impactlab.solver.contact import LAWS
 from impactlab.solver.outputs import OUTSIDE_CONTACT_LAW
 from impactlab.variables import RESPONSES, described
-from impactlab.verification.finding import (
-    Comparison,
-    Curve,
-    Finding,
-    Outcome,
-    Panel,
-    absolute,
-    relative,
-)
+from impactlab.verification.comparisons import Comparison, Comparisons
+from impactlab.verification.finding import Curve, Finding, Outcome, Panel
 from impactlab.verification.stored import packed
 
 Study = tuple[xr.Dataset, xr.Dataset]
@@ -185,15 +178,14 @@ def failing() -> Callable[[xr.Dataset, dict[str, int]], xr.Dataset]:
 @pytest.fixture
 def outcomes() -> list[Outcome]:
     """A check that passed, one with curves that failed in part, an error, and one of nothing."""
-    good = [
-        relative("peak force", "at 1 m/s", "N", 21064.7892, 21064.7221, 1e-4),
-        absolute("deflection", "at 1 m/s", "m", 1.2003e-3, 1.2e-3, 2e-6),
-        Comparison("curvature", "at 1 m/s", "m-1", 0.03, 0.031, 0.032, 0.1, "of the peak"),
-    ]
-    bad = [relative("force", f"case {i}", "N", 100.0 + 0.01 * i, 100.0, 0.01) for i in range(15)]
-    bad += [relative("force", "slightly off", "N", 102.0, 100.0, 0.01)]
-    bad += [relative("force", "far off", "N", 300.0, 100.0, 0.01)]
-    bad += [relative("force", "diverged", "N", np.nan, 100.0, 0.01)]
+    good = Comparisons("at 1 m/s").relative("peak force", "N", 21064.7892, 21064.7221, 1e-4)
+    good.absolute("deflection", "m", 1.2003e-3, 1.2e-3, 2e-6)
+    good += [Comparison("curvature", "at 1 m/s", "m-1", 0.03, 0.031, 0.032, 0.1, "of the peak")]
+    values = {f"case {i}": 100.0 + 0.01 * i for i in range(15)}
+    values |= {"slightly off": 102.0, "far off": 300.0, "diverged": np.nan}
+    bad: list[Comparison] = []
+    for where, value in values.items():
+        bad += Comparisons(where).relative("force", "N", value, 100.0, 0.01)
     time, nodes = np.linspace(0.0, 1e-3, 40), np.array([51.0, 101.0, 201.0])
     force = 2e4 * np.sin(3e3 * time)
     panels = [

@@ -9,7 +9,8 @@ from command_line import CHECKS, here
 from command_line import done as impactlab
 
 from impactlab.verification.catalogue import CATALOGUE
-from impactlab.verification.finding import Check, Finding, relative
+from impactlab.verification.comparisons import Comparisons
+from impactlab.verification.finding import Check, Finding
 
 
 def test_checks_from_the_file_to_the_index(folder):
@@ -27,12 +28,12 @@ def test_checks_from_the_file_to_the_index(folder):
 
 
 def passes():
-    return Finding([relative("one", "here", "1", 1.0, 1.0, 0.1)])
+    return Finding(Comparisons("here").relative("one", "1", 1.0, 1.0, 0.1))
 
 
 def fails():
-    entries = [relative("one", "here", "1", 1.0, 1.0, 0.1), relative("two", "", "1", 2.0, 1.0, 0.1)]
-    return Finding(entries)
+    entries = Comparisons("here").relative("one", "1", 1.0, 1.0, 0.1)
+    return Finding([*entries, *Comparisons().relative("two", "1", 2.0, 1.0, 0.1)])
 
 
 def breaks():

@@ -22,8 +22,7 @@ FEWEST = 4
 """Grids that a fit of three coefficients needs."""
 ORDERS = (0.5, 2.0)
 """Fitted orders that are kept; outside, the powers are assumed to be 1, 2, or both."""
-_HIGHEST_RELIABLE = 2.1
-"""Fitted order from which on convergence is too fast to be more than chance."""
+_HIGHEST_RELIABLE = 2.1  # fitted order from which on convergence is too fast to be more than chance
 _SEARCHED = np.linspace(-4.0, 8.0, 97)
 """Orders between which the free one is looked for: far beyond any that is kept."""
 

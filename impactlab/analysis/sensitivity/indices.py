@@ -109,8 +109,7 @@ MOST_IMPUTED = 0.2
 """Largest share of runs that may be supplied."""
 FEWEST_PER_PARAMETER = 10
 """Good runs that a surrogate needs per parameter."""
-_AT_ONCE = 100_000
-"""Runs that are predicted together."""
+_AT_ONCE = 100_000  # runs that are predicted together
 
 
 def imputed(outputs: Floats, sample: Sample, response: str) -> Floats | None:
@@ -160,8 +159,7 @@ def _places(sample: Sample, runs: NDArray[np.int64]) -> Floats:
 
 
 _BESIDE = ("sensitivity_verdict", "sensitivity_remarks", "imputed_share")
-_HISTORIES = "history"
-"""The dimension of the indices of histories, which have no response."""
+_HISTORIES = "history"  # the dimension of the indices of histories, which have no response
 _LABELS = ("response", "parameter", "other_parameter", "base_samples")
 COLUMNS = (*_LABELS, "index", "value", "low", "high", "units", "verdict")
 """Of the table. low, high: ends of the interval of the value. units: of all three."""

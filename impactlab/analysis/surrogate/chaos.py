@@ -23,8 +23,7 @@ from impactlab.types import Floats
 Degrees = NDArray[np.int64]
 """(terms, parameters): the degree of each term's polynomial in each parameter."""
 
-_NORM = 0.7
-"""q of the norm: with 1 all terms up to a total degree; with less, fewer interactions."""
+_NORM = 0.7  # q of the norm: with 1 all terms up to a total degree; with less, fewer interactions
 _ROUNDING = 1e-9
 
 
@@ -99,8 +98,7 @@ MOST_RUNS = 20_000
 _MOST_CANDIDATES = 400
 _MOST_TERMS = 200
 _HIGHEST_DEGREE = 20
-_SMALLEST = 1e-12
-"""Least leverage left to a run, so that nothing is divided by zero."""
+_SMALLEST = 1e-12  # least leverage left to a run, so that nothing is divided by zero
 
 
 def fewest_runs(parameters: int) -> int:

@@ -17,8 +17,7 @@ from impactlab.analysis.verdicts import ROUND_OFF, Verdict, distinct, flagged
 from impactlab.model.distributions import ARGUMENTS, cumulative
 from impactlab.types import Floats
 
-_SHARE = 0.2
-"""Share of the blocks of runs to test on."""
+_SHARE = 0.2  # share of the blocks of runs to test on
 _FEWEST_TESTS, _MOST_TESTS = 10, 4000
 _BLOCKS = {"sobol": "base_samples", "morris": "trajectories"}
 """Methods whose runs come in blocks of near-copies, and the attribute with their number."""

@@ -22,8 +22,7 @@ IMPRECISE = 0.1
 OUTER = 0.01
 """Share of the runs at either end of a parameter's range, where an error may be far larger."""
 _FAR_LARGER = 2.0
-_AT_ONCE = 4096
-"""Number of points whose terms about fit in the processor's cache."""
+_AT_ONCE = 4096  # number of points whose terms about fit in the processor's cache
 
 
 class Surrogate:

@@ -23,8 +23,7 @@ from scipy.optimize import brentq
 from impactlab.model.impact import Beam, Impact
 from impactlab.verification.solutions import bending
 
-_FAR = 1e6
-"""Curvature, over the yield curvature, beyond which a section counts as a hinge."""
+_FAR = 1e6  # curvature, over the yield curvature, beyond which a section counts as a hinge
 
 
 def midspan_deflection(beam: Beam, load: float) -> float:

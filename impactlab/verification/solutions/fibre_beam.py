@@ -23,8 +23,7 @@ from impactlab.types import Floats
 from impactlab.verification.solutions import quadrature
 from impactlab.verification.solutions.contact_laws import LawOnHalfSpace, law_on_half_space
 
-_GRADING = 1.5
-"""Distances from mid-span go with this power of the element's number."""
+_GRADING = 1.5  # distances from mid-span go with this power of the element's number
 _MOST_ITERATIONS, _CLOSE = 30, 1e-10
 
 

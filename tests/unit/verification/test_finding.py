@@ -9,17 +9,8 @@ import pytest
 
 from impactlab.verification import catalogue
 from impactlab.verification.catalogue import CATALOGUE
-from impactlab.verification.finding import (
-    Check,
-    Comparison,
-    Finding,
-    Outcome,
-    absolute,
-    curve,
-    gravest_first,
-    relative,
-    worst,
-)
+from impactlab.verification.comparisons import Comparison, Comparisons, worst
+from impactlab.verification.finding import Check, Finding, Outcome, gravest_first
 
 
 def entry(where, error, tolerance):
@@ -47,22 +38,23 @@ def test_a_tolerance_of_zero_is_one():
 @pytest.mark.parametrize("ours", [0.0, 1e-300, 1.0, -2.0, np.nan])
 def test_no_value_is_relatively_close_to_zero(ours):
     """A relative error against zero is infinite: use `absolute` there."""
-    entry = relative("a", "b", "1", ours, 0.0, 1e9)
+    (entry,) = Comparisons("b").relative("a", "1", ours, 0.0, 1e9)
     assert entry.error == np.inf
     assert not entry.passed
 
 
 @pytest.mark.parametrize(("ours", "error"), [(2.0, 0.0), (2.5, 0.25), (-2.0, -2.0), (0.0, -1.0)])
 def test_relative_error_is_a_share_of_the_independent_value(ours, error):
-    entry = relative("a", "b", "1", ours, 2.0, 0.3)
+    (entry,) = Comparisons("b").relative("a", "1", ours, 2.0, 0.3)
     assert (entry.error, entry.measure) == (error, "relative")
 
 
 def test_curves_are_compared_where_they_differ_most():
     ours, independent = np.array([1.0, -2.0, 3.5]), np.array([1.0, -1.0, 4.0])
-    entry = curve("a", "b", "m", ours, independent, 0.1)
+    (entry,) = Comparisons("b").curve("a", "m", ours, independent, 0.1)
     assert (entry.ours, entry.independent, entry.error) == (-2.0, -1.0, 0.25)
-    assert not curve("a", "b", "m", np.array([1.0, np.nan, 4.0]), independent, 0.1).passed
+    (gap,) = Comparisons("b").curve("a", "m", np.array([1.0, np.nan, 4.0]), independent, 0.1)
+    assert not gap.passed
 
 
 @pytest.mark.parametrize(
@@ -79,14 +71,15 @@ def test_curves_are_compared_where_they_differ_most():
     ],
 )
 def test_ratio_is_above_one_where_it_fails(error, tolerance, ratio, passed):
-    entry = absolute("a", "b", "1", error, 0.0, tolerance)
+    (entry,) = Comparisons("b").absolute("a", "1", error, 0.0, tolerance)
     assert entry.ratio == pytest.approx(ratio)
     assert entry.passed is passed
     assert (entry.ratio <= 1) is passed
 
 
 def outcome(*values, reason=""):
-    entries = [relative("a", f"{value}", "1", value, 1.0, 0.1) for value in values]
+    rows = [Comparisons(f"{value}").relative("a", "1", value, 1.0, 0.1) for value in values]
+    entries = [entry for row in rows for entry in row]
     return Outcome("name", "title", "source", 0.0, Finding(entries), reason)
 
 
