@@ -11,12 +11,13 @@ from impactlab.analysis.analyse import analyse
 from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels, measures
 from impactlab.figures.access import design_dims, responses, usable
+from impactlab.figures.distributions import spread_evenly
 from impactlab.figures.labels import display
 from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family, Index, analysed
 from impactlab.report import measured
 from impactlab.report.cautions import beside
 from impactlab.report.convergence import ORDERED, Needs, finest, needed
-from impactlab.report.distribution import limit_entries, limit_note
+from impactlab.report.distribution import limit_entries
 from impactlab.report.sensitivity import (
     history_entries,
     in_units,
@@ -77,10 +78,9 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
 
 def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[list[Entry]], str]:
     """Return the entries of each line of `answers`, and what their numbers are."""
-    note = ""
     if analysis is None:
-        found = _verification(runs)
-    elif families := [one for one in RANKED if one.given(analysis) and analysed(runs, analysis)]:
+        return _packed(_verification(runs), LINES), ""
+    if families := [one for one in RANKED if one.given(analysis) and analysed(runs, analysis)]:
         found, kind = _ranking(runs, analysis, families[0]), measures.ranking(families[0]).words
         note = f"{families[0].title}, {kind}, ± the half-width of the"
         note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
@@ -92,18 +92,15 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
         note = (
             "Variation: the variance over the grid; a parameter explains that of its mean effect."
         )
-    limits = [] if analysis is None else limit_entries(runs, analysis)
-    if analysis is not None and limits:
-        note = limit_note(runs, analysis) + note
-    first = _packed(limits, _LIMITS)
-    last = [] if analysis is None else measured.entries(analysis)
-    over = [] if analysis is None else history_entries(analysis)
-    if over:
+    if limits := limit_entries(runs, analysis):
+        level, even = access.confidence(analysis), spread_evenly(runs)
+        note = f"Above a limit: probability and its {level} interval{even}. {note}"
+    first, last = _packed(limits, _LIMITS), measured.entries(analysis)
+    if over := history_entries(analysis):
         note += " Over time: generalised total order, of the variance added up over all times."
     room = LINES - len(first) - bool(last)
     histories = _packed(over, 2 if room >= len(found) + len(over) else 1)
-    rest = _packed(found, room - len(histories))
-    return first + rest + histories + [last] * bool(last), note
+    return [*first, *_packed(found, room - len(histories)), *histories, *[last] * bool(last)], note
 
 
 def _packed(found: list[Entry], lines: int) -> list[list[Entry]]:
@@ -116,11 +113,10 @@ def _verification(findings: xr.Dataset) -> list[Entry]:
     total = sum(len(outcome.finding.comparisons) for outcome in outcomes)
     bad = [outcome for outcome in outcomes if outcome.verdict != "passed"]
     size = f"{labels.counted(total, 'comparison')} of {labels.counted(len(outcomes), 'check')}"
+    found = [("Passed", f"all {size} are within their tolerance")]
     if bad or not outcomes:
         failed = sum(len(outcome.failures) for outcome in outcomes)
         found = [("Failed", f"{failed} of {size}; {len(bad)} did not pass")]
-    else:
-        found = [("Passed", f"all {size} are within their tolerance")]
     closest = sorted(outcomes, key=lambda outcome: -(outcome.worst.ratio if outcome.worst else 0))
     for outcome in (bad or closest)[: LINES - 1]:
         worst, text = outcome.worst, outcome.reason or "it compared nothing"
@@ -133,8 +129,7 @@ def _verification(findings: xr.Dataset) -> list[Entry]:
 
 def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Entry]:
     """Return one entry per response: the parameters that matter, and whether to trust this."""
-    names = [labels.parameter(name) for name in measures.parameters(analysis)]
-    shown = analysed(runs, analysis)
+    names, shown = measures.parameters(analysis), analysed(runs, analysis)
     most = max(1, 4 - -(-len(shown) // LINES))  # named per response
     found: list[Entry] = []
     for name in shown:
@@ -146,16 +141,17 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
             if family is SOBOL and not found and not listed:
                 text = text.replace(")", ") of the variance", 1)
             if not listed:
-                text += _of_words(runs, measures.parameters(analysis)[at], name)
+                text += _of_words(runs, names[at], name)
             if sizes[at] > _MATTERS * sizes.max():
-                listed.append(f"{names[at]} {text}")
+                listed.append(f"{labels.parameter(names[at])} {text}")
         if listed and family is REGRESSION and "regression_r_squared" in analysis:
             fit = float(analysis["regression_r_squared"].sel(response=name))
             listed[-1] += f" (R² of the fit: {labels.number(fit, 2)})"
         verdict = access.verdict(analysis, "sensitivity_verdict", name)
         subject = labels.sentence(labels.response(name))
-        undefined = not np.isfinite(index.values).any()
-        none = "no index is defined" if undefined else "no parameter stands out from the noise"
+        none = "no parameter stands out from the noise"
+        if not np.isfinite(index.values).any():
+            none = "no index is defined"
         told = ", ".join(listed) or none
         if gaps := int(access.absent(usable(runs, name)).sum()):
             told += f" ({gaps:,} of {labels.counted(access.count(runs), 'run')} missing)"
@@ -185,7 +181,8 @@ def _written(
     if family is MORRIS:
         text = in_units(runs[name], value, margin)
     elif family is SOBOL:
-        text, first = share(index, at), measures.index(analysis, "first_order", name)
+        text = share(value, margin, float(index.numerical[at]))
+        first = measures.index(analysis, "first_order", name)
         surplus = value - first.values[at]
         reach = margin + first.margins[at] + index.numerical[at] + first.numerical[at]
         if surplus > max(_INTERACTS, reach):
@@ -224,18 +221,15 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
         if effects and effects[driver] < 0.5:
             driver = "several parameters together"
         drives[driver].append((effects.get(driver, np.nan), text))
-    found = []
+    found, left = [], len(responses(runs)) - len(shown)
     for driver, told in sorted(drives.items(), key=lambda item: -len(item[1])):
-        shares = np.array([effect for effect, _ in told])
-        subject = labels.sentence(driver)
+        shares, subject = np.array([effect for effect, _ in told]), labels.sentence(driver)
         if (shares >= 0.5).all() and len(design_dims(runs)) > 1:
             subject += f" explains {labels.span(100 * shares, 2)} % of the variation"
         found.append((subject, ", ".join(text for _, text in told)))
-    if left := len(responses(runs)) - len(shown):
-        found[-1] = (
-            found[-1][0],
-            f"{found[-1][1]}; {labels.counted(left, 'other response')} below",
-        )
+    if left:
+        subject, text = found.pop()
+        found.append((subject, f"{text}; {labels.counted(left, 'other response')} below"))
     return found
 
 
@@ -252,9 +246,8 @@ def _convergence(analysis: xr.Dataset, needs: Needs) -> list[Entry]:
     for need, names in sorted(groups.items(), key=lambda item: -len(item[1])):
         told = [uncertainty(max(float(needs.errors[name][need]) for name in names))]
         for axis in (ORDERED[dim] for dim in needs.axes if dim in ORDERED):
-            orders = (
-                finest(analysis[f"{axis}_observed_order"], needs.runs).sel(response=names).values
-            )
+            found_orders = finest(analysis[f"{axis}_observed_order"], needs.runs)
+            orders = found_orders.sel(response=names).values
             if np.isfinite(orders).any():
                 order = labels.span(orders[np.isfinite(orders)], 2)
                 told.append(f"observed order {order} in the {axis.replace('_', ' ')}")

@@ -66,10 +66,14 @@ class Needs(NamedTuple):
 
     def words(self, need: tuple[int, ...]) -> str:
         """Return a grid in words: "201 nodes and 7 points, Gauss-Lobatto"."""
-        coordinates = [self.runs[dim] for dim in self.axes]
-        text = labels.listing(list(map(_setting, coordinates, need)))
+        told = []
+        for dim, at in zip(self.axes, need, strict=True):
+            one = self.runs[dim]
+            text = f"{dim.replace('_', ' ')} {labels.values(one, [at])[0]}{labels.unit(one)}"
+            told.append(labels.value(one, at) if dim in ("nodes", "points") else text)
         kinds = [self.runs[dim] for dim in _KINDS if dim in self.runs.dims]
-        return ", ".join([text, *(labels.values(kind, [0])[0] for kind in kinds)])
+        kinds_told = (labels.values(kind, [0])[0] for kind in kinds)
+        return ", ".join([labels.listing(told), *kinds_told])
 
     def doubts(self, analysis: xr.Dataset, name: str) -> list[str]:
         """Return the verdicts on a response at the finest grid that are warnings."""
@@ -137,14 +141,6 @@ def at_finest(analysis: xr.Dataset, runs: xr.Dataset, axis: str) -> access.Verdi
     return access.occurring(finest(analysis[key], runs))[-1] if key in analysis else None
 
 
-def _setting(coordinate: xr.DataArray, at: int) -> str:
-    """Return one value of a refined axis: "201 nodes", "courant 0.2"."""
-    if coordinate.name in ("nodes", "points"):
-        return labels.value(coordinate, at)
-    name = str(coordinate.name).replace("_", " ")
-    return f"{name} {labels.values(coordinate, [at])[0]}{labels.unit(coordinate)}"
-
-
 def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the section on the axes that the analysis has, or none."""
     needs, tables = needed(runs, analysis), []
@@ -159,15 +155,13 @@ def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             found = analysis.sel(response=name)
             verdict = at_finest(found, needs.runs if needs else runs, axis)
             kind = "" if verdict and verdict.sound else "warning"
+            judged = Cell(verdict.words if verdict else "not judged", kind)
+            over = (_counts(found, f"{axis}_{kind}") for kind in ("verdict", "behaviour"))
+            verdicts, behaviours = (", ".join(map(" ".join, each.items())) for each in over)
+            detail = f"behaviour: {behaviours}" * bool(behaviours)
             cells = _cells(found, axis)
-            rows.append(
-                [
-                    labels.sentence(labels.response(name)),
-                    Cell(verdict.words if verdict else "not judged", kind),
-                    _over_the_grid(found, axis),
-                    *cells.values(),
-                ]
-            )
+            response = labels.sentence(labels.response(name))
+            rows.append([response, judged, Cell(verdicts or "–", detail=detail), *cells.values()])
         head = ["Response", "Verdict on the finest grid", "Verdicts over the grid", *cells]
         remarks = [explanation, *_remarks(analysis, axis)]
         meanings: dict[str, str] = {}
@@ -227,19 +221,10 @@ def _cells(found: xr.Dataset, axis: str) -> dict[str, Cell]:
     return {head: _needed(each.values) for head, each in cells.items()} | uncertain
 
 
-def _over_the_grid(found: xr.Dataset, axis: str) -> Cell:
-    """Return how often each verdict occurs, and how the three finest grids behave."""
-    verdicts, behaviours = (
-        ", ".join(f"{flag} {number}" for flag, number in _counts(found, f"{axis}_{kind}").items())
-        for kind in ("verdict", "behaviour")
-    )
-    return Cell(verdicts or "–", detail=f"behaviour: {behaviours}" if behaviours else "")
-
-
-def _counts(found: xr.Dataset, variable: str) -> dict[str, int]:
+def _counts(found: xr.Dataset, variable: str) -> dict[str, str]:
     """Count each flag, in words, over the rest of the grid."""
     flags = found.get(variable, xr.DataArray())
-    return {flag.words: int((flags == flag.value).sum()) for flag in access.occurring(flags)}
+    return {flag.words: str(int((flags == flag.value).sum())) for flag in access.occurring(flags)}
 
 
 def _spread(found: xr.Dataset, variable: str) -> Cell:
@@ -251,9 +236,9 @@ def _spread(found: xr.Dataset, variable: str) -> Cell:
 
 def _needed(needed: Floats) -> Cell:
     """Return the range over the grid; say where not even the second most points stay within 1 %."""
-    given = needed[np.isfinite(needed)]
+    given, none = needed[np.isfinite(needed)], "none below the largest"
     if not given.size:
-        return Cell("none below the largest", "warning")
+        return Cell(none, "warning")
     gaps = needed.size - given.size
-    detail = f"none below the largest at {gaps} of {needed.size} points" if gaps else ""
+    detail = f"{none} at {gaps} of {needed.size} points" * bool(gaps)
     return Cell(labels.span(given, 4), "number", detail)

@@ -63,7 +63,6 @@ def write_crate(stored: xr.Dataset, folder: Path, figures_folder: Path, report: 
         for path, texts in named.items()
         if path.is_file() and path.resolve().is_relative_to(folder.resolve())
     ]
-    software = _software(attrs)
     solved = [study.name, *(name for name in _SOLVED if (folder / name).exists())]
     made = [each["@id"] for each in files if each["@id"] not in solved]
     actions = [
@@ -83,26 +82,22 @@ def write_crate(stored: xr.Dataset, folder: Path, figures_folder: Path, report: 
         "name": title,
         "description": str(attrs.get("description") or title),
         "datePublished": str(attrs["created"]),
-        "license": _link(licence),
-        "hasPart": [_link(each) for each in files],
-        "mentions": [_link(each) for each in actions],
+        "license": {"@id": licence["@id"]},
+        "hasPart": [{"@id": each["@id"]} for each in files],
+        "mentions": [{"@id": each["@id"]} for each in actions],
     }
     metadata = {
         "@id": METADATA,
         "@type": "CreativeWork",
         "conformsTo": {"@id": _SPECIFICATION},
-        "about": _link(root),
+        "about": {"@id": "./"},
     }
     context = [f"{_SPECIFICATION}/context", {"sha256": "https://schema.org/sha256"}]
-    graph = [metadata, root, licence, *files, *actions, *software]
+    graph = [metadata, root, licence, *files, *actions, *_software(attrs)]
     with replaced(folder / METADATA) as unfinished:
         text = json.dumps({"@context": context, "@graph": graph}, indent=1, ensure_ascii=False)
         unfinished.write_text(f"{text}\n", "utf-8")
     return folder / METADATA
-
-
-def _link(entity: Entity) -> Entity:
-    return {"@id": entity["@id"]}
 
 
 def _links(names: list[str]) -> Entity | list[Entity]:
@@ -168,6 +163,6 @@ def _software(attrs: dict[str, Any]) -> list[Entity]:
         "version": f"{citation['version']} ({revision})" if revision else citation["version"],
         "softwareRequirements": str(attrs.get("versions", "")),
         "author": _links([author["@id"] for author in authors]),
-        "license": _link(licence),
+        "license": {"@id": licence["@id"]},
     }
     return [software, *authors, licence]

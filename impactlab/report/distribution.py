@@ -33,11 +33,7 @@ _READING = (
     "no significant difference at the level of the intervals, shared among the parameters "
     "(Bonferroni)."
 )
-
-
-def _of_correlated(runs: xr.Dataset) -> str:
-    words = " Of correlated parameters each distance includes what one shares with the others."
-    return words * bool(correlations(runs))
+_SHARED = " Of correlated parameters each distance includes what one shares with the others."
 
 
 def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str]]:
@@ -45,16 +41,10 @@ def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str
     found = []
     for name in limited(runs, analysis):
         text, led = probability(analysis.sel(response=name)), _leading(analysis, name)
-        found.append(
-            (_above(runs, analysis, name), text + f"; runs above it have {led}" * bool(led))
-        )
+        response = labels.sentence(labels.response(name))
+        text += f"; runs above it have {led}" * bool(led)
+        found.append((f"{response} above {_limit(runs, analysis, name)}", text))
     return found
-
-
-def limit_note(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """Return what the numbers of `limit_entries` are."""
-    level = access.confidence(analysis)
-    return f"Above a limit: probability and its {level} interval{spread_evenly(runs)}. "
 
 
 def probability(found: xr.Dataset) -> str:
@@ -69,32 +59,26 @@ def probability(found: xr.Dataset) -> str:
     low, high = (float(found[f"exceedance_{end}"]) for end in ("low", "high"))
     if np.isnan(low):
         return f"unknown, for none of {labels.counted(total, 'draw')} has an answer"
-    if not missing and above in (0, total):
-        bound = f"at most {_percent(high, high)}" if above == 0 else ""
-        bound = bound or f"at least {_percent(low, 1 - low)}"
-        return f"{bound} ({'all' if above else 'none'} of {labels.counted(total, 'draw')})"
+    draws = labels.counted(total, "draw")
+    if not missing and above == 0:
+        return f"at most {_percent(high, high)} (none of {draws})"
+    if not missing and above == total:
+        return f"at least {_percent(low, 1 - low)} (all of {draws})"
     mean, none, every = (
         _percent(float(found[f"exceedance_{key}"]), high - low)
         for key in ("probability", "if_none", "if_all")
     )
     ends = f"{_percent(low, high - low).removesuffix(' %')} to {_percent(high, high - low)}"
-    if not missing:
-        return f"{mean} ({ends})"
-    lacking = f"{missing:,} of {labels.counted(total, 'draw')} {'is' if missing == 1 else 'are'}"
-    return (
-        f"{mean} ({ends}; {lacking} missing: {none} if none of them is above, {every} if all are)"
-    )
+    if missing:
+        ends += f"; {missing:,} of {draws} {'is' if missing == 1 else 'are'} missing: "
+        ends += f"{none} if none of them is above, {every} if all are"
+    return f"{mean} ({ends})"
 
 
 def _percent(share: float, width: float) -> str:
     """Return a share in per cent, with the digits that an interval of this width leaves."""
     decimals = int(np.clip(1 - np.floor(np.log10(100 * width)), 0, 8)) if width > 0 else 0
     return f"{100 * share:.{decimals}f} %"
-
-
-def _above(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
-    response = labels.sentence(labels.response(name))
-    return f"{response} above {_limit(runs, analysis, name)}"
 
 
 def _limit(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
@@ -144,23 +128,20 @@ def limit_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     head = ["Response", "Limit", "Draws", "Missing", "Above the limit", f"Probability ({level})"]
     tables = [Table("Probability that a response exceeds its limit", head, rows)]
     if apart:
-        caption, head = "Parameters in runs above the limit beside the others", ["Response"]
-        tables.append(
-            Table(caption, [*head, *parameters], apart, [_READING + _of_correlated(runs)])
-        )
+        caption = "Parameters in runs above the limit beside the others"
+        reading = _READING + _SHARED * bool(correlations(runs))
+        tables.append(Table(caption, ["Response", *parameters], apart, [reading]))
     lead = _LEAD.format(even=spread_evenly(runs)) + _MISSING * gaps
     drawn = [exceedance(name).name for name in names]
     return [Section("limits", "Limits", lead, tables=tables, figures=drawn)]
 
 
 def _distances(analysis: xr.Dataset, found: xr.Dataset) -> list[Cell]:
-    cells = []
-    for at, distance in enumerate(found["exceedance_distance"].values.tolist()):
-        matters = float(found["exceedance_p_value"][at]) < significance(analysis)
-        cells.append(
-            Cell(f"{distance:.2f}", "number" if matters else "muted", _direction(found, at))
-        )
-    return cells
+    matter = (found["exceedance_p_value"] < significance(analysis)).values
+    return [
+        Cell(f"{distance:.2f}", "number" if matter[at] else "muted", _direction(found, at))
+        for at, distance in enumerate(found["exceedance_distance"].values.tolist())
+    ]
 
 
 def summary(analysis: xr.Dataset, name: str, unit: Display) -> list[Cell]:
@@ -195,17 +176,17 @@ def _range(low: float, high: float) -> str:
 def remarks(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """Return what the numbers of `summary` are."""
     total, gaps = (analysis[key].max().item() for key in ("number_of_draws", "missing_draws"))
-    rows = f"the {labels.counted(int(total), 'independent draw')} of the sample"
-    told = [
-        f"Mean, standard deviation and percentiles are those of {rows}, below them their "
-        f"{access.confidence(analysis)} intervals{spread_evenly(runs)}: by Student's t, by the "
-        "fourth moment, and by order statistics."
-    ]
+    draws, level = labels.counted(int(total), "independent draw"), access.confidence(analysis)
+    told = (
+        f"Mean, standard deviation and percentiles are those of the {draws} of the sample, below "
+        f"them their {level} intervals{spread_evenly(runs)}: by Student's t, by the fourth moment, "
+        "and by order statistics."
+    )
     missing = (
         "Where answers are missing, mean and standard deviation are those of the others; intervals "
         "of percentiles allow for any value that a missing answer could have."
     )
-    return told + [missing] * bool(gaps)
+    return [told, *[missing] * bool(gaps)]
 
 
 HEADS: Sequence[str] = ("Mean", "Standard deviation", *PERCENTILES)

@@ -31,7 +31,9 @@ def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
     """
     path = report.with_name(f"{report.stem}_explorer.html")
     surrogates = packed(runs, analysis)
-    verdicts = {} if surrogates is None else _verdicts(surrogates)
+    codes = {} if surrogates is None else surrogates["verdict"].to_series()
+    kinds = list(SurrogateVerdict)
+    verdicts = {str(name): kinds[int(code)] for name, code in codes.items()}
     if surrogates is None or not any(verdict.sound for verdict in verdicts.values()):
         path.unlink(missing_ok=True)
         return ""
@@ -61,12 +63,6 @@ def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
     return path.name
 
 
-def _verdicts(surrogates: xr.Dataset) -> dict[str, SurrogateVerdict]:
-    pairs = zip(surrogates["response"].values, surrogates["verdict"].values, strict=True)
-    kinds = list(SurrogateVerdict)
-    return {str(name): kinds[int(code)] for name, code in pairs}
-
-
 def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
     """Return what the page knows of a parameter; all numbers are in its display unit."""
     given = json.loads(str(entry["distribution"].item()))
@@ -78,7 +74,11 @@ def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
         if key != "distribution"
     }
     logarithmic = distribution in _LOGARITHMIC
-    lowest, highest = _inside(numbers["lowest"], numbers["highest"])
+    # the ends of the range in few digits, rounded so that they do not leave it
+    lowest, highest = numbers["lowest"], numbers["highest"]
+    digits = 6 if highest - lowest > 1e-3 * max(abs(lowest), abs(highest)) else 12
+    lowest = float(Context(digits, ROUND_CEILING).create_decimal(repr(lowest)))
+    highest = float(Context(digits, ROUND_FLOOR).create_decimal(repr(highest)))
     return numbers | {
         "lowest": lowest,
         "highest": highest,
@@ -90,13 +90,6 @@ def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
         "logarithmic": logarithmic,
         "values": _positions(lowest, highest, logarithmic),
     }
-
-
-def _inside(lowest: float, highest: float) -> tuple[float, float]:
-    """Return the ends of a range in few digits, rounded so that they do not leave it."""
-    digits = 6 if highest - lowest > 1e-3 * max(abs(lowest), abs(highest)) else 12
-    up, down = (Context(digits, rounding) for rounding in (ROUND_CEILING, ROUND_FLOOR))
-    return float(up.create_decimal(repr(lowest))), float(down.create_decimal(repr(highest)))
 
 
 def _positions(lowest: float, highest: float, logarithmic: bool) -> list[float]:

@@ -36,15 +36,10 @@ def entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
     if worst:
         which = "" if len(ratio) <= len(worst) else "the worst of the others: "
         told.append(which + ", ".join(worst))
-    for verdict in (Agreement.NOT_JUDGED, Agreement.OTHER_IMPACT):
-        if number := counted[verdict]:
-            told.append(f"{number} {_words(verdict)}")
+    others = {Agreement.NOT_JUDGED: "not judged", Agreement.OTHER_IMPACT: "of another impact"}
+    told += [f"{counted[each]} {words}" for each, words in others.items() if counted[each]]
     models = all(analysis["compared_simulated"].values)
     return [("Beside another model" if models else "Beside measurements", "; ".join(told))]
-
-
-def _words(verdict: Agreement) -> str:
-    return "of another impact" if verdict is Agreement.OTHER_IMPACT else "not judged"
 
 
 def _difference(row: xr.Dataset) -> str:
@@ -64,41 +59,20 @@ def sections(analysis: xr.Dataset) -> list[Section]:
     if "compared_verdict" not in analysis or not analysis.sizes["comparison"]:
         return []
     verdicts = analysis["compared_verdict"].values
-    gravest = {Agreement.INCOMPATIBLE: 0, Agreement.NOT_JUDGED: 1, Agreement.OTHER_IMPACT: 2}
-    order = sorted(
-        range(verdicts.size), key=lambda at: gravest.get(_verdict_of(int(verdicts[at])), 3)
-    )
+    order = np.argsort((verdicts - 1) % len(Agreement), kind="stable")  # those that agree last
     rows = [_row(analysis.isel(comparison=at)) for at in order[:_MOST]]
-    head = [
-        "Measured",
-        "Conditions",
-        "Model",
-        "Measured value",
-        "Model's value",
-        "Difference",
-        "Verdict",
+    head = ["Measured", "Conditions", "Model", "Measured value", "Model's value", "Difference"]
+    sources = (analysis[f"compared_{key}"].values.tolist() for key in ("source", "simulated"))
+    remarks = [
+        f"Source: {source}" + " (values of another model, not measured)" * bool(simulated)
+        for source, simulated in dict(zip(*sources, strict=True)).items()
     ]
-    sources = dict.fromkeys(analysis["compared_source"].values.tolist())
-    simulated = dict(
-        zip(
-            analysis["compared_source"].values.tolist(),
-            analysis["compared_simulated"].values,
-            strict=True,
-        )
-    )
-    remarks = [f"Source: {each}{_SIMULATED * bool(simulated[each])}" for each in sources]
     if (left := verdicts.size - _MOST) > 0:
         remarks.append(f"{left} further rows are in analysis.nc.")
     meanings = [(_verdict(each), each.meaning) for each in Agreement if each in verdicts]
-    table = Table("Each measurement beside each model", head, rows, remarks, meanings)
+    caption = "Each measurement beside each model"
+    table = Table(caption, [*head, "Verdict"], rows, remarks, meanings)
     return [Section("measurements", "Beside measurements", _LEAD, tables=[table])]
-
-
-_SIMULATED = " (values of another model, not measured)"
-
-
-def _verdict_of(code: int) -> Agreement:
-    return list(Agreement)[code]
 
 
 def _verdict(verdict: Agreement) -> str:
@@ -106,19 +80,14 @@ def _verdict(verdict: Agreement) -> str:
 
 
 def _row(row: xr.Dataset) -> Row:
-    verdict, quantity = (
-        _verdict_of(int(row["compared_verdict"])),
-        str(row["compared_quantity"].item()),
-    )
-    ends = [
-        row[f"compared_{key}"].item() for key in ("measured", "uncertainty", "model", "numerical")
-    ]
-    units = {"units": str(row["compared_units"].item())}
-    unit = labels.display(xr.DataArray(np.array(ends[:1]), name=quantity, attrs=units))
-    measured, uncertainty, model, numerical = unit(ends).tolist()
-    stated = [
-        _condition(*each) for each in json.loads(str(row["compared_conditions"].item())).items()
-    ]
+    verdict = list(Agreement)[int(row["compared_verdict"])]
+    keys = "quantity", "units", "conditions", "case", "reason"
+    quantity, units, given, case, reason = (str(row[f"compared_{key}"].item()) for key in keys)
+    of_numbers = "measured", "uncertainty", "model", "numerical"
+    numbers = [row[f"compared_{key}"].item() for key in of_numbers]
+    unit = labels.display(xr.DataArray(numbers[:1], name=quantity, attrs={"units": units}))
+    measured, uncertainty, model, numerical = unit(numbers).tolist()
+    stated = [_condition(*each) for each in json.loads(given).items()]
     difference = "–"
     if np.isfinite(model):
         share = 100 * (model / measured - 1) if measured else np.inf
@@ -127,11 +96,11 @@ def _row(row: xr.Dataset) -> Row:
     return [
         Cell(labels.sentence(labels.response(quantity))),
         ", ".join(stated) or "–",
-        str(row["compared_case"].item()).replace("_", " ") or "–",
+        case.replace("_", " ") or "–",
         Cell(f"{labels.number(measured)} ± {labels.number(uncertainty, 2)} {unit.symbol}".rstrip()),
         Cell("–" if np.isnan(model) else _value(model, numerical, unit.symbol)),
         Cell(difference, "number"),
-        Cell(_verdict(verdict), kind, str(row["compared_reason"].item())),
+        Cell(_verdict(verdict), kind, reason),
     ]
 
 

@@ -7,6 +7,7 @@ overlap.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from itertools import combinations
 
@@ -23,7 +24,6 @@ from impactlab.figures.measures import (
     SOBOL,
     SURROGATE,
     Family,
-    Index,
     Measure,
     analysed,
 )
@@ -162,7 +162,7 @@ def history_entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
         verdict = access.read(found[over_time.VERDICT])
         total, margin = (found[f"generalised_total_order{end}"].values for end in ("", "_interval"))
         named = [
-            f"{labels.parameter(name)} {_share(total[at], margin[at])}"
+            f"{labels.parameter(name)} {share(total[at], margin[at])}"
             for at, name in enumerate(measures.parameters(analysis))
             if total[at] > margin[at]
         ]
@@ -192,20 +192,13 @@ def _generalised(analysis: xr.Dataset, histories: list[str], measure: Measure) -
     """Return one row per history: the generalised index of each parameter, grey within noise."""
     rows: list[Row] = []
     for history in histories:
-        found = analysis.sel(history=history)
-        verdict = access.read(found[over_time.VERDICT])
-        words = "" if verdict.sound else verdict.words
-        name = labels.sentence(labels.response(history))
-        row = [Cell(name, "warning" if words else "", words)]
-        for at in range(analysis.sizes["parameter"]):
-            text, significant = _index(found.isel(parameter=at), f"generalised_{measure.name}")
-            row.append(Cell(text, "number" if significant else "muted"))
-        rows.append(row)
-    names = [labels.sentence(labels.parameter(name)) for name in measures.parameters(analysis)]
+        found, key = analysis.sel(history=history), f"generalised_{measure.name}"
+        name = _judged(history, access.read(found[over_time.VERDICT]))
+        cells = (_index(found.isel(parameter=at), key) for at in range(found.sizes["parameter"]))
+        rows.append([name, *cells])
     caption = _caption(f"Generalised Sobol indices, {measure.words}", analysis)
-    flags = access.occurring(analysis[over_time.VERDICT])
-    meanings = [(flag.words, flag.meaning) for flag in flags if flag.meaning]
-    return Table(caption, ["History", *names], rows, meanings=meanings)
+    meanings = _meanings(analysis, over_time.VERDICT)
+    return Table(caption, ["History", *_parameters(analysis)], rows, meanings=meanings)
 
 
 def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
@@ -272,18 +265,21 @@ def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
     if f"{measure.name}_numerical" in analysis:
         explained += "; numerical: not distinguishable from its numerical error"
     caption = f"Ranks of the parameters by {family.title}, {measure.words} ({explained})"
-    names = [labels.sentence(labels.parameter(name)) for name in measures.parameters(analysis)]
-    flags = access.occurring(analysis.get("sensitivity_verdict", xr.DataArray()))
-    meanings = [(flag.words, flag.meaning) for flag in flags if flag.meaning]
-    return Table(caption, ["Response", *names], rows, meanings=meanings)
+    meanings = _meanings(analysis, "sensitivity_verdict")
+    return Table(caption, ["Response", *_parameters(analysis)], rows, meanings=meanings)
 
 
-def share(index: Index, at: int) -> str:
+def _parameters(analysis: xr.Dataset) -> list[str]:
+    return [labels.sentence(labels.parameter(name)) for name in measures.parameters(analysis)]
+
+
+def _meanings(analysis: xr.Dataset, verdicts: str) -> list[tuple[str, str]]:
+    flags = access.occurring(analysis.get(verdicts, xr.DataArray()))
+    return [(flag.words, flag.meaning) for flag in flags if flag.meaning]
+
+
+def share(value: float, margin: float, error: float = 0.0) -> str:
     """Return a share with the half-width of its interval and the numerical error, if known."""
-    return _share(*(float(each[at]) for each in (index.values, index.margins, index.numerical)))
-
-
-def _share(value: float, margin: float, error: float = 0.0) -> str:
     decimals = 0 if margin >= _COARSE and value >= _SMALL else 1
     numerically = f", numerically {uncertainty(error)}" if error else ""
     within = f"± {100 * margin:.{decimals}f}" if margin >= 0.0005 else uncertainty(margin)
@@ -292,7 +288,6 @@ def _share(value: float, margin: float, error: float = 0.0) -> str:
 
 def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Table]:
     """Return one table per measure: responses by parameters, index ± half-width; the dummy last."""
-    parameters = [labels.sentence(labels.parameter(name)) for name in measures.parameters(analysis)]
     found = []
     for measure in family.measures_in(analysis):
         dummy = f"dummy_{measure.name}"
@@ -306,9 +301,9 @@ def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list
                 detail = "below numerical error" if index.numerically_lost[at] else ""
                 row.append(Cell(text, "number" if index.significant[at] else "muted", detail))
             if dummy in analysis:
-                row.append(Cell(_index(analysis.sel(response=name), dummy)[0], "muted"))
+                row.append(replace(_index(analysis.sel(response=name), dummy), kind="muted"))
             rows.append(row)
-        head = ["Response", *parameters, *["Dummy parameter"] * (dummy in analysis)]
+        head = ["Response", *_parameters(analysis), *["Dummy parameter"] * (dummy in analysis)]
         found.append(Table(_caption(f"{family.title}, {measure.words}", analysis), head, rows))
     return found
 
@@ -319,21 +314,17 @@ def second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     rows: list[Row] = []
     for first, second in combinations(range(len(names)), 2):
         pair = f"{labels.parameter(names[first])} and {labels.parameter(names[second])}"
-        row = [Cell(labels.sentence(pair))]
-        for name in shown:
-            at = analysis.isel(parameter=first, other_parameter=second).sel(response=name)
-            text, significant = _index(at, "second_order")
-            row.append(Cell(text, "number" if significant else "muted"))
-        rows.append(row)
+        found = analysis.isel(parameter=first, other_parameter=second)
+        cells = (_index(found.sel(response=name), "second_order") for name in shown)
+        rows.append([Cell(labels.sentence(pair)), *cells])
     head = ["Pair", *(labels.sentence(labels.response(name)) for name in shown)]
     return Table(_caption("Second-order Sobol indices", analysis), head, rows)
 
 
-def _index(at: xr.Dataset, name: str) -> tuple[str, bool]:
-    """Return one index with its half-width as text, and whether it exceeds that half-width."""
-    value = float(at[name])
-    margin = float(at.get(f"{name}_interval", np.inf))
-    return with_margin(value, margin), abs(value) > margin
+def _index(at: xr.Dataset, name: str) -> Cell:
+    """Return one index with its half-width, grey unless it exceeds that."""
+    value, margin = float(at[name]), float(at.get(f"{name}_interval", np.inf))
+    return Cell(with_margin(value, margin), "number" if abs(value) > margin else "muted")
 
 
 def _caption(title: str, analysis: xr.Dataset) -> str:
@@ -342,9 +333,12 @@ def _caption(title: str, analysis: xr.Dataset) -> str:
 
 def named(analysis: xr.Dataset, response: str) -> Cell:
     """Return the response, with its verdict where that is a warning."""
-    found = access.verdict(analysis, "sensitivity_verdict", response)
-    detail = found.words if found and not found.sound else ""
-    return Cell(labels.sentence(labels.response(response)), "warning" if detail else "", detail)
+    return _judged(response, access.verdict(analysis, "sensitivity_verdict", response))
+
+
+def _judged(name: str, verdict: access.Verdict | None) -> Cell:
+    words = verdict.words if verdict and not verdict.sound else ""
+    return Cell(labels.sentence(labels.response(name)), "warning" if words else "", words)
 
 
 def with_margin(value: float, margin: float) -> str:

@@ -35,7 +35,7 @@ _PRINTED_RUNS = 48
 """Grids up to this size are printed run by run."""
 _COLUMNS = 6
 """Responses side by side in a printed table."""
-_DISTRIBUTIONS = ("response_distributions", "cumulative_distributions")
+_EACH = "Each response against each parameter"
 _SCATTER = (
     "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
     "around a flat line suggest a parameter that matters together with others."
@@ -110,9 +110,10 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             inputs,
         ]
     scattered = [scatter(name).name for name in responses(runs)]
-    drawn, title = _DISTRIBUTIONS, "Each response against each parameter"
     lead = NO_DISTRIBUTION.get(str(runs.attrs.get("method")), "")
     lead = lead and f"There are no moments and percentiles: {lead}."
+    by_word = [_by_word(runs, name) for name in varied(runs) if labels.words(runs[name])]
+    drawn = ("response_distributions", "cumulative_distributions")
     return [
         *distribution.limit_sections(runs, analysis),
         *sensitivity.sections(runs, analysis),
@@ -122,15 +123,12 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             "results",
             "Distribution of each response",
             lead,
-            tables=[
-                ranges,
-                *(_by_word(runs, name) for name in varied(runs) if labels.words(runs[name])),
-            ],
+            tables=[ranges, *by_word],
             figures=drawn,
         ),
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         inputs,
-        Section("scatter", title, _SCATTER, figures=scattered, closed=True),
+        Section("scatter", _EACH, _SCATTER, figures=scattered, closed=True),
     ]
 
 
@@ -180,26 +178,25 @@ def _described(runs: xr.Dataset, name: str) -> xr.DataArray:
 
 def _values(coordinate: xr.DataArray) -> Row:
     """Return values and their number, or a distribution: "uniform: low 250 MPa, high 450 MPa"."""
-    unit, size, attrs = labels.unit(coordinate), coordinate.size, coordinate.attrs
+    unit, size, attrs, told = labels.unit(coordinate), coordinate.size, coordinate.attrs, []
     if listed := labels.words(coordinate):
-        weights = [labels.percent(each, 3) for each in np.atleast_1d(attrs["weights"]).tolist()]
-        told = [f"{word} {weight}" for word, weight in zip(listed, weights, strict=True)]
-        return [f"choice: {', '.join(told)}", Cell(f"{size} draws", "number")]
-    if "distribution" in attrs:
-        arguments = []
-        for key, value in attrs.items():
-            scale, symbol = display(coordinate).scale, unit
-            if "geometric" in key:  # a ratio, without the parameter's unit
-                scale, symbol = 1.0, ""
-            if key not in ("distribution", "units", "long_name"):
-                text = labels.number(float(value) * scale)
-                arguments.append(f"{key.replace('_', ' ')} {text}{symbol}")
+        weights = np.atleast_1d(attrs["weights"]).tolist()
+        for word, weight in zip(listed, weights, strict=True):
+            told.append(f"{word} {labels.percent(weight, 3)}")
+    elif "distribution" in attrs:
+        scale = display(coordinate).scale
+        for key in (key for key in attrs if key not in ("distribution", "units", "long_name")):
+            ratio = "geometric" in key  # without the parameter's unit
+            text = labels.number(float(attrs[key]) * (1.0 if ratio else scale))
+            told.append(f"{key.replace('_', ' ')} {text}{'' if ratio else unit}")
+    if told:
         name = str(attrs["distribution"]).replace("_", "-")
-        return [f"{name}: {', '.join(arguments)}", Cell(f"{size} draws", "number")]
-    if size <= _GRID_VALUES or coordinate.dtype.kind not in "if":
-        return [", ".join(labels.values(coordinate, range(size))) + unit, str(size)]
-    ends = [int(np.argmin(coordinate.values)), int(np.argmax(coordinate.values))]
-    return [" to ".join(labels.values(coordinate, ends)) + unit, str(size)]
+        return [f"{name}: {', '.join(told)}", Cell(f"{size} draws", "number")]
+    where, between = list(range(size)), ", "
+    if size > _GRID_VALUES and coordinate.dtype.kind in "if":
+        numbers, between = coordinate.values, " to "
+        where = [int(np.argmin(numbers)), int(np.argmax(numbers))]
+    return [between.join(labels.values(coordinate, where)) + unit, str(size)]
 
 
 def _by_word(runs: xr.Dataset, name: str) -> Table:
@@ -221,14 +218,16 @@ def _by_word(runs: xr.Dataset, name: str) -> Table:
 def _outcome(runs: xr.Dataset, analysis: xr.Dataset, figures: list[str] | None = None) -> Section:
     """Return the section on failed runs, and on values that a surrogate supplied."""
     failed, total = access.failed(runs), count(runs)
-    imputed = []
-    for name in analysed(runs, analysis, "imputed_share"):
-        share = float(np.nan_to_num(analysis["imputed_share"].sel(response=name)))
-        if share > 0:
-            imputed.append(
-                f"For the indices of the {labels.response(name)}, a surrogate supplied the value "
-                f"of {labels.percent(share)} of the runs."
-            )
+    shares = {
+        name: float(analysis["imputed_share"].sel(response=name))
+        for name in analysed(runs, analysis, "imputed_share")
+    }
+    imputed = [
+        f"For the indices of the {labels.response(name)}, a surrogate supplied the value of "
+        f"{labels.percent(share)} of the runs."
+        for name, share in shares.items()
+        if share > 0
+    ]
     title = "How the runs ended"
     if not failed.any():
         return Section("outcome", title, f"All {total} runs gave every response.", imputed)
@@ -285,10 +284,8 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
             if not sample and array.min() < array.max():
                 ends: Any = (array.argmin(...), array.argmax(...))
                 details = [_place(runs, {dim: int(i) for dim, i in at.items()}) for at in ends]
-            cells = [
-                Cell(labels.number(float(number)), "number", detail)
-                for number, detail in zip(numbers, details, strict=True)
-            ]
+            texts = (labels.number(float(number)) for number in numbers)
+            cells = [Cell(text, "number", at) for text, at in zip(texts, details, strict=True)]
         if heads:
             cells = [*distribution.summary(analysis, name, unit), *cells]
         told = [runs[name].attrs.get("long_name", ""), beside(runs, analysis, name)]
