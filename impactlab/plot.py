@@ -20,7 +20,6 @@ from impactlab.figures import (
     indices,
     labels,
     measures,
-    over_time,
     responses_grid,
     samples,
     single_runs,
@@ -150,12 +149,12 @@ def sobol_over_time(analysis: xr.Dataset) -> Any:
     >>> indices.first_order_over_time.dims, len(il.plot.sobol_over_time(indices))
     (('history', 'time', 'parameter'), 6)
     """
-    if not over_time.shown(analysis):
+    if not measures.histories(analysis):
         raise ValueError(
             "the analysis holds no first_order_over_time: it needs a Sobol sample with "
             "store: {histories: true}"
         )
-    return figure(over_time.indices_over_time.name, xr.Dataset(), analysis)
+    return figure(indices.indices_over_time.name, xr.Dataset(), analysis)
 
 
 def delta(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:

@@ -208,16 +208,14 @@ def _finest(array: xr.DataArray) -> xr.DataArray:
 
 
 def _numerical(analysis: xr.Dataset, name: str, runs: xr.Dataset) -> xr.DataArray:
-    """Return the relative numerical uncertainty on the finest grid; NaN where nothing bounds it.
-
-    Along several axes it is the sum; an axis with one value adds none where another is judged.
-    """
+    """Return the relative numerical uncertainty on the finest grid; NaN where nothing bounds it."""
     total, judged = xr.DataArray(0.0), False
     for dim, (axis, _) in _AXES.items():
         if runs.sizes.get(dim, 1) == 1:
             continue
         if f"{axis}_uncertainty" not in analysis:
             return xr.DataArray(np.nan)
+        # an axis with one value adds none where another is judged
         total = total + _finest(analysis[f"{axis}_uncertainty"].sel(response=name, drop=True))
         judged = True
     if not judged and "numerical_uncertainty" in analysis:

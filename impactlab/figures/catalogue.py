@@ -13,7 +13,6 @@ from impactlab.figures import (
     grids,
     indices,
     measures,
-    over_time,
     samples,
     single_runs,
 )
@@ -44,7 +43,7 @@ INDICES = (
     indices.index_bars(measures.SOBOL),
     indices.sobol_second_order,
     *map(indices.index_convergence, measures.SOBOL.measures),
-    over_time.indices_over_time,
+    indices.indices_over_time,
     indices.morris_plane,
     indices.index_bars(measures.DELTA),
     indices.index_bars(measures.PAWN),

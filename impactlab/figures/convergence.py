@@ -153,10 +153,7 @@ def element_size_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 def _draw(
     runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, spacing: Floats, label: str
 ) -> Figure:
-    """Draw a panel per response, a curve for each of a few other settings.
-
-    spacing: of each value on the axis, in the unit of the label, in the order of the runs.
-    """
+    """Draw a panel per response over the spacing of the runs, in the unit of the label."""
     selected = axis.plan(runs)
     figure, axes = responses_grid.panels(axis.names(runs), height=44)
     for name, ax in axes.items():
@@ -253,11 +250,9 @@ def _above_round_off(difference: xr.DataArray, selected: Plan) -> Iterator[tuple
 def _relative_difference(
     runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, name: str
 ) -> xr.DataArray:
-    """Return |f - f0|/|f0| on (axis, ...), NaN where f0 is 0.
-
-    f0: the limit, or else the value of most nodes, or of the smallest courant or element size.
-    """
+    """Return |f - f0|/|f0| on (axis, ...), NaN where the limit f0 is 0."""
     values = usable(runs, name)
+    # without a limit the value of most nodes, or of the smallest courant or element size
     reference = values.isel({axis.dim: _finest(runs, axis.dim)}, drop=True)
     for kind in ("fit_extrapolated", "extrapolated"):
         limit = _of(analysis, f"{axis.name}_{kind}", name)
@@ -285,10 +280,7 @@ def _read(analysis: xr.Dataset, axis: str, name: str, where: dict[str, int], key
 
 
 def _draw_trend(ax: Axes, spacing: Floats, errors: Floats, read: Callable[[str], float]) -> str:
-    """Draw the order through the errors of the three finest values, and the bar of the finest.
-
-    Returns the label of the order, "" without one; brackets mark one that is not observed.
-    """
+    """Draw the order through the three finest errors, and the finest's bar; return its label."""
     richardson = bool(np.isfinite(read("extrapolated")))
     order = read("observed_order" if richardson else "fit_order")
     near, line, uncertainty = np.argsort(spacing)[:_FEWEST], ax.lines[-1], read("uncertainty")
@@ -308,7 +300,7 @@ def _draw_trend(ax: Axes, spacing: Floats, errors: Floats, read: Callable[[str],
         ax.plot(at, uncertainty, color=colour, linestyle="", label="_bar", **look)
     if not np.isfinite(order):
         return ""
-    observed = richardson or read("fit_expansion") == 0
+    observed = richardson or read("fit_expansion") == 0  # else assumed
     return f"p = {order:.2f}" if observed else f"[p = {order:g}]"
 
 

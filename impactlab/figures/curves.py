@@ -1,7 +1,8 @@
-"""Curves of chosen runs: which runs of a large grid a figure shows, and how their curves look."""
+"""Curves of chosen runs, and of which runs of a large grid; measurements over them."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -12,14 +13,28 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import access, labels, measured, scales, style
+from impactlab.analysis.measurements import COVERAGE, Agreement
+from impactlab.figures import access, labels, scales, style
 from impactlab.figures.access import design_dims, usable
+from impactlab.figures.labels import Display
 from impactlab.model.impact import SOLID
 from impactlab.types import Floats
 
 _LARGE, _SMALL = ("nodes", "points", "elements_per_radius"), ("courant", "element_size")
 _JUMP, _FEW_STEPS = 5.0, 4
 _MOST = 6  # largest number of panels, and of curves if no other is asked for
+
+_MEASURED: dict[str, Any] = {
+    "color": "black",
+    "linestyle": "",
+    "marker": "D",
+    "markersize": 3.0,
+    "markerfacecolor": "white",
+    "elinewidth": 0.8,
+    "capsize": 2.0,
+    "zorder": 5.0,
+}
+_WORDS = {False: "measured", True: "another model"}  # by whether the values are simulated
 
 
 @dataclass(frozen=True)
@@ -50,7 +65,7 @@ class Plan:
         if y:
             figure.supylabel(y)
         title = labels.sentence(", ".join(labels.parameter(dim) for dim in self.shown))
-        order = [*(curve.label for curve in self.curves), *measured.LABELS.values()]
+        order = [*(curve.label for curve in self.curves), *_WORDS.values()]
         style.legend(figure, title, order)
         return figure
 
@@ -212,3 +227,51 @@ def note(runs: xr.Dataset, variable: str) -> str:
     ]
     without = f" No curve for {labels.listing(gaps)}." if gaps else ""
     return f"{selected.note(runs)}{without}".strip()
+
+
+def measurements(analysis: xr.Dataset, name: str, along: str) -> xr.Dataset:
+    """Return the measurements of a response that state `along`, in its order, each of them once.
+
+    Measurements of another impact than the study's are left out.
+    """
+    if "compared_quantity" not in analysis:
+        return xr.Dataset(coords={"comparison": []})
+    quantity, verdict = (analysis[f"compared_{key}"] for key in ("quantity", "verdict"))
+    own = (quantity == name) & (verdict != Agreement.OTHER_IMPACT)
+    kept = analysis[[key for key in analysis if str(key).startswith("compared_")]]
+    kept = kept.isel(comparison=np.flatnonzero(own.values))
+    stated = [json.loads(text).get(along) for text in kept["compared_conditions"].values.tolist()]
+    numbers = [value if isinstance(value, int | float) else np.nan for value in stated]
+    keys = [
+        (x, *(kept[f"compared_{key}"].values[at] for key in ("measured", "uncertainty", "source")))
+        for at, x in enumerate(numbers)
+    ]
+    once = [at for at, key in enumerate(keys) if key not in keys[:at] and np.isfinite(key[0])]
+    once.sort(key=numbers.__getitem__)
+    return kept.isel(comparison=once).assign_coords(
+        along=("comparison", [numbers[i] for i in once])
+    )
+
+
+def add_measured(
+    ax: Axes, analysis: xr.Dataset, name: str, along: str, x: Display, y: Display
+) -> None:
+    """Draw the measurements of a response over the parameter `along`, with expanded uncertainty."""
+    found = measurements(analysis, name, along)
+    for simulated, label in _WORDS.items():
+        if not found.sizes["comparison"]:
+            return
+        here = found.isel(comparison=found["compared_simulated"].values == simulated)
+        if here.sizes["comparison"]:
+            value, bar = (here[f"compared_{key}"].values for key in ("measured", "uncertainty"))
+            ax.errorbar(x(here["along"].values), y(value), y(bar), label=label, **_MEASURED)
+
+
+def note_measured(analysis: xr.Dataset, names: list[str], along: str) -> str:
+    """Return a caption's sentence on the measurements drawn; "" without any."""
+    found = [measurements(analysis, name, along) for name in names]
+    sources = [s for one in found if one.sizes["comparison"] for s in one["compared_source"].values]
+    if not sources:
+        return ""
+    listed = "; ".join(dict.fromkeys(map(str, sources)))
+    return f"Diamonds with expanded uncertainties (k = {COVERAGE:g}): {listed}."

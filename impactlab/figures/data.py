@@ -110,10 +110,7 @@ def drawn(figure: Figure) -> Iterator[Drawn]:
 
 
 def _label(figure: Figure, ax: Axes, axis: str) -> str:
-    """Return the axis's own label, or else the whole figure's, or else that of its row or column.
-
-    A label stands at the first panel of a row, or at the last of a column, for all of them.
-    """
+    """Return the axis's own label, or else the figure's, or else that of its row or column."""
     own = str(getattr(ax, f"get_{axis}label")())
     whole = str(getattr(figure, f"get_sup{axis}label")())
     place = "colspan" if axis == "x" else "rowspan"

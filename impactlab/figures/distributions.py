@@ -214,17 +214,14 @@ _COUNTS = ("exceeding_draws", "number_of_draws", "missing_draws")
 def _two_curves(
     ax: Axes, column: xr.DataArray, outputs: Floats, limit: float, matters: bool
 ) -> None:
-    """Draw the cumulative distributions of a parameter (draws,) above the limit and below it.
-
-    Of words, whose order has no meaning, the share of each.
-    """
+    """Draw the cumulative distributions of a parameter (draws,) above the limit and below it."""
     x, above, others = places(column), outputs > limit, outputs <= limit
     if not above.any() or not others.any():
         responses_grid.empty(ax, "all draws on one side" if (above | others).any() else "no answer")
         return
     kinds = {"above the limit": (above, style.COLOURS[1]), "others": (others, style.COLOURS[0])}
     for label, (which, colour) in kinds.items():
-        if labels.words(column):
+        if labels.words(column):  # whose order has no meaning
             values, counts = np.unique(x[which], return_counts=True)
             (line,) = ax.plot(values, counts / which.sum(), "D", color=colour, label=label)
         else:

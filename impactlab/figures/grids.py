@@ -10,19 +10,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import (
-    access,
-    curves,
-    labels,
-    measured,
-    record,
-    responses_grid,
-    scales,
-    style,
-)
+from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
 from impactlab.figures.access import physical, responses, usable
 from impactlab.figures.curves import Plan, plan
-from impactlab.figures.labels import display
+from impactlab.figures.labels import Display, display
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
@@ -51,7 +42,7 @@ def _velocity_figure(name: str, title: str, text: str) -> Callable[[record.Drawe
         lambda runs, analysis: name in runs and runs[name].sizes.get("velocity", 0) >= _FEWEST,
         lambda runs, analysis: (
             _velocity_plan(runs, name).note(runs),
-            measured.note(analysis, [name], "velocity"),
+            curves.note_measured(analysis, [name], "velocity"),
             access.missing_note(runs, [name]),
         ),
     )
@@ -61,18 +52,31 @@ def _against_velocity(
     runs: xr.Dataset, analysis: xr.Dataset, name: str, label: str
 ) -> tuple[Figure, Axes, Plan]:
     """Draw a curve per contact law, or per value of what else is varied, and measurements."""
-    selected, valid = _velocity_plan(runs, name), usable(runs, name)
-    unit, speed = display(valid), runs["velocity"].values
+    selected = _velocity_plan(runs, name)
     figure, (ax,) = style.panels(1, columns=1, height=62)
-    for curve in selected.curves:
-        y = unit(valid.isel(curve.where))
-        curves.add(ax, *curves.broken(speed, y), curve)
+    unit = _add_curves(ax, runs, analysis, name, runs["velocity"], selected)
     if not ax.lines:
         style.remark(ax, "no finite values")
-    measured.add(ax, analysis, name, "velocity", display(runs["velocity"]), unit)
-    ax.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
+    ax.set_xlabel(parameter_axis(runs["velocity"]))
     ax.set_ylabel(labels.axis(label, unit.symbol))
     return figure, ax, selected
+
+
+def _add_curves(
+    ax: Axes,
+    runs: xr.Dataset,
+    analysis: xr.Dataset,
+    name: str,
+    along: xr.DataArray,
+    selected: Plan,
+) -> Display:
+    """Draw the planned curves of a response over a parameter, and measurements; return its unit."""
+    valid, across = usable(runs, name), display(along)
+    unit, x = display(valid), across(along)
+    for curve in selected.curves:
+        curves.add(ax, *curves.broken(x, unit(valid.isel(curve.where))), curve)
+    curves.add_measured(ax, analysis, name, str(along.name), across, unit)
+    return unit
 
 
 @_velocity_figure(
@@ -133,7 +137,7 @@ def _law_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
         "Permanent indentations of zero or below are not shown." if _DENT in names else "",
         "Open markers: beyond the range of the law." if beyond else "",
         _plan_laws(runs).note(runs),
-        measured.note(analysis, names, "velocity"),
+        curves.note_measured(analysis, names, "velocity"),
         access.missing_note(runs, names),
     ]
 
@@ -190,7 +194,7 @@ def _law_responses(
             hollow = {"linestyle": "", "markerfacecolor": "white", "label": "_open"}
             ax.plot(speed[outside], y[outside], **(curves.look(curve, markers=True) | hollow))
     unit = display(usable(runs, name))
-    measured.add(ax, analysis, name, "velocity", display(runs["velocity"]), unit)
+    curves.add_measured(ax, analysis, name, "velocity", display(runs["velocity"]), unit)
     ax.set(xlabel=labels.axis("velocity", "m/s"), ylabel=label)
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
@@ -219,7 +223,7 @@ def _plan_effects(runs: xr.Dataset) -> Plan:
         f"Responses against the {labels.parameter(str(_along(runs)))}; where curves coincide, the "
         "first in the legend lies on top. A jump is not joined.",
         _plan_effects(runs).note(runs),
-        measured.note(analysis, responses(runs), str(_along(runs))),
+        curves.note_measured(analysis, responses(runs), str(_along(runs))),
         access.missing_note(runs, responses(runs)),
     ),
 )
@@ -244,18 +248,12 @@ def response_curves(
 
     Returns the response's label.
     """
-    values, label = responses_grid.shown(runs, name)
-    x = display(along)(along)
-    for curve in selected.curves:
-        y = values.isel(curve.where).values
-        curves.add(ax, *curves.broken(x, y), curve)
-    unit = display(usable(runs, name))
-    measured.add(ax, analysis, name, str(along.name), display(along), unit)
-    scales.fit(ax, "x", x)
+    unit = _add_curves(ax, runs, analysis, name, along, selected)
+    scales.fit(ax, "x", display(along)(along))
     scales.fit(ax, "y", scales.drawn(ax, "y"))
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
-    return label
+    return labels.axis(labels.response(name), unit.symbol)
 
 
 def parameter_axis(along: xr.DataArray) -> str:

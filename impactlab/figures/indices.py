@@ -1,9 +1,11 @@
-"""Figures of sensitivity indices: bars, convergence with the sample, pairs, elementary effects.
+"""Figures of sensitivity indices: bars, convergence, pairs, elementary effects, indices over time.
 
 Morris (1991), Technometrics 33, 161; µ* after Campolongo et al. (2007), Environ. Modell. Softw. 22.
 """
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,10 +17,11 @@ from matplotlib.ticker import FixedFormatter
 from numpy.typing import NDArray
 
 from impactlab.figures import access, labels, measures, record, responses_grid, scales, style
-from impactlab.figures.labels import display
+from impactlab.figures.labels import Display, display
 from impactlab.figures.measures import MORRIS, Family, Measure, analysed, parameters
 from impactlab.figures.record import Figure
 from impactlab.types import Floats
+from impactlab.variables import status_bits
 
 _THICK = 0.76  # thickness of all bars of a row together, in rows
 _PALE = 0.45  # opacity of bars that are within the noise or below the numerical error
@@ -162,13 +165,10 @@ def index_convergence(measure: Measure) -> Figure:
         for name, ax in axes.items():
             found = analysis.sel(response=name)
             for at, parameter in enumerate(parameters(analysis)):
-                y, look = found[variable].isel(parameter=at).values, style.distinct(at)
-                if np.isfinite(y).any():
-                    ax.plot(samples, y, label=labels.parameter(parameter), markersize=2.5, **look)
-                if f"{variable}_interval" in found:
-                    m = found[f"{variable}_interval"].isel(parameter=at).values
-                    band = {"color": look["color"], "alpha": 0.15, "linewidth": 0}
-                    ax.fill_between(samples, y - m, y + m, **band)
+                index = found[[variable, f"{variable}_interval"]].isel(parameter=at)
+                y, margin = (each.values for each in index.values())
+                look = style.distinct(at) | {"label": labels.parameter(parameter)}
+                _line_with_band(ax, samples, y, margin, markersize=2.5, **look)
             if not ax.lines:
                 style.remark(ax, "no finite values")
             ax.set_xscale("log", base=2)
@@ -183,6 +183,13 @@ def index_convergence(measure: Measure) -> Figure:
         return figure
 
     return plot
+
+
+def _line_with_band(ax: Axes, x: Floats, y: Floats, margin: Floats, **look: Any) -> None:
+    """Draw a line that has finite points, and a band of this margin to either side."""
+    if np.isfinite(y).any():
+        ax.plot(x, y, **look)
+        ax.fill_between(x, y - margin, y + margin, color=look["color"], alpha=0.15, linewidth=0)
 
 
 def _pair_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
@@ -316,4 +323,72 @@ def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> No
         ax.axline((0.0, 0.0), slope=slope, label="_guide", **style.GUIDE)
         end = min(0.97 * ax.get_xlim()[1], 0.9 * ax.get_ylim()[1] / slope)
         ax.text(end, slope * end, text, fontsize=6, color=style.MUTED, ha="right", va="bottom")
+    scales.linear(ax, "xy")
+
+
+def _time_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
+    failed = (runs["status"] & status_bits([])) != 0  # no history is read
+    return (
+        f"Bands of the indices: {access.confidence(analysis)} intervals, cut off outside "
+        "−0.25 to 1.25; of the mean: one standard deviation to either side.",
+        "Gaps: times at which all runs, or all but a few, have the same value.",
+        access.missing_words(runs, failed, "here, and all others of their base samples"),
+    )
+
+
+@record.figure(
+    "Sobol indices over time",
+    "Share of the variance at each time that comes from a parameter alone (first order) and with "
+    "all its interactions (total order). Beneath: the mean of the runs, whose spread tells where "
+    "there is a variance worth explaining.",
+    lambda runs, analysis: bool(measures.histories(analysis)),
+    _time_sentences,
+)
+def indices_over_time(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
+    """Draw a column per history: first order, total order and mean, one beneath the other."""
+    names = measures.histories(analysis)
+    words = [labels.sentence(labels.response(name)) for name in names]
+    titles = [f"{word}, {order}" for order in measures.OVER_TIME.values() for word in words]
+    titles += [f"{word}, mean" for word in words]
+    figure, axes = style.titled_panels(titles, columns=len(names), height=38, sharex=True)
+    time = display(analysis["time"])
+    for row, order in enumerate(measures.OVER_TIME):
+        for at, name in enumerate(names):
+            _at_times(axes[row * len(names) + at], analysis.sel(history=name), order, time)
+    for ax, name in zip(axes[-len(names) :], names, strict=True):
+        _mean(ax, analysis.sel(history=name), time)
+    figure.supxlabel(labels.axis("time since first touch", time.symbol))
+    style.legend(figure)
+    return figure
+
+
+def _at_times(ax: Axes, found: xr.Dataset, order: str, time: Display) -> None:
+    """Draw a line with its band per parameter; gaps where there is no index, or no interval."""
+    x = time(found["time"].values)
+    for at, name in enumerate(parameters(found)):
+        one = found.isel(parameter=at)
+        margin = one[f"{order}_interval"].values
+        y = np.where(np.isfinite(margin), one[order].values, np.nan)
+        look = style.distinct(at) | {"marker": "", "linewidth": 0.9}
+        _line_with_band(ax, x, y, margin, label=labels.parameter(name), **look)
+    if not ax.lines:
+        style.remark(ax, "no finite values")
+    low, high = ax.get_ylim()
+    ax.set_ylim(max(min(low, 0.0), _ENDS[0]), min(max(high, 1.0), _ENDS[1]))
+    ax.set_ylabel("Share (–)")
+    scales.linear(ax, "xy")
+    verdict = access.read(found[measures.HISTORY_VERDICT])
+    if not verdict.sound:
+        responses_grid.write(ax, verdict)
+
+
+def _mean(ax: Axes, found: xr.Dataset, time: Display) -> None:
+    """Draw the mean of the runs with a band of one standard deviation to either side."""
+    mean, deviation = found["history_mean"], found["history_deviation"].values
+    unit = display(mean.assign_attrs(units=str(found["history_units"].item())))
+    x, look = time(found["time"].values), {"color": "0.15", "linewidth": 0.9}
+    _line_with_band(ax, x, unit(mean.values), unit(deviation), label="_mean", **look)
+    if not ax.lines:
+        style.remark(ax, "no finite values")
+    ax.set_ylabel(labels.axis("mean", unit.symbol))
     scales.linear(ax, "xy")

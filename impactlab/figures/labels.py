@@ -35,11 +35,7 @@ _STEPS: dict[str, tuple[tuple[float, float, str], ...]] = {
 }
 """By `units` attribute: (smallest magnitude, factor from SI, symbol), the largest step first."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_SPELLED = {
-    "lobatto": "Gauss-Lobatto",
-    "legendre": "Gauss-Legendre",
-    "layers": "uniform layers",
-}
+_RULES = {"lobatto": "Gauss-Lobatto", "legendre": "Gauss-Legendre", "layers": "uniform layers"}
 _METHODS = {
     "sobol": "Sobol sample",
     "morris": "Morris trajectories",
@@ -178,24 +174,23 @@ def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
     if coordinate.dtype.kind in "if":
         shown = np.ravel(display(coordinate)(coordinate.values))
         return [number(float(shown[at])) for at in where]
-    words = [str(coordinate.values.flat[at]) for at in where]
+    return [_spelled(coordinate, str(coordinate.values.flat[at])) for at in where]
+
+
+def _spelled(coordinate: xr.DataArray, word: str, *, short: bool = False) -> str:
     if coordinate.name == "contact":
-        return [CONTACT_LAWS[word].title for word in words]
+        return CONTACT_LAWS[word].short if short else CONTACT_LAWS[word].title
     if coordinate.name == "beam_model":
-        return [beam_model(word) for word in words]
-    return [_SPELLED.get(word, word.replace("_", " ")) for word in words]
+        return beam_model(word)
+    return _RULES.get(word, word.replace("_", " "))
 
 
 def words(coordinate: xr.DataArray) -> list[str]:
     """Return the words that a parameter is drawn among, for axes and tables; [] for numbers."""
     if coordinate.attrs.get("distribution") != CHOICE:
         return []
-    listed = [str(word) for word in np.atleast_1d(coordinate.attrs["values"])]
-    if coordinate.name == "contact":
-        return [CONTACT_LAWS[word].short for word in listed]
-    if coordinate.name == "beam_model":
-        return [beam_model(word) for word in listed]
-    return [_SPELLED.get(word, word.replace("_", " ")) for word in listed]
+    listed = np.atleast_1d(coordinate.attrs["values"])
+    return [_spelled(coordinate, str(word), short=True) for word in listed]
 
 
 def unit(coordinate: xr.DataArray) -> str:

@@ -166,6 +166,17 @@ def analysed(runs: xr.Dataset, analysis: xr.Dataset, *needed: str) -> list[str]:
     return [name for name in responses(runs) if given and known(analysis, name)]
 
 
+HISTORY_VERDICT = "history_verdict"
+OVER_TIME = {"first_order_over_time": "first order", "total_order_over_time": "total order"}
+"""Indices at each time, and their names in words."""
+
+
+def histories(analysis: xr.Dataset) -> list[str]:
+    """Return the histories that the analysis has indices of."""
+    given = all(name in analysis for name in (*OVER_TIME, "history_mean", HISTORY_VERDICT))
+    return [str(name) for name in analysis["history"].values] if given else []
+
+
 def parameters(analysis: xr.Dataset) -> list[str]:
     """Return the names of the varied parameters, or of their groups."""
     return [str(name) for name in analysis["parameter"].values]

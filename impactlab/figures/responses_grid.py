@@ -45,9 +45,14 @@ def write_verdict(
     found = access.verdict(analysis, variable, name)
     if found is None or (found.sound and not sound):
         return
-    ax.set_title(labels.sentence(labels.response(name)), loc="left", pad=12)
-    place, warning = (0.0, 1.0), not found.sound
-    style.note(ax, found.words, place, (0, 3), warning=warning, xycoords="axes fraction")
+    write(ax, found)
+
+
+def write(ax: Axes, verdict: access.Verdict) -> None:
+    """Write a verdict under the panel's title, bold where it is a warning."""
+    ax.set_title(ax.get_title(loc="left"), loc="left", pad=12)
+    place, warning = (0.0, 1.0), not verdict.sound
+    style.note(ax, verdict.words, place, (0, 3), warning=warning, xycoords="axes fraction")
 
 
 def empty(ax: Axes, text: str) -> None:

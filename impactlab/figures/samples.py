@@ -279,14 +279,11 @@ def _shares(ax: Axes, column: xr.DataArray, failed: NDArray[np.bool_]) -> None:
 
 
 def _distances(runs: xr.Dataset) -> dict[str, float]:
-    """Return the Kolmogorov-Smirnov distances of the most telling parameters, the largest first.
-
-    Of words, which have no order, it is half the sum of the differences of their shares.
-    """
+    """Return the Kolmogorov-Smirnov distances of the most telling parameters, the largest first."""
     failed, found = access.failed(runs).values, {}
     for name in varied(runs):
         values = runs[name].values
-        if labels.words(runs[name]):
+        if labels.words(runs[name]):  # they have no order: the total variation of their shares
             here = values[:, None] == np.unique(values)
             found[name] = float(abs(here[failed].mean(0) - here[~failed].mean(0)).sum() / 2)
             continue

@@ -188,12 +188,9 @@ def force_indentation(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def _loop(run: xr.Dataset, depth: Display, force: Display) -> tuple[Floats, Floats]:
-    """Return indentation and force of one run in display units, NaN where the two are apart.
-
-    In contact counts one sample to either side, so that loops reach the axis.
-    """
+    """Return indentation and force of one run in display units, NaN where the two are apart."""
     values = run[_FORCE].values
-    inside = values > 0
+    inside = values > 0  # and one sample to either side, so that loops reach the axis
     before, after = np.roll(inside, -1), np.roll(inside, 1)
     before[-1] = after[0] = False
     touching = inside | before | after

@@ -199,10 +199,7 @@ def _write_tables(judged: Judged, output: Path) -> None:
 
 
 def _numbers(judgement: Judgement) -> str:
-    """Return "peak force: 12.34 ± 0.11 kN", with the digits that the uncertainty leaves.
-
-    An uncertainty below the fifth digit is left out.
-    """
+    """Return "peak force: 12.34 ± 0.11 kN", with the digits that the uncertainty leaves."""
     texts = []
     for number in judgement.numbers:
         unit = display(xr.DataArray([number.value], attrs={"units": number.units}))
@@ -214,7 +211,7 @@ def _numbers(judgement: Judgement) -> str:
             value_power, width_power = np.floor(np.log10([abs(value), width]))
             digits = int(np.clip(value_power - width_power + 2, 2, 5))
         text = labels.number(value, digits)
-        if not width <= 0.5e-5 * abs(value):
+        if not width <= 0.5e-5 * abs(value):  # else it is below the fifth digit
             text = f"{text} ± {labels.number(width, 2) if np.isfinite(width) else 'unknown'}"
         texts.append(f"{number.name}: {text} {unit.symbol}".strip())
     return "; ".join(texts)

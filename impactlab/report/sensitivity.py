@@ -16,7 +16,7 @@ import xarray as xr
 
 from impactlab.analysis.responses import correlations
 from impactlab.analysis.sensitivity.over_time import TimeVerdict
-from impactlab.figures import access, labels, measures, over_time
+from impactlab.figures import access, labels, measures
 from impactlab.figures.labels import display
 from impactlab.figures.measures import (
     MORRIS,
@@ -142,7 +142,7 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             "its drift.",
             figures=[f"{measure.name}_convergence" for measure in SOBOL.measures],
         )
-    if histories := over_time.shown(analysis):
+    if histories := measures.histories(analysis):
         yield Section(
             "over-time",
             "Indices over time",
@@ -150,16 +150,16 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             "added up over all times, so that times at which the runs differ most count most.",
             [_left_out(analysis, name) for name in histories],
             [_generalised(analysis, histories, measure) for measure in SOBOL.measures],
-            [over_time.indices_over_time.name],
+            ["indices_over_time"],
         )
 
 
 def history_entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
     """Return one entry per history: the parameters that matter over all times, or why none."""
     entries: list[tuple[str, str]] = []
-    for history in over_time.shown(analysis):
+    for history in measures.histories(analysis):
         found = analysis.sel(history=history)
-        verdict = access.read(found[over_time.VERDICT])
+        verdict = access.read(found[measures.HISTORY_VERDICT])
         total, margin = (found[f"generalised_total_order{end}"].values for end in ("", "_interval"))
         named = [
             f"{labels.parameter(name)} {share(total[at], margin[at])}"
@@ -193,11 +193,11 @@ def _generalised(analysis: xr.Dataset, histories: list[str], measure: Measure) -
     rows: list[Row] = []
     for history in histories:
         found, key = analysis.sel(history=history), f"generalised_{measure.name}"
-        name = _judged(history, access.read(found[over_time.VERDICT]))
+        name = _judged(history, access.read(found[measures.HISTORY_VERDICT]))
         cells = (_index(found.isel(parameter=at), key) for at in range(found.sizes["parameter"]))
         rows.append([name, *cells])
     caption = _caption(f"Generalised Sobol indices, {measure.words}", analysis)
-    meanings = _meanings(analysis, over_time.VERDICT)
+    meanings = _meanings(analysis, measures.HISTORY_VERDICT)
     return Table(caption, ["History", *_parameters(analysis)], rows, meanings=meanings)
 
 

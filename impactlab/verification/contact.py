@@ -231,16 +231,14 @@ def _run_spring_mass(impact: Impact, duration: float, courant: float = 0.5) -> x
 
 
 def _compare_spring_mass(where: str, impact: Impact, duration: float) -> Comparisons:
-    """Compare one impact; curvature with -12 w/L^2.
-
-    Of that curvature the finite differences have (1 - 2/(nodes - 1)^2).
-    """
+    """Compare one impact; curvature with -12 w/L^2."""
     run = _run_spring_mass(impact, duration)
     exact, time = lumped.solve_spring_mass(impact, duration), run.time.values
     found = Comparisons(where)
     for name, (quantity, units) in HISTORIES.items():
         values = run[name].values, exact.at(name, time)
         found.curve(f"history of {quantity}", units, *values, SPRING_MASS_TOLERANCE)
+    # of the curvature the finite differences have (1 - 2/(nodes - 1)^2)
     label, tolerance = "history of mid-span curvature", 2.5 / (_NODES - 1) ** 2
     curvature = -12.0 / impact.beam.span**2 * exact.at("midspan_deflection", time)
     found.curve(label, "m-1", run.midspan_curvature.values, curvature, tolerance)

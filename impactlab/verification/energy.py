@@ -115,12 +115,9 @@ def _bend_modes(
 
 
 def _left_out(impact: Impact, grid: Discretisation, dt: float, runs: Sequence[xr.Dataset]) -> float:
-    """Return the energy in J of the modes left out at the end of the second of three runs.
-
-    They end a step dt (s) apart. The modes are what mid-span deflects beyond the nodes' modes.
-    """
+    """Return the energy in J of the modes left out at the end of the second of three runs."""
     flexibility, turn = modes_left_out(impact.beam, grid.nodes, _stiffness(impact, grid), dt)
-    middle = grid.nodes // 2
+    middle = grid.nodes // 2  # deflects by the modes left out beyond the nodes' modes
     q = [float(run.midspan_deflection[-1] - run.deflection[middle]) for run in runs]
     return (0.5 * q[1] ** 2 + 0.5 * (q[1] - q[0]) * (q[2] - q[1]) / turn) / flexibility
 
@@ -210,11 +207,8 @@ def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
 
 
 def _drawn(random: np.random.Generator, scheme: str) -> dict[str, Value]:
-    """Draw the values of a case: half of them soft, so that the beam yields.
-
-    The modal scheme has the same cases with half as many spacings.
-    """
-    soft = bool(random.random() < 0.5)
+    """Draw a case, of the modal scheme the same with half as many spacings."""
+    soft = bool(random.random() < 0.5)  # the beam yields
 
     def modulus() -> float:
         return float(random.choice([0.0, random.uniform(0.0, 20e9)]))
@@ -241,10 +235,7 @@ def _drawn(random: np.random.Generator, scheme: str) -> dict[str, Value]:
 
 
 def _created(audits: list[Audit]) -> list[Comparison]:
-    """Compare the marked runs with those in which Stronge's loop gives back more than it took.
-
-    Of laws whose creation of energy is known in closed form; for others see contact_laws.
-    """
+    """Compare the marked runs with those in which Stronge's loop gives back more than it took."""
     marked, known = [], []
     for found in audits:
         if found.impact.contact in ("hertz", "stronge") and found.ended:

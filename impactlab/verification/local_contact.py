@@ -189,10 +189,7 @@ def _under_pressure(
 
 
 def _driven(modes: BeamModes, load: Floats, h: float) -> tuple[Floats, Floats]:
-    """Return y (m) and its rate (m/s) of modes from rest, each exact for a load linear per step.
-
-    load: in N, shape (time, modes), at steps of h (s).
-    """
+    """Return y (m) and rate (m/s) of modes from rest; load (time, modes) linear in steps h."""
     omega = modes.frequencies
     cosine, sine = np.cos(omega * h), np.sin(omega * h)
     y, v = np.zeros_like(load), np.zeros_like(load)

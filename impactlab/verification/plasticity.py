@@ -218,11 +218,9 @@ def _static(beam: Beam, deflections: Floats) -> Floats:
 
 
 def _plateau(run: xr.Dataset) -> float:
-    """Return the mean load in N once the hinge has formed, which averages out vibrations.
-
-    The load is constant above 20/9 of the 6.1 mm at first yield.
-    """
+    """Return the mean load in N once the hinge has formed, which averages out vibrations."""
     deflection, force = _on_loading(run)
+    # constant above 20/9 of the 6.1 mm at first yield
     return float(force[deflection > 20e-3].mean())
 
 
@@ -272,10 +270,8 @@ def rigid_plastic_mode() -> Finding:
 
 
 def _struck(mass_ratio: float, energy_ratio: float) -> tuple[Impact, xr.Dataset]:
-    """Return an impact without gravity, and its run until somewhat after the beam has stopped.
-
-    The yield stress is so low that both the elastic deflection and the rotation are small.
-    """
+    """Return an impact without gravity, and its run until somewhat after the beam has stopped."""
+    # yield at so low a stress that both the elastic deflection and the rotation are small
     paper = with_beam_material(paper_impact(1.0, "hertz"), yield_stress=20e6)
     mass = mass_ratio * paper.beam.mass_per_length * paper.beam.span
     slow = replace(paper, sphere=replace(paper.sphere, mass=mass), gravity=0.0)
@@ -285,11 +281,7 @@ def _struck(mass_ratio: float, energy_ratio: float) -> tuple[Impact, xr.Dataset]
 
 
 def _permanent_deflection(run: xr.Dataset) -> float:
-    """Return the deflection (m) that the plastic strains leave when all vibration has ended.
-
-    Unit-load theorem: the integral of the plastic curvature times half the distance from the
-    nearer support.
-    """
+    """Return the deflection (m) that the plastic strains leave, by the unit-load theorem."""
     _, weights = quadrature.rule(_MODE_GRID.rule, _MODE_GRID.points)
     x, z = run.x.values, run.z.values
     curvature = run.plastic_strain.values @ (weights * z) / (weights @ z**2)

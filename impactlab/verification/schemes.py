@@ -153,10 +153,7 @@ def _orders(where: str, case: Case, runs: Sequence[xr.Dataset], order: float) ->
 
 
 def _apart(name: str, runs: Sequence[xr.Dataset]) -> Floats:
-    """Return how far an answer of each run is from the next run's, relatively.
-
-    Of histories the root mean square over the largest value.
-    """
+    """Return how far an answer of each run is from the next run's, relatively."""
     if name.startswith("history"):
         histories = [run[ANSWERS[name]].values for run in runs]
         return np.array([rms_error(one, other) for one, other in pairwise(histories)])

@@ -83,10 +83,7 @@ SCALES = {
 
 
 def _yielding(contact: str) -> Impact:
-    """Return the paper's case at 15 m/s with both kinds of hardening: sub-impacts while yielding.
-
-    With gravity, which scales as every acceleration does.
-    """
+    """Return the paper's case at 15 m/s with both hardenings: sub-impacts while yielding."""
     moduli = {"isotropic_hardening_modulus": 5e9, "kinematic_hardening_modulus": 3e9}
     return with_beam_material(paper_impact(15.0, contact), **moduli)
 
@@ -119,18 +116,15 @@ def similarity() -> Finding:
 
 
 def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> list[Comparison]:
-    """Compare the worst of the responses, and the worst of the curves.
-
-    Responses that are small differences of large ones are compared by the scale of those; missing
-    in both runs is no error.
-    """
+    """Compare the worst of the responses, and the worst of the curves."""
     energy = float(0.5 * run.sphere_mass * run.velocity**2)
+    # small differences of large numbers are compared by the scale of those
     yardsticks = {"contact_dissipation": energy, "plastic_dissipation": energy, "energy_error": 1.0}
     responses = []
     for name, entry in RESPONSES.items():
         expected, ours = run[name].item(), scaled[name].item() / scale.factor(entry.units)
         error = (ours - expected) / yardsticks.get(name, abs(expected) or 1.0)
-        if math.isnan(ours) and math.isnan(expected):
+        if math.isnan(ours) and math.isnan(expected):  # missing in both
             error = 0.0
         label, values = f"worst response: {entry.long_name}", (ours, expected, error)
         responses.append(

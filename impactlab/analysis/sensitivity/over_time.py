@@ -249,10 +249,8 @@ def sums(sample: Sample, name: str, good: Any, times: slice, most: int | None = 
 
 
 def _statistics(block: Floats, good: Any, factors: int) -> Floats:
-    """Return the columns of `Sums`, (base samples, column, time), 0 of those to leave out.
-
-    block: (base samples, runs of one, time), in SALib's order.
-    """
+    """Return the columns of `Sums`, (base samples, column, time), 0 of those to leave out."""
+    # block: (base samples, runs of one, time), in SALib's order
     kept = np.isfinite(block).all(axis=1) & good[:, None]
     block = np.where(kept[:, None], block, 0.0)
     a, ab, b = block[:, :1], block[:, 1 : 1 + factors], block[:, -1:]

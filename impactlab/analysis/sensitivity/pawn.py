@@ -83,13 +83,9 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
 def _median(
     weights: Floats, members: npt.NDArray[np.bool_], words: bool, last: npt.NDArray[np.intp]
 ) -> tuple[float, float]:
-    """Return median and maximum of the distances of slides, as `distances`.
-
-    The median is that over the slides that are not empty, as in SALib; of words it is that over
-    the runs, so that a word counts by how often it is drawn.
-    """
+    """Return median and maximum of the `distances` of the slides with runs, as in SALib."""
     apart = distances(weights, members, last)
-    if words:
+    if words:  # each counts by how often it is drawn
         apart = np.repeat(apart, (weights @ members).astype(int))
     return float(np.nanmedian(apart)), float(np.nanmax(apart))
 

@@ -152,15 +152,12 @@ def _judge_limit(
     literal: bool,
     below: bool,
 ) -> Judgement:
-    """Judge the strain below the limit, or above it; unknown where U encloses the limit.
-
-    place: beyond so many beam depths, after all contacts; or a study and its response.
-    """
+    """Judge the strain below the limit, or above it; unknown where U encloses the limit."""
     if isinstance(place, tuple):
         study, response = place
         found = finest_grid(runs_of(data, study), response, velocity=velocity)
         strain = replace(found, name="PEEQ", percent=True)
-    else:
+    else:  # beyond so many beam depths, after all contacts
         strain = _strain_beyond(data, velocity, place)
     if not np.isfinite(strain.uncertainty):
         raise UnknownError("fewer than three grids give no uncertainty")

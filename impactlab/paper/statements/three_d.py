@@ -110,14 +110,12 @@ def _largest(values: Floats) -> float:
 
 
 def _distance(data: Data, variable: str, norm: Norm, shifted: bool = False) -> Number:
-    """Return the norm of the difference of two histories over that of the 3-D model's.
-
-    shifted: after the shift in time that makes it least, of both; its uncertainty is the same.
-    """
+    """Return the norm of the difference of two histories over that of the 3-D model's."""
     time, ours = _histories(data, variable, BEAM)
     _, theirs = _histories(data, variable, SOLID)
     scale = norm(theirs[0])
     width = 3.0 * sum(norm(curves[1] - curves[0]) for curves in (ours, theirs)) / scale
+    # the shift of either history that makes the difference least; its uncertainty is the same
     delays = np.linspace(-0.1, 0.1, 401) * time[-1] if shifted else np.zeros(1)
     gaps = [norm(np.interp(time - delay, time, ours[0]) - theirs[0]) for delay in delays]
     best = int(np.argmin(gaps))
@@ -248,10 +246,7 @@ def _contact_radius(data: Data, factor: float) -> Number:
 
 
 def _zone_extent(data: Data, variable: str, factor: float) -> Number:
-    """Return an extent from the centre of the impact in m.
-
-    Its uncertainty is three times the range of the three finest meshes, and an element at least.
-    """
+    """Return an extent from the centre of the impact in m, to within an element at best."""
     if MESHES not in data:
         raise UnknownError(f"the study {MESHES} has not been solved")
     runs = data[MESHES].expand_dims("velocity").sortby("element_size")
