@@ -116,9 +116,9 @@ def write_netcdf(
         elif variable.dtype.kind == "f" and variable.ndim > 1 and variable.size > 10_000:
             encoding[str(name)] = {"zlib": True, "complevel": 1}
         if variable.chunks is None:
-            digests[str(name)] = _digest(_head(variable), variable.data)
+            digests[str(name)] = _digest(variable.attrs, variable)
         else:  # in the one pass in which the values are computed
-            hashes[str(name)] = hashed = _hash(_head(variable))
+            hashes[str(name)] = hashed = _hash(variable.attrs, variable)
             variable.data = _noted(variable.data, hashed)
             if variable.data.npartitions > 1 and "zlib" in (storage := encoding.get(str(name), {})):
                 *rows, last = variable.data.chunksize  # a chunk of the file is within one block
@@ -147,13 +147,9 @@ def _noted(values: Any, hashed: blake2b) -> Any:
     parts, before = [], None
     for shape, one in zip(shapes, blocks.to_delayed().ravel(), strict=True):
         noted = delayed(note)(one, before)  # after the block before it
-        before = delayed(_nothing)(noted)
+        before = delayed(lambda block: None)(noted)  # no block is kept for the next one
         parts.append(da.from_delayed(noted, shape, values.dtype))  # type: ignore[no-untyped-call]
     return da.concatenate(parts) if len(parts) > 1 else parts[0]  # type: ignore[no-untyped-call]
-
-
-def _nothing(block: Any) -> None:
-    """Return nothing, so that no block is kept for the next one."""
 
 
 def block_rows(shape: tuple[int, ...]) -> int:
@@ -166,8 +162,8 @@ def opened(path: Path, *contents: str, indexed: bool = True) -> Iterator[xr.Data
     """Give a dataset whose file is open, its values neither read nor checked.
 
     contents: of CONTENTS, what it may hold; none: anything. indexed: with an index per dimension,
-    which is held in memory. Raises OSError naming an unreadable
-    file, ValueError naming one that holds something else.
+    which is held in memory. Raises OSError naming an unreadable file, ValueError naming one that
+    holds something else.
     """
     set_chunk_cache(_CACHE)
     with _readable(path):
@@ -193,7 +189,7 @@ def read_netcdf(path: Path, *contents: str) -> xr.Dataset:
     """
     with opened(path, *contents) as lazy, _readable(path):
         dataset = lazy.load()
-    _check(dataset, _digests(dataset), path)
+    _check(dataset, path)
     return dataset
 
 
@@ -206,9 +202,7 @@ def checked(path: Path, *contents: str, blocks: bool = False) -> Iterator[xr.Dat
     not hold any whole. Raises as `read_netcdf` does.
     """
     with opened(path, *contents, indexed=False) as lazy:
-        with _readable(path):
-            found = _digests(lazy)
-        _check(lazy, found, path)
+        _check(lazy, path)
         for dim in map(str, lazy.dims):
             if dim in lazy.coords and dim != "run":
                 lazy = lazy.set_xindex(dim)
@@ -226,13 +220,11 @@ def checked(path: Path, *contents: str, blocks: bool = False) -> Iterator[xr.Dat
             yield lazy
 
 
-def _digests(dataset: xr.Dataset) -> dict[str, str]:
-    found = {str(name): _digest(_head(each), each) for name, each in dataset.variables.items()}
-    return found | {_ATTRIBUTES: _digest(dataset.attrs)}
-
-
-def _check(dataset: xr.Dataset, found: Mapping[str, str], path: Path) -> None:
-    """Raise ValueError where the digests found are not those written."""
+def _check(dataset: xr.Dataset, path: Path) -> None:
+    """Raise ValueError where the digests of a dataset are not those written."""
+    with _readable(path):
+        found = {str(name): _digest(each.attrs, each) for name, each in dataset.variables.items()}
+    found[_ATTRIBUTES] = _digest(dataset.attrs)
     kept: dict[str, str] = json.loads(dataset.attrs["checksums"])
     if changed := sorted(name for name in kept.keys() | found if kept.get(name) != found.get(name)):
         command = CONTENTS[dataset.attrs["content"]]
@@ -265,23 +257,21 @@ def _readable(path: Path) -> Iterator[None]:
         raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
 
 
-def _head(variable: xr.Variable) -> dict[str, Any]:
-    """Return what is known of a variable beside its values."""
-    kind = "text" if variable.dtype.kind in "OUS" else variable.dtype.name
-    return variable.attrs | {" dims": variable.dims, " shape": variable.shape, " kind": kind}
-
-
-def _digest(attrs: Mapping[Any, Any], values: Any = None) -> str:
+def _digest(attrs: Mapping[Any, Any], variable: xr.Variable | None = None) -> str:
     """Return a hash of attributes and values, the same before writing and after reading."""
-    digest = _hash(attrs)
-    if values is not None and values.dtype.kind in "OUS":
-        digest.update(json.dumps(np.asarray(values).tolist(), default=str).encode())
-    elif values is not None:
-        _update(digest, values)
+    digest = _hash(attrs, variable)
+    if variable is not None and variable.dtype.kind in "OUS":
+        digest.update(json.dumps(np.asarray(variable).tolist(), default=str).encode())
+    elif variable is not None:
+        _update(digest, variable)
     return digest.hexdigest()
 
 
-def _hash(attrs: Mapping[Any, Any]) -> blake2b:
+def _hash(attrs: Mapping[Any, Any], variable: xr.Variable | None) -> blake2b:
+    """Return a hash of attributes, with shape and kind of a variable."""
+    if variable is not None:
+        kind = "text" if variable.dtype.kind in "OUS" else variable.dtype.name
+        attrs = {**attrs, " dims": variable.dims, " shape": variable.shape, " kind": kind}
     plain = {key: np.ravel(each).tolist() for key, each in attrs.items() if key not in _UNCHECKED}
     return blake2b(json.dumps(plain, sort_keys=True, default=str).encode(), digest_size=16)
 

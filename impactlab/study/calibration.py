@@ -74,9 +74,8 @@ def calibrate(
     measurements = read_measurements(given, first)
     surrogates, numerical = {}, {}
     for name, solved in runs.items():
-        fitted = None
-        if surrogate.applies(solved):
-            fitted = surrogate.packed(solved, surrogate.analysis(solved))
+        applies = surrogate.applies(solved)
+        fitted = surrogate.packed(solved, surrogate.analysis(solved)) if applies else None
         if fitted is None:
             raise ValueError(
                 f"study {study.name!r}: its sample has no surrogate: draw numbers from "
@@ -86,9 +85,9 @@ def calibrate(
     if kept := steps.evidence(study, folder / "runs.nc").get("resolution"):
         grid = read_netcdf(kept, "resolution")["grid_relative"]
         numerical = dict(zip(grid["response"].values.tolist(), grid.values.tolist(), strict=True))
-    before = _drawn(study)
-    known = before.keys() == surrogates.keys()
-    found = calibrated(surrogates, measurements, numerical, model_error, before if known else None)
+    weights = _drawn(study)
+    before = weights if weights.keys() == surrogates.keys() else None
+    found = calibrated(surrogates, measurements, numerical, model_error, before)
     found = _confirmed(found, runs, measurements, folder / CALIBRATION, engine)
     about = {key: first.attrs[key] for key in ("study", "title", "study_text", "study_sha256")}
     found = found.assign_attrs(about | {"model_error": model_error})
@@ -125,22 +124,19 @@ def _models(
 def _drawn(study: steps.AnyStudy) -> dict[str, float]:
     """Return the contact laws that a sample draws, with their probabilities; else {}."""
     given = study.sampling.parameters.get("contact")
-    if not isinstance(given, Choice):
-        return {}
-    drawn = given.arguments()
+    drawn = given.arguments() if isinstance(given, Choice) else {"values": (), "weights": ()}
     return dict(zip(drawn["values"], drawn["weights"], strict=True))
 
 
 def _solved(study: steps.AnyStudy, folder: Path, engine: Engine) -> xr.Dataset:
     """Return the runs of a study, solved where they are not."""
     path = folder / "runs.nc"
-    if path.exists():
-        runs = read_netcdf(path, "runs")
-        if runs.attrs.get("study_sha256") == study.sha256:
-            return runs
-    folder.mkdir(parents=True, exist_ok=True)
-    steps.run(study, path, engine)
-    return read_netcdf(path, "runs")
+    found = read_netcdf(path, "runs") if path.exists() else None
+    if found is None or found.attrs.get("study_sha256") != study.sha256:
+        folder.mkdir(parents=True, exist_ok=True)
+        steps.run(study, path, engine)
+        found = read_netcdf(path, "runs")
+    return found
 
 
 def _confirmed(
@@ -191,13 +187,10 @@ def _confirmed(
             f" {float(ratio[at]):.2g} times its stated error: draw more runs, or narrower ranges"
         )
     words = "root mean squared difference of surrogate and solver at draws of the posterior"
+    missing = RUNS - answered, {"long_name": "draws without an answer"}
     return found.assign(
         confirmed_error=("measurement", error, {"long_name": words}),
-        confirmed_missing=(
-            "measurement",
-            RUNS - answered,
-            {"long_name": "draws without an answer"},
-        ),
+        confirmed_missing=("measurement", *missing),
         confirmed_runs=((), solved, {"long_name": "runs solved at draws of the posterior"}),
     )
 

@@ -189,11 +189,10 @@ def _cases(study: Study, model: Any, columns: Mapping[str, Sequence[Value] | Arr
     """Return the table of cases of these runs. Raises StudyError where one is impossible."""
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
     try:
-        cases: Array = model.table(*base, duration=study.duration, varied=columns)
+        return np.asarray(model.table(*base, duration=study.duration, varied=columns))
     except ValueError as error:
         reason = f"gives runs that are impossible ({error}): take bounded distributions"
         raise StudyError(Problem(str(study.path), "sampling.parameters", reason)) from None
-    return cases
 
 
 def _largest_run(
@@ -203,13 +202,13 @@ def _largest_run(
     sampling = study.sampling
     found = {name: column[int(np.argmax(cost))].item() for name, column in sample.items()}
     for name in found:
+        given = sampling.varied[name]
         if isinstance(sampling, Grid):
-            values = sampling.parameters[name]
-            ends = list(values) if isinstance(values[0], str) else [min(values), max(values)]
+            ends = list(given) if isinstance(given[0], str) else [min(given), max(given)]
         elif name in sampling.words:
-            ends = list(sampling.varied[name].values)
+            ends = list(given.values)
         else:
-            ends = sampling.varied[name].quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
+            ends = given.quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
         columns = {key: [value] * len(ends) for key, value in found.items()} | {name: ends}
         found[name] = ends[int(np.argmax(model.work(_cases(study, model, columns))))]
     return found

@@ -14,8 +14,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import partial, reduce
 from itertools import product
+from operator import add
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
@@ -92,17 +93,13 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
     pilots = partial(solve_along, study, cases, folder, engine)
     with locked(folder):  # over all pilot runs
         found = _evidence(study, pilots, wishes.tolerance, wishes.responses or study.responses)
-    attrs: dict[str, Any] = {
-        "study": study.name,
-        "study_sha256": study.sha256,
-        "kernels_sha256": SOURCES_HASH,
-        "tolerance": wishes.tolerance,
-    }
+    attrs: dict[str, Any] = {"study": study.name, "study_sha256": study.sha256}
+    attrs |= {"kernels_sha256": SOURCES_HASH, "tolerance": wishes.tolerance}
     chosen = recommended_grid(found, grid) if study.auto else grid
     if chosen is not None:
         at = {axis: getattr(chosen, axis) for axis in AXES}
-        parts = [found[f"{axis}_uncertainty"].sel({axis: at[axis]}, drop=True) for axis in AXES]
-        amount = parts[0] + parts[1] + parts[2]
+        parts = (found[f"{axis}_uncertainty"].sel({axis: at[axis]}, drop=True) for axis in AXES)
+        amount = reduce(add, parts)
         share = relative(amount, found["nodes_value"].isel(nodes=-1, drop=True)).max("case")
         found = found.assign(grid_uncertainty=amount, grid_relative=share)
         attrs |= {f"grid_{axis}": level for axis, level in at.items()}
@@ -213,17 +210,16 @@ def _grid_options(found: xr.Dataset, study: Study, tolerance: float) -> dict[str
     """
     levels = np.array(list(product(*(found[axis].values for axis in AXES))), dtype=float)
     own = study.discretisation
-    varied = dict(
-        zip(AXES, np.vstack([levels, [own.nodes, own.points, own.courant]]).T, strict=True)
-    )
+    together = np.vstack([levels, [own.nodes, own.points, own.courant]])
+    varied = dict(zip(AXES, together.T, strict=True))
     cases = case_table(study.impact, own, duration=study.duration, varied=varied)
     *prices, ours = node_steps(cases) * (1.0 + _POINT_COST * cases["points"])
     price = np.array(prices) / ours
     order = np.argsort(price, kind="stable")
     sorted_levels = zip(AXES, levels[order].T, strict=True)
     columns = {axis: xr.DataArray(column, dims="candidate") for axis, column in sorted_levels}
-    parts = [_worst(found, axis).sel({axis: columns[axis]}).drop_vars(axis) for axis in AXES]
-    worst = (parts[0] + parts[1] + parts[2]).transpose("response", "candidate")
+    parts = (_worst(found, axis).sel({axis: columns[axis]}).drop_vars(axis) for axis in AXES)
+    worst = reduce(add, parts).transpose("response", "candidate")
     return {f"candidate_{axis}": column for axis, column in columns.items()} | {
         "candidate_cost": xr.DataArray(price[order], dims="candidate"),
         "candidate_uncertainty": worst,
@@ -246,8 +242,7 @@ def apply_recommendation(study: Study, found: xr.Dataset) -> Study:
     assert auto is not None
     least = found["candidate_uncertainty"].min("candidate")
     missed = []
-    for name in found["response"].values[(found["asked"] & ~found["reached"]).values]:
-        share = least.sel(response=name).item()
+    for name, share in least[(found["asked"] & ~found["reached"]).values].to_series().items():
         best = f"{100 * share:.2g} % at best" if np.isfinite(share) else "nothing bounds its error"
         missed.append(f"{name} ({best})")
     if missed:
@@ -283,14 +278,8 @@ def solve_along(
     varied["case"] = np.arange(len(next(iter(cases.values()))))
     varied[axis] = axis, np.array(levels)
     scalars = {name: ((), value) for name, value in fixed.items() if name not in varied}
-    attrs = {
-        "study": study.name,
-        "varied": [*cases, axis],
-        "responses": list(study.responses),
-        "histories": 0,
-        "profiles": 0,
-        "history_samples": study.store.samples,
-    }
+    attrs = {"study": study.name, "varied": [*cases, axis], "responses": list(study.responses)}
+    attrs |= {"histories": 0, "profiles": 0, "history_samples": study.store.samples}
     if study.python:
         attrs["solver"] = resolve_name("impactlab.study.solvers.own:solver_name")(study)
     runs = execute(described(xr.Dataset(coords=scalars | varied, attrs=attrs)), folder, engine)

@@ -84,10 +84,8 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
 def _check_draws(study: Study, drawn: dict[str, np.ndarray[Any, Any]]) -> None:
     """Raise StudyError where the model refuses a run that was drawn; words are checked before."""
     found = None
-    for name, values in drawn.items():
-        if name in study.sampling.words:
-            continue
-        for extreme in (float(values.min()), float(values.max())):
+    for name in [name for name in drawn if name not in study.sampling.words]:
+        for extreme in (float(drawn[name].min()), float(drawn[name].max())):
             try:
                 check_alone(PARAMETERS[name], extreme)
             except ValueError as error:

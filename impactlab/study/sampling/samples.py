@@ -17,6 +17,7 @@ _FEWEST_TO_GROW = 64
 """Base samples from which on bootstrap intervals are good enough to decide on growth."""
 _FEWEST_OF_WORD = 20
 """Runs per word: bootstrap resamples then practically never hold fewer than two."""
+_EVEN = "must be even: the steps would favour some levels otherwise"
 _SEARCH = 500_000
 """Limit on trajectories times chosen ones squared: the search then takes about a minute."""
 
@@ -64,11 +65,8 @@ class Sobol(Grouped):
     @model_validator(mode="after")
     def _check_until(self) -> Self:
         if self.until and self.base_samples < _FEWEST_TO_GROW:
-            reason = (
-                f"must be at least {_FEWEST_TO_GROW} with until: the intervals of fewer cannot be "
-                "trusted"
-            )
-            raise at_key("base_samples", reason)
+            reason = "with until: the intervals of fewer cannot be trusted"
+            raise at_key("base_samples", f"must be at least {_FEWEST_TO_GROW} {reason}")
         if self.until and self.until.runs < self.runs:
             raise at_key("until.runs", f"must be at least the first sample's {self.runs:,} runs")
         return self
@@ -97,12 +95,7 @@ class Morris(Grouped):
     method: Literal["morris"]
     trajectories: Annotated[Whole, Field(ge=2, le=1_000_000)]
     levels: Annotated[
-        Whole,
-        Field(ge=2, le=100),
-        requires(
-            lambda levels: levels % 2 == 0,
-            "must be even: the steps would favour some levels otherwise",
-        ),
+        Whole, Field(ge=2, le=100), requires(lambda levels: levels % 2 == 0, _EVEN)
     ] = 4
     optimal_trajectories: Annotated[Whole, Field(ge=0, le=1000)] = 0
 
@@ -125,11 +118,8 @@ class Morris(Grouped):
             reason = f"must lie from 2 to {most} (below trajectories), or be 0"
             raise at_key("optimal_trajectories", reason)
         if self.trajectories * chosen**2 > _SEARCH:
-            reason = (
-                "takes too long to choose: trajectories × optimal_trajectories² may be "
-                f"at most {_SEARCH:,}"
-            )
-            raise at_key("optimal_trajectories", reason)
+            reason = "takes too long to choose: trajectories × optimal_trajectories² may be at most"
+            raise at_key("optimal_trajectories", f"{reason} {_SEARCH:,}")
         return self
 
     def draws(self) -> Floats:
@@ -231,7 +221,7 @@ class Latin(Sample):
                 raise at_key(f"correlations.{at}", "is given before: state each pair once")
             seen.add(frozenset(pair))
         if wrong := contradicting(list(self.varied), self.correlations):
-            inside = [each for each in self.correlations if {*each[:2]} <= {*wrong}]
+            inside = (each for each in self.correlations if {*each[:2]} <= {*wrong})
             listed = ", ".join(f"{one} with {other} {rank:g}" for one, other, rank in inside)
             reason = (
                 f"contradict each other ({listed}; pairs that are not listed have 0): the matrix "

@@ -166,9 +166,8 @@ class Sample(Sampling):
         ends = {
             name: each.values if isinstance(each, Choice) else tuple(each.bounds().values())
             for name, each in self.varied.items()
-        }
-        single = {name: (value,) for name, value in self.fixed.items()}
-        return {name: values for name, values in (ends | single).items() if values}
+        } | {name: (value,) for name, value in self.fixed.items()}
+        return {name: values for name, values in ends.items() if values}
 
     @property
     def group_of(self) -> dict[str, str]:
@@ -182,8 +181,8 @@ class Sample(Sampling):
     def by_salib(self, sampler: str, number: int, *others: str, **options: Any) -> Floats:
         """Draw with a module of SALib.sample; others: names of parameters that are not varied."""
         names = [*self.varied, *others]
-        problem: dict[str, Any] = {"num_vars": len(names), "names": names}
-        problem["bounds"] = [[0.0, 1.0]] * len(names)
+        bounds = [[0.0, 1.0]] * len(names)
+        problem: dict[str, Any] = {"num_vars": len(names), "names": names, "bounds": bounds}
         if self.group_of:
             problem["groups"] = list(self.group_of.values())
         generator = np.random.default_rng(self.seed)  # SALib ignores some seeds of 0

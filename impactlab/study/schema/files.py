@@ -27,6 +27,7 @@ from impactlab.study.schema.study import (
     Verification,
 )
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
+from impactlab.variables import RESPONSES
 from impactlab.verification.functions import FUNCTIONS
 
 
@@ -133,6 +134,7 @@ def _study(source: Source) -> Study:
     """Return a study of impacts. Raises StudyError with every problem of the file."""
     path, data = str(source.path), dict(source.data)
     python, units = _python_responses(data.pop("python_responses", {}), path)
+    units = {name: each.units for name, each in RESPONSES.items()} | units
     problems: list[Problem] = []
     try:
         file = validated(StudyFile, data, path, responses=units)

@@ -71,7 +71,7 @@ def names(kind: str, choices: Collection[str]) -> PlainValidator:
     """Return the reader of `all`, or of a list of some of the choices (and of the study's own)."""
 
     def read(data: Any, info: ValidationInfo) -> tuple[str, ...]:
-        every = [*choices, *(info.context or {}).get(f"{kind}s", ())]
+        every = dict.fromkeys([*choices, *(info.context or {}).get(f"{kind}s", ())])
         words: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of(kind, every)]])
         if data == "all":
             return tuple(choices)
@@ -187,8 +187,7 @@ def validated(
 ) -> S:
     """Return the content of a file as a section. Raises StudyError with all of its problems.
 
-    parameters: those that it can vary. responses: those of its own, beside those of all studies,
-    with their units.
+    parameters: those that it can vary. responses: those that it may have, with their units.
     """
     keys: dict[int, tuple[str, ...]] = {}
     context = {"keys": keys, "parameters": parameters, "responses": responses or {}}

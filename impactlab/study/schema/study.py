@@ -154,21 +154,13 @@ class Analysis(Section):
     failed_runs: Annotated[str, one_of("policy", ("fail", "impute"))] = "fail"
 
 
-def read_limits(known: Mapping[str, str]) -> PlainValidator:
-    """Return the reader of limits by response, in SI units.
-
-    known: units of the responses that a study may have beside its own, which the context gives.
-    """
-
-    def read(data: Any, info: ValidationInfo) -> dict[str, float]:
-        units = {**known, **(info.context or {}).get("responses", {})}
-        return by_name("Limits", {name: quantity(each) for name, each in units.items()}, data, info)
-
-    return PlainValidator(read)
+def read_limits(data: Any, info: ValidationInfo) -> dict[str, float]:
+    """Read limits by response, in SI units; the context has those that the study may have."""
+    units: Mapping[str, str] = info.context["responses"]  # type: ignore[index]
+    return by_name("Limits", {name: quantity(each) for name, each in units.items()}, data, info)
 
 
-Limits = Annotated[Mapping[str, float], read_limits({})]
-"""Limits of the responses of a function."""
+Limits = Annotated[Mapping[str, float], PlainValidator(read_limits)]
 
 
 class StudyFile(Heading):
@@ -182,9 +174,7 @@ class StudyFile(Heading):
     sampling: Annotated[Grid | Sample, PlainValidator(read_sampling)]
     responses: Annotated[tuple[str, ...], names("response", RESPONSES)] = tuple(RESPONSES)
     analyses: Annotated[tuple[str, ...], names("analysis", ANALYSES)] = tuple(ANALYSES)
-    limits: Annotated[
-        Mapping[str, float], read_limits({name: each.units for name, each in RESPONSES.items()})
-    ] = Field(default_factory=dict)
+    limits: Limits = Field(default_factory=dict)
     store: Store = Field(default_factory=Store)
     analysis: Analysis | None = None
     measurements: Names = ()
