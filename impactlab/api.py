@@ -183,7 +183,7 @@ class Study:
         """
         from impactlab.study.sampling.design import design
 
-        return design(steps.resolved_before(self.declared, self.folder) or self.declared)
+        return design(steps.resolved(self.declared, self.folder) or self.declared)
 
     def estimate(self, *, workers: int = _CORES) -> Estimate:
         """Return what the runs cost: seconds, memory and disk, within a factor of about 3."""

@@ -77,8 +77,7 @@ _BLOCK = 1 << 20
 """Numbers that are in memory together where a variable is read or written in blocks."""
 _TOGETHER = 128
 """Most times in a chunk of a file: few times of all runs are read without the others."""
-_ATTRIBUTES = "attributes"
-"""The name of the digest of a dataset's own attributes."""
+_ATTRIBUTES = "attributes"  # the name of the digest of a dataset's own attributes
 _UNCHECKED = {"created", "versions", "source_revision", "processor", "history", "checksums"}
 """Attributes that differ between equal datasets."""
 

@@ -23,8 +23,7 @@ from impactlab.solver.contact import CONTACT_LAWS
 if TYPE_CHECKING:
     import xarray as xr
 
-_STOPPED = 256
-"""Beside the kernels' bits: the 3-D model alone has it."""
+_STOPPED = 256  # beside the kernels' bits: the 3-D model alone has it
 FAILURES: dict[str, tuple[int, str]] = {
     "diverged": (outputs.DIVERGED, "the run diverged; every response is missing"),
     "first_contact_unfinished": (

@@ -22,15 +22,6 @@ new_file: Any = partial(typer.Option, dir_okay=False)
 new_folder: Any = partial(typer.Option, file_okay=False)
 """An option for a folder to write to; a file of this name is refused."""
 RESULTS = Path("results")
-WITNESS = "witness"
-"""Folder of the 3-D model beside a study's results."""
-
-
-def results_file(study: str, name: str) -> Path:
-    """results/STUDY/NAME. Raises ValueError where a study's name or a link leads elsewhere."""
-    from impactlab.study.steps import results_folder
-
-    return results_folder(study, RESULTS) / name
 
 
 def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:

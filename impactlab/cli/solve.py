@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_solving
-from impactlab.cli.options import RunsFile, StudyFile, chosen, given, new_file, results_file
+from impactlab.cli.options import RunsFile, StudyFile, chosen, given, new_file
 
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
 Force = Annotated[
@@ -49,7 +49,7 @@ def recommend(
     from impactlab.study.schema.study import Auto
 
     declared = read_impacts(study)
-    path = output or results_file(declared.name, RESOLUTION)
+    path = output or steps.results_folder(declared.name) / RESOLUTION
     stop_solving()
     wishes = declared.auto or Auto()
     if tolerance:
@@ -78,11 +78,11 @@ def design(
     from impactlab.study.schema.files import read_study
 
     declared = read_study(study)
-    path = output or results_file(declared.name, "design.nc")
+    path = output or steps.results_folder(declared.name) / "design.nc"
     stop_solving()
     engine = Engine(workers=_ALL)
     found = steps.resolved(declared, path.parent, engine, print_recommendation)
-    write_netcdf(design_of(found), path, "design")
+    write_netcdf(design_of(found or declared), path, "design")
 
 
 def run(
@@ -118,7 +118,7 @@ def run(
 
     stored = read_netcdf(design_file, "design") if design_file.suffix == ".nc" else None
     study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
-    path = output or results_file(study.name, "runs.nc")
+    path = output or steps.results_folder(study.name) / "runs.nc"
     if dry_run:
         cost = steps.price(study, path.parent, workers)
         for problem in cost.implausible:
@@ -177,12 +177,13 @@ def calibrate(
     """
     stop_solving()
     from impactlab.report.calibration import draw_and_tell
+    from impactlab.study import steps
     from impactlab.study.calibration import calibrate as calibration
     from impactlab.study.engine import Engine
     from impactlab.study.schema.files import read_study
 
     declared = read_study(study)
-    folder = results_file(declared.name, "")
+    folder = steps.results_folder(declared.name)
     laws = contact.replace(",", " ").split()
     error = given("--model-error", model_error, "1")
     found = calibration(declared, folder, measurements, Engine("threads", workers), laws, error)
@@ -214,7 +215,7 @@ def verify(
         findings = read_netcdf(study, "findings")
     else:
         declared = read_verification(study)
-        path = output or results_file(declared.name, "findings.nc")
+        path = output or steps.results_folder(declared.name) / "findings.nc"
         findings = steps.check(declared)
         write_netcdf(findings, path, "findings")
     outcomes = unpacked(findings)
@@ -230,25 +231,26 @@ def go(study: StudyFile, workers: Threads = _ALL, force: Force = False) -> None:
     Of a verification: verify, figures and report. Runs that are solved are not solved again.
     """
     from impactlab.cli import results
+    from impactlab.study import steps
     from impactlab.study.sampling.samples import Sobol
     from impactlab.study.schema.files import read_any
     from impactlab.study.schema.study import Study, Verification
-    from impactlab.study.steps import evidence
 
     declared = read_any(study)
     failed = False
     if isinstance(declared, Verification):
-        stored = [results_file(declared.name, "findings.nc")]
+        stored = [steps.results_folder(declared.name) / "findings.nc"]
         try:
             verify(study)
         except typer.Exit:  # the report comes first, the verdict last
             failed = True
     else:
-        stored = [results_file(declared.name, name) for name in ("runs.nc", "analysis.nc")]
+        folder = steps.results_folder(declared.name)
+        stored = [folder / "runs.nc", folder / "analysis.nc"]
         run(study, workers=workers, force=force)
         if isinstance(declared, Study) and isinstance(declared.sampling, Sobol):
             refine(stored[0], workers=workers)
-        results.analyse(stored[0], **evidence(declared, stored[0]))
+        results.analyse(stored[0], **steps.evidence(declared, stored[0]))
     results.figures(stored)
     results.report(stored)
     if failed:

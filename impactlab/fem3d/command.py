@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_kept
-from impactlab.cli.options import WITNESS, given, new_folder, results_file
+from impactlab.cli.options import given, new_folder
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,6 +82,7 @@ def witness(
     from impactlab.fem3d.comparison.plan import case_of, planned, print_plan
     from impactlab.fem3d.deck import FLAVOURS
     from impactlab.study.schema.files import read_impacts
+    from impactlab.study.steps import results_folder
 
     if deck and deck not in FLAVOURS:
         raise ValueError(f"--deck {deck}: must be one of {', '.join(FLAVOURS)}")
@@ -110,7 +111,7 @@ def witness(
     plan = planned(case, **numbers)
     # So that no answers to other options are overwritten.
     parts = [re.sub(r"[^\w.]+", "-", f"{name}-{text}") for name, text in asked.items()]
-    folder = output or results_file(case.name, "_".join([WITNESS, *parts]))
+    folder = output or results_folder(case.name) / "_".join(["witness", *parts])
     problem = "" if deck and plan.mesh else plan.problem(workers)
     if problem and not (dry_run or force):
         raise ValueError(problem)

@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-_MOST = 2**31 - 1
-"""The largest count; no memory holds so much."""
+_MOST = 2**31 - 1  # the largest count; no memory holds so much
 
 
 class Column(np.ndarray[Any, Any]):

@@ -28,19 +28,15 @@ def node_steps(cases: Any) -> Any:
     return 0.5 * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
 
 
-_RATES = (1.0, 1.0, 1.5, 4.0, 4.0)
-"""Cost of a node per step over the paper's, by beam model."""
-_BESIDES = 20.0
-"""Cost of a step beside its nodes, in nodes."""
+_RATES = (1.0, 1.0, 1.5, 4.0, 4.0)  # cost of a node per step over the paper's, by beam model
+_BESIDES = 20.0  # cost of a step beside its nodes, in nodes
 _MODE, _MODES_BESIDES = 0.15, 12.0
 """Cost of a mode per step in contact over that of a node, and of a step beside its modes."""
 _YIELDING = 1.2
 """Cost of a mode per step with yielding sections, which alone make the modal scheme go step by step
 after the contact."""
-_CONTACTS = 3.0
-"""Time in contact, sub-impacts and all, over that of Hertz on a half-space."""
-_LUMPED = 1000.0
-"""Steps of a lumped model in the largest one."""
+_CONTACTS = 3.0  # time in contact, sub-impacts and all, over that of Hertz on a half-space
+_LUMPED = 1000.0  # steps of a lumped model in the largest one
 
 
 def work(cases: Any) -> Any:

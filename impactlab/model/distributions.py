@@ -20,8 +20,7 @@ from impactlab.types import Floats
 Arguments = Mapping[str, Any]
 Correlations = Sequence[tuple[str, str, float]]
 """Two parameters and Spearman's rank correlation of them; pairs that are not listed have 0."""
-_LEAST = 1e-8
-"""Smallest eigenvalue of a matrix that counts as positive definite."""
+_LEAST = 1e-8  # smallest eigenvalue of a matrix that counts as positive definite
 
 
 _FORMS: dict[str, Callable[..., Any]] = {

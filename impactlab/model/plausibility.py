@@ -21,8 +21,7 @@ LIGHT = 299_792_458.0
 _PIERCES = 0.1
 """Damage number rho v^2/sigma_y from which on metals deform extensively (Johnson, Impact Strength
 of Materials, 1972): a dent is then no longer small beside the sphere."""
-_STOCKY = 0.2
-"""Depth over span from which on shear is no small part of a beam's deflection."""
+_STOCKY = 0.2  # depth over span from which on shear is no small part of a beam's deflection
 
 
 class ImplausibleWarning(UserWarning):

@@ -35,8 +35,7 @@ _TIMES = r"(?:\s*[*·]\s*(?!\*)|\s+)"
 _PRODUCT = rf"{_FACTOR}(?:{_TIMES}{_FACTOR})*"
 _QUANTITY = re.compile(rf"({_NUMBER})\s*(%|{_PRODUCT}(?:\s*/\s*{_FACTOR})*)?")
 _LONGEST = 80
-_LONG = 0.1
-"""A duration in s that nobody means who gives no unit."""
+_LONG = 0.1  # a duration in s that nobody means who gives no unit
 _SUPERSCRIPTS = str.maketrans("⁻¹²³", "-123")
 
 

@@ -30,14 +30,10 @@ from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 
 LINES = 5
-_LIMITS = 2
-"""Lines that limits may take of these."""
-_MATTERS = 0.01
-"""Smallest share of the largest index that is named."""
-_INTERACTS = 0.02
-"""Smallest share of the variance from interactions that is told."""
-_NOTHING = 1e-4
-"""Share of the largest magnitude below which an end of a range is round-off."""
+_LIMITS = 2  # lines that limits may take of these
+_MATTERS = 0.01  # smallest share of the largest index that is named
+_INTERACTS = 0.02  # smallest share of the variance from interactions that is told
+_NOTHING = 1e-4  # share of the largest magnitude below which an end of a range is round-off
 _MINOR = (
     "time_of_peak_force",
     "number_of_contacts",

@@ -39,8 +39,7 @@ def _sentences(found: xr.Dataset) -> Iterator[str]:
     silent = []
     for name in map(str, found["parameter"].values):
         one = found.sel(parameter=name)
-        ratio = float(one["spread_ratio"])
-        if ratio >= SILENT:
+        if (ratio := float(one["spread_ratio"])) >= SILENT:
             silent.append(f"{labels.parameter(name)} (spread {ratio:.2f} of the prior's)")
             continue
         ends = " to ".join(_value(one, key) for key in ("posterior_low", "posterior_high"))
@@ -77,18 +76,19 @@ def _sentences(found: xr.Dataset) -> Iterator[str]:
     yield text
 
 
-def _unit(one: xr.Dataset) -> str:
-    return labels.unit(_array(one, "posterior_mean"))
-
-
-def _array(one: xr.Dataset, key: str) -> xr.DataArray:
+def _mean(one: xr.Dataset) -> xr.DataArray:
+    """Return the posterior mean of a parameter as labels take it, in whose unit all is shown."""
     attrs = {"units": str(one["parameter_units"].item())}
-    return xr.DataArray(float(one[key]), name=str(one["parameter"].item()), attrs=attrs)
+    name = str(one["parameter"].item())
+    return xr.DataArray(float(one["posterior_mean"]), name=name, attrs=attrs)
+
+
+def _unit(one: xr.Dataset) -> str:
+    return labels.unit(_mean(one))
 
 
 def _value(one: xr.Dataset, key: str) -> str:
-    """Return a number in the display unit of the posterior mean."""
-    unit = labels.display(_array(one, "posterior_mean"))
+    unit = labels.display(_mean(one))
     digits = 2 if key.endswith("deviation") else 4
     return labels.number(float(unit(float(one[key]))), digits)
 

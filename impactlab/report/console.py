@@ -33,12 +33,10 @@ def print_responses(run: Any) -> None:
     """
     rows = []
     for name, entry in RESPONSES.items():
-        value, text = run[name].item(), "missing"
-        if not math.isnan(value):
-            strain = "plastic_strain" in name
-            text = (
-                f"{float(f'{100 * value:.4g}'):,g} %" if strain else engineering(value, entry.units)
-            )
+        value = run[name].item()
+        text = "missing" if math.isnan(value) else engineering(value, entry.units)
+        if "plastic_strain" in name and not math.isnan(value):
+            text = f"{float(f'{100 * value:.4g}'):,g} %"
         rows.append((name, text, entry.long_name))
     _print_table(("response", Column("value", justify="right"), "meaning"), rows)
     console, status = Console(), run["status"].item()
@@ -84,9 +82,8 @@ def print_solved(path: Path) -> None:
     with opened(path) as runs:
         failed = int(((runs["status"] & FAILED) != 0).sum()) if "status" in runs else 0
         name = next(name for name in runs.data_vars if name not in FLAGS)
-        low, high = (float(getattr(runs[name], end)()) for end in ("min", "max"))
-        size = int(runs[name].size)
-        units = str(runs[name].attrs["units"])
+        low, high = float(runs[name].min()), float(runs[name].max())
+        size, units = runs[name].size, str(runs[name].attrs["units"])
     words = f"{path}: {size:,} run{'s' * (size != 1)}, {failed:,} without an answer"
     if not math.isnan(low):
         words += f"; {name} from {engineering(low, units)} to {engineering(high, units)}"
@@ -109,9 +106,8 @@ def print_estimate(cost: Estimate, workers: int) -> None:
         "largest run": f"about {time(cost.largest)}" + f" ({', '.join(at)})" * bool(at),
     }
     if cost.auto:
-        lines["discretisation"] = (
-            "auto: pilot runs will determine it; this estimate uses the default"
-        )
+        default = "auto: pilot runs will determine it; this estimate uses the default"
+        lines["discretisation"] = default
     console = Console(soft_wrap=True)
     for name, words in lines.items():
         console.print(f"{name:15s}{words}", markup=False, highlight=False)

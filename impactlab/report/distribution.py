@@ -15,8 +15,7 @@ from impactlab.figures.labels import Display, display
 from impactlab.report.page import Cell, Row, Section, Table
 
 PERCENTILES = {"5th percentile": 0.05, "Median": 0.5, "95th percentile": 0.95}
-_NAMED = 2
-"""Largest number of parameters that an answer names."""
+_NAMED = 2  # largest number of parameters that an answer names
 _LEAD = (
     "A probability is the share of the independent draws of the sample that lie above the limit, "
     "with the interval of Clopper and Pearson{even}. It is that of the model with these "

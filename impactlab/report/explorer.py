@@ -18,8 +18,7 @@ from impactlab.figures import labels
 from impactlab.model.quantities import PREFIXED, symbol
 from impactlab.report.page import described, write_page
 
-_POSITIONS = 200
-"""Positions of a slider, about."""
+_POSITIONS = 200  # positions of a slider, about
 _LOGARITHMIC = ("log_uniform", "lognormal")
 
 

@@ -18,8 +18,7 @@ _LEAD = (
     "measurement's expanded uncertainty (k = 2) and the numerical uncertainty of the run. The "
     "uncertainty of the study's own parameters is not in it."
 )
-_MOST = 200
-"""Largest number of rows of the table; those that are incompatible come first."""
+_MOST = 200  # largest number of rows of the table; those that are incompatible come first
 
 
 def entries(analysis: xr.Dataset) -> list[tuple[str, str]]:

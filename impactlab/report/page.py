@@ -45,10 +45,8 @@ _LEADING = (
     "parameter_effects",
 )
 """Figures that answer a question, the first of a study before its others."""
-_SCREEN = 1.3
-"""Figures are 8 pt at the width of a paper; on a screen that is small."""
-_MOST = 80
-"""Largest number of curve points in a table; bars with names are all listed."""
+_SCREEN = 1.3  # figures are 8 pt at the width of a paper; on a screen that is small
+_MOST = 80  # largest number of curve points in a table; bars with names are all listed
 _COLUMNS = {
     "panel": "Panel",
     "curve": "Curve",
@@ -203,7 +201,7 @@ def pictures(
 def leading(names: Iterable[str]) -> str:
     """Return the name of the figure that answers a study's question; "" without any."""
     listed = list(names)
-    return next((name for name in _LEADING if name in listed), listed[0] if listed else "")
+    return next((name for name in (*_LEADING, *listed) if name in listed), "")
 
 
 def drawn_data(path: Path) -> Table:
@@ -226,12 +224,9 @@ def drawn_data(path: Path) -> Table:
     for axis in axes:  # its label where all panels share it, else its letter
         shared = differ[f"{axis}_label"]
         head.append(axis if len(shared) > 1 else max(shared, default="") or axis)
-    rows = [
-        [
-            *(row[key] or "–" for key in columns),
-            *(Cell(labels.number(float(row[axis])), "number") for axis in axes),
-        ]
-        for row in shown
-    ]
+    rows = []
+    for row in shown:
+        numbers = (Cell(labels.number(float(row[axis])), "number") for axis in axes)
+        rows.append([*(row[key] or "–" for key in columns), *numbers])
     part = "" if len(shown) == len(points) else f" ({len(shown)} of {len(points)} points)"
     return Table(f"Data as drawn{part}", head, rows)

@@ -29,20 +29,13 @@ from impactlab.figures.measures import (
 )
 from impactlab.report.page import Cell, Row, Section, Table, largest
 
-_COARSE = 0.02
-"""Smallest half-width of shares given in whole per cent."""
-_SMALL = 0.1
-"""Smallest share given in whole per cent."""
-_GOOD = 0.9
-"""Smallest predictivity of a surrogate that may replace the runs."""
-_FINE = 0.005
-"""Half-width below which a third decimal means something."""
-_LEAST = 0.001
-"""Magnitude below which an index and its half-width are not printed separately."""
-_NAMED = 3
-"""Most parameters that are named for a history."""
-_TINY = 0.001
-"""Share below which an uncertainty is only bounded."""
+_COARSE = 0.02  # smallest half-width of shares given in whole per cent
+_SMALL = 0.1  # smallest share given in whole per cent
+_GOOD = 0.9  # smallest predictivity of a surrogate that may replace the runs
+_FINE = 0.005  # half-width below which a third decimal means something
+_LEAST = 0.001  # magnitude below which an index and its half-width are not printed separately
+_NAMED = 3  # most parameters that are named for a history
+_TINY = 0.001  # share below which an uncertainty is only bounded
 _LEAD = (
     "The runs have a numerical error, which was estimated by refining the discretisation. An index "
     "that this error could change by as much as its own value is not distinguishable from it, "

@@ -27,14 +27,10 @@ from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
 from impactlab.variables import NO_DISTRIBUTION, attributes
 
-_GRID_VALUES = 12
-"""A longer list of values of a grid is replaced by its range."""
-_FAILED_RUNS = 20
-"""Largest number of failed runs listed one by one."""
-_PRINTED_RUNS = 48
-"""Grids up to this size are printed run by run."""
-_COLUMNS = 6
-"""Responses side by side in a printed table."""
+_GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
+_FAILED_RUNS = 20  # largest number of failed runs listed one by one
+_PRINTED_RUNS = 48  # grids up to this size are printed run by run
+_COLUMNS = 6  # responses side by side in a printed table
 _EACH = "Each response against each parameter"
 _SCATTER = (
     "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
@@ -246,24 +242,19 @@ def _failed_runs(runs: xr.Dataset, failed: xr.DataArray) -> Table:
     for position in positions[:_FAILED_RUNS]:
         where = dict(zip(dims, position, strict=True))
         why = access.causes(runs.isel(where), xr.DataArray(True))
-        absent = [
-            labels.response(name)
-            for name in responses(runs)
-            if bool(access.absent(usable(runs, name).isel(where)))
-        ]
-        listed = "all" if len(absent) == len(responses(runs)) else labels.listing(absent)
+        absent = [name for name in responses(runs) if access.absent(usable(runs, name).isel(where))]
+        listed = labels.listing([labels.response(name) for name in absent])
+        listed = "all" if len(absent) == len(responses(runs)) else listed
         rows.append([_place(runs, where), Cell("; ".join(why), "warning"), listed])
-    number = len(positions)
-    more = f" (the first {_FAILED_RUNS} of {number})" if number > _FAILED_RUNS else ""
+    more = f" (the first {_FAILED_RUNS} of {len(positions)})" * (len(positions) > _FAILED_RUNS)
     return Table(f"Runs without an answer{more}", ["Run", "Reason", "Missing responses"], rows)
 
 
 def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
     """Return the run's number in a sample and its varied parameters, in words."""
     named = [f"run {where['run']}"] if "run" in where else []
-    for name in varied(runs):
-        if runs[name].ndim:
-            named.append(labels.setting(runs[name], [where[str(runs[name].dims[0])]]))
+    columns = (runs[name] for name in varied(runs) if runs[name].ndim)
+    named += [labels.setting(one, [where[str(one.dims[0])]]) for one in columns]
     return ", ".join(named) or "the only run"
 
 
@@ -288,10 +279,9 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
             cells = [Cell(text, "number", at) for text, at in zip(texts, details, strict=True)]
         if heads:
             cells = [*distribution.summary(analysis, name, unit), *cells]
-        told = [runs[name].attrs.get("long_name", ""), beside(runs, analysis, name)]
-        detail = "; ".join(filter(None, told))
-        kind = "warning" if told[1] else ""
-        response = Cell(labels.sentence(labels.response(name)), kind, detail)
+        doubt = beside(runs, analysis, name)
+        detail = "; ".join(filter(None, (runs[name].attrs.get("long_name"), doubt)))
+        response = Cell(labels.sentence(labels.response(name)), "warning" * bool(doubt), detail)
         missing = Cell(str(gaps), "warning" if gaps else "number")
         rows.append([response, unit.symbol or "–", *cells, missing])
     head = ["Response", "Unit", *heads, "Smallest", "Largest", "Runs missing"]

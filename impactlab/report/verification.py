@@ -17,14 +17,12 @@ from impactlab.verification.comparisons import Comparison
 from impactlab.verification.finding import Outcome, gravest_first
 from impactlab.verification.stored import unpacked
 
-_SHORT = 12
-"""Longest table of passed comparisons that is not folded."""
+_SHORT = 12  # longest table of passed comparisons that is not folded
 _HEAD = ["Quantity", "Case", "Ours", "Independent value", "Difference", "Tolerance", "Verdict"]
 _DIGITS = 6
 _PLAIN = ("absolute", "relative")
 """Measures that need no name beside the number: its unit, or none, shows them."""
-_PERCENT = 1e-4
-"""Smallest relative tolerance that is given in per cent."""
+_PERCENT = 1e-4  # smallest relative tolerance that is given in per cent
 
 
 def counts(findings: xr.Dataset) -> tuple[str, str]:
@@ -86,8 +84,7 @@ def _section(outcome: Outcome) -> Section:
         (shown if len(passed) <= _SHORT else folded).append(table)
     bad = outcome.verdict != "passed"
     title += f": {outcome.verdict}" * bad
-    figures = [outcome.name]
-    return Section(outcome.name, title, lead, notes, shown, figures, folded, grave=bad)
+    return Section(outcome.name, title, lead, notes, shown, [outcome.name], folded, grave=bad)
 
 
 def _summary(outcomes: Sequence[Outcome]) -> Table:
@@ -106,18 +103,17 @@ def _summary(outcomes: Sequence[Outcome]) -> Table:
                 Cell(f"{outcome.seconds:.1f} s", "number"),
             ]
         )
-    about_error = ["Largest error over tolerance", "Quantity and case of that error"]
-    head = ["Check", "Verdict", "Passed", *about_error, "Time"]
+    of_error = ["Largest error over tolerance", "Quantity and case of that error"]
+    head = ["Check", "Verdict", "Passed", *of_error, "Time"]
     return Table("All checks, failed ones first", head, rows)
 
 
 def _row(entry: Comparison) -> Row:
     """Return a comparison: both values in one unit, error and tolerance in another."""
     unit = _display(entry, max(abs(entry.ours), abs(entry.independent)))
+    gap_unit = Display(100.0, "%") if entry.tolerance >= _PERCENT else Display(1.0, "")
     if entry.measure == "absolute":
         gap_unit = _display(entry, entry.tolerance)
-    else:
-        gap_unit = Display(100.0, "%") if entry.tolerance >= _PERCENT else Display(1.0, "")
     measure = "" if entry.measure in _PLAIN else entry.measure
     return [
         labels.sentence(entry.quantity),

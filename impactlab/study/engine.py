@@ -26,10 +26,8 @@ if TYPE_CHECKING:
     from dask_jobqueue.slurm import SLURMCluster
 
 _LOOPBACK = "127.0.0.1:0"
-_PATIENCE = 10.0
-"""Seconds that a scheduler has to answer."""
-_SUBMIT_AGAIN = 60.0
-"""Seconds between checks whether Slurm jobs have to be submitted again."""
+_PATIENCE = 10.0  # seconds that a scheduler has to answer
+_SUBMIT_AGAIN = 60.0  # seconds between checks whether Slurm jobs have to be submitted again
 _LOGGERS = ("distributed", "distributed.client", "tornado.application")
 _SETTINGS = {
     "distributed.admin.low-level-log-length": 10,  # of 1000 messages, which hold cases

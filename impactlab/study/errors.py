@@ -9,8 +9,7 @@ from difflib import get_close_matches
 from typing import Any
 
 _NOTHING = object()
-_LONGEST = 1000
-"""Letters of a reason: a parser may quote as much as the file holds."""
+_LONGEST = 1000  # letters of a reason: a parser may quote as much as the file holds
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 

@@ -33,23 +33,15 @@ from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
 MOST_TIME = 30 * 86400.0
 """Limit of the time on one core, in s: a month."""
-_NUMBER = 8
-"""Bytes of a number."""
-_IN_MEMORY = 2
-"""Copies of a column of answers in memory, read and in order."""
-_PER_RUN = 60.0
-"""Bytes of a run in memory beside them: its key, place and cost."""
-_ON_DISK = 2
-"""Copies of answers on disk: in shards and in runs.nc."""
-_PROGRAM = 4e8
-"""Bytes of the program and its compiler."""
-_FUNCTION = 1e-6
-"""Seconds per value of a test function."""
+_NUMBER = 8  # bytes of a number
+_IN_MEMORY = 2  # copies of a column of answers in memory, read and in order
+_PER_RUN = 60.0  # bytes of a run in memory beside them: its key, place and cost
+_ON_DISK = 2  # copies of answers on disk: in shards and in runs.nc
+_PROGRAM = 4e8  # bytes of the program and its compiler
+_FUNCTION = 1e-6  # seconds per value of a test function
 _USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES, _USUAL_SIZE = 10_000, 0.012, 1000, 1e-3
-_MOST = 4096
-"""Runs of a cost sample."""
-_TAIL = 1e-3
-"""Probability of either tail of a distribution that a cost sample leaves out."""
+_MOST = 4096  # runs of a cost sample
+_TAIL = 1e-3  # probability of either tail of a distribution that a cost sample leaves out
 
 
 @dataclass(frozen=True)

@@ -72,10 +72,8 @@ def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Datas
 
 
 Result = tuple[Columns, float]
-_AHEAD = 3
-"""Batches per worker under way or waiting: the graph does not grow with the study."""
-_LOOK_AGAIN = 1.0
-"""Seconds between counts of the workers, which come and go."""
+_AHEAD = 3  # batches per worker under way or waiting: the graph does not grow with the study
+_LOOK_AGAIN = 1.0  # seconds between counts of the workers, which come and go
 _PAUSE = 0.001, 0.05
 """Seconds between checks for finished batches, first and last: a check takes 0.1 ms."""
 _KEPT = "Finished runs are kept: the same command resumes where it stopped."
@@ -192,20 +190,14 @@ class WorkerPool:
         return runs, columns
 
 
-_FIRST_SECONDS = 0.1
-"""Duration of the first tasks, which measure the speed."""
-_LEAST_SECONDS = 0.05
-"""Duration of a task near the end."""
+_FIRST_SECONDS = 0.1  # duration of the first tasks, which measure the speed
+_LEAST_SECONDS = 0.05  # duration of a task near the end
 _SHARE = 2
 """A task takes at most 1/_SHARE of a worker's share of the rest: no worker idles at the end."""
-_SPEED = 3e8
-"""Cost per second, before it is measured."""
-_MEMORY = 0.8
-"""Weight of all measurements so far beside the next one."""
-_VALUES = 4_000_000
-"""Most stored numbers per task: bounds its memory."""
-_RUNS = 10_000
-"""Most runs per task: its cases travel with it, and take 2 MB."""
+_SPEED = 3e8  # cost per second, before it is measured
+_MEMORY = 0.8  # weight of all measurements so far beside the next one
+_VALUES = 4_000_000  # most stored numbers per task: bounds its memory
+_RUNS = 10_000  # most runs per task: its cases travel with it, and take 2 MB
 
 
 class Batches:

@@ -32,8 +32,7 @@ from impactlab.study.store import (
     sound_runs,
 )
 
-_CHUNK = 10_000
-"""Runs whose cases are in memory together: a table of all would fill it."""
+_CHUNK = 10_000  # runs whose cases are in memory together: a table of all would fill it
 
 
 @dataclass(frozen=True)
@@ -58,8 +57,7 @@ class Work:
         return Work(design, solver, output, np.concatenate(keys), np.concatenate(cost))
 
 
-_OPEN = 100
-"""Shards that stay open: opening one takes longer than reading a column."""
+_OPEN = 100  # shards that stay open: opening one takes longer than reading a column
 _AGAIN = "run the same command again: what is lost is solved again"
 
 

@@ -37,15 +37,14 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-_STUDY = "study"
-"""File in a folder of shards that names the study file."""
+_STUDY = "study"  # file in a folder of shards that names the study file
 PYTHON = "python_functions.txt"
 """File for the text of a study of Python functions, which only Python can read again."""
 AnyStudy = Study | FunctionStudy
 Tell = Callable[[xr.Dataset], object]
 
 
-def results_folder(study: str, results: Path) -> Path:
+def results_folder(study: str, results: Path = Path("results")) -> Path:
     """Return results/STUDY. Raises ValueError where a study's name or a link leads elsewhere."""
     check_name(study, f"study {study!r}")
     folder = results / study
@@ -62,7 +61,7 @@ def price(study: AnyStudy, folder: Path, workers: int) -> Estimate:
     """Return the cost of a study with results in `folder`. Raises StudyError as `estimate`."""
     from impactlab.study.estimate import estimate
 
-    return estimate(resolved_before(study, folder) or study, folder, workers)
+    return estimate(resolved(study, folder) or study, folder, workers)
 
 
 def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
@@ -74,45 +73,34 @@ def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = No
     return found
 
 
-def resolved(study: AnyStudy, folder: Path, engine: Engine, tell: Tell) -> AnyStudy:
+def resolved(
+    study: AnyStudy,
+    folder: Path,
+    engine: Engine | None = None,
+    tell: Tell = lambda found: None,
+) -> AnyStudy | None:
     """Return the study with its discretisation, found by pilot runs where it is `auto`.
 
-    They are solved once; their evidence is kept in resolution.nc in `folder`, and told. Raises
-    StudyError where no discretisation meets the tolerance.
+    They are solved once, for this very study and these kernels; their evidence is kept in
+    resolution.nc in `folder`, and told. Without an engine none is solved: None where one would have
+    to be. Raises StudyError where no discretisation meets the tolerance.
     """
     if isinstance(study, FunctionStudy) or study.auto is None:
         return study
-    from impactlab.study.adaptive.recommendation import apply_recommendation
-
-    if ready := resolved_before(study, folder, tell):
-        return ready
-    found = recommend(study, folder / RESOLUTION, engine)
-    tell(found)
-    return apply_recommendation(study, found)
-
-
-def resolved_before(
-    study: AnyStudy, folder: Path, tell: Tell = lambda found: None
-) -> AnyStudy | None:
-    """Return the study with its discretisation; None where pilot runs have still to find it.
-
-    What they found before is kept for this very study, and these kernels.
-    """
-    if isinstance(study, FunctionStudy) or study.auto is None:
-        return study
-    if not (file := folder / RESOLUTION).exists():
-        return None
     from impactlab.solver.jit import SOURCES_HASH
     from impactlab.study.adaptive.recommendation import apply_recommendation
 
-    try:
-        found = read_netcdf(file, "resolution")
-    except ValueError as error:
-        log.warning("%s; the pilot runs are solved again", error)
-        return None
-    made_for = found.attrs.get("study_sha256"), found.attrs.get("kernels_sha256")
-    if made_for != (study.sha256, SOURCES_HASH):
-        return None
+    file, found = folder / RESOLUTION, None
+    if file.exists():
+        try:
+            found = read_netcdf(file, "resolution")
+        except ValueError as error:
+            log.warning("%s; the pilot runs are solved again", error)
+    made_for = {"study_sha256": study.sha256, "kernels_sha256": SOURCES_HASH}
+    if found is None or not made_for.items() <= found.attrs.items():
+        if engine is None:
+            return None
+        found = recommend(study, file, engine)
     tell(found)
     return apply_recommendation(study, found)
 
@@ -144,7 +132,7 @@ def run(
     if (exceeded := cost.exceeded()) and not force:
         raise StudyError(*exceeded)
     if drawn is None:
-        drawn, source = design(resolved(study, path.parent, engine, tell)), study.path
+        drawn, source = design(resolved(study, path.parent, engine, tell) or study), study.path
         if not source.is_file():  # made in Python: `clean` finds its text there
             source = path.with_name(PYTHON if study.python else f"{study.name}.yaml")
             with replaced(source) as unfinished:
@@ -192,7 +180,7 @@ def status(study: AnyStudy, folder: Path) -> Status | None:
     from impactlab.study.runs import status as status_of
     from impactlab.study.sampling.design import design, stages
 
-    declared, runs = resolved_before(study, folder), folder / "runs.nc"
+    declared, runs = resolved(study, folder), folder / "runs.nc"
     if declared is None:
         return None
     last = None
@@ -249,7 +237,7 @@ def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
         return {}
     if shards != home / SHARDS:
         return removable_files(shards, None)
-    declared = resolved_before(read_study(file), home)
+    declared = resolved(read_study(file), home)
     return {} if declared is None else removable_files(shards, list(stages(design(declared))))
 
 

@@ -29,14 +29,12 @@ from impactlab.study.netcdf import DAMAGE, KEY, KEYS, LAYOUT, Array, Columns, Sh
 
 log = logging.getLogger(__name__)
 
-_MANY = 64
-"""Small shards before they are merged."""
+_MANY = 64  # small shards before they are merged
 _SMALL = 8e6
 """Bytes of a shard that is no longer small; small ones of this size together are merged."""
 DAMAGED = ".damaged"
 """Suffix of a shard that was set aside."""
-_PATIENCE = 1.0
-"""Seconds to wait for a lock, which `holder` takes for a moment."""
+_PATIENCE = 1.0  # seconds to wait for a lock, which `holder` takes for a moment
 
 
 @dataclass(frozen=True)

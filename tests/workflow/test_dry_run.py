@@ -51,7 +51,7 @@ def test_a_month_is_not_begun_unless_it_is_forced(impactlab, tmp_path, monkeypat
     assert "run it anyway with --force" in said
     assert not (tmp_path / "results").exists()
     begun = []
-    monkeypatch.setattr("impactlab.study.steps.resolved", lambda *_: begun.append(1) or exit(0))
+    monkeypatch.setattr("impactlab.study.steps.solve", lambda *_: begun.append(1) or exit(0))
     impactlab("run", "--force", "studies/some.yaml", duration="10000 years")
     assert begun
 

@@ -45,8 +45,7 @@ from impactlab.types import Floats
 from impactlab.variables import described, provenance
 
 AXES = ("nodes", "points", "courant")
-_ALL = 4
-"""Most numbers of which all corners are taken."""
+_ALL = 4  # most numbers of which all corners are taken
 _TAIL = 0.005
 """Probability of either tail of a distribution without end, whose quantiles are its extremes."""
 Levels = Mapping[str, tuple[float, ...]]
@@ -278,7 +277,8 @@ def solve_along(
     varied["case"] = np.arange(len(next(iter(cases.values()))))
     varied[axis] = axis, np.array(levels)
     scalars = {name: ((), value) for name, value in fixed.items() if name not in varied}
-    attrs = {"study": study.name, "varied": [*cases, axis], "responses": list(study.responses)}
+    attrs: dict[str, Any] = {"study": study.name, "varied": [*cases, axis]}
+    attrs["responses"] = list(study.responses)
     attrs |= {"histories": 0, "profiles": 0, "history_samples": study.store.samples}
     if study.python:
         attrs["solver"] = resolve_name("impactlab.study.solvers.own:solver_name")(study)

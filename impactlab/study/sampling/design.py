@@ -16,11 +16,10 @@ from impactlab.analysis.responses import listed
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.samples import Latin, Sobol
-from impactlab.study.sampling.sections import Grouped
+from impactlab.study.sampling.samples import Sobol
 from impactlab.study.schema.checks import has_solid_runs
 from impactlab.study.schema.files import study_of_text
-from impactlab.study.schema.study import FunctionStudy, Study, StudyBase
+from impactlab.study.schema.study import FunctionStudy, Study
 from impactlab.study.solvers import run_shape
 from impactlab.study.validity import Refusal, check_alone, refused_run
 from impactlab.variables import described
@@ -72,7 +71,7 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
         for name, values in drawn.items():
             varied[name] = "run", values, sampling.varied[name].arguments()
     scalars = {name: ((), value) for name, value in fixed.items()}
-    found = xr.Dataset(coords=scalars | varied, attrs=_common_attributes(study) | own)
+    found = xr.Dataset(coords=scalars | varied, attrs=study.attributes() | own)
     if isinstance(study, Study):
         return described(found)
     for name in () if study.python else fixed:
@@ -102,31 +101,6 @@ def _check_draws(study: Study, drawn: dict[str, np.ndarray[Any, Any]]) -> None:
         "distribution such as truncated_normal, or narrower bounds"
     )
     raise StudyError(Problem(str(study.path), f"sampling.parameters.{name}", reason))
-
-
-def _common_attributes(study: StudyBase) -> dict[str, Any]:
-    """Return the attributes that do not depend on the solver."""
-    sampling = study.sampling
-    attrs: dict[str, Any] = study.attributes() | {
-        "method": sampling.method,
-        "varied": list(sampling.varied),
-        "responses": list(study.responses),
-        "analyses": list(study.analyses),
-    }
-    if isinstance(sampling, Grid):
-        return attrs
-    attrs |= study.analysis.model_dump() | sampling.settings
-    if study.limits:
-        attrs |= {"limited": list(study.limits), "limits": list(study.limits.values())}
-    if isinstance(sampling, Grouped) and sampling.groups:
-        attrs["groups"] = list(sampling.group_of.values())
-    if isinstance(sampling, Latin) and sampling.correlations:
-        attrs["correlated"] = [f"{one} {other}" for one, other, _ in sampling.correlations]
-        attrs["rank_correlations"] = [rank for *_, rank in sampling.correlations]
-    if isinstance(sampling, Sobol) and (until := sampling.until):
-        attrs |= {"until_interval": until.interval, "until_runs": until.runs}
-        attrs |= {"until_responses": list(until.responses)} if until.responses else {}
-    return attrs
 
 
 def doubled(small: xr.Dataset) -> xr.Dataset:

@@ -71,6 +71,15 @@ class Sobol(Grouped):
             raise at_key("until.runs", f"must be at least the first sample's {self.runs:,} runs")
         return self
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The attributes of a design that describe its draws."""
+        if not (until := self.until):
+            return super().settings
+        limits = {"until_interval": until.interval, "until_runs": until.runs}
+        some = {"until_responses": list(until.responses)} if until.responses else {}
+        return super().settings | limits | some
+
     def draws(self) -> Floats:
         """Draw base samples one after the other: A, A with B's columns, B with A's columns, B.
 
@@ -230,6 +239,14 @@ class Latin(Sample):
             )
             raise at_key("correlations", reason)
         return self
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The attributes of a design that describe its draws."""
+        if not (pairs := self.correlations):
+            return super().settings
+        names = {"correlated": [f"{one} {other}" for one, other, _ in pairs]}
+        return super().settings | names | {"rank_correlations": [rank for *_, rank in pairs]}
 
     @property
     def no_surrogate(self) -> str:

@@ -157,7 +157,7 @@ class Sample(Sampling):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Other keys of the section: the attributes of the design that describe its draws."""
+        """The attributes of a design that describe its draws: the other keys of the section."""
         keys = self.model_dump(exclude={"method", "parameters", "groups", "until", "correlations"})
         return {key: int(value) for key, value in keys.items()}
 
@@ -227,6 +227,12 @@ class Grouped(Sample):
         """The group of each varied parameter, in their order."""
         group = {member: name for name, members in self.groups.items() for member in members}
         return {name: group.get(name, name) for name in self.varied}
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The attributes of a design that describe its draws."""
+        groups = {"groups": list(self.group_of.values())} if self.groups else {}
+        return super().settings | groups
 
     @property
     def group_count(self) -> int:

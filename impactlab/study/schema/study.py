@@ -218,6 +218,17 @@ class StudyBase(Declared):
     limits: Mapping[str, float]
     analysis: Analysis
 
+    def attributes(self) -> dict[str, Any]:
+        """Return the attributes of designs that do not depend on the solver."""
+        sampling = self.sampling
+        found = super().attributes() | {"method": sampling.method, "varied": list(sampling.varied)}
+        found |= {"responses": list(self.responses), "analyses": list(self.analyses)}
+        if not isinstance(sampling, Grid):
+            found |= self.analysis.model_dump() | sampling.settings
+        if self.limits:
+            found |= {"limited": list(self.limits), "limits": list(self.limits.values())}
+        return found
+
     @property
     def size(self) -> str:
         """Describe the amount of work."""

@@ -26,8 +26,7 @@ from impactlab.study.solvers import Solver, flattened, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
 
-_OF_ANY_RUN = 6000.0
-"""Cost of a run beside its node-steps: about 20 µs."""
+_OF_ANY_RUN = 6000.0  # cost of a run beside its node-steps: about 20 µs
 
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:

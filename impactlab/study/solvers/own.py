@@ -30,8 +30,7 @@ from impactlab.study.solvers.impact import SOLVER as IMPACT
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES
 
-_COST = 3e6
-"""Cost of calling functions once, about 10 ms."""
+_COST = 3e6  # cost of calling functions once, about 10 ms
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.errors import StudyError
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import read_study
-from impactlab.study.steps import resolved_before
+from impactlab.study.steps import resolved as resolved_study
 from impactlab.study.store import holder
 from impactlab.verification.solutions import modal
 
@@ -111,8 +111,8 @@ def test_auto_becomes_what_was_recommended(study, tmp_path):
     trials = recommend(declared, tmp_path / "trials", Engine(workers=2))
     resolved = apply_recommendation(declared, trials)
     write_netcdf(trials, tmp_path / RESOLUTION, "resolution")
-    assert resolved_before(declared, tmp_path) == resolved
-    assert resolved_before(replace(declared, text="another"), tmp_path) is None
+    assert resolved_study(declared, tmp_path) == resolved
+    assert resolved_study(replace(declared, text="another"), tmp_path) is None
     assert resolved.discretisation == recommended_grid(trials, declared.discretisation)
     assert resolved.discretisation.rule == "legendre"
     runs = design(resolved)
