@@ -71,14 +71,14 @@ def predict(
 
 def figures(stored: StoredFiles, output: Pictures = None) -> None:
     """Draw every figure that a study's answers, or findings, allow."""
+    from impactlab.figures.labels import counted
     from impactlab.report.answer import answers
     from impactlab.report.results import open_stored
 
     folder = output or stored[0].with_name("figures")
     with open_stored(stored) as (kind, datasets):
         drawn = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder))
-        figures = "1 figure" if drawn == 1 else f"{drawn} figures"
-        print(f"{folder}: {figures}. {answers(*datasets)[0]}")
+        print(f"{folder}: {counted(drawn, 'figure')}. {answers(*datasets)[0]}")
 
 
 def report(

@@ -48,15 +48,10 @@ def simulate(
     """Solve one impact on the paper's beam and print its responses."""
     from impactlab.report.console import print_responses
 
-    values: dict[str, Value] = {
-        "velocity": given("--velocity", velocity, "m s-1"),
-        **({"contact": contact} if contact else {}),
-        **({"beam_model": beam_model} if beam_model else {}),
-        "nodes": nodes,
-        "points": points,
-        "rule": rule,
-        "scheme": scheme,
-    }
+    values: dict[str, Value] = {"velocity": given("--velocity", velocity, "m s-1")}
+    values |= {"contact": contact} if contact else {}
+    values |= {"beam_model": beam_model} if beam_model else {}
+    values |= {"nodes": nodes, "points": points, "rule": rule, "scheme": scheme}
     seconds = given("--duration", duration, "s")
     if plot and plot.suffix not in (".png", ".svg", ".pdf"):
         raise ValueError(f"--plot = {str(plot)!r}: its name must end in .png, .svg or .pdf")

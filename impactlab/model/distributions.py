@@ -21,8 +21,6 @@ Arguments = Mapping[str, Any]
 Correlations = Sequence[tuple[str, str, float]]
 """Two parameters and Spearman's rank correlation of them; pairs that are not listed have 0."""
 _LEAST = 1e-8  # smallest eigenvalue of a matrix that counts as positive definite
-
-
 _FORMS: dict[str, Callable[..., Any]] = {
     "uniform": lambda low, high: scipy.stats.uniform(low, high - low),
     "log_uniform": lambda low, high: scipy.stats.loguniform(low, high),
@@ -108,10 +106,8 @@ def contradicting(names: Sequence[str], correlations: Correlations) -> list[str]
         smallest = np.linalg.eigvalsh(correlation_matrix(some, correlations)).min(initial=1)
         return bool(smallest > _LEAST)
 
-    kept = list(names)
-    if possible(kept):
-        return []
-    for name in names:
+    kept = [] if possible(names) else list(names)
+    for name in kept.copy():
         rest = [each for each in kept if each != name]
         kept = kept if possible(rest) else rest
     return kept

@@ -131,19 +131,17 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
 def _inputs(runs: xr.Dataset) -> Section:
     """Return the section on the parameters: varied ones with values or distribution, fixed ones."""
     groups = dict(zip(names(runs, "varied"), names(runs, "groups"), strict=False))
-    changed: list[Row] = [
-        [
-            labels.sentence(labels.parameter(name)),
-            *_values(_described(runs, name)),
-            *([groups[name].replace("_", " ")] if groups else []),
-            Cell(name, "muted"),
-        ]
-        for name in varied(runs)
-    ]
+    known = {name: attributes(name) for name in (*PARAMETERS, "duration")}
+    changed: list[Row] = []
+    for name in varied(runs):
+        values = _values(runs[name].assign_attrs(known.get(name, {}) | runs[name].attrs))
+        group = [groups[name].replace("_", " ")] if groups else []
+        label = labels.sentence(labels.parameter(name))
+        changed.append([label, *values, *group, Cell(name, "muted")])
     fixed: list[Row] = []
-    for name in [*PARAMETERS, "duration"]:
+    for name, table in known.items():
         if name in runs.coords and runs[name].ndim == 0 and name not in varied(runs):
-            coordinate = _described(runs, name)
+            coordinate = runs[name].assign_attrs(table | runs[name].attrs)
             label = labels.sentence(coordinate.attrs["long_name"])
             text = labels.values(coordinate, [0])[0] + labels.unit(coordinate)
             fixed.append([label, text, Cell(name, "muted")])
@@ -164,12 +162,6 @@ def _correlations(runs: xr.Dataset, pairs: list[tuple[str, str, float]]) -> Tabl
         rows.append([pair, *(Cell(f"{rank:.2f}", "number") for rank in (stated, found))])
     caption = "Rank correlations, by a Gaussian copula; all other pairs vary independently"
     return Table(caption, ["Parameters", "As stated", "In the sample"], rows)
-
-
-def _described(runs: xr.Dataset, name: str) -> xr.DataArray:
-    """Return a coordinate with the attributes of the model's table, where that has it."""
-    table = attributes(name) if name in (*PARAMETERS, "duration") else {}
-    return runs[name].assign_attrs(table | runs[name].attrs)
 
 
 def _values(coordinate: xr.DataArray) -> Row:

@@ -22,7 +22,7 @@ from impactlab.study.engine import Engine
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.progress import items_done
 from impactlab.study.runs import Work, open_answers
-from impactlab.study.solvers import solver_named, solver_of
+from impactlab.study.solvers import solver_named
 from impactlab.study.store import OutputSpec, RunIndex, Shards, joined, locked
 
 log = logging.getLogger(__name__)
@@ -49,7 +49,7 @@ def open_runs(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterat
             index.done[index.find(keys)[1]] = True
         missing, repeats = np.flatnonzero(~index.done), index.size - index.distinct
         before = index.distinct - missing.size
-        equal = f" ({repeats} more are equal to one of them)" if repeats else ""
+        equal = f" ({repeats} more are equal to one of them)" * bool(repeats)
         log.info("%d runs%s, %d of them solved before", index.distinct, equal, before)
         if missing.size:
             bits = solver.failures(design)
@@ -85,9 +85,8 @@ def solve_batch(
 ) -> Result:
     """Return the answers and the seconds that they took: the task that dask runs.
 
-    functions: of the solver, for a worker that may not know them.
-
-    Raises RuntimeError where the solver has another version than the caller's.
+    functions: of the solver, for a worker that may not know them. Raises RuntimeError where the
+    solver has another version than the caller's.
     """
     if functions is not None:
         from impactlab.study.solvers.own import TASKS
@@ -156,7 +155,7 @@ class WorkerPool:
             if before and not self.threads:
                 log.warning("no worker at the dask scheduler: waiting for one. %s", _KEPT)
         workers, work, futures = max(1, self.threads), self.work, []
-        name, solver = solver_of(work.design), work.solver
+        name, solver = work.name, work.solver
         while len(self.under_way) < _AHEAD * workers:
             runs = self.batches.take(workers)
             if not runs.size:
@@ -169,10 +168,7 @@ class WorkerPool:
         return futures
 
     def take(self, queue: as_completed) -> tuple[Array, Columns]:
-        """Return numbers and answers of a finished batch.
-
-        Raises OSError where its workers, or the scheduler, failed.
-        """
+        """Return a batch's runs and answers. Raises OSError where workers or scheduler failed."""
         try:
             future, result = next(queue)
         except KilledWorker as error:
@@ -218,7 +214,7 @@ class Batches:
         self._wished = seconds
         self._most = max(1, min(_RUNS, _VALUES // values))
         self._at, self._left = 0, float(cost[runs].sum())
-        self._cost, self._seconds = 0.0, 0.0
+        self._cost = self._seconds = 0.0
 
     def take(self, workers: int) -> Array:
         """Return the numbers of the next runs; empty when all are taken."""
@@ -229,10 +225,9 @@ class Batches:
         share = self._left / speed / workers
         seconds = min(wished, max(share / _SHARE, _LEAST_SECONDS))
         taken = max(1, int(np.searchsorted(until, speed * seconds, side="right")))
-        runs = ahead[:taken]
-        self._at += runs.size
-        self._left -= float(self._costs[runs].sum())
-        return runs
+        self._at += ahead[:taken].size
+        self._left -= float(self._costs[ahead[:taken]].sum())
+        return ahead[:taken]
 
     def learn(self, cost: float, seconds: float) -> None:
         """Size further batches by the duration of one."""

@@ -20,7 +20,7 @@ from dask.delayed import delayed
 
 from impactlab.files import block_rows, unfinished_files
 from impactlab.study.netcdf import DAMAGE, KEYS, Array, Shard
-from impactlab.study.solvers import SOLVERS, Solver, run_shape, solver_named, solver_of
+from impactlab.study.solvers import SOLVERS, Solver, run_shape, solver_named
 from impactlab.study.store import (
     DAMAGED,
     OutputSpec,
@@ -37,9 +37,13 @@ _CHUNK = 10_000  # runs whose cases are in memory together: a table of all would
 
 @dataclass(frozen=True)
 class Work:
-    """The runs of a design: the key of each, shape (runs,), and its cost in the solver's unit."""
+    """The runs of a design: the key of each, shape (runs,), and its cost in the solver's unit.
+
+    name: of the solver; without the attribute, a design is one of impacts.
+    """
 
     design: xr.Dataset
+    name: str
     solver: Solver
     output: OutputSpec
     keys: Array
@@ -48,13 +52,14 @@ class Work:
     @staticmethod
     def of(design: xr.Dataset) -> Work:
         """Check every run. Raises ValueError naming one that the model refuses."""
-        solver, output = solver_named(solver_of(design)), OutputSpec.of(design)
+        name, output = str(design.attrs.get("solver", "impact")), OutputSpec.of(design)
+        solver = solver_named(name)
         keys, cost, runs = [], [], np.arange(math.prod(run_shape(design)[1]))
         for start in range(0, runs.size, _CHUNK):
             cases = solver.cases(design, runs[start : start + _CHUNK])
             keys.append(run_keys(cases, output, solver.version))
             cost.append(solver.cost(cases))
-        return Work(design, solver, output, np.concatenate(keys), np.concatenate(cost))
+        return Work(design, name, solver, output, np.concatenate(keys), np.concatenate(cost))
 
 
 _OPEN = 100  # shards that stay open: opening one takes longer than reading a column

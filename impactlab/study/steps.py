@@ -220,10 +220,7 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
 
 
 def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
-    """Return the files to remove of one study; file: the study, perhaps gone from there.
-
-    home: its folder of results.
-    """
+    """Return a study's files to remove. file: perhaps gone; home: its folder of results."""
     from impactlab.study.runs import removable_files
     from impactlab.study.sampling.design import design, stages
     from impactlab.study.schema.files import read_study
@@ -297,9 +294,8 @@ def analyse_runs(
             measured = [each for file in files for each in read_measurements(file, solved)]
             found = found.merge(compared(solved, found, measured))
         write_netcdf(found, path, "analysis", *sources)
-        names = ("indices.csv", "indices.nc", "distribution.csv", "surrogate.nc")
-        for name in names:  # perhaps another study's
-            path.with_name(name).unlink(missing_ok=True)
+        for name in ("indices.csv", "indices.nc", "distribution.csv", "surrogate.nc"):
+            path.with_name(name).unlink(missing_ok=True)  # perhaps another study's
         if indices := sensitivity_variables(found):
             with replaced(path.with_name("indices.csv"), indices.nbytes) as unfinished:
                 write_csv(found, unfinished)
@@ -332,12 +328,9 @@ def check(verification: Verification) -> xr.Dataset:
 def failure(outcomes: Sequence[Outcome]) -> str:
     """Return a sentence about the checks that failed; "" where none did."""
     reasons = []
-    for outcome in outcomes:
-        if outcome.verdict != "passed":
-            failed, total = len(outcome.failures), len(outcome.finding.comparisons)
-            counted = f"{failed} of {total} comparisons" if total else "it compared nothing"
-            reasons.append(f"{outcome.name}: {outcome.reason or counted}")
-    if not reasons:
-        return ""
+    for outcome in (each for each in outcomes if each.verdict != "passed"):
+        failed, total = len(outcome.failures), len(outcome.finding.comparisons)
+        counted = f"{failed} of {total} comparisons" if total else "it compared nothing"
+        reasons.append(f"{outcome.name}: {outcome.reason or counted}")
     told = f"verification failed in {len(reasons)} of {len(outcomes)} checks"
-    return f"{told} ({'; '.join(reasons)})"
+    return f"{told} ({'; '.join(reasons)})" if reasons else ""

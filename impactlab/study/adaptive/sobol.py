@@ -15,7 +15,6 @@ import xarray as xr
 from impactlab import wings
 from impactlab.analysis.responses import in_order, listed
 from impactlab.study.sampling.design import doubled
-from impactlab.study.solvers import solver_of
 
 log = logging.getLogger(__name__)
 MOST, FEWEST, SHARE = 64, 16, 8
@@ -113,7 +112,7 @@ def refine_cases(runs: xr.Dataset, solve: Step, count: int | None = None) -> xr.
             f"study {study!r}: its runs are of method {method}, but only those of sobol can be "
             "refined"
         )
-    if "function" in runs.attrs or solver_of(runs) in wings.SOLVERS:
+    if "function" in runs.attrs or runs.attrs.get("solver") in wings.SOLVERS:
         raise ValueError(f"study {study!r}: its runs are not of a beam model, so they have no grid")
     names, first = listed(runs, "varied"), _first(in_order(runs), count).compute()
     nodes, points = int(runs["nodes"]), int(runs["points"])

@@ -39,14 +39,12 @@ def read_any(path: str | Path) -> Study | FunctionStudy | Verification:
     is not YAML, or holds no mapping.
     """
     source = read_source(path)
-    kind = _kind(source)
-    return _verification(source) if kind == "checks" else _READERS[kind](source)
+    return _READERS[_kind(source)](source)
 
 
 def read_study(path: str | Path) -> Study | FunctionStudy:
     """Read a study of runs. Raises StudyError as `read_any`, and for a file of checks."""
-    source = read_source(path)
-    return study_of_text(source.name, source.text, source.path)
+    return _of_runs(read_any(path))
 
 
 def read_impacts(path: str | Path) -> Study:
@@ -63,22 +61,23 @@ def of_impacts(study: Study | FunctionStudy) -> Study:
 
 
 def study_of_text(name: str, text: str, path: Path | None = None) -> Study | FunctionStudy:
-    """Read a study of runs from the text of NAME.yaml, as datasets keep both; see `read_any`.
-
-    path: the one that errors name.
-    """
+    """Read a study of runs from the text of NAME.yaml; see `read_any`. path: that errors name."""
     path = path or Path(f"{name}.yaml")
     source = Source(name, path, text, read_mapping(text, str(path)))
-    if _kind(source) == "checks":
-        raise _wrong_kind(source, "lists checks and has no runs", "verify")
-    return _READERS[_kind(source)](source)
+    return _of_runs(_READERS[_kind(source)](source))
+
+
+def _of_runs(declared: Study | FunctionStudy | Verification) -> Study | FunctionStudy:
+    if isinstance(declared, Verification):
+        raise _wrong_kind(declared.path, "lists checks and has no runs", "verify")
+    return declared
 
 
 def read_verification(path: str | Path) -> Verification:
     """Read a file of checks. Raises StudyError as `read_any`, and for a study of runs."""
     source = read_source(path)
     if _kind(source) != "checks":
-        raise _wrong_kind(source, "has no key checks, so it is a study of runs", "run")
+        raise _wrong_kind(source.path, "has no key checks, so it is a study of runs", "run")
     return _verification(source)
 
 
@@ -112,13 +111,11 @@ def describe(path: Path) -> dict[str, Any]:
 def _kind(source: Source) -> str:
     """Return the key that the file has, perhaps misspelt, and that tells its kind; else ""."""
     given = [str(key) for key in source.data]
-    kinds = ("checks", "function")
-    return next((key for key in kinds if get_close_matches(key, given, n=1, cutoff=0.75)), "")
+    return next(key for key in _READERS if not key or get_close_matches(key, given, 1, 0.75))
 
 
-def _wrong_kind(source: Source, reason: str, command: str) -> StudyError:
-    file = str(source.path)
-    return StudyError(Problem(file, "", f"{reason}: use `impactlab {command} {file}`"))
+def _wrong_kind(file: Path, reason: str, command: str) -> StudyError:
+    return StudyError(Problem(str(file), "", f"{reason}: use `impactlab {command} {file}`"))
 
 
 _STAND_INS: dict[str, Any] = {
@@ -250,8 +247,9 @@ def _verification(source: Source) -> Verification:
     return Verification(name=source.name, path=source.path, text=source.text, **values)
 
 
-_READERS: dict[str, Callable[[Source], Study | FunctionStudy]] = {
+_READERS: dict[str, Callable[[Source], Study | FunctionStudy | Verification]] = {
+    "checks": _verification,
     "function": _function_study,
     "": _study,
 }
-"""Readers of studies of runs, by the key that tells their kind."""
+"""Readers of files, by the key that tells their kind."""

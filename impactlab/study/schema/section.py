@@ -223,8 +223,7 @@ def _value_at(data: Any, path: Sequence[Any]) -> tuple[Any, bool, Any]:
     parent = None
     for step in path:
         parent = data
-        known = step in parent if isinstance(parent, dict) else isinstance(parent, list)
-        if not known:
+        if not (step in parent if isinstance(parent, dict) else isinstance(parent, list)):
             return parent, False, None
         data = parent[int(step)] if isinstance(parent, list) else parent[step]
     return parent, True, data

@@ -57,31 +57,25 @@ def check_path(path: Path) -> None:
 def check_name(name: str, file: str) -> None:
     """Raise StudyError, naming the file, unless a study can have this name."""
     if not _NAME.fullmatch(name):
-        reason = (
-            "its name becomes the name of a folder: use at most 100 letters, digits, _ and -, with "
-            "no - first"
-        )
-        raise StudyError(Problem(file, "", reason))
-
-
-def _missing(path: Path) -> str:
-    """Return that there is no such file, and the study of that name, if there is one."""
-    near = (f"{path}.yaml", f"studies/{path.name}", f"studies/{path.name}.yaml")
-    found = next((each for each in near if Path(each).is_file()), "")
-    return "there is no such file" + (f"; did you mean {found}?" if found else "")
+        allowed = "use at most 100 letters, digits, _ and -, with no - first"
+        raise StudyError(Problem(file, "", f"its name becomes the name of a folder: {allowed}"))
 
 
 def read_text(path: Path) -> str:
     """Return the file's text. Raises StudyError when it cannot be read, or is too large."""
     try:
-        if not path.is_file():
-            reason = "is not a file" if path.exists() else _missing(path)
-        else:
+        if path.is_file():
             with path.open("rb") as file:
                 raw = file.read(LARGEST + 1)
             if len(raw) <= LARGEST:
                 return raw.decode("utf-8")
             reason = f"is larger than {LARGEST // 1024} KiB: shorten it"
+        else:
+            near = (f"{path}.yaml", f"studies/{path.name}", f"studies/{path.name}.yaml")
+            meant = [f"; did you mean {each}?" for each in near if Path(each).is_file()]
+            reason = (
+                "is not a file" if path.exists() else "".join(["there is no such file", *meant[:1]])
+            )
     except OSError as error:
         reason = f"cannot be read: {error.strerror}"
     except UnicodeDecodeError:

@@ -85,17 +85,9 @@ SOLVERS = {
 
 
 def solver_named(name: str) -> Solver:
-    """Return the solver of this name.
-
-    Raises ValueError where it is of Python functions that this process does not know.
-    """
+    """Return a solver. Raises ValueError for Python functions that this process does not know."""
     if name.startswith("own "):
         own: Solver = resolve_name("impactlab.study.solvers.own:solver")(name)
         return own
     found: Solver = resolve_name(SOLVERS[name])
     return found
-
-
-def solver_of(design: xr.Dataset) -> str:
-    """Return the name of a design's solver: without the attribute, that of impacts."""
-    return str(design.attrs.get("solver", "impact"))
