@@ -102,10 +102,7 @@ class Model:
         _, firsts, place = np.unique(keys, return_index=True, return_inverse=True)
         places = []
         for at, first in enumerate(firsts.tolist()):
-            unit = {
-                name: float(surrogate.probability(name, value))
-                for name, value in stated[first].items()
-            }
+            unit = {n: surrogate.probability(n, value) for n, value in stated[first].items()}
             places.append((unit, np.flatnonzero(place == at)))
         found = surrogate.dataset.sel(response=[one.quantity for one in measurements])
         error = found["rmse"].values.astype(float)
@@ -214,14 +211,9 @@ def calibrated(
     equal. model_error: relative standard uncertainty of the models themselves, the same way in all
     measurements of a response.
 
-    Returns on (parameter): posterior_mean, _deviation, _low and _high (95 %), prior_mean and
-    prior_deviation, spread_ratio (posterior over prior deviation) and parameter_units, over all
-    models by their weights; on (model): model_weight, model_weight_before, log_evidence,
-    effective_samples, model_doubt, and model_mean and model_deviation of each parameter; on
-    (measurement): measured, its _uncertainty (expanded, k = 2), _quantity, _units, _conditions,
-    predicted_mean and _deviation, surrogate_error; draws (draw, parameter), draw_predicted (draw,
-    measurement) and draw_model (draw), equally weighted; predictive_p, the posterior predictive
-    p-value of chi-squared.
+    Returns the variables of _LONG_NAMES on `parameter` (over all models by their weights), `model`,
+    `measurement`, or `draw`; parameter_units; and measured_quantity, _units, _conditions (JSON) and
+    _source.
 
     Raises ValueError with every reason for which there is no posterior: a surrogate or a
     measurement that do not fit, a surrogate that is less certain than the data, too small an
@@ -265,9 +257,7 @@ def _packed(
         raise ValueError("\n".join(reasons))
     first = next(iter(models.values()))
     free = first.free
-    weights = np.concatenate(
-        [w * each.weights for w, each in zip(share, found.values(), strict=True)]
-    )
+    weights = np.concatenate([w * p.weights for w, p in zip(share, found.values(), strict=True)])
     of_each = [
         (models[name].values(each.points), models[name].predicted(each.points))
         for name, each in found.items()
@@ -278,9 +268,7 @@ def _packed(
     even = (np.arange(20_000) + 0.5) / 20_000
     prior = first.values(np.column_stack([even] * len(free)))
     mean, deviation = _moments(values, weights)
-    moments = [
-        _moments(each, one.weights) for (each, _), one in zip(of_each, found.values(), strict=True)
-    ]
+    moments = [_moments(x, p.weights) for (x, _), p in zip(of_each, found.values(), strict=True)]
     prior_mean, prior_deviation = prior.mean(axis=0), prior.std(axis=0)
     low, high = np.quantile(values, (0.025, 0.975), axis=0, weights=weights, method="inverted_cdf")
     predicted_mean, predicted_deviation = _moments(predicted, weights)

@@ -23,8 +23,7 @@ import scipy  # its stats are loaded when first used
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.responses import labels, listed, usable
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample, labels, listed, usable
 from impactlab.types import Floats
 from impactlab.variables import NO_DISTRIBUTION
 
@@ -64,12 +63,8 @@ def limits(runs: xr.Dataset) -> dict[str, float]:
 def analysis(runs: xr.Dataset) -> xr.Dataset:
     """Return moments, quantiles and exceedance probabilities of every response of a sample.
 
-    Returns, on (response): number_of_draws, missing_draws; mean, standard_deviation, and each
-    with `_interval`, its half-width. On (response, probability): quantile, quantile_low,
-    quantile_high. With limits, which are NaN for responses that have none: limit,
-    exceeding_draws, exceedance_probability with _low and _high, exceedance_if_none and
-    exceedance_if_all of the missing draws exceed; and on (response, varied_parameter)
-    exceedance_distance, exceedance_direction and exceedance_p_value. See the attributes.
+    Returns the variables of _VARIABLES on `response` and the dimensions there; those from `limit`
+    on where the study states limits, NaN for responses that have none.
 
     Raises ValueError when the runs are not the sample that their attributes describe.
     """
@@ -171,9 +166,8 @@ def _moments(outputs: Floats, level: float) -> dict[str, float]:
     upper = 0.5 + level / 2
     student = float(scipy.stats.t.ppf(upper, values.size - 1))
     margins = student * deviation / np.sqrt(values.size), scipy.stats.norm.ppf(upper) * error
-    return found | dict(
-        zip(names, (float(values.mean()), margins[0], deviation, margins[1]), strict=True)
-    )
+    moments = float(values.mean()), margins[0], deviation, margins[1]
+    return found | dict(zip(names, moments, strict=True))
 
 
 def _quantiles(outputs: Floats, level: float) -> dict[str, Floats]:

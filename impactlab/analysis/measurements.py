@@ -78,36 +78,23 @@ def compared(
     uncertainty that the analysis found there along all refined axes, or pilot runs of `auto`.
 
     Returns, on `comparison`, a row for each measurement and each combination of varied words
-    (contact law, beam model, ...), in SI units: compared_quantity, _units, _conditions (JSON),
-    _source, _simulated, _case (the words), _measured and its expanded _uncertainty (k = 2), _model
-    and its _numerical uncertainty, _difference (model less measured), _combined (uncertainty of the
-    difference), _verdict (CF flags, see Agreement) and _reason, why it is not judged.
+    (contact law, beam model, ...): the variables of _LONG_NAMES as compared_<name>, in SI units,
+    and compared_verdict (CF flags, see Agreement).
     """
     found = [(one, row) for one in measurements for row in _rows(runs, analysis, one)]
+    of_measurement = ("quantity", "units", "conditions", "source", "simulated")
+    table: dict[str, Any] = {key: [getattr(one, key) for one, _ in found] for key in of_measurement}
+    table["conditions"] = [json.dumps(dict(each)) for each in table["conditions"]]
+    table["simulated"] = np.array(table["simulated"], dtype=np.int8)
+    table |= {key: [getattr(row, key) for _, row in found] for key in ("case", "reason")}
     measured = np.array([one.value for one, _ in found])
     expanded = COVERAGE * np.array([one.standard_uncertainty for one, _ in found])
-    model = np.array([row.model for _, row in found])
-    numerical = np.array([row.numerical for _, row in found])
-    numbers = {
-        "measured": measured,
-        "uncertainty": expanded,
-        "model": model,
-        "numerical": numerical,
-        "difference": model - measured,
-        "combined": np.hypot(expanded, numerical),
-    }
-    words = {
-        "quantity": [one.quantity for one, _ in found],
-        "units": [one.units for one, _ in found],
-        "conditions": [json.dumps(dict(one.conditions)) for one, _ in found],
-        "source": [one.source for one, _ in found],
-        "simulated": np.array([one.simulated for one, _ in found], dtype=np.int8),
-        "case": [row.case for _, row in found],
-        "reason": [row.reason for _, row in found],
-    }
+    model, numerical = np.array([(row.model, row.numerical) for _, row in found]).reshape(-1, 2).T
+    table |= {"measured": measured, "uncertainty": expanded, "model": model, "numerical": numerical}
+    table |= {"difference": model - measured, "combined": np.hypot(expanded, numerical)}
     variables: dict[str, Any] = {
         f"compared_{name}": ("comparison", each, {"long_name": _LONG_NAMES[name]})
-        for name, each in (words | numbers).items()
+        for name, each in table.items()
     }
     codes = xr.DataArray([int(row.verdict) for _, row in found], dims="comparison")
     variables["compared_verdict"] = flagged(codes, Agreement, "verdict on measurement and model")

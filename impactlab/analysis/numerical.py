@@ -16,8 +16,7 @@ import xarray as xr
 
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
-from impactlab.analysis.responses import in_order, listed, usable
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample, in_order, listed, usable
 from impactlab.analysis.sensitivity import sobol
 from impactlab.analysis.sensitivity.indices import imputed
 from impactlab.analysis.sensitivity.method import half_widths

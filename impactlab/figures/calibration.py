@@ -32,9 +32,8 @@ def calibration(found: xr.Dataset) -> Figure:
         order = np.argsort(found["model_weight"].values, kind="stable")
         rows = np.arange(order.size)
         axes[-1].barh(rows, found["model_weight"].values[order], color=style.COLOURS[0])
-        axes[-1].set_yticks(
-            rows, [CONTACT_LAWS[name].short for name in found["model"].values[order]]
-        )
+        listed = [CONTACT_LAWS[name].short for name in found["model"].values[order]]
+        axes[-1].set_yticks(rows, listed)
         axes[-1].set(xlabel="weight (–)", xlim=(0.0, 1.0), ylabel="contact law")
     style.legend(figure)
     return figure

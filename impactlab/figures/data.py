@@ -151,9 +151,7 @@ def _ends(bars: ErrorbarContainer | None, size: int) -> Floats:
     found = np.full((2, size), np.nan)
     for each in bars.lines[2] if bars else ():
         axis = 0 if bars and bars.has_xerr else 1
-        ends = [
-            segment[:, axis] if len(segment) else (np.nan,) * 2 for segment in each.get_segments()
-        ]
+        ends = [part[:, axis] if len(part) else (np.nan,) * 2 for part in each.get_segments()]
         found[:] = np.sort(np.array(ends, dtype=float).T, axis=0)
     return found
 

@@ -7,14 +7,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from impactlab.analysis.distribution import (
-    cumulative,
-    drawn_outputs,
-    draws,
-    limits,
-    significance,
-)
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.distribution import cumulative, drawn_outputs, draws, limits, significance
+from impactlab.analysis.responses import Sample
 from impactlab.analysis.verdicts import ROUND_OFF
 from impactlab.figures import access, labels, record, responses_grid, scales, style
 from impactlab.figures.access import is_sample, responses, usable
@@ -77,9 +71,7 @@ def _distribution(ax: Axes, values: Floats, percentiles: Floats | None) -> None:
         share = 100 * (1 - values.size / total)
         text = f"{share:.0f} % of the runs: {labels.number(common)}\n(not drawn)"
         ax.margins(y=0.35)
-        ax.text(
-            0.98, 0.98, text, transform=ax.transAxes, ha="right", va="top", color=style.COLOURS[1]
-        )
+        ax.text(0.98, 0.98, text, transform=ax.transAxes, ha="right", va="top", color=_WARNING)
     elif percentiles is not None:
         low, middle, high = percentiles
         ax.axvspan(low, high, color="0.93", zorder=0)
@@ -148,9 +140,8 @@ def cumulative_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         ax.fill_between(x, low[some], high[some], step="post", color="0.87", label="band")
         ax.step(x, share[some], where="post", color=style.COLOURS[0], label="share of the draws")
         if name in given:
-            ax.axvline(
-                float(unit(given[name])), label="_guide: limit", linestyle="--", **style.GUIDE
-            )
+            limit = float(unit(given[name]))
+            ax.axvline(limit, label="_guide: limit", linestyle="--", **style.GUIDE)
         ax.set_ylim(0.0, 1.0)
         scales.linear(ax, "xy", 4)
     figure.supylabel("Share of the draws (–)")

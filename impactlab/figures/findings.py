@@ -58,9 +58,7 @@ def plot_overview(outcomes: Sequence[Outcome]) -> Figure:
     limits = 0.6 * float(least), 2.5 * min(max(largest, 4.0), _MOST)
     scales.logarithmic(axes, "x", limits, ticks=8)
     axes.set(xlim=limits, ylim=(len(outcomes) - 0.5, -0.5), xlabel="Error over tolerance (–)")
-    axes.set_yticks(
-        range(len(outcomes)), [fill(outcome.title, width=_LETTERS) for outcome in outcomes]
-    )
+    axes.set_yticks(range(len(outcomes)), [fill(outcome.title, _LETTERS) for outcome in outcomes])
     axes.tick_params(axis="y", length=0)
     axes.grid(visible=False, axis="y")
     for row in range(1, len(outcomes)):

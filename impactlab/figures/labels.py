@@ -219,7 +219,5 @@ def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:
 
 def fixed(runs: xr.Dataset) -> str:
     """Return a sentence on the parameters, numerics included, that are the same in all runs."""
-    listed = [
-        setting(runs[name], [0]) for name in _FIXED if name in runs.coords and runs[name].size == 1
-    ]
+    listed = [setting(runs[name], [0]) for name in _FIXED if name in runs and runs[name].size == 1]
     return f"In all runs: {'; '.join(listed)}." if listed else ""

@@ -13,13 +13,8 @@ from impactlab.simulate import simulate
 from impactlab.verification.cases import elastic, slimmer
 from impactlab.verification.comparisons import Comparisons, rms_error
 from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.solutions import infinite_beam as closed
 from impactlab.verification.solutions import modal
-from impactlab.verification.solutions.infinite_beam import (
-    curvature_under_force,
-    deflection_under_force,
-    deflection_under_impulse,
-    profile_under_impulse,
-)
 
 LONG_NODES = (801, 1601, 3201)
 FINEST = LONG_NODES[-1]
@@ -51,7 +46,7 @@ def infinite_beam() -> Finding:
     runs = [simulate(impact, grid, duration=IMPULSE_DURATION) for grid in grids]
     errors = []
     for run in runs:
-        expected = deflection_under_force(beam, run.time.values, run.contact_force.values)
+        expected = closed.deflection_under_force(beam, run.time.values, run.contact_force.values)
         errors.append(rms_error(run.midspan_deflection.values, expected))
     label, where = "order of convergence of the deflection", f"{LONG_NODES[-2]} to {FINEST} nodes"
     observed = float(np.log2(errors[-2] / errors[-1]))
@@ -82,11 +77,11 @@ def _against_closed_forms(
     near = np.abs(x) < NEAR
     x, profile = x[near], run.deflection.values[near]
 
-    history = deflection_under_force(beam, time, force)
-    curvature = curvature_under_force(beam, time, force)
+    history = closed.deflection_under_force(beam, time, force)
+    curvature = closed.curvature_under_force(beam, time, force)
     pushed = force > 0.0
     since = IMPULSE_DURATION - time[pushed, np.newaxis]
-    responses = force[pushed, np.newaxis] * profile_under_impulse(beam, 1.0, since, x)
+    responses = force[pushed, np.newaxis] * closed.profile_under_impulse(beam, 1.0, since, x)
     shape = np.trapezoid(responses, time[pushed], axis=0)
     convolved = Comparisons(f"{FINEST} nodes, under the solver's own force")
     convolved.curve("history of deflection", "m", w, history, 1e-4)
@@ -96,24 +91,21 @@ def _against_closed_forms(
     impulse = float(np.trapezoid(force, time))
     centroid = float(np.trapezoid(force * time, time)) / impulse
     rest = IMPULSE_DURATION - centroid
-    expected = deflection_under_impulse(beam, impulse, rest).item()
-    struck = profile_under_impulse(beam, impulse, rest, x)
+    expected = closed.deflection_under_impulse(beam, impulse, rest).item()
+    struck = closed.profile_under_impulse(beam, impulse, rest, x)
     end = f"{IMPULSE_DURATION * 1e6:g} us after first touch"
     impulsive = Comparisons(f"{end}, impulse at the force's centroid")
     impulsive.relative("mid-span deflection", "m", w[-1].item(), expected, 5e-4)
     impulsive.curve("deflected shape", "m", profile, struck, 3e-3)
 
     later = time[time > centroid]
-    at_once = deflection_under_impulse(beam, impulse, later - centroid)
+    at_once = closed.deflection_under_impulse(beam, impulse, later - centroid)
     histories = [
         Curve(f"{FINEST} nodes", time, w),
         Curve("force convolved", time, history, independent=True),
         Curve("impulse at the force's centroid", later, at_once, independent=True),
     ]
-    shapes = [
-        Curve(f"{FINEST} nodes", x, profile),
-        Curve("force convolved", x, shape, independent=True),
-    ]
+    shapes = [Curve(f"{FINEST} nodes", x, profile), Curve("force convolved", x, shape, True)]
     axes = ("distance from mid-span", "m"), ("deflection", "m")
     panels = [
         Panel("deflection where the sphere strikes", _TIME, _DEFLECTION, histories),
@@ -155,10 +147,7 @@ def slender_limit() -> Finding:
         label = f"what shear and rotary inertia change in the {quantity}"
         # Relative to a change which is itself the difference of two errors of order dx^2.
         changes.curve(label, units, ours, expected, 5e-3)
-        histories[name] = [
-            Curve("solver", time, ours),
-            Curve("modal series", time, expected, independent=True),
-        ]
+        histories[name] = [Curve("solver", time, ours), Curve("modal series", time, expected, True)]
         sizes = np.array([rms_error(run[name].values, bare[name].values) for run in runs])
         fall.append(Curve(quantity, ratios, sizes))
         observed = float(np.log2(sizes[-2] / sizes[-1]))

@@ -45,12 +45,10 @@ def rigid_backed(velocity: float, contact: str) -> Impact:
 
 def aluminium_impact() -> Impact:
     """Return a steel sphere on a slender beam of aluminium, 400 x 30 x 12 mm."""
-    aluminium = Material(
-        density=2700.0, youngs_modulus=70e9, poissons_ratio=0.33, yield_stress=250e6
-    )
+    alloy = Material(density=2700.0, youngs_modulus=70e9, poissons_ratio=0.33, yield_stress=250e6)
     return Impact(
         sphere=Sphere(radius=0.015, material=paper_impact().sphere.material),
-        beam=Beam(span=0.4, width=0.03, depth=0.012, material=aluminium),
+        beam=Beam(span=0.4, width=0.03, depth=0.012, material=alloy),
         velocity=1.0,
         contact="stronge",
     )

@@ -19,13 +19,7 @@ from impactlab.types import Floats
 from impactlab.verification.cases import elastic
 from impactlab.verification.comparisons import Comparison, Comparisons
 from impactlab.verification.finding import Curve, Finding, Panel, check
-from impactlab.verification.solutions import hertz
-from impactlab.verification.solutions.beam_modes import (
-    BeamModes,
-    odd_modes,
-    strip_odd_modes,
-    timoshenko_odd_modes,
-)
+from impactlab.verification.solutions import beam_modes, hertz
 from impactlab.verification.solutions.modal import ModalSolution, solve_with
 
 LONGER, SAMPLES, TOLERANCE = 0.3e-3, 601, 2e-3
@@ -110,9 +104,9 @@ def _series(impact: Impact) -> ModalSolution:
     """Return the modal series of an impact with any contact compliance."""
     inertia = float(width_inertia(impact))
     modes = (
-        strip_odd_modes(impact.beam, MODES, inertia)
+        beam_modes.strip_odd_modes(impact.beam, MODES, inertia)
         if inertia > 0.0
-        else timoshenko_odd_modes(impact.beam, MODES)
+        else beam_modes.timoshenko_odd_modes(impact.beam, MODES)
     )
     return solve_with(modes, impact, LONGER, None, *(float(each) for each in local(impact)))
 
@@ -137,8 +131,8 @@ def contact_patch() -> Finding:
         impact = replace(impact, contact_compliance=compliance)
         grid = Discretisation(nodes=nodes, points=3, scheme=scheme)
         run = simulate(impact, grid, duration=DURATION, samples=STEPS + 1)
-        sheared = model == "timoshenko"
-        modes = (timoshenko_odd_modes if sheared else odd_modes)(impact.beam, MODES)
+        theory = beam_modes.timoshenko_odd_modes if model == "timoshenko" else beam_modes.odd_modes
+        modes = theory(impact.beam, MODES)
         deflection, bent, ahead = _under_pressure(modes, impact, run)
         c, gamma = local(impact) if compliance == "beam" else (0.0, 0.0)
         law = np.maximum(run.indentation - c * run.contact_force + gamma * bent, 0.0)
@@ -166,7 +160,7 @@ def contact_patch() -> Finding:
 
 
 def _under_pressure(
-    modes: BeamModes, impact: Impact, run: xr.Dataset
+    modes: beam_modes.BeamModes, impact: Impact, run: xr.Dataset
 ) -> tuple[Floats, Floats, Floats]:
     """Return mid-span deflection (m), curvature (1/m) and the mean deflection ahead of it (m).
 
@@ -188,7 +182,7 @@ def _under_pressure(
     return y.sum(axis=1), y @ modes.curvatures, slower
 
 
-def _driven(modes: BeamModes, load: Floats, h: float) -> tuple[Floats, Floats]:
+def _driven(modes: beam_modes.BeamModes, load: Floats, h: float) -> tuple[Floats, Floats]:
     """Return y (m) and rate (m/s) of modes from rest; load (time, modes) linear in steps h."""
     omega = modes.frequencies
     cosine, sine = np.cos(omega * h), np.sin(omega * h)

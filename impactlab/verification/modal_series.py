@@ -125,15 +125,13 @@ def _histories(
     nodes, time = run.nodes.item(), run.time.values
     found = Comparisons(f"{where}, {nodes} nodes")
     finer = (grids.middle / nodes) ** 2.0
-    for (name, (quantity, units)), tolerance in zip(
-        HISTORIES.items(), grids.tolerances, strict=True
-    ):
+    for (name, (quantity, units)), limit in zip(HISTORIES.items(), grids.tolerances, strict=True):
         label, ours = f"history of {quantity}", run[name].values
         if grids is MODAL and name == "midspan_curvature":
             label += ", the modes left out added"
             modes = odd_modes(series.modes.beam, nodes // 2)
             ours = ours + modes.residual_curvature * run.contact_force.values
-        found.curve(label, units, ours, series.at(name, time), tolerance * finer)
+        found.curve(label, units, ours, series.at(name, time), limit * finer)
     return found
 
 

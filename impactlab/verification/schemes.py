@@ -242,9 +242,8 @@ def schemes() -> Finding:
 
 
 def _run(impact: Impact, scheme: str, nodes: int, duration: float) -> xr.Dataset:
-    return simulate(
-        impact, Discretisation(nodes=nodes, scheme=scheme), duration=duration, samples=401
-    )
+    grid = Discretisation(nodes=nodes, scheme=scheme)
+    return simulate(impact, grid, duration=duration, samples=401)
 
 
 def _yielding(impact: Impact, fine: xr.Dataset) -> list[Comparison]:

@@ -120,14 +120,14 @@ def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> l
     energy = float(0.5 * run.sphere_mass * run.velocity**2)
     # small differences of large numbers are compared by the scale of those
     yardsticks = {"contact_dissipation": energy, "plastic_dissipation": energy, "energy_error": 1.0}
-    responses = []
+    answers = []
     for name, entry in RESPONSES.items():
         expected, ours = run[name].item(), scaled[name].item() / scale.factor(entry.units)
         error = (ours - expected) / yardsticks.get(name, abs(expected) or 1.0)
         if math.isnan(ours) and math.isnan(expected):  # missing in both
             error = 0.0
         label, values = f"worst response: {entry.long_name}", (ours, expected, error)
-        responses.append(
+        answers.append(
             Comparison(label, where, entry.units, *values, TOLERANCE, "of its yardstick")
         )
     curves = Comparisons(where)
@@ -135,7 +135,7 @@ def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> l
         ours = scaled[name].values.ravel() / scale.factor(entry.units)
         label = f"worst curve: {entry.long_name}"
         curves.curve(label, entry.units, ours, run[name].values.ravel(), TOLERANCE)
-    return [worst(responses), worst(curves)]
+    return [worst(answers), worst(curves)]
 
 
 class _March(ABC):

@@ -38,8 +38,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 
     Returns points_error on (response, *grid dims): |value - reference|/|reference|, NaN where
     either is missing, infinite where only the reference is zero. On (response, *other dims):
-    points_uncertainty, see `numerical_uncertainty`; points_needed, the fewest points from which
-    on the error stays within 1 % (NaN where none below the most do), and points_verdict; beside
+    points_uncertainty, points_needed (NaN where none below the most do), points_verdict; beside
     them points_summary (response) and points_tally (response, points_outcome).
     """
     values = usable(runs).sortby("points")

@@ -17,13 +17,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from impactlab.analysis.sample import Sample
-from impactlab.analysis.sensitivity.method import (
-    Index,
-    SensitivityMethod,
-    apart_from_dummy,
-    dummy_column,
-)
+from impactlab.analysis.responses import Sample
+from impactlab.analysis.sensitivity.method import Index, Method, apart_from_dummy, dummy_column
 from impactlab.types import Floats
 
 GRID = 200
@@ -141,4 +136,4 @@ def _density(
     return np.asarray(sums / (np.sqrt(2 * np.pi) * width * sizes))
 
 
-METHOD = SensitivityMethod("delta", _INDICES, Sample.ungrouped, _estimate)
+METHOD = Method("delta", _INDICES, Sample.ungrouped, _estimate)

@@ -13,8 +13,8 @@ import math
 import numpy as np
 from SALib.analyze.fast import compute_orders
 
-from impactlab.analysis.sample import Sample
-from impactlab.analysis.sensitivity.method import Index, SensitivityMethod, apart_from_dummy
+from impactlab.analysis.responses import Sample
+from impactlab.analysis.sensitivity.method import Index, Method, apart_from_dummy
 from impactlab.types import Floats
 
 _1999 = "extended FAST: Saltelli et al. (1999), Technometrics 41, 39"
@@ -77,4 +77,4 @@ def _orders(curve: Floats, harmonics: int) -> tuple[float, float]:
     return float(first), float(total)
 
 
-METHOD = SensitivityMethod("fast", _INDICES, _check, _estimate, _curves)
+METHOD = Method("fast", _INDICES, _check, _estimate, _curves)

@@ -11,17 +11,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.responses import correlations, labels, listed, usable
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample, correlations, labels, listed, usable
 from impactlab.analysis.sensitivity import delta, fast, morris, pawn, regression, sobol, verdict
-from impactlab.analysis.sensitivity.method import BY_SAMPLES, PAIR, Index, SensitivityMethod
+from impactlab.analysis.sensitivity.method import BY_SAMPLES, PAIR, Index, Method
 from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
 from impactlab.analysis.surrogate import fit
 from impactlab.analysis.surrogate.chaos import drawn
 from impactlab.analysis.verdicts import flagged
 from impactlab.types import Floats
 
-METHODS: Mapping[str, SensitivityMethod] = {
+METHODS: Mapping[str, Method] = {
     module.METHOD.name: module.METHOD for module in (sobol, morris, fast, delta, pawn, regression)
 }
 """By their names in study files."""
@@ -68,7 +67,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 
 
 def _answer(
-    response: str, sample: Sample, method: SensitivityMethod
+    response: str, sample: Sample, method: Method
 ) -> tuple[list[SensitivityVerdict], float, dict[str, Floats]]:
     """Return verdicts, share of runs that a surrogate supplied, and indices of a response."""
     outputs = usable(sample.runs, response).values[0]

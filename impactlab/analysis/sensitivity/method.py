@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample
 from impactlab.types import Floats
 
 PAIR = ("parameter", "other_parameter")
@@ -38,7 +38,7 @@ class Index:
 
 
 @dataclass(frozen=True)
-class SensitivityMethod:
+class Method:
     """One method of sensitivity analysis.
 
     name: as in study files. indices: by variable name. check: raises ValueError where the runs are

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from SALib.analyze import morris
 
-from impactlab.analysis.sample import Sample
-from impactlab.analysis.sensitivity.method import Index, SensitivityMethod
+from impactlab.analysis.responses import Sample
+from impactlab.analysis.sensitivity.method import Index, Method
 from impactlab.types import Floats
 
 SAME = 1e-13
@@ -90,4 +90,4 @@ def levels(inputs: Floats) -> Floats:
     return found
 
 
-METHOD = SensitivityMethod("morris", _INDICES, _check, _estimate)
+METHOD = Method("morris", _INDICES, _check, _estimate)

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.indices import MOST_IMPUTED
 from impactlab.analysis.sensitivity.method import counts
 from impactlab.analysis.sensitivity.sobol import FEWEST, check, step

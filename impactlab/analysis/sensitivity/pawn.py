@@ -14,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 from SALib.analyze import pawn
 
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.method import (
     Index,
-    SensitivityMethod,
+    Method,
     apart_from_dummy,
     counts,
     dummy_column,
@@ -112,4 +112,4 @@ def distances(
     return np.asarray(np.abs(apart).max(axis=0))
 
 
-METHOD = SensitivityMethod("pawn", _INDICES, _check, _estimate)
+METHOD = Method("pawn", _INDICES, _check, _estimate)

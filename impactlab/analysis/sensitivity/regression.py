@@ -5,13 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import rankdata
 
-from impactlab.analysis.sample import Sample
-from impactlab.analysis.sensitivity.method import (
-    Index,
-    SensitivityMethod,
-    dummy_column,
-    half_widths,
-)
+from impactlab.analysis.responses import Sample
+from impactlab.analysis.sensitivity.method import Index, Method, dummy_column, half_widths
 from impactlab.types import Floats
 
 _2008 = "Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5"
@@ -81,4 +76,4 @@ def _coefficients(correlation: Floats) -> tuple[Floats, Floats]:
     return found, np.asarray((found * outer).sum(axis=-1))
 
 
-METHOD = SensitivityMethod("regression", _INDICES, _check, _estimate)
+METHOD = Method("regression", _INDICES, _check, _estimate)

@@ -14,14 +14,8 @@ from itertools import combinations
 import numpy as np
 from SALib.analyze import sobol
 
-from impactlab.analysis.sample import Sample
-from impactlab.analysis.sensitivity.method import (
-    BY_SAMPLES,
-    PAIR,
-    Index,
-    SensitivityMethod,
-    half_widths,
-)
+from impactlab.analysis.responses import Sample
+from impactlab.analysis.sensitivity.method import BY_SAMPLES, PAIR, Index, Method, half_widths
 from impactlab.analysis.sensitivity.verdict import still
 from impactlab.types import Floats
 
@@ -210,4 +204,4 @@ def _matrix(values: Floats, factors: int) -> Floats:
     return np.where(np.isnan(matrix), matrix.T, matrix)
 
 
-METHOD = SensitivityMethod("sobol", _INDICES, check, _estimate, varying)
+METHOD = Method("sobol", _INDICES, check, _estimate, varying)

@@ -10,8 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from impactlab.analysis.responses import correlations, labels, listed, usable
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample, correlations, labels, listed, usable
 from impactlab.analysis.surrogate.chaos import drawn, fewest_runs, fit, indices, influence
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, distinct, flagged
 from impactlab.model.distributions import ARGUMENTS, cumulative
@@ -146,14 +145,10 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
 def analysis(runs: xr.Dataset) -> xr.Dataset:
     """Return a polynomial chaos of every response, its test and its Sobol indices.
 
-    Returns, on (response): surrogate_verdict, surrogate_q2 (1 less mean squared error over
-    variance, of held-out runs), surrogate_rmse (in the unit of the response), surrogate_runs
-    (fitted to). surrogate_held_out (response, held_out): predictions at the runs whose numbers
-    the coordinate held_out tells. surrogate_first_order and surrogate_total_order (response,
-    parameter), each with <name>_interval, a half-width (see `indices`). surrogate_coefficient
-    (response, surrogate_term) and surrogate_degree (surrogate_term, surrogate_input): the chaos
-    (see `basis`). NaN where a response has no surrogate. Raises ValueError when the number of
-    runs does not fit the sample.
+    Returns the variables of _NUMBERS as surrogate_<name> on `response` and the dimensions there,
+    NaN where a response has no surrogate; surrogate_degree (surrogate_term, surrogate_input), of
+    the coefficients' terms (see `basis`); and surrogate_verdict (response). Raises ValueError when
+    the number of runs does not fit the sample.
     """
     divided, names = Divided.of(runs), listed(runs, "responses")
     sample = divided.sample

@@ -60,9 +60,7 @@ class Surrogate:
         if absent := [name for name in self.parameters if name not in values]:
             raise ValueError(f"{', '.join(absent)}: no value is given; {self._takes}")
         arrays = [self._checked(name, values[name]) for name in self.parameters]
-        columns = [
-            array.drop_vars(self.parameters, errors="ignore") for array in xr.broadcast(*arrays)
-        ]
+        columns = [one.drop_vars(self.parameters, errors="ignore") for one in xr.broadcast(*arrays)]
         pairs = zip(self._distributions, columns, strict=True)
         places = [cumulative(drawn, column.values.ravel()) for drawn, column in pairs]
         unit = np.column_stack(places)

@@ -261,10 +261,8 @@ def restitution(case: str, data: Data) -> Judgement:
     """Judge the law by the works of its loading and unloading."""
     law = stronge_impact(paper_impact())
     ratios = np.geomspace(1.0, 300.0, 4001)[1:]
-    depths = ratios * law.yield_indentation
-    restitution = np.sqrt(
-        [law.released_work(float(d)) / law.loading_work(float(d)) for d in depths]
-    )
+    depths = (ratios * law.yield_indentation).tolist()
+    restitution = np.sqrt([law.released_work(d) / law.loading_work(d) for d in depths])
     above = restitution > 1.0
     largest = Number("largest restitution", float(restitution.max()), "1")
     if not above.any():

@@ -165,8 +165,6 @@ def _judge_limit(
     if not (under or over):
         why = (
             "The limit lies within the uncertainty: a perfectly plastic hinge has no limit in the "
-        )
-        why += (
             "nodes. Runs with the steel's hardening, which the paper does not give, would decide."
         )
         return Judgement(case, (strain,), Verdict.UNKNOWN, why)

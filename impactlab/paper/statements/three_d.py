@@ -273,9 +273,8 @@ def plastic_zone_extent(case: str, data: Data, variable: str, factor: float) -> 
     reach = _zone_extent(data, variable, factor) if variable else _contact_radius(data, 1.0)
     gap = abs(reach.value - PRINTED_EXTENT)
     stands = gap <= reach.uncertainty
-    why = (
-        f"It differs by {1e3 * gap:.2f} mm, {'within' if stands else 'more than'} the uncertainty."
-    )
+    words = "within" if stands else "more than"
+    why = f"It differs by {1e3 * gap:.2f} mm, {words} the uncertainty."
     return judged(case, (reach,), stands, why, literal=False)
 
 

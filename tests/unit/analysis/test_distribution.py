@@ -22,7 +22,7 @@ from impactlab.analysis.distribution import (
     draws,
     write_csv,
 )
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample
 from impactlab.variables import NO_DISTRIBUTION
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity import method
 
 

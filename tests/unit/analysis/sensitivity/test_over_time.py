@@ -16,7 +16,7 @@ from SALib.sample import sobol as sampler
 from impactlab import files
 from impactlab.analysis import sensitivity
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity import over_time
 from impactlab.analysis.sensitivity.indices import sensitivity_variables, table_rows
 from impactlab.analysis.sensitivity.over_time import HistoryVerdict, TimeVerdict

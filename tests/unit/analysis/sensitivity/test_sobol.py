@@ -13,7 +13,7 @@ from SALib.analyze import sobol as salib
 from SALib.sample import sobol as sampler
 
 from impactlab.analysis import sensitivity
-from impactlab.analysis.sample import Sample
+from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity import sobol as module
 from impactlab.analysis.sensitivity.sobol import Outputs, estimates, points
 from impactlab.figures import measures
