@@ -24,9 +24,15 @@ circles than R/16 (from R/33 to R/8, 6 % of it).
     t = 2/3 (1 - nu),  e = 4 (1 - nu^2),  G = (t - nu/3 - 4 t/e)/e,  C = 1/144 - G t
 
 (deflection of the strip's middle by waves cos(k x): parts in k^-2 and in 1/(e + t (k B)^2)).
+
+The same statics have the stress under the force beyond the half-space's: that of beam theory by the
+moment, and one by the force, which keeps the section from bending freely beneath it. They are what
+`contact_prestress: bending` takes (solver/contact/prestress.py).
 """
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
@@ -83,11 +89,39 @@ AXIS_MOMENT = np.array(
     ]
 )
 """As MOMENT of the axis."""
+STRESS_ALONG = np.array(
+    [
+        [0.0672, 0.0245, -0.004],
+        [0.2251, 0.2197, 0.2184],
+        [0.3854, 0.4166, 0.4426],
+        [0.5641, 0.6391, 0.6951],
+        [0.6891, 0.8098, 0.8824],
+        [0.7862, 1.0147, 1.147],
+        [0.683, 1.2933, 1.8329],
+        [0.2225, 1.8398, 3.806],
+    ]
+)
+"""Stress along the beam per F/H^2 a tenth of the depth under the force, beyond half-space and M."""
+STRESS_ACROSS = np.array(
+    [
+        [-0.424, -0.6382, -0.7655],
+        [-0.2793, -0.4334, -0.5149],
+        [-0.1379, -0.2135, -0.2365],
+        [0.0025, 0.0446, 0.1062],
+        [0.082, 0.2593, 0.4108],
+        [0.189, 0.6268, 0.9754],
+        [0.5749, 1.7104, 2.7709],
+        [1.4004, 3.8179, 6.3569],
+    ]
+)
+"""Across it."""
 SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
 FREE_STRIP = 720.0 / 4.730041**4
 """Inertia of the shape y^2 - B^2/12 that swings as fast as a strip of plate with free edges."""
-TIMOSHENKO_ALONE = "is what a beam adds to Timoshenko's deflection: set beam_model: timoshenko"
+TIMOSHENKO_OPTIONS = {"contact_compliance": "half_space", "contact_prestress": "ignored"}
+"""Options of Timoshenko's beam alone, and their values without it."""
+TIMOSHENKO_ALONE = "is for Timoshenko's beam: set beam_model: timoshenko"
 LEAST_SPAN = 3.0
 """Of the beam, over the larger of depth and width: the table's shortest."""
 
@@ -103,15 +137,19 @@ def _at_ratio(nu: Floats, values: Floats) -> Floats:
 
 
 def case_fields(impact: Impact) -> dict[str, Floats]:
-    """Return the fields of solver.types.CASE that hold the local compliance, zero for half-spaces.
+    """Return the fields of solver.types.CASE that hold local compliance and stress, zero if none.
 
-    Raises ValueError as `contact_compliance`.
+    Raises ValueError as `contact_compliance` and `contact_stress`.
     """
-    names = "compliance", "bending_compliance", "width_inertia", "axis_compliance", "axis_bending"
-    if not np.any(np.not_equal(impact.contact_compliance, "half_space")):
-        return dict.fromkeys(names, np.zeros(()))
-    values = (*contact_compliance(impact), width_inertia(impact), *axis_compliance(impact))
-    return dict(zip(names, values, strict=True))
+    local = "compliance", "bending_compliance", "width_inertia", "axis_compliance", "axis_bending"
+    stress = "stress_along", "stress_across"
+    fields: dict[str, Floats] = dict.fromkeys((*local, *stress), np.zeros(()))
+    if np.any(np.not_equal(impact.contact_compliance, "half_space")):
+        values = (*contact_compliance(impact), width_inertia(impact), *axis_compliance(impact))
+        fields |= zip(local, values, strict=True)
+    if np.any(np.not_equal(impact.contact_prestress, "ignored")):
+        fields |= zip(stress, contact_stress(impact), strict=True)
+    return fields
 
 
 def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
@@ -126,16 +164,8 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     beam, sphere = impact.beam, impact.sphere
     strip = np.equal(impact.contact_compliance, "strip")
     refused = f"Impact.contact_compliance = {'strip' if np.any(strip) else 'beam'!r}: "
-    if np.any(asked & np.not_equal(impact.beam_model, "timoshenko")):
-        raise ValueError(f"{refused}{TIMOSHENKO_ALONE}")
-    shape = np.asarray(beam.depth / beam.width)
-    if np.any(asked & ((shape < DEPTHS[0]) | (shape > DEPTHS[-1]))):
-        raise ValueError(
-            f"{refused}needs a beam of depth over width from {DEPTHS[0]} to {DEPTHS[-1]}"
-        )
-    if np.any(asked & (beam.span < LEAST_SPAN * np.maximum(beam.depth, beam.width))):
-        raise ValueError(f"{refused}needs a span of {LEAST_SPAN:g} depths and widths at least")
-    if np.any(strip & (shape > 1.0)):
+    _within_table(impact, asked, refused)
+    if np.any(strip & (beam.depth > beam.width)):
         raise ValueError(f"{refused}needs a beam as wide as deep at least: set 'beam'")
     c, gamma = _of_beam(impact, FORCE, MOMENT)
     ball = _at_ratio(np.asarray(sphere.material.poissons_ratio), np.asarray(SPHERE))
@@ -159,14 +189,48 @@ def axis_compliance(impact: Impact) -> tuple[Floats, Floats]:
     return c, gamma
 
 
-def _of_beam(impact: Impact, force: Floats, moment: Floats) -> tuple[Floats, Floats]:
-    """Return c (m/N) and gamma (m2) of the beam from two tables."""
+def contact_stress(impact: Impact) -> tuple[Floats, Floats]:
+    """Return the stress under the contact along and across the beam per contact force, in 1/m2.
+
+    Beyond those of the half-space and of the moment, of one impact or of many; zero where
+    `contact_prestress` is ignored.
+
+    Raises ValueError where the beam is none of Timoshenko's, or outside the table.
+    """
+    asked = np.not_equal(impact.contact_prestress, "ignored")
+    _within_table(impact, asked, "Impact.contact_prestress = 'bending': ")
+    square = impact.beam.depth * impact.beam.depth
+    along, across = (_from_table(impact, each) for each in (STRESS_ALONG, STRESS_ACROSS))
+    return np.where(asked, along / square, 0.0), np.where(asked, across / square, 0.0)
+
+
+def _within_table(impact: Impact, asked: np.ndarray[Any, Any], refused: str) -> None:
+    """Raise ValueError, its text begun, where one asked for is no beam of the tables."""
+    beam = impact.beam
+    if np.any(asked & np.not_equal(impact.beam_model, "timoshenko")):
+        raise ValueError(f"{refused}{TIMOSHENKO_ALONE}")
+    shape = np.asarray(beam.depth / beam.width)
+    if np.any(asked & ((shape < DEPTHS[0]) | (shape > DEPTHS[-1]))):
+        raise ValueError(
+            f"{refused}needs a beam of depth over width from {DEPTHS[0]} to {DEPTHS[-1]}"
+        )
+    if np.any(asked & (beam.span < LEAST_SPAN * np.maximum(beam.depth, beam.width))):
+        raise ValueError(f"{refused}needs a span of {LEAST_SPAN:g} depths and widths at least")
+
+
+def _from_table(impact: Impact, table: Floats) -> Floats:
+    """Return a table's value at the beam's depth over width and Poisson's ratio."""
     from scipy.interpolate import CubicSpline  # half a second to import, for few
 
+    log = np.log(np.asarray(impact.beam.depth / impact.beam.width))
+    nu = np.asarray(impact.beam.material.poissons_ratio)
+    return _at_ratio(nu, CubicSpline(np.log(DEPTHS[: len(table)]), table)(log))
+
+
+def _of_beam(impact: Impact, force: Floats, moment: Floats) -> tuple[Floats, Floats]:
+    """Return c (m/N) and gamma (m2) of the beam from two tables."""
     beam, nu = impact.beam, np.asarray(impact.beam.material.poissons_ratio)
-    log = np.log(np.asarray(beam.depth / beam.width))
-    both = (CubicSpline(np.log(DEPTHS[: len(each)]), each)(log) for each in (force, moment))
-    c, g = (_at_ratio(nu, each) for each in both)
+    c, g = (_from_table(impact, each) for each in (force, moment))
     shear = (1.0 / beam.shear_coefficient - 6.0 / 5.0) * (1.0 + nu) / 6.0
     c = c / (beam.material.youngs_modulus * beam.depth)
     return c, (g - shear) * beam.depth * beam.depth

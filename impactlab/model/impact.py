@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.model.quantities import SI, Quantity, engineering
-from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS
+from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS, PRESTRESSES
 from impactlab.solver.contact import LAWS
 
 SOLID = "solid"
@@ -160,8 +160,10 @@ class Impact:
     bodies, in which `contact` and `load` play no part). load: "point" (the contact force acts at
     mid-span) or "contact_patch" (over the contact circle, see solver/contact_patch.py; not on
     lumped beams). contact_compliance: of the contact law's "half_space", of this "beam" and sphere,
-    or of a "strip", a beam that bends across its width, too (both Timoshenko's beam alone; see
-    model/contact_compliance.py).
+    or of a "strip", a beam that bends across its width, too (see model/contact_compliance.py).
+    contact_prestress: whether the stress from the beam's "bending" changes the force at which the
+    contact yields, or is "ignored" (see solver/contact/prestress.py). Both but for their defaults
+    are for Timoshenko's beam alone.
 
     Raises ValueError naming the field when a value is not physical or a name is unknown.
 
@@ -182,6 +184,7 @@ class Impact:
     beam_model: str = "euler_bernoulli"
     load: str = "point"
     contact_compliance: str = "half_space"
+    contact_prestress: str = "ignored"
 
     def __post_init__(self) -> None:
         instance("Impact", "sphere", self.sphere, Sphere)
@@ -193,6 +196,7 @@ class Impact:
         one_of("Impact", "beam_model", self.beam_model, MODELS)
         one_of("Impact", "load", self.load, LOADS)
         one_of("Impact", "contact_compliance", self.contact_compliance, COMPLIANCES)
+        one_of("Impact", "contact_prestress", self.contact_prestress, PRESTRESSES)
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""
@@ -233,8 +237,8 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
     """Return the paper's sphere and beam in the beam model that is nearest to 3-D; velocity in m/s.
 
     Timoshenko's beam, a contact law from finite elements, the local compliance of sphere and beam
-    with bending across the width, and the force over the circle of contact: docs/agreement.md has
-    what each of them brings.
+    with bending across the width, the stress of bending where the contact yields, and the force
+    over the circle of contact: docs/agreement.md has what each of them brings.
 
     Raises ValueError when velocity is not valid.
 
@@ -245,6 +249,7 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
         paper_impact(velocity, "finite_element"),
         beam_model="timoshenko",
         contact_compliance="strip",
+        contact_prestress="bending",
         load="contact_patch",
     )
 

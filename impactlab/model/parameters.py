@@ -14,7 +14,7 @@ from typing import Any
 from impactlab.model.checks import Column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
-from impactlab.solver import COMPLIANCES, LOADS, RULES, SCHEMES
+from impactlab.solver import COMPLIANCES, LOADS, PRESTRESSES, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 
 Value = float | int | str
@@ -55,6 +55,7 @@ _ROWS = (
     ("beam_model", "1", "model of the beam", "impact.beam_model"),
     ("load", "1", "place of the contact force on the beam", "impact.load"),
     ("contact_compliance", "1", "bodies of the local compliance", "impact.contact_compliance"),
+    ("contact_prestress", "1", "stress beneath the contact", "impact.contact_prestress"),
     ("sphere_radius", "m", "radius of the sphere", "impact.sphere.radius"),
     ("sphere_mass", "kg", "mass of the sphere", "impact.sphere.mass"),
     *(
@@ -92,6 +93,7 @@ _CHOICES = {
     "beam_model": MODELS,
     "load": LOADS,
     "contact_compliance": COMPLIANCES,
+    "contact_prestress": PRESTRESSES,
     "rule": RULES,
     "scheme": SCHEMES,
 }

@@ -15,5 +15,7 @@ LOADS = ("point", "contact_patch")
 """Where the contact force acts on the beam; the index is the kernels' switch."""
 COMPLIANCES = ("half_space", "beam", "strip")
 """What the contact laws' half-spaces stand for (model/contact_compliance.py)."""
+PRESTRESSES = ("ignored", "bending")
+"""What stress the metal is under where the contact yields (contact/prestress.py)."""
 BENDING_MODELS = BEAM_MODELS[:2]
 """Those that have every scheme in time; the others have leapfrog alone."""

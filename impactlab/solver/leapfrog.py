@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from impactlab.solver import (
 )
 from impactlab.solver.beam import Beam, make_beam, make_grid, rest_beam
 from impactlab.solver.contact import history as contact_history
+from impactlab.solver.contact import prestress
 from impactlab.solver.contact.history import Pair, make_pair
 from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import (
@@ -71,17 +73,24 @@ def _sample(
         k += 1
 
 
-@inlined
-def contact_force(
-    contact: Record, events: Record, pair: Pair, delta: float, t: float, dt: float
-) -> float:
-    """Return the contact force (N) at time t; a peak just passed is taken between the steps."""
-    falls = delta < events.delta and events.delta >= events.delta_before
-    if falls and events.delta == contact.approach_m:
-        offset, peak = event_tracker.vertex(events.delta_before, events.delta, delta)
-        contact_history.load_to(contact, pair, peak)
-        events.t_peak = t + (offset - 1.0) * dt
-    return contact_history.force(contact, pair, delta)
+def _between_steps(load_to: Callable[..., Any], force: Callable[..., float]) -> Any:
+    @inlined
+    def contact_force(
+        contact: Record, events: Record, pair: Pair, delta: float, t: float, dt: float
+    ) -> float:
+        """Return the contact force (N) at time t; a peak just passed is taken between the steps."""
+        falls = delta < events.delta and events.delta >= events.delta_before
+        if falls and events.delta == contact.approach_m:
+            offset, peak = event_tracker.vertex(events.delta_before, events.delta, delta)
+            load_to(contact, pair, peak)
+            events.t_peak = t + (offset - 1.0) * dt
+        return force(contact, pair, delta)
+
+    return contact_force
+
+
+contact_force = _between_steps(contact_history.load_to, contact_history.force)
+prestressed_force = _between_steps(prestress.force, prestress.force)
 
 
 def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
@@ -121,7 +130,7 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
 def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C901 one loop
     """Return the time loop of a model of the beam; extended: see _kernel."""
     _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight, _ = model[:9]
-    sag, beneath = model.sag, model.beneath
+    sag, beneath, moment = model.sag, model.beneath, model.moment
     fly = None if flight is None else _leaps(flight)
 
     @inlined
@@ -179,7 +188,12 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
                 kappa = mid_curvature(state, now)
                 contact.shift = pair.bending * (plastic.M_0[mid] / section.stiffness - kappa)
                 approach = delta - contact.shift
-            F = contact_force(contact, events, pair, approach, step * dt, dt)
+            if moment is not None and pair.prestress[0] > 0.0:
+                outermost = 6.0 / (case.beam_width * case.beam_depth * case.beam_depth)
+                contact.bending_stress = outermost * moment(state, now)
+                F = prestressed_force(contact, events, pair, approach, step * dt, dt)
+            else:
+                F = contact_force(contact, events, pair, approach, step * dt, dt)
             if beneath is not None:
                 delta -= beneath(state, now, F)
             if pair.bending != 0.0:
@@ -304,8 +318,8 @@ def _run(model: Model, extended: bool) -> Callable[..., int]:
 def _kernel(name: str, model: Model, extended: bool = False) -> Callable[..., None]:
     """Return the kernel of a model of the beam.
 
-    extended: with a load over the contact patch, strain rate and bending across the width, which
-    other kernels are free of, so that they compile sooner.
+    extended: with a load over the contact patch, strain rate, bending across the width and stress
+    beneath the contact, which other kernels are free of, so that they compile sooner.
 
     It solves every case of R, by records and arrays of as many rows. cases: CASE records. answers:
     blank RESPONSE records, filled. contacts, events: zeros, CONTACT and EVENTS records to work in.
@@ -379,9 +393,9 @@ _MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", modal.MODEL, 
 
 
 def is_extended(cases: Array) -> Array:
-    """Return which cases need an extended kernel: a spread load, strain rate, or a strip."""
+    """Return which cases need an extended kernel: spread load, strain rate, strip, prestress."""
     spread = (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
-    return spread | (cases["width_inertia"] > 0.0)
+    return spread | (cases["width_inertia"] > 0.0) | (cases["contact_prestress"] > 0)
 
 
 def kernel_of(beam_model: int, scheme: int, extended: bool = False) -> Callable[..., None]:

@@ -45,7 +45,7 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
     if events.delta == contact.approach_m:
         answer.status |= INDENTATION_STILL_GROWING
     else:
-        answer.peak_force = contact.F_m
+        answer.peak_force = contact.peak_force if pair.prestress[0] > 0.0 else contact.F_m
         answer.time_of_peak_force = events.t_peak
         bends = pair.bending != 0.0
         answer.maximum_indentation = contact.largest if bends else contact.approach_m

@@ -177,6 +177,22 @@ def _beneath(state: State, now: int, F: float) -> float:
     return float(c * F + gamma * elastic)
 
 
+@compiled
+def _moment(state: State, now: int) -> float:
+    strip, section, mid = state.own, state.section, state.grid.mid
+    kappa = _curvature(state, now)
+    M = state.plastic.M_0[mid] - section.stiffness * kappa
+    if strip.inertia > 0.0:
+        M -= strip.nu * strip.stiffness * (strip.s[mid] + strip.nu * kappa)
+    return float(M)
+
+
 MODEL = timoshenko.MODEL._replace(
-    make=_make, step=_step, curvature=_curvature, energy=_energy, sag=_sag, beneath=_beneath
+    make=_make,
+    step=_step,
+    curvature=_curvature,
+    energy=_energy,
+    sag=_sag,
+    beneath=_beneath,
+    moment=_moment,
 )

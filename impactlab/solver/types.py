@@ -42,10 +42,10 @@ CASE = record(
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent courant
-    compliance bending_compliance
+    compliance bending_compliance stress_along stress_across
     width_inertia axis_compliance axis_bending
     """,
-    whole="contact beam_model load nodes points rule scheme",
+    whole="contact beam_model load contact_prestress nodes points rule scheme",
 )
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 

@@ -39,6 +39,7 @@ _CHECKS = (
     strain_rate.strain_rate,
     local_contact.contact_compliance,
     local_contact.strip,
+    local_contact.contact_prestress,
     energy.balances,
 )
 CATALOGUE: dict[str, Check] = {check.name: check for check in _CHECKS}

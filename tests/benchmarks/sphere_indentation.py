@@ -12,9 +12,10 @@ compliance is that of the same mesh.
 
 Lengths are in radii of the sphere, stresses in yield stresses, nu = 0.3. x = delta/delta_y and
 F/F_y are those of the contact laws, for first yield at a mean pressure of 1.1 yield stresses
-(stronge). Output: one row per equilibrium: elastic sphere or rigid, small strains or not, E*/S_y,
-elements over the largest radius, largest x so far, x, F/F_y, contact radius over that of the
-sphere.
+(stronge). With --stress the half-space is stretched evenly beforehand, in all directions along its
+surface: the data of `contact_prestress`. Output: one row per equilibrium: elastic sphere or rigid,
+small strains or not, E*/S_y, that stress, elements over the largest radius, largest x so far, x,
+F/F_y, contact radius over that of the sphere.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from scipy.sparse.linalg import splu
 
 NU = 0.3
 Array = np.ndarray[Any, Any]
-COLUMNS = ("sphere", "strains", "E_over_S", "elements", "x_max", "x", "F", "a_over_R")
+COLUMNS = ("sphere", "strains", "E_over_S", "stress", "elements", "x_max", "x", "F", "a_over_R")
 _G = 1.0 / math.sqrt(3.0)
 
 
@@ -263,7 +264,9 @@ class Solve:
 def run(args: argparse.Namespace) -> None:
     """Load to the depth and unload from the depths asked for; append rows to the file."""
     solve = Solve(args.modulus, args.depth, args.elements, args.rigid, args.small)
-    kind = ("rigid" if args.rigid else "elastic", "small" if args.small else "large", args.modulus)
+    solve.stress[:, :, [0, 2]] = args.stress
+    bodies = "rigid" if args.rigid else "elastic", "small" if args.small else "large"
+    kind = *bodies, args.modulus, args.stress
     begun, rows = time.process_time(), []
 
     def note(x: float, top: float) -> float:
@@ -300,6 +303,7 @@ if __name__ == "__main__":
     parser.add_argument("--depth", type=float, required=True, help="largest delta/delta_y")
     parser.add_argument("--unload", type=float, nargs="*", help="unload from these, too")
     parser.add_argument("--elements", type=int, default=60, help="over the largest radius")
+    parser.add_argument("--stress", type=float, default=0.0, help="along the surface, over S_y")
     parser.add_argument("--steps", type=int, default=60)
     parser.add_argument("--rigid", action="store_true")
     parser.add_argument("--small", action="store_true", help="small strains, a paraboloid")

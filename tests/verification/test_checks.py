@@ -16,7 +16,7 @@ from impactlab.verification.modal_series import (
 )
 from impactlab.verification.solutions.modal import solve, solve_timoshenko
 
-SLOW = ("contact_patch", "strain_rate", "strip")
+SLOW = ("contact_patch", "contact_prestress", "strain_rate", "strip")
 """They need kernels of their own, each compiled for ten seconds."""
 
 

@@ -15,6 +15,7 @@ from impactlab.fem3d.solver.mesh import Mesh, quarter_mesh
 from impactlab.fem3d.solver.responses import fields, plastic_responses, responses
 from impactlab.fem3d.solver.system import System, ThreadPool
 from impactlab.model.checks import integer, positive
+from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten
@@ -107,7 +108,7 @@ IMPACT_PARAMETERS = [
     name
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
-    and name not in ("contact", "contact_compliance", "beam_model", "load", "shear_coefficient")
+    and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
 ]
 """Parameters of an impact, without those of the beam models alone."""
 

@@ -28,6 +28,7 @@ from impactlab.fem3d.solver.responses import depth_reach, surface_reach
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.model import cost
 from impactlab.model.checks import column, positive
+from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact, paper_impact
 from impactlab.model.parameters import with_values
@@ -66,15 +67,13 @@ def table(
     """
     models = np.asarray(varied.get("beam_model", [impact.beam_model]))
     plain = dict(varied)
-    if {"beam_model", "contact_compliance"} & plain.keys():  # the bodies are what they are in 3-D
-        asked = np.asarray(varied.get("contact_compliance", [impact.contact_compliance]))
-        plain["contact_compliance"] = np.where(models == SOLID, "half_space", asked)
-    elif impact.beam_model == SOLID:
-        impact = replace(impact, contact_compliance="half_space")
-    if "beam_model" in plain:
-        plain["beam_model"] = np.where(models == SOLID, BEAM_MODELS[0], models)
-    elif impact.beam_model == SOLID:
-        impact = replace(impact, beam_model=BEAM_MODELS[0])
+    # what a table of beams takes; the bodies are what they are in 3-D
+    for name, stand_in in (TIMOSHENKO_OPTIONS | {"beam_model": BEAM_MODELS[0]}).items():
+        if {"beam_model", name} & plain.keys():
+            asked = np.asarray(varied.get(name, [getattr(impact, name)]))
+            plain[name] = np.where(models == SOLID, stand_in, asked)
+        elif impact.beam_model == SOLID:
+            impact, _ = with_values(impact, grid, {name: stand_in})
     found: Array = require_fields(case_table(impact, grid, varied=plain, **options), SOLID_CASE)
     solid = np.broadcast_to(models == SOLID, found.shape)
     if not solid.any():

@@ -27,6 +27,8 @@ class Pair(NamedTuple):
     law: its number; E, R: effective modulus (Pa) and radius (m); S_y, nu: the softer body's yield
     stress (Pa) and Poisson's ratio. compliance (m/N), bending (m2): approach of the bodies beyond
     that of half-spaces, per force and per M/(EI) at mid-span; zero for half-spaces.
+    prestress: depth of the beam (m; 0: its stress is ignored) and stresses along and across it per
+    force (1/m2), see contact/prestress.py.
     """
 
     law: int
@@ -36,16 +38,21 @@ class Pair(NamedTuple):
     nu: float
     compliance: float = 0.0
     bending: float = 0.0
+    prestress: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 CONTACT = record(
-    "delta_m F_m K delta_r n work delta_w approach_m largest shift shift_before bending_work"
+    """
+    delta_m F_m K delta_r n work delta_w approach_m largest shift shift_before bending_work
+    bending_stress peak_force
+    """
 )
 """delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
 unloading curve from there. work (J): integral of the loading force from 0 to delta_w (m).
 approach_m (m): the approach at delta_m. Where bending counts, shift (m): what it adds to the
 approach, now and a step before; bending_work (J): of the force on it; largest (m): approach and
-shift."""
+shift. With prestress: bending_stress (Pa), of the beam's lower face; peak_force (N); approach_m is
+the largest of all, and work what is dissipated."""
 
 PANELS = 8
 _ITERATIONS, _ROUNDING = 60, 1e-14
@@ -72,9 +79,12 @@ def make_pair(case: Record) -> Pair:
         contact_rate(case, E, R), case.beam_rate_coefficient, case.beam_rate_exponent
     )
     S_y, nu = case.beam_yield_stress * factor, case.beam_poissons_ratio
+    depth = case.beam_depth if case.contact_prestress > 0 else 0.0
     if S_y > case.sphere_yield_stress:
-        S_y, nu = case.sphere_yield_stress, case.sphere_poissons_ratio
-    return Pair(case.contact, E, R, S_y, nu, case.compliance, case.bending_compliance)
+        S_y, nu, depth = case.sphere_yield_stress, case.sphere_poissons_ratio, 0.0
+    compliances = case.compliance, case.bending_compliance
+    prestress = depth, case.stress_along, case.stress_across
+    return Pair(case.contact, E, R, S_y, nu, *compliances, prestress)
 
 
 @compiled
@@ -178,10 +188,11 @@ def energies(
     Dissipated is what loading took less what the unloading curve would give back; negative
     where a law creates energy. fast: with roots for powers.
     """
-    if contact.delta_m > contact.delta_w:
+    prestressed = pair.prestress[0] > 0.0
+    if contact.delta_m > contact.delta_w and not prestressed:
         contact.work += loading_work(pair, contact.delta_w, contact.delta_m)
         contact.delta_w = contact.delta_m
-    whole = _released(contact, contact.delta_m - contact.delta_r, fast)
+    whole = 0.0 if prestressed else _released(contact, contact.delta_m - contact.delta_r, fast)
     over = max(approach - contact.delta_r, 0.0)
     if pair.compliance != 0.0:
         over = recovered(contact, pair, approach)

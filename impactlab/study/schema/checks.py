@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.model.contact_compliance import TIMOSHENKO_ALONE
+from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
@@ -180,10 +180,11 @@ def _impacts(file: StudyFile) -> Reasons:
     if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
         yield key_of("load", sampling), f"{reason}, or take out the beam model"
-    given = values_of(sampling, "contact_compliance", file.impact.contact_compliance)
-    ours = sorted(set(map(str, given)) - {"half_space"})
-    if ours and set(models) - {"timoshenko", SOLID}:
-        yield key_of("contact_compliance", sampling), f"{ours[0]} {TIMOSHENKO_ALONE}"
+    for name, plain in TIMOSHENKO_OPTIONS.items():
+        given = values_of(sampling, name, getattr(file.impact, name))
+        ours = sorted(set(map(str, given)) - {plain})
+        if ours and set(models) - {"timoshenko", SOLID}:
+            yield key_of(name, sampling), f"{ours[0]} {TIMOSHENKO_ALONE}"
 
 
 def _solid(file: StudyFile) -> Reasons:

@@ -84,7 +84,8 @@ def prepare(design: xr.Dataset) -> None:
     patch = np.atleast_1d(design.get("load", given.load)) == "contact_patch"
     rate = np.atleast_1d(design.get("beam_rate_coefficient", given.beam.material.rate_coefficient))
     strip = np.atleast_1d(design.get("contact_compliance", given.contact_compliance)) == "strip"
-    options = np.meshgrid(patch, rate > 0.0, strip)
+    stress = np.atleast_1d(design.get("contact_prestress", given.contact_prestress)) == "bending"
+    options = np.meshgrid(patch, rate > 0.0, strip, stress)
     compile_kernels(models, schemes, np.unique(np.logical_or.reduce(options)).tolist())
 
 

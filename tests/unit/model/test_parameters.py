@@ -14,6 +14,7 @@ OTHER_NAMES = {
     "contact": "hertz",
     "beam_model": "elastic",
     "contact_compliance": "beam",
+    "contact_prestress": "bending",
     "load": "contact_patch",
     "rule": "layers",
     "scheme": "modal",

@@ -42,6 +42,7 @@ REFUSED = {
     ("Impact", "contact"): ["hooke", "Hertz", "", None, 0],
     ("Impact", "beam_model"): ["bernoulli", "Rigid", "spring-mass", "", None, 0],
     ("Impact", "contact_compliance"): ["none", "Beam", "", None, 0],
+    ("Impact", "contact_prestress"): ["none", "Bending", "", None, 0],
     ("Impact", "load"): ["patch", "Point", "", None, 0],
     ("Discretisation", "nodes"): [0, 3, 4, 200, 201.5, -201, NAN, INFINITE, "201", None, True],
     ("Discretisation", "points"): [1, 0, -9, 2.5, NAN, "9", None],

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten, with_values
 from impactlab.simulate import case_table
-from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS, RULES, SCHEMES
+from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 
 IMPACT = il.paper_impact(15.0)
@@ -39,7 +40,7 @@ RANDOM = np.random.default_rng(3)
 TOGETHER = tuple(name for name in PARAMETERS if name != ELEMENTS[1])
 """But for what contradicts another."""
 WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "load": LOADS}
-WORDS["contact_compliance"] = COMPLIANCES[:1]  # the others are Timoshenko's beam's alone
+WORDS |= {name: (word,) for name, word in TIMOSHENKO_OPTIONS.items()}
 WORDS |= {"rule": RULES, "scheme": SCHEMES}
 COUNTS = {"nodes": (5, 19, 1201), "points": (2, 3, 64)}
 

@@ -15,7 +15,10 @@ OF_KERNELS = {
     if name not in (*ELEMENTS, "contact_compliance")
 }
 """Without those of the 3-D model alone, and that which becomes five numbers."""
-DERIVED = ("compliance", "bending_compliance", "width_inertia", "axis_compliance", "axis_bending")
+DERIVED = (
+    *("compliance", "bending_compliance", "width_inertia", "axis_compliance", "axis_bending"),
+    *("stress_along", "stress_across"),
+)
 
 
 def test_fields_are_the_parameters_and_the_duration():
@@ -39,6 +42,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
         "contact": LAWS.index("hertz"),
         "beam_model": BEAM_MODELS.index("elastic"),
         "load": LOADS.index("contact_patch"),
+        "contact_prestress": 0,
         "rule": RULES.index("layers"),
         "scheme": SCHEMES.index("modal"),
     }

@@ -1,0 +1,115 @@
+"""A contact on metal under stress: first yield, the data of the fit, energy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.optimize import minimize_scalar
+
+from impactlab.solver.contact import LAWS, finite_element, prestress
+from impactlab.solver.contact.history import CONTACT, Pair, energies
+from impactlab.solver.contact.history import force as plain_force
+from impactlab.solver.contact.stronge import yield_indentation
+
+E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
+DEPTH = 0.0278
+DATA = pd.read_csv(Path(finite_element.__file__).with_name("prestress.csv"))
+FIRST = yield_indentation(E, R, S_y)
+
+
+def untouched():
+    contact = np.zeros(1, CONTACT)[0]
+    contact.n = 1.5
+    return contact
+
+
+def pair(law="finite_element", compliance=0.0):
+    return Pair(LAWS.index(law), E, R, S_y, nu, compliance, 0.0, (DEPTH, 500.0, -300.0))
+
+
+def hertz_pressure(along, across):
+    """Return Hertz's largest pressure at first yield on the axis, in yield stresses."""
+
+    def spare(z):
+        upright = -1.0 / (1.0 + z * z)
+        sideways = -(1.0 + nu) * (1.0 - z * np.arctan(1.0 / z)) - 0.5 * upright
+        apart = sideways - upright  # times the pressure p: both stresses along the surface, of z
+        # von Mises with p apart + along, p apart + across is 1: a quadratic in p
+        b = apart * (along + across)
+        c = along**2 - along * across + across**2 - 1.0
+        return (-b + np.sqrt(b * b - 4.0 * apart**2 * c)) / (2.0 * apart**2)
+
+    return minimize_scalar(spare, bounds=(0.2, 1.0), method="bounded").fun
+
+
+@pytest.mark.parametrize(
+    ("along", "across"), [(-0.1, -0.1), (0.1, 0.1), (-0.05, 0.0), (0.0, 0.05), (0.1, -0.1)]
+)
+def test_first_yield_is_von_mises_in_the_field_of_hertz(along, across):
+    ratio = (hertz_pressure(along, across) / hertz_pressure(0.0, 0.0)) ** 3
+    # B and C are those of deep contacts
+    small = 0.44 * (along - across) ** 2 + 0.26 * (along + across) ** 2
+    strength = prestress.strengthening(1.0 + 1e-12, along, across)
+    assert strength == pytest.approx(ratio, abs=1e-6 + 1.5 * small)
+
+
+@pytest.mark.parametrize("stress", [-0.6, -0.3, 0.3])
+@pytest.mark.parametrize("span", [(10.0, 40.0), (40.0, 120.0), (120.0, 301.0)])
+def test_force_under_an_even_stress_is_that_of_finite_elements(stress, span):
+    """In the mean over a range; nodes that touch one by one make single points scatter."""
+
+    def force(x, stress):
+        F, K, residual, n = finite_element.curve(x * FIRST, E, R, S_y, nu)
+        F *= prestress.strengthening(x, stress, stress)
+        return F, (residual + (F / K) ** (1.0 / n)) / FIRST
+
+    def raised(x):
+        forces, at = zip(
+            *(force(each, stress) for each in np.linspace(5.0, 320.0, 400)), strict=True
+        )
+        return np.interp(x, at, forces) / np.array([force(each, 0.0)[0] for each in x]) - 1.0
+
+    loaded, plain = (DATA[DATA.stress == each].set_index("x").F for each in (stress, 0.0))
+    change = (loaded / plain - 1.0)[span[0] : span[1]]
+    assert np.mean(raised(change.index)) == pytest.approx(change.mean(), abs=0.012)
+    assert abs(change.mean()) > 0.03
+
+
+@pytest.mark.parametrize("compliance", [-3e-10, 0.0, 3e-10])
+def test_stress_that_changes_creates_no_energy(compliance):
+    """Loading and reloading while the bending swings: work is stored or dissipated."""
+    approach = np.concatenate(
+        [np.linspace(0.0, 60.0, 4000), np.linspace(60.0, 50.0, 1000), np.linspace(50.0, 80.0, 3000)]
+    )
+    approach = 1e-6 * np.concatenate([approach, np.full(1000, 80.0), np.linspace(80.0, 0.0, 4000)])
+    bending = 0.8 * S_y * np.sin(np.linspace(0.0, 30.0, approach.size))
+    contact, forces, dissipated = untouched(), [], []
+    bodies = pair(compliance=compliance)
+    for delta, stress in zip(approach, bending, strict=True):
+        contact.bending_stress = stress
+        forces.append(prestress.force(contact, bodies, delta))
+        dissipated.append(energies(contact, bodies, delta)[1])
+    assert np.diff(dissipated).min() >= 0.0
+    assert forces[-1] == energies(contact, bodies, 0.0)[0] == 0.0
+    work = np.trapezoid(forces, approach)
+    assert work == pytest.approx(dissipated[-1], rel=1e-3)
+    assert contact.approach_m == approach.max()
+    assert contact.peak_force == max(forces)
+
+
+@pytest.mark.parametrize("law", [law for law in LAWS if law != "stronge_original"])
+def test_without_stress_the_law_is_as_it_was(law):
+    """Of every law whose force does not jump at the turn; Hertz's never yields, stress or not."""
+    alone = pair(law)._replace(prestress=(DEPTH, 0.0, 0.0))
+    plain, ours = untouched(), untouched()
+    for delta in (
+        1e-6 * np.r_[np.linspace(0, 60, 40), np.linspace(60, 45, 10), np.linspace(45, 70, 9)]
+    ):
+        ours.bending_stress = -0.5 * S_y if law == "hertz" else 0.0
+        expected = plain_force(plain, alone._replace(prestress=(0.0, 0.0, 0.0)), delta)
+        assert prestress.force(ours, alone, delta) == pytest.approx(expected, rel=1e-9, abs=1e-3)
+    lost = energies(plain, alone._replace(prestress=(0.0, 0.0, 0.0)), delta)[1]
+    assert energies(ours, alone, delta)[1] == pytest.approx(lost, rel=2e-2, abs=1e-6)
