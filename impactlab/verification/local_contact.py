@@ -125,24 +125,22 @@ def contact_prestress() -> Finding:
     """
     impact = paper_impact(5.0, "finite_element")
     impact = replace(impact, beam_model="timoshenko", contact_prestress="bending")
-    grid, where = Discretisation(nodes=201), "5 m/s, 201 nodes"
+    grid, found = Discretisation(nodes=201), Comparisons("5 m/s, 201 nodes")
     run, plain = (
         simulate(each, grid, duration=0.2e-3, samples=2001)
         for each in (impact, replace(impact, contact_prestress="ignored"))
     )
     expected = _prestressed(impact, run)
     force, time = run.contact_force.values, run.time.values
-    found = [
-        curve("history of contact force", where, "N", force, expected, 1e-3),
-        absolute("equivalent plastic strain", where, "1", run.peak_plastic_strain.item(), 0, 0),
-        absolute("energy error", where, "1", run.energy_error.item(), 0.0, 1e-4),
-    ]
+    found.curve("history of contact force", "N", force, expected, 1e-3)
+    found.absolute("equivalent plastic strain", "1", run.peak_plastic_strain.item(), 0.0, 0.0)
+    found.absolute("energy error", "1", run.energy_error.item(), 0.0, 1e-4)
     curves = [
         Curve("solver", time, force),
         Curve("law along its histories", time, expected, independent=True),
         Curve("stress ignored", time, plain.contact_force.values),
     ]
-    return Finding(found, [Panel(where, ("time", "s"), ("contact force", "N"), curves)])
+    return Finding(found, [Panel(found.where, ("time", "s"), ("contact force", "N"), curves)])
 
 
 def _prestressed(impact: Impact, run: xr.Dataset) -> Floats:
