@@ -220,7 +220,6 @@ def checked(path: Path, *contents: str, blocks: bool = False) -> Iterator[xr.Dat
 
 
 def _check(dataset: xr.Dataset, path: Path) -> None:
-    """Raise ValueError where the digests of a dataset are not those written."""
     with _readable(path):
         found = {str(name): _digest(each.attrs, each) for name, each in dataset.variables.items()}
     found[_ATTRIBUTES] = _digest(dataset.attrs)
@@ -267,7 +266,6 @@ def _digest(attrs: Mapping[Any, Any], variable: xr.Variable | None = None) -> st
 
 
 def _hash(attrs: Mapping[Any, Any], variable: xr.Variable | None) -> blake2b:
-    """Return a hash of attributes, with shape and kind of a variable."""
     if variable is not None:
         kind = "text" if variable.dtype.kind in "OUS" else variable.dtype.name
         attrs = {**attrs, " dims": variable.dims, " shape": variable.shape, " kind": kind}

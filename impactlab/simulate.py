@@ -170,7 +170,6 @@ def _combined(
 
 
 def _in_si(name: str, values: Any) -> Any:
-    """Return values in SI units where they have a unit."""
     values = as_text(values)
     if name not in PARAMETERS or PARAMETERS[name].choices or not isinstance(values, list | tuple):
         return values

@@ -228,7 +228,6 @@ def _counts(found: xr.Dataset, variable: str) -> dict[str, str]:
 
 
 def _spread(found: xr.Dataset, variable: str) -> Cell:
-    """Return the range of the finite values over the rest of the grid."""
     values = found.get(variable, xr.DataArray()).values
     finite = values[np.isfinite(values)]
     return Cell(labels.span(finite, 3) if finite.size else "–", "number")

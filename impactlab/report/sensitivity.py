@@ -106,7 +106,6 @@ def shared(runs: xr.Dataset) -> str:
 
 
 def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
-    """Yield the sections on the indices, those of second order, and their convergence."""
     if SOBOL.given(analysis):
         yield Section(
             "sensitivity",

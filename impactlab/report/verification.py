@@ -88,7 +88,6 @@ def _section(outcome: Outcome) -> Section:
 
 
 def _summary(outcomes: Sequence[Outcome]) -> Table:
-    """Return one row per check, with its worst comparison."""
     rows: list[Row] = []
     for outcome in outcomes:
         total, worst = len(outcome.finding.comparisons), outcome.worst

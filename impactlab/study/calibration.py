@@ -129,7 +129,6 @@ def _drawn(study: steps.AnyStudy) -> dict[str, float]:
 
 
 def _solved(study: steps.AnyStudy, folder: Path, engine: Engine) -> xr.Dataset:
-    """Return the runs of a study, solved where they are not."""
     path = folder / "runs.nc"
     found = read_netcdf(path, "runs") if path.exists() else None
     if found is None or found.attrs.get("study_sha256") != study.sha256:

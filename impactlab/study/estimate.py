@@ -178,7 +178,6 @@ def _cost_sample(study: Study) -> dict[str, Array]:
 
 
 def _cases(study: Study, model: Any, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
-    """Return the table of cases of these runs. Raises StudyError where one is impossible."""
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
     try:
         return np.asarray(model.table(*base, duration=study.duration, varied=columns))

@@ -131,7 +131,6 @@ def shard_files(folder: Path) -> list[Path]:
 
 
 def _size(keys: Array, columns: Columns) -> int:
-    """Return the bytes of a shard, roughly."""
     return int(keys.nbytes + sum(values.nbytes for values in columns.values()))
 
 

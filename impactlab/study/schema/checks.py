@@ -222,7 +222,6 @@ def _solid(file: StudyFile) -> Reasons:
 
 
 def _solid_rate(file: StudyFile) -> Reasons:
-    """Check that runs of the 3-D model have no strain rate."""
     name = "beam_rate_coefficient"
     if has_solid_runs(file) and any(
         values_of(file.sampling, name, file.impact.beam.material.rate_coefficient)

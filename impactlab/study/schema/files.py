@@ -128,7 +128,6 @@ _STAND_INS: dict[str, Any] = {
 
 
 def _study(source: Source) -> Study:
-    """Return a study of impacts. Raises StudyError with every problem of the file."""
     path, data = str(source.path), dict(source.data)
     python, units = _python_responses(data.pop("python_responses", {}), path)
     units = {name: each.units for name, each in RESPONSES.items()} | units
@@ -173,7 +172,6 @@ _NOT_KNOWN = "holds a Python function, which is in no file: build the study in P
 
 
 def _function_study(source: Source) -> FunctionStudy:
-    """Return a study of a function. Raises StudyError with every problem of the file."""
     name, path = source.data.get("function"), str(source.path)
     if isinstance(name, str) and "@" in name:
         return _own_function_study(source, name)
@@ -223,8 +221,6 @@ def _own_function_study(source: Source, key: str) -> FunctionStudy:
 
 
 class _FunctionFile(Heading):
-    """The keys of a study of a test function."""
-
     function: str
     sampling: Annotated[Grid | Sample, PlainValidator(read_sampling)]
     limits: Limits = Field(default_factory=dict)
@@ -232,13 +228,10 @@ class _FunctionFile(Heading):
 
 
 class _OwnFunctionFile(_FunctionFile):
-    """The keys of a study of a Python function."""
-
     responses: Names = ("value",)
 
 
 def _verification(source: Source) -> Verification:
-    """Return the checks of a file. Raises StudyError with every problem of the file."""
     from impactlab.verification.catalogue import CATALOGUE  # late: loads all independent solutions
 
     listed = Annotated[tuple[str, ...], names("check", CATALOGUE)]

@@ -95,8 +95,6 @@ class _Entry(Section):
 
 
 class _File(Heading):
-    """The keys of a file of measurements."""
-
     source: Annotated[Text, Field(min_length=1)]
     simulated: StrictBool = False
     conditions: Annotated[Conditions, PlainValidator(_conditions)] = Field(default_factory=dict)

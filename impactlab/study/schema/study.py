@@ -125,7 +125,6 @@ def _changed(base: Base, values: Mapping[str, Any]) -> Base:
 
 
 def _key(name: str) -> str:
-    """Return the key of a parameter, below its section."""
     return ".".join(PARAMETERS[name].path[1:])
 
 

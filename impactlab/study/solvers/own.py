@@ -155,7 +155,6 @@ def _real(value: Any, name: str) -> float:
 
 
 def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
-    """Return the answers of impacts and of the functions, one row per case."""
     if not cases.size:
         return {}
     rows: list[dict[str, Any]] = []
