@@ -161,12 +161,9 @@ def _combined(
     if any(np.ndim(values) != 1 for values in lists.values()):
         return tuple(lists), lengths, lists  # which are refused by name
     places = np.indices(lengths).reshape(len(lengths), -1)
-    columns = zip(lists.items(), places, strict=True)
-    return (
-        tuple(lists),
-        lengths,
-        {name: [each[at] for at in where] for (name, each), where in columns},
-    )
+    named = zip(lists.items(), places, strict=True)
+    columns = {name: [each[at] for at in where] for (name, each), where in named}
+    return tuple(lists), lengths, columns
 
 
 def _in_si(name: str, values: Any) -> Any:
@@ -192,9 +189,8 @@ def case_table(
 ) -> np.ndarray[Any, Any]:
     """Return the kernels' table of cases, one record (solver.types.CASE) per run; check each run.
 
-    first_run: the number that messages give the first one.
-
-    Raises ValueError naming the run and its field when the model refuses a value.
+    first_run: the number that messages give the first one. Raises ValueError naming the run and its
+    field when the model refuses a value.
     """
     positive("simulate", "duration", duration)
     varied = varied or {}
@@ -275,10 +271,8 @@ def compile_kernels(
 ) -> Path | None:
     """Compile the kernels of these models and schemes side by side, unless they are compiled.
 
-    extended: whether those with what leapfrog.is_extended names, those without, or
-    both.
-
-    Returns the folder of the compiled kernels, None where they cannot be kept.
+    extended: whether those with what leapfrog.is_extended names, those without, or both. Returns
+    the folder of the compiled kernels, None where they cannot be kept.
     """
     programs = {}
     for model, scheme, more in itertools.product(beam_models, schemes, extended):
@@ -299,9 +293,8 @@ def answer_variables(
 ) -> dict[str, tuple[tuple[str, ...], Any]]:
     """Return the answers as data variables on `dims` (for one run: none), only these responses.
 
-    answers: arrays of numpy or dask, by name.
-
-    `status` keeps the bits that matter to these responses; `remarks` are of the run as a whole.
+    answers: arrays of numpy or dask, by name. `status` keeps the bits that matter to these
+    responses; `remarks` are of the run as a whole.
     """
     lead = dims or ("run",)
     bits = (answers["status"] & (status_bits(responses) | MARKED)).astype(np.int32)

@@ -147,13 +147,8 @@ def _software(attrs: dict[str, Any]) -> list[Entity]:
     authors = []
     for at, given in enumerate(citation["authors"], 1):
         person = f"{given.get('given-names', '')} {given.get('family-names', '')}".strip()
-        authors.append(
-            {
-                "@id": given.get("orcid", f"#author-{at}"),
-                "@type": "Person" if person else "Organization",
-                "name": person or given["name"],
-            }
-        )
+        kind, name = ("Person", person) if person else ("Organization", given["name"])
+        authors.append({"@id": given.get("orcid", f"#author-{at}"), "@type": kind, "name": name})
     revision = str(attrs.get("source_revision", ""))
     software = {
         "@id": "#impactlab",

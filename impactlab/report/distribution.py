@@ -15,6 +15,7 @@ from impactlab.figures.labels import Display, display
 from impactlab.report.page import Cell, Row, Section, Table
 
 PERCENTILES = {"5th percentile": 0.05, "Median": 0.5, "95th percentile": 0.95}
+_COUNTS = ("number_of_draws", "missing_draws", "exceeding_draws")
 _NAMED = 2  # largest number of parameters that an answer names
 _LEAD = (
     "A probability is the share of the independent draws of the sample that lie above the limit, "
@@ -51,10 +52,7 @@ def probability(found: xr.Dataset) -> str:
 
     found: the analysis of the response.
     """
-    total, missing, above = (
-        int(np.nan_to_num(found[key]))
-        for key in ("number_of_draws", "missing_draws", "exceeding_draws")
-    )
+    total, missing, above = (int(np.nan_to_num(found[key])) for key in _COUNTS)
     low, high = (float(found[f"exceedance_{end}"]) for end in ("low", "high"))
     if np.isnan(low):
         return f"unknown, for none of {labels.counted(total, 'draw')} has an answer"
@@ -111,10 +109,7 @@ def limit_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     apart: list[Row] = []
     for name in names:
         found = analysis.sel(response=name)
-        counts = [
-            Cell(f"{int(np.nan_to_num(found[key])):,}", "number")
-            for key in ("number_of_draws", "missing_draws", "exceeding_draws")
-        ]
+        counts = [Cell(f"{int(np.nan_to_num(found[key])):,}", "number") for key in _COUNTS]
         response = labels.sentence(labels.response(name))
         text = Cell(probability(found), "number")
         rows.append([response, _limit(runs, analysis, name), *counts, text])

@@ -180,16 +180,14 @@ def pictures(
         )
     order = {name: at for at, name in enumerate(placed)} | {leading(entries): -1}
     names = sorted(entries, key=lambda name: order.get(name, len(order)))
-    found = {}
+    found: dict[str, dict[str, Any]] = {}
     for number, name in enumerate(names, 1):
         entry, svg = entries[name], svgs[name]
         root = re.search(rb'<svg [^>]*?\bwidth="([\d.]+)pt"', svg)  # as matplotlib writes it
         numbers = folder / f"{name}.csv"
-        found[name] = {
+        found[name] = entry | {
             "number": number,
             "name": name,
-            "title": entry["title"],
-            "caption": entry["caption"],
             "alt": f"{entry['title']}. {entry['alt']}".strip(),
             "uri": f"data:image/svg+xml;base64,{base64.b64encode(svg).decode('ascii')}",
             "width": round(float(root.group(1)) * 96 / 72 * _SCREEN) if root else 0,

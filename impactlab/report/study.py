@@ -72,8 +72,6 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         "report.html.j2",
         path,
         **described(runs),
-        heading="Answer",
-        bad=False,
         answers=answer,
         note=note,
         leading=drawn.pop(first, None),
@@ -87,8 +85,6 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         files=os.path.relpath(figures_folder, path.parent),
         sections=sections,
         explorer=write_explorer(runs, analysis, path),
-        command="run",
-        purpose="solves this study again",
     )
 
 
@@ -206,16 +202,11 @@ def _by_word(runs: xr.Dataset, name: str) -> Table:
 def _outcome(runs: xr.Dataset, analysis: xr.Dataset, figures: list[str] | None = None) -> Section:
     """Return the section on failed runs, and on values that a surrogate supplied."""
     failed, total = access.failed(runs), count(runs)
-    shares = {
-        name: float(analysis["imputed_share"].sel(response=name))
-        for name in analysed(runs, analysis, "imputed_share")
-    }
-    imputed = [
-        f"For the indices of the {labels.response(name)}, a surrogate supplied the value of "
-        f"{labels.percent(share)} of the runs."
-        for name, share in shares.items()
-        if share > 0
-    ]
+    imputed = []
+    for name in analysed(runs, analysis, "imputed_share"):
+        if (share := float(analysis["imputed_share"].sel(response=name))) > 0:
+            text = f"For the indices of the {labels.response(name)}, a surrogate supplied the value"
+            imputed.append(f"{text} of {labels.percent(share)} of the runs.")
     title = "How the runs ended"
     if not failed.any():
         return Section("outcome", title, f"All {total} runs gave every response.", imputed)

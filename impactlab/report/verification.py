@@ -60,9 +60,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
         facts=[size],
         ending=failed,
         pictures=drawn,
-        files="",
         sections=[summary, *map(_section, outcomes)],
-        explorer="",
         command="verify",
         purpose="repeats these checks",
     )
@@ -92,16 +90,15 @@ def _summary(outcomes: Sequence[Outcome]) -> Table:
     for outcome in outcomes:
         total, worst = len(outcome.finding.comparisons), outcome.worst
         bad = outcome.verdict != "passed"
-        rows.append(
-            [
-                outcome.title,
-                Cell(outcome.verdict.upper(), "warning") if bad else "passed",
-                Cell(f"{total - len(outcome.failures)} of {total}", "number"),
-                Cell(labels.number(worst.ratio, digits=2) if worst else "–", "number"),
-                f"{worst.quantity}, {worst.where}" if worst else outcome.reason,
-                Cell(f"{outcome.seconds:.1f} s", "number"),
-            ]
-        )
+        row: Row = [
+            outcome.title,
+            Cell(outcome.verdict.upper(), "warning") if bad else "passed",
+            Cell(f"{total - len(outcome.failures)} of {total}", "number"),
+            Cell(labels.number(worst.ratio, digits=2) if worst else "–", "number"),
+            f"{worst.quantity}, {worst.where}" if worst else outcome.reason,
+            Cell(f"{outcome.seconds:.1f} s", "number"),
+        ]
+        rows.append(row)
     of_error = ["Largest error over tolerance", "Quantity and case of that error"]
     head = ["Check", "Verdict", "Passed", *of_error, "Time"]
     return Table("All checks, failed ones first", head, rows)

@@ -128,15 +128,9 @@ def read_measurements(given: Given, runs: xr.Dataset | None = None) -> tuple[Mea
     read: Any = partial(validated, parameters=parameters, responses=responses)
     found: _File = read(_File, data, file)
     source = f"{found.title} ({found.source})"
-    return tuple(
-        Measurement(
-            each.quantity,
-            each.value,
-            each.standard,
-            responses[each.quantity],
-            {**found.conditions, **each.conditions},
-            source,
-            found.simulated,
-        )
-        for each in found.measurements
-    )
+    measured = []
+    for each in found.measurements:
+        value = each.quantity, each.value, each.standard, responses[each.quantity]
+        conditions = {**found.conditions, **each.conditions}
+        measured.append(Measurement(*value, conditions, source, found.simulated))
+    return tuple(measured)

@@ -134,17 +134,16 @@ Text = Annotated[
 ]
 
 
+_ONE_LINE = requires(
+    lambda text: len(text.splitlines()) == 1,
+    "must be one line of text: put more into the key description",
+)
+
+
 class Heading(Section):
     """The first keys of every study file, which head the report."""
 
-    title: Annotated[
-        Text,
-        StringConstraints(max_length=200),
-        requires(
-            lambda text: len(text.splitlines()) == 1,
-            "must be one line of text: put more into the key description",
-        ),
-    ]
+    title: Annotated[Text, StringConstraints(max_length=200), _ONE_LINE]
     description: Text = ""
 
 
