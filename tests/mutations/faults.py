@@ -34,6 +34,12 @@ FAULTS = (
         "over = approach + contact.delta_r\n    if over <= 0.0:\n        return 0.0\n    if",
     ),
     Fault(
+        "contact: stress of bending as tension",
+        "contact/prestress.py",
+        "along * contact.F_m - bending",
+        "along * contact.F_m + bending",
+    ),
+    Fault(
         "fibre: sign of the back stress",
         "section.py",
         "(strain - plastic_strain) - H_k * plastic_strain\n",
