@@ -55,6 +55,8 @@ MODELS = {
     "contact law": {"contact": "finite_element"},
     "contact patch": {"load": "contact_patch"},
     "Timoshenko, law": TIMOSHENKO | {"contact": "finite_element"},
+    "Timoshenko, law, stress": TIMOSHENKO
+    | {"contact": "finite_element", "contact_prestress": "bending"},
     "Timoshenko, law, compliance": CORRECTED | {"contact": "finite_element"},
     "all but strip and stress": CORRECTED | {"contact": "finite_element", "load": "contact_patch"},
     "all but stress": STRIP,

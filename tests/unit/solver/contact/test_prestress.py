@@ -102,7 +102,7 @@ def test_stress_that_changes_creates_no_energy(compliance):
 
 @pytest.mark.parametrize("law", [law for law in LAWS if law != "stronge_original"])
 def test_without_stress_the_law_is_as_it_was(law):
-    """Of every law whose force does not jump at the turn; Hertz's never yields, stress or not."""
+    """Laws whose force does not jump at the turn. Hertz's never yields, with stress or without."""
     alone = pair(law)._replace(prestress=(DEPTH, 0.0, 0.0))
     plain, ours = untouched(), untouched()
     for delta in (
