@@ -8,7 +8,9 @@ the consistent tangent (Simo and Taylor 1985), and, unless --small, an updated L
 formulation with the rotation of Hughes and Winget (1980): strains of a step on the geometry at its
 middle, equilibrium on that at its end. The sphere, a rigid or an elastic half-space with the
 profile of a sphere, touches the nodes of the surface from above, by an active set; its elastic
-compliance is that of the same mesh.
+compliance is that of the same mesh. Steps are even in the radius of contact, and have to be short,
+since plastic flow depends on its path: from 2 to 200 delta_y, on 15 elements, 40 steps in equal
+ratios give 1 to 4 % less force than 400 even ones, 200 even ones 0.1 % less.
 
 Lengths are in radii of the sphere, stresses in yield stresses, nu = 0.3. x = delta/delta_y and
 F/F_y are those of the contact laws, for first yield at a mean pressure of 1.1 yield stresses
@@ -189,6 +191,7 @@ class Solve:
         self.place[self.free] = np.arange(self.free.size)
         self.u, self.stress = np.zeros_like(self.X), np.zeros((len(self.elements), 4, 4))
         self.force, self.delta, self.radius = np.zeros(self.surface.size), 0.0, 0.0
+        self.rate, self.last = np.zeros_like(self.X), 0.0
         self.compliance = np.zeros((self.surface.size, self.surface.size))
         if not rigid:
             none = np.zeros_like(self.X)
@@ -213,7 +216,8 @@ class Solve:
 
     def _balance(self, delta: float) -> bool:
         """Find the equilibrium at `delta` and keep it; return False where Newton's method fails."""
-        du, force, nodes = np.zeros_like(self.u), self.force.copy(), self.surface
+        force, nodes, step = self.force.copy(), self.surface, delta - self.delta
+        du = self.rate * (step if step * self.last > 0.0 else 0.0)  # the answer does not need it
         for _ in range(30):
             f, K, stress = assemble(
                 self.X, self.elements, self.u, du, self.stress, self.E, 1.0, self.large
@@ -250,12 +254,16 @@ class Solve:
                 [[self._matrix(K), -D.T], [D, sparse.csc_array(self.compliance[np.ix_(on, on)])]],
                 format="csc",
             )
-            answer = splu(system).solve(np.r_[-residual, -gap[on] - lost])
+            try:
+                answer = splu(system).solve(np.r_[-residual, -gap[on] - lost])
+            except RuntimeError:  # singular
+                return False
             du.ravel()[self.free] += answer[: self.free.size]
             force[on] += answer[self.free.size :]
             force[~on] = 0.0
         else:
             return False
+        self.rate, self.last = du / step, step
         self.u, self.stress, self.force, self.delta = self.u + du, stress, force, delta
         self.radius = float(r[force > 0].max(initial=0.0))
         return True
@@ -274,12 +282,14 @@ def run(args: argparse.Namespace) -> None:
         rows.append((*kind, args.elements, top, f"{x:.6g}", f"{F / solve.F_y:.7g}", f"{a:.5g}"))
         return F
 
-    first = args.depth / 16.0
-    tops = set(args.unload or [])
-    loading = sorted({*np.geomspace(first / 8, args.depth, args.steps).tolist(), *tops})
-    for x in loading:
-        note(x, f"{x:.6g}")
-        if x in tops:
+    tops = {*(args.unload or []), args.depth}
+    loading = np.linspace(0.09, 1.0, args.steps)[:-1] ** 2 * args.depth
+    for number, x in enumerate(sorted({*loading.tolist(), *tops})):
+        if x in tops or number % 4 == 0:
+            note(x, f"{x:.6g}")
+        else:
+            solve.move(x * solve.delta_y)
+        if x in tops and x in (args.unload or []):
             kept = solve.u, solve.stress, solve.force, solve.delta
             F_m, depth, step = solve.force.sum(), x, 0.0
             step = 0.1 * F_m / (2.0 * args.modulus * math.sqrt(x * solve.delta_y)) / solve.delta_y
@@ -304,7 +314,7 @@ if __name__ == "__main__":
     parser.add_argument("--unload", type=float, nargs="*", help="unload from these, too")
     parser.add_argument("--elements", type=int, default=60, help="over the largest radius")
     parser.add_argument("--stress", type=float, default=0.0, help="along the surface, over S_y")
-    parser.add_argument("--steps", type=int, default=60)
+    parser.add_argument("--steps", type=int, default=200, help="of loading")
     parser.add_argument("--rigid", action="store_true")
     parser.add_argument("--small", action="store_true", help="small strains, a paraboloid")
     run(parser.parse_args())

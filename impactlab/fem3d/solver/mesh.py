@@ -52,9 +52,10 @@ class Mesh:
     SPHERE. full: (e,), whether fully integrated. pairs: (p, 2) nodes (of the sphere, of the beam)
     with the same x and y, in a square, y fastest. gaps: (p,) initial distances in m. rim: (p,),
     pairs on the border of the matched patch. bulge: (f, points) in m of the sphere's faces, see
-    contact.bulges. symmetry_x, symmetry_y: nodes that keep their x (y). support: nodes that keep
-    their z. axis_node: on the beam's axis at mid-span. element_size: of the patch, in m.
-    patch: half the side of the square of matched nodes, in m.
+    contact.bulges. normals: (p, 3) of the sphere, see contact.close_gaps. symmetry_x, symmetry_y:
+    nodes that keep their x (y). support: nodes that keep their z. axis_node: on the beam's axis at
+    mid-span. element_size: of the patch, in m. patch: half the side of the square of matched nodes,
+    in m.
 
     Raises ValueError when an element is inverted or has no volume at a corner.
     """
@@ -67,6 +68,7 @@ class Mesh:
     gaps: Floats
     rim: NDArray[np.bool_]
     bulge: Floats
+    normals: Floats
     symmetry_x: Integers
     symmetry_y: Integers
     support: Integers
@@ -198,6 +200,8 @@ def quarter_mesh(
     full = np.all(np.abs(centres) < 1.5 * half, axis=1)
     if bending_yields(impact):
         full |= (body == BEAM) & (centres[:, 0] < 2.5 * beam.depth)
+    touching = nodes[pairs[:, 0]]
+    slopes = touching[:, :2] / (impact.sphere.radius - touching[:, 2:])
     on_plane = np.abs(nodes[:, :2]) < 1e-6 * size
     symmetry_x, symmetry_y = (np.flatnonzero(on).astype(np.int32) for on in on_plane.T)
     return Mesh(
@@ -209,6 +213,7 @@ def quarter_mesh(
         gaps=nodes[pairs[:, 0], 2] - nodes[pairs[:, 1], 2],
         rim=rim.ravel(),
         bulge=bulges(nodes[pairs[_faces(len(pairs)), 0]], impact.sphere.radius),
+        normals=np.column_stack([-slopes, np.ones(len(slopes))]),
         symmetry_x=symmetry_x,
         symmetry_y=symmetry_y,
         support=place[-1, :, axis],

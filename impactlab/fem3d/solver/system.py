@@ -254,8 +254,10 @@ class System:
         moved = (*rows, self.inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
         self.pool.run(lambda _, first, end: integrate((first, end), *moved), len(self.x))
         mesh = self.mesh
-        own = (mesh.faces, mesh.bulge, self._share, mesh.pairs, mesh.rim, self.inverse_mass)
-        return close_gaps(RULE, *own, self.x, self.v, dt, self.approach, self.closing)
+        own = (mesh.faces, mesh.bulge, self._share, mesh.pairs, mesh.rim, mesh.normals)
+        return close_gaps(
+            RULE, *own, self.inverse_mass, self.x, self.v, dt, self.approach, self.closing
+        )
 
 
 _TINY = 1e-12

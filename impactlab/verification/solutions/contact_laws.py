@@ -49,7 +49,7 @@ def finite_element(d: float, E: float, R: float, S: float, nu: float) -> float:
     if x <= 1.0:
         return hertz(d, E, R, S, nu)
     end = min(x, 320.0)
-    exponent = -0.03540419 * math.log(end) ** 2 + 0.0001842 * math.log(end) ** 3
+    exponent = -0.03499424 * math.log(end) ** 2 + 0.00025112 * math.log(end) ** 3
     return hertz(d * end / x, E, R, S, nu) * math.exp(exponent) * x / end
 
 
@@ -146,8 +146,8 @@ def finite_unloading(d: float, F: float, E: float, R: float, S: float, nu: float
     if d <= d_y:
         return F, 0.0, 1.5
     log = math.log(min(d / d_y, 320.0))
-    shares = (1.0, 0.21531196, -0.0794761, 0.0160753, -0.00114565)
-    exponents = (1.5, -0.05867637, -0.03159603, 0.01221572, -0.00095182)
+    shares = (1.0, 0.20880608, -0.07558935, 0.01483939, -0.00101521)
+    exponents = (1.5, -0.06673731, -0.0293631, 0.01219818, -0.00097196)
     share = sum(c * log**k for k, c in enumerate(shares))
     recovered = share * math.sqrt(d_y * F / hertz(d_y, E, R, S, nu) * d_y)
     return F, d - recovered, sum(c * log**k for k, c in enumerate(exponents))

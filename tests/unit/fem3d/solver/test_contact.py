@@ -16,7 +16,7 @@ X, Y = (place.ravel() for place in np.meshgrid(range(SIDE), range(SIDE), indexin
 class Patch:
     """Four faces of nine pairs of 2 and 3 kg, apart by `gap` (9,) in m after a predicted step."""
 
-    def __init__(self, gap, bulge=0.0, rim=False):
+    def __init__(self, gap, bulge=0.0, rim=False, slope=0.0):
         count = SIDE**2
         self.pairs = np.arange(2 * count, dtype=np.int32).reshape(2, count).T.copy()
         self.mass = np.repeat([2.0, 3.0], count)
@@ -25,13 +25,13 @@ class Patch:
         self.v[:count, 2] = -1.0
         self.faces, self.approach = _faces(count), np.ones(count)
         self.bulge, self.closing = np.full((4, len(SHAPE)), bulge), np.zeros(count)
-        self.rim = np.full(count, rim)
+        self.rim, self.normals = np.full(count, rim), np.tile([-slope, 0.0, 1.0], (count, 1))
 
     def close(self):
         share = 1.0 / np.bincount(self.faces.ravel())
         inverse = np.repeat(1.0 / self.mass[:, None], 3, axis=1)
-        surfaces = (self.faces, self.bulge, share, self.pairs, self.rim, inverse)
-        return close_gaps(RULE, *surfaces, self.x, self.v, DT, self.approach, self.closing)
+        surfaces = (self.faces, self.bulge, share, self.pairs, self.rim, self.normals)
+        return close_gaps(RULE, *surfaces, inverse, self.x, self.v, DT, self.approach, self.closing)
 
     @property
     def gap(self):
@@ -39,7 +39,7 @@ class Patch:
 
     @property
     def kinetic(self):
-        return 0.5 * np.sum(self.mass * self.v[:, 2] ** 2)
+        return 0.5 * np.sum(self.mass[:, None] * self.v**2)
 
 
 def test_an_even_overlap_is_closed_to_zero_and_momentum_stays():
@@ -52,6 +52,21 @@ def test_an_even_overlap_is_closed_to_zero_and_momentum_stays():
     assert lower == pytest.approx(-upper, rel=1e-14)
     assert impulse == pytest.approx(9 * 0.02 / DT * 2 * 3 / 5, rel=1e-12)
     assert not beyond
+
+
+def test_nodes_that_slid_touch_the_sphere_beside_its_nodes_without_friction():
+    slope, slid = 0.2, 0.05
+    patch = Patch(-0.02, slope=slope)
+    patch.x[9:, 0] += slid
+    before = patch.v.copy()
+    patch.close()
+    relative = np.diff(patch.x.reshape(2, 9, 3), axis=0)[0]
+    np.testing.assert_allclose(relative[:, 2], slope * relative[:, 0], atol=1e-15)
+    pushes = patch.mass[:, None] * (patch.v - before)
+    np.testing.assert_allclose(pushes[:9], -pushes[9:], rtol=1e-12)
+    np.testing.assert_allclose(pushes @ [1.0, 0.0, slope], 0.0, atol=1e-15)
+    expected = (0.02 - slope * slid) / (DT * (1 / 2 + 1 / 3) * (1 + slope**2))
+    np.testing.assert_allclose(pushes[:9, 2], expected, rtol=1e-12)
 
 
 def test_a_gap_is_left_alone():
@@ -91,9 +106,10 @@ def test_bulges_are_what_a_sphere_has_below_its_faces():
     assert found[0] @ PARTS.sum(axis=1) / 4 == pytest.approx(h**2 / (6 * radius), rel=1e-3)
 
 
+@pytest.mark.parametrize("slope", [0.0, 0.3])
 @pytest.mark.parametrize("edge", [0.6, 5.0])
-def test_the_work_is_what_the_bodies_lose(edge):
-    patch = Patch(0.01 * (X - edge))
+def test_the_work_is_what_the_bodies_lose(edge, slope):
+    patch = Patch(0.01 * (X - edge), slope=slope)
     start, work = patch.kinetic, 0.0
     for _ in range(3):
         work += sum(patch.close()[1:3])

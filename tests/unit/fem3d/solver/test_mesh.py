@@ -98,6 +98,9 @@ def test_pairs_share_their_place_and_gap_as_a_sphere_does(mesh):
         mesh.gaps, RADIUS - np.sqrt(RADIUS**2 - radius**2), rtol=1e-9, atol=1e-17
     )
     assert mesh.gaps.min() == 0.0
+    to_centre = np.array([0.0, 0.0, RADIUS]) - above
+    np.testing.assert_allclose(np.cross(mesh.normals, to_centre), 0.0, atol=1e-12 * RADIUS)
+    assert np.all(mesh.normals[:, 2] == 1.0)
     side = np.max(above[:, :2], axis=1)
     np.testing.assert_array_equal(mesh.rim, side > mesh.patch - 1e-9)
     inside = np.all(np.abs(mesh.nodes[:, :2]) < mesh.patch + 1e-9, axis=1) & (

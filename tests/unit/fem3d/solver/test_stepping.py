@@ -94,6 +94,7 @@ def bars(full):
         gaps=np.zeros(4),
         rim=np.zeros(4, dtype=bool),
         bulge=np.zeros((1, len(SHAPE))),
+        normals=np.tile([0.0, 0.0, 1.0], (4, 1)),
         symmetry_x=none,
         symmetry_y=none,
         support=none,

@@ -96,7 +96,7 @@ def test_nothing_without_indentation():
 def test_the_fit_is_that_of_the_finite_elements():
     """Forces while loading, in the resolved upper tenth of each run; what unloading recovers."""
     file = Path(finite_element.__file__).with_suffix(".csv")
-    rows = pd.read_csv(file).query("sphere == 'elastic' and strains == 'large' and E_over_S < 400")
+    rows = pd.read_csv(file).query("elements > 20")  # the others are for comparison
     begins = (rows["x_max"].diff() < 0) & (rows["x_max"] < 0.5 * rows["x_max"].shift())
     loading, recovered = [], []
     for _, run in rows.groupby(begins.cumsum()):
@@ -109,9 +109,10 @@ def test_the_fit_is_that_of_the_finite_elements():
                 recovered.append((left / LAW.yield_force - F) / (ours / LAW.yield_force))
     assert len(loading) > 150
     assert len(recovered) > 120
-    assert np.abs(loading).max() < 0.032
-    assert np.sqrt(np.mean(np.square(loading))) < 0.0105
-    assert np.sqrt(np.mean(np.square(recovered))) < 0.02
+    assert np.abs(loading).max() < 0.036
+    assert abs(np.mean(loading)) < 0.001
+    assert np.sqrt(np.mean(np.square(loading))) < 0.0097
+    assert np.sqrt(np.mean(np.square(recovered))) < 0.007
 
 
 @pytest.mark.parametrize(
