@@ -280,6 +280,7 @@ def _packed(
     p_value = float(weights @ scipy.stats.chi2.sf(np.concatenate(squares), len(measurements)))
     units = [first.surrogate.units(name) for name in free]
     uncertainty = COVERAGE * np.array([one.standard_uncertainty for one in measurements])
+    stated = [json.dumps(dict(one.conditions)) for one in measurements]
     variables: dict[str, Any] = {
         "posterior_mean": ("parameter", mean),
         "posterior_deviation": ("parameter", deviation),
@@ -300,10 +301,7 @@ def _packed(
         "measured_uncertainty": ("measurement", uncertainty),
         "predicted_mean": ("measurement", predicted_mean),
         "predicted_deviation": ("measurement", predicted_deviation),
-        "surrogate_error": (
-            "measurement",
-            np.max([each.error for each in models.values()], axis=0),
-        ),
+        "surrogate_error": ("measurement", np.max([m.error for m in models.values()], axis=0)),
         "draws": (("draw", "parameter"), values[picked]),
         "draw_model": ("draw", np.array(list(found))[of_model[picked]]),
         "draw_predicted": (("draw", "measurement"), predicted[picked]),
@@ -311,10 +309,7 @@ def _packed(
         "predictive_p": ((), p_value),
         "measured_quantity": ("measurement", [one.quantity for one in measurements]),
         "measured_units": ("measurement", [one.units for one in measurements]),
-        "measured_conditions": (
-            "measurement",
-            [json.dumps(dict(one.conditions)) for one in measurements],
-        ),
+        "measured_conditions": ("measurement", stated),
         "measured_source": ("measurement", [one.source for one in measurements]),
     }
     dataset = xr.Dataset(variables, {"parameter": list(free), "model": list(found)})

@@ -35,8 +35,7 @@ def calibration(found: xr.Dataset) -> Figure:
         listed = [CONTACT_LAWS[name].short for name in found["model"].values[order]]
         axes[-1].set_yticks(rows, listed)
         axes[-1].set(xlabel="weight (–)", xlim=(0.0, 1.0), ylabel="contact law")
-    style.legend(figure)
-    return figure
+    return style.finish(figure)
 
 
 def _parameter(ax: Axes, one: xr.Dataset) -> None:

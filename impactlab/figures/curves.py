@@ -60,14 +60,9 @@ class Plan:
 
     def finish(self, figure: Figure, x: str = "", y: str = "") -> Figure:
         """Add the legend, headed by the parameters in which curves differ; x, y: for all panels."""
-        if x:
-            figure.supxlabel(x)
-        if y:
-            figure.supylabel(y)
         title = labels.sentence(", ".join(labels.parameter(dim) for dim in self.shown))
         order = [*(curve.label for curve in self.curves), *_WORDS.values()]
-        style.legend(figure, title, order)
-        return figure
+        return style.finish(figure, x, y, title=title, order=order)
 
     def note(self, runs: xr.Dataset) -> str:
         """Return a caption's sentences on the values that are shown and held."""

@@ -49,8 +49,7 @@ def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
             found = analysis["quantile"].sel(response=name, probability=[0.05, 0.5, 0.95])
             percentiles = display(usable(runs, name))(found)
         _distribution(ax, values.values[np.isfinite(values.values)], percentiles)
-    figure.supylabel("Number of runs (–)")
-    return figure
+    return style.finish(figure, y="Number of runs (–)")
 
 
 def _distribution(ax: Axes, values: Floats, percentiles: Floats | None) -> None:
@@ -144,9 +143,7 @@ def cumulative_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
             ax.axvline(limit, label="_guide: limit", linestyle="--", **style.GUIDE)
         ax.set_ylim(0.0, 1.0)
         scales.linear(ax, "xy", 4)
-    figure.supylabel("Share of the draws (–)")
-    style.legend(figure)
-    return figure
+    return style.finish(figure, y="Share of the draws (–)")
 
 
 def exceedance(response: str) -> Figure:

@@ -63,8 +63,7 @@ def plot_overview(outcomes: Sequence[Outcome]) -> Figure:
     axes.grid(visible=False, axis="y")
     for row in range(1, len(outcomes)):
         axes.axhline(row - 0.5, color="0.85", linewidth=0.5)
-    style.legend(figure, order=["passed", "failed"])
-    return figure
+    return style.finish(figure, order=["passed", "failed"])
 
 
 def _draw_row(axes: Axes, row: int, outcome: Outcome) -> None:

@@ -59,9 +59,7 @@ def index_bars(family: Family) -> Figure:
         for at, (response, ax) in enumerate(axes.items()):
             bars(ax, analysis, family, response)
             ax.tick_params(axis="y", labelleft=at % responses_grid.COLUMNS == 0)
-        figure.supxlabel(family.axis)
-        style.legend(figure)
-        return figure
+        return style.finish(figure, family.axis)
 
     return plot
 
@@ -100,15 +98,10 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
     for at, (measure, colour) in enumerate(zip(shown, colours[:count], strict=True)):
         found = measures.index(analysis, measure.name, response)
         finite = np.isfinite(found.margins)
-        drawn = ax.barh(
-            rows + _THICK * ((at + 0.5) / count - 0.5),
-            found.values,
-            height=_THICK / count,
-            color=colour,
-            label=measure.words,
-            xerr=np.where(finite, found.margins, 0.0) if finite.any() else None,
-            error_kw={"elinewidth": 0.8, "ecolor": "0.15"},
-        )
+        margins = np.where(finite, found.margins, 0.0) if finite.any() else None
+        places, thick = rows + _THICK * ((at + 0.5) / count - 0.5), _THICK / count
+        look: Any = {"error_kw": {"elinewidth": 0.8, "ecolor": "0.15"}, "color": colour}
+        drawn = ax.barh(places, found.values, thick, xerr=margins, label=measure.words, **look)
         for bar, stands in zip(drawn.patches, found.significant | ~finite, strict=True):
             bar.set_alpha(None if stands else _PALE)
         if found.floor:
@@ -177,10 +170,7 @@ def index_convergence(measure: Measure) -> Figure:
             ax.set_ylim(max(low, _ENDS[0]), min(high, _ENDS[1]))
             scales.linear(ax, "y")
             responses_grid.write_verdict(ax, analysis, _VERDICT, name, sound=False)
-        figure.supxlabel("Base samples (–)")
-        figure.supylabel("Share of the variance (–)")
-        style.legend(figure)
-        return figure
+        return style.finish(figure, "Base samples (–)", "Share of the variance (–)")
 
     return plot
 
@@ -291,8 +281,7 @@ def morris_plane(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     figure, axes = responses_grid.panels(analysed(runs, analysis), height=48)
     for name, ax in axes.items():
         plane(ax, runs, analysis, name)
-    style.legend(figure)
-    return figure
+    return style.finish(figure)
 
 
 def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> None:
@@ -304,14 +293,9 @@ def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> No
     x, y, margin = unit(strength.values), unit(spread), unit(strength.margins)
     for at, name in enumerate(parameters(analysis)):
         if np.isfinite(x[at]):
-            ax.errorbar(
-                x[at],
-                y[at],
-                xerr=margin[at] if np.isfinite(margin[at]) else None,
-                label=labels.parameter(name),
-                elinewidth=0.8,
-                **(style.distinct(at) | {"linestyle": ""}),
-            )
+            xerr = margin[at] if np.isfinite(margin[at]) else None
+            look = style.distinct(at) | {"linestyle": "", "elinewidth": 0.8}
+            ax.errorbar(x[at], y[at], xerr=xerr, label=labels.parameter(name), **look)
     responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
@@ -357,9 +341,7 @@ def indices_over_time(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
             _at_times(axes[row * len(names) + at], analysis.sel(history=name), order, time)
     for ax, name in zip(axes[-len(names) :], names, strict=True):
         _mean(ax, analysis.sel(history=name), time)
-    figure.supxlabel(labels.axis("time since first touch", time.symbol))
-    style.legend(figure)
-    return figure
+    return style.finish(figure, labels.axis("time since first touch", time.symbol))
 
 
 def _at_times(ax: Axes, found: xr.Dataset, order: str, time: Display) -> None:

@@ -82,9 +82,7 @@ def along_parameters(
     for ax, name in zip(axes, names, strict=True):
         draw(ax, runs[name])
         ax.set_xlabel(axis_label(runs[name]))
-    figure.supylabel(label)
-    style.legend(figure)
-    return figure
+    return style.finish(figure, y=label)
 
 
 def axis_label(column: xr.DataArray) -> str:
@@ -191,10 +189,7 @@ def surrogate_validation(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
             text += f"\n{verdict.words}"
         corner = {"xycoords": "axes fraction", "va": "top"}  # which agreement leaves empty
         style.note(ax, text, (0.04, 0.96), (0, 0), warning=warning, **corner)
-    figure.supxlabel("Computed by the solver")
-    figure.supylabel("Predicted by the surrogate")
-    style.legend(figure)
-    return figure
+    return style.finish(figure, "Computed by the solver", "Predicted by the surrogate")
 
 
 def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
@@ -211,17 +206,9 @@ def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> No
     ends = np.array([computed[given], predicted[given]])
     low, high = float(ends.min()), float(ends.max())
     ax.axline((low, low), (high, high), label="_guide: agreement", **style.GUIDE)
-    ax.plot(
-        computed[given],
-        predicted[given],
-        linestyle="",
-        marker="o",
-        markersize=1.8,
-        markeredgewidth=0,
-        alpha=0.6,
-        color=style.COLOURS[0],
-        label="runs held out",
-    )
+    look: Any = {"linestyle": "", "marker": "o", "markersize": 1.8, "markeredgewidth": 0}
+    look |= {"alpha": 0.6, "color": style.COLOURS[0]}
+    ax.plot(computed[given], predicted[given], label="runs held out", **look)
     scales.linear(ax, "xy", ticks=4)
 
 
@@ -262,16 +249,8 @@ def _shares(ax: Axes, column: xr.DataArray, failed: NDArray[np.bool_]) -> None:
         share = failed[here].mean()
         found.append((x[here].mean(), 100 * share, 100 * (share - low), 100 * (high - share)))
     middle, share, below, above = np.array(found).T
-    ax.errorbar(
-        middle,
-        share,
-        np.clip([below, above], 0.0, None),
-        label="share",
-        color=style.COLOURS[0],
-        marker="o",
-        linestyle="",
-        elinewidth=0.8,
-    )
+    look: Any = {"color": style.COLOURS[0], "marker": "o", "linestyle": "", "elinewidth": 0.8}
+    ax.errorbar(middle, share, np.clip([below, above], 0.0, None), label="share", **look)
     ax.axhline(100 * failed.mean(), label="_guide: all runs", linestyle="--", **style.GUIDE)
     ax.set_ylim(0.0, None)
     ticks(ax, "x", column)
@@ -327,5 +306,4 @@ def failure_map(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         ax.set(xlabel=axis_label(runs[pair[0]]), ylabel=axis_label(runs[pair[1]]))
         ticks(ax, "x", runs[pair[0]])
         ticks(ax, "y", runs[pair[1]])
-    style.legend(figure)
-    return figure
+    return style.finish(figure)

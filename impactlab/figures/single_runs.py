@@ -46,12 +46,9 @@ def _force_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
 def first_contact(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a curve per run, up to the end of the longest first contact."""
     force, time = display(runs[_FORCE]), display(runs["time"])
+    across, up = labels.axis(_TIME, time.symbol), labels.axis("contact force", force.symbol)
     figure, axes, selected = curves.draw(
-        runs,
-        _FORCE,
-        lambda run: (time(run["time"]), force(run[_FORCE])),
-        labels.axis(_TIME, time.symbol),
-        labels.axis("contact force", force.symbol),
+        runs, _FORCE, lambda run: (time(run["time"]), force(run[_FORCE])), across, up
     )
     end = 0.0
     for line in (line for ax in axes for line in ax.lines):
@@ -145,10 +142,8 @@ def displacement_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             ax.axhline(0.0, label="_guide", linestyle="-", **style.GUIDE)
         else:
             style.remark(ax, "no finite values")
-    figure.supylabel(labels.axis("displacement", unit.symbol))
-    figure.supxlabel(labels.axis(_TIME, time.symbol))
-    style.legend(figure, order=list(_DISPLACEMENTS.values()))
-    return figure
+    across, up = labels.axis(_TIME, time.symbol), labels.axis("displacement", unit.symbol)
+    return style.finish(figure, across, up, order=list(_DISPLACEMENTS.values()))
 
 
 def _until_flight(run: xr.Dataset, unit: Display) -> tuple[float, float]:
@@ -174,13 +169,10 @@ def _until_flight(run: xr.Dataset, unit: Display) -> tuple[float, float]:
 def force_indentation(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a curve per run, broken where sphere and beam are apart."""
     force, depth = display(runs[_FORCE]), display(runs[_INDENTATION])
-    figure, axes, selected = curves.draw(
-        runs,
-        _FORCE,
-        lambda run: _loop(run, depth, force),
-        labels.axis("indentation", depth.symbol),
-        labels.axis("contact force", force.symbol),
-    )
+    across = labels.axis("indentation", depth.symbol)
+    up = labels.axis("contact force", force.symbol)
+    line = partial(_loop, depth=depth, force=force)
+    figure, axes, selected = curves.draw(runs, _FORCE, line, across, up)
     for ax in axes:
         scales.linear(ax, "xy")
         ax.set(xlim=(0.0, None), ylim=(0.0, None))

@@ -146,6 +146,18 @@ def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
     )
 
 
+def finish(
+    figure: Figure, x: str = "", y: str = "", *, title: str = "", order: Sequence[str] = ()
+) -> Figure:
+    """Add labels that hold for all panels, and the legend (see `legend`); return the figure."""
+    if x:
+        figure.supxlabel(x)
+    if y:
+        figure.supylabel(y)
+    legend(figure, title, order)
+    return figure
+
+
 def panel_legends(figure: Figure) -> None:
     """Add a legend above each panel, under its title; the figure grows to hold them."""
     rows = 0

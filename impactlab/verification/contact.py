@@ -195,11 +195,7 @@ CASES = {
     "impactlab.verification.solutions.lumped",
 )
 def spring_mass() -> Finding:
-    """Compare histories, responses, the curvature, and the order in the time step.
-
-    The panel shows the model, its integral, and the elastic beam, whose mass resists only
-    gradually.
-    """
+    """Compare histories, responses, the curvature, and the order in the time step."""
     found = Comparisons()
     for beam, case in CASES.items():
         table = []
@@ -219,6 +215,7 @@ def spring_mass() -> Finding:
     curves = [
         Curve("spring-mass model", time, runs[1].contact_force.values),
         Curve("spring-mass model, DOP853", time, exact.at("contact_force", time), True),
+        # whose mass resists only gradually
         Curve("elastic beam, modal series", time, series.at("contact_force", time), True),
     ]
     return Finding(found, [Panel(where, *_FORCE_AXES, curves)])

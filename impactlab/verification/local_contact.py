@@ -44,7 +44,7 @@ is that of chords between the nodes, which errs in the order of (dx/a)^2."""
 def contact_compliance() -> Finding:
     """Compare force, duration and histories of an elastic impact, and the audit of its energy.
 
-    Under Hertz's law, at 0.99 and 5 m/s. The panel shows the half-spaces, too.
+    Under Hertz's law, at 0.99 and 5 m/s.
     """
     return _compared("beam", paper_impact().beam.depth, 201, ("half_space", "half-spaces"))
 
@@ -57,8 +57,7 @@ def contact_compliance() -> Finding:
 def strip() -> Finding:
     """Compare force, duration and histories of an elastic impact, and the audit of its energy.
 
-    Under Hertz's law, at 0.99 and 5 m/s, on a beam of a quarter of its width. The panel shows the
-    beam that takes its static shape across the width at once, too.
+    Under Hertz's law, at 0.99 and 5 m/s, on a beam of a quarter of its width.
     """
     return _compared("strip", 0.015, 401, ("beam", "at once"))
 

@@ -232,10 +232,7 @@ _MODE_GRID = Discretisation(nodes=101, points=40, rule="layers")
     "Martin and Symonds 1966; Jones, Structural Impact; impactlab.verification.solutions.collapse",
 )
 def rigid_plastic_mode() -> Finding:
-    """Compare permanent deflection and duration with the mode, and the approach to it.
-
-    The panel shows the relative distance from the mode's final deflection.
-    """
+    """Compare permanent deflection and duration with the mode, and the approach to it."""
     found: list[Comparison] = []
     # Kinetic energy over the largest elastic energy of the beam; mass of the striker over that of
     # the beam, whose momentum matters more, the lighter: 6 % at 5.

@@ -212,10 +212,7 @@ NODES = (51, 101, 201, 401, 601, 801)
     "leapfrog with 1601 nodes; conservation of energy; in the figure the elastic modal series, too",
 )
 def schemes() -> Finding:
-    """Compare both schemes where the beam yields, and the energy of random cases.
-
-    The panels show the errors of both by cost.
-    """
+    """Compare both schemes where the beam yields, and the energy of random cases."""
     never_yields, duration = elastic(paper_impact(0.99)), 0.4e-3
     series = solve(never_yields, duration)
     impacts = [paper_impact(15.0), paper_impact(20.0)]

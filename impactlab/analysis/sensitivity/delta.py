@@ -31,7 +31,6 @@ COARSE = 20
 """Resamples for the bias of the estimate with half the classes and twice the width."""
 Mask = npt.NDArray[np.bool_]
 _2013 = "Plischke et al. (2013), Eur. J. Oper. Res. 226, 536"
-_DUMMY = "of a random column that the model never saw"
 _INDICES = {
     "delta": Index(
         "delta, moment-independent importance",
@@ -45,12 +44,9 @@ _INDICES = {
         comment="of the variance between classes: a tenth too small with 5 classes (500 runs); "
         "of words, between the words",
     ),
-    "dummy_delta": Index("delta of a dummy", f"{_2013}, eqs. 26 and 30", (), comment=_DUMMY),
-    "dummy_delta_first_order": Index(
-        "first-order Sobol index of a dummy from given data",
-        f"{_2013}, section 3",
-        (),
-        comment=_DUMMY,
+    "dummy_delta": Index.of_dummy("delta of a dummy", f"{_2013}, eqs. 26 and 30"),
+    "dummy_delta_first_order": Index.of_dummy(
+        "first-order Sobol index of a dummy from given data", f"{_2013}, section 3"
     ),
 }
 

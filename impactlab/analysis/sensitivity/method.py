@@ -36,6 +36,11 @@ class Index:
     interval: bool = True
     comment: str = ""
 
+    @classmethod
+    def of_dummy(cls, long_name: str, estimator: str) -> Index:
+        """Return the index of a dummy parameter, see `dummy_column`."""
+        return cls(long_name, estimator, (), comment="of a random column that the model never saw")
+
 
 @dataclass(frozen=True)
 class Method:

@@ -34,12 +34,7 @@ _INDICES = {
     "pawn_maximum": Index(
         "PAWN index, maximum over the slides", f"{_2018}, eqs. 2 and 3", interval=False
     ),
-    "dummy_pawn": Index(
-        "PAWN index of a dummy",
-        f"{_2018}, section 2.3",
-        (),
-        comment="of a random column that the model never saw",
-    ),
+    "dummy_pawn": Index.of_dummy("PAWN index of a dummy", f"{_2018}, section 2.3"),
 }
 
 

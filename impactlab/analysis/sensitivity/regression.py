@@ -11,21 +11,18 @@ from impactlab.types import Floats
 
 _2008 = "Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5"
 _1979 = "Iman and Conover (1979), Technometrics 21, 499"
-_DUMMY = "of a random column that the model never saw"
 _INDICES = {
     "regression": Index("standardised regression coefficient", _2008),
     "regression_r_squared": Index(
         "share of the variance that linear regression explains", _2008, ()
     ),
-    "dummy_regression": Index(
-        "standardised regression coefficient of a dummy", _2008, (), comment=_DUMMY
-    ),
+    "dummy_regression": Index.of_dummy("standardised regression coefficient of a dummy", _2008),
     "rank_regression": Index("standardised rank regression coefficient", _1979),
     "rank_regression_r_squared": Index(
         "share of the variance of the ranks that linear regression explains", _1979, ()
     ),
-    "dummy_rank_regression": Index(
-        "standardised rank regression coefficient of a dummy", _1979, (), comment=_DUMMY
+    "dummy_rank_regression": Index.of_dummy(
+        "standardised rank regression coefficient of a dummy", _1979
     ),
 }
 
