@@ -187,7 +187,9 @@ class Study:
 
     def estimate(self, *, workers: int = _CORES) -> Estimate:
         """Return what the runs cost: seconds, memory and disk, within a factor of about 3."""
-        return steps.price(self.declared, self.folder, workers)
+        from impactlab.study.estimate import estimate
+
+        return estimate(self.declared, self.folder, workers)
 
     def status(self) -> Status | None:
         """Return the progress: runs solved, failed and left; None before `auto` is resolved."""

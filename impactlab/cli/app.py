@@ -35,8 +35,6 @@ _COMMANDS = {
     "compile": "impactlab.cli.simulate:compile_kernels",
 } | wings.COMMANDS
 """Module and function by name, in the order of the help."""
-
-
 _HELP = {"help_option_names": ["-h", "--help"]}
 
 

@@ -15,8 +15,6 @@ StudyFile = Annotated[
 RunsFile = Annotated[
     Path, typer.Argument(metavar="RUNS", help="Solved runs, results/NAME/runs.nc.")
 ]
-
-
 new_file: Any = partial(typer.Option, dir_okay=False)
 """An option for a file to write; a folder of this name is refused before any work."""
 new_folder: Any = partial(typer.Option, file_okay=False)

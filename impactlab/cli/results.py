@@ -9,13 +9,8 @@ import typer
 
 from impactlab.cli.options import RESULTS, RunsFile, assigned, given, new_file, new_folder
 
-StoredFiles = Annotated[
-    list[Path],
-    typer.Argument(
-        metavar="STORED...",
-        help="Of a study: runs.nc and analysis.nc. Of a verification: findings.nc.",
-    ),
-]
+_STORED = "Of a study: runs.nc and analysis.nc. Of a verification: findings.nc."
+StoredFiles = Annotated[list[Path], typer.Argument(metavar="STORED...", help=_STORED)]
 Pictures = Annotated[Path | None, new_folder(help="Default: figures/ beside the first of them.")]
 
 

@@ -113,6 +113,7 @@ def run(
     from impactlab.report.console import print_estimate, print_recommendation, print_solved
     from impactlab.study import steps
     from impactlab.study.engine import Engine, read_profile
+    from impactlab.study.estimate import estimate
     from impactlab.study.sampling.design import study_of_design
     from impactlab.study.schema.files import read_study
 
@@ -120,7 +121,7 @@ def run(
     study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
     path = output or steps.results_folder(study.name) / "runs.nc"
     if dry_run:
-        cost = steps.price(study, path.parent, workers)
+        cost = estimate(study, path.parent, workers)
         for problem in cost.implausible:
             logging.getLogger("impactlab").warning("%s", problem)
         print_estimate(cost, workers)

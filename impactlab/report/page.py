@@ -174,10 +174,8 @@ def pictures(
             f"{error.filename} is missing: draw the figures again (impactlab figures)"
         ) from None
     if any(entry.get("made_from") != identity(made_from) for entry in entries.values()):
-        raise ValueError(
-            f"{folder}: its figures were drawn from other results: draw them again with "
-            "`impactlab figures`"
-        )
+        again = "draw them again with `impactlab figures`"
+        raise ValueError(f"{folder}: its figures were drawn from other results: {again}")
     order = {name: at for at, name in enumerate(placed)} | {leading(entries): -1}
     names = sorted(entries, key=lambda name: order.get(name, len(order)))
     found: dict[str, dict[str, Any]] = {}

@@ -29,6 +29,7 @@ from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.checks import extremes, has_solid_runs, key_of
 from impactlab.study.schema.study import FunctionStudy, Study
+from impactlab.study.steps import resolved
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
 MOST_TIME = 30 * 86400.0
@@ -94,6 +95,7 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
     always the same one; the largest run is sought at the extremes of parameters. Pilot runs of
     `auto` and the analysis are not included. Raises StudyError where a sampled run is impossible.
     """
+    study = resolved(study, folder) or study
     there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
     own = sum(each.st_size for each in file_stats(folder.rglob("*")))
     file, doubted = str(study.path), []

@@ -1,4 +1,4 @@
-"""The steps of a study, one function each: price, resolve, solve, refine, analyse, check, tidy up.
+"""The steps of a study, one function each: resolve, solve, refine, analyse, check, tidy up.
 
 The commands parse, call these and print; whatever else runs a study calls them too. Each imports
 what it needs: compiler and analysis take seconds to load.
@@ -31,7 +31,6 @@ from impactlab.study.schema.yaml_file import check_name
 
 if TYPE_CHECKING:
     from impactlab.study.engine import Engine
-    from impactlab.study.estimate import Estimate
     from impactlab.study.runs import Status
     from impactlab.verification.finding import Outcome
 
@@ -55,13 +54,6 @@ def results_folder(study: str, results: Path = Path("results")) -> Path:
                 "with --output where the results are to go"
             )
     return folder
-
-
-def price(study: AnyStudy, folder: Path, workers: int) -> Estimate:
-    """Return the cost of a study with results in `folder`. Raises StudyError as `estimate`."""
-    from impactlab.study.estimate import estimate
-
-    return estimate(resolved(study, folder) or study, folder, workers)
 
 
 def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
@@ -121,12 +113,13 @@ def run(
     Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
     `solve`.
     """
+    from impactlab.study.estimate import estimate
     from impactlab.study.sampling.design import design
     from impactlab.study.schema.measurements import read_measurements
 
     for file in study.measurements if isinstance(study, Study) else ():
         read_measurements(file)  # mistakes there are told before hours of runs
-    cost = price(study, path.parent, engine.workers)
+    cost = estimate(study, path.parent, engine.workers)
     for problem in cost.implausible:
         log.warning("%s", problem)
     if (exceeded := cost.exceeded()) and not force:

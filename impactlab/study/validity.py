@@ -71,9 +71,7 @@ def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal |
         name: sorted({*values} if isinstance(values[0], str) else {min(values), max(values)})
         for name, values in columns.items()
     }
-    if refused_corner(base, box) is None:
-        return None  # no run in the box is refused
-    runs = zip(*columns.values(), strict=True)
+    runs = zip(*columns.values(), strict=True) if refused_corner(base, box) else ()
     found = (refusal(base, dict(zip(columns, run, strict=True))) for run in runs)
     return next((each for each in found if each), None)
 
@@ -91,13 +89,7 @@ def check_alone(parameter: Parameter, value: Value) -> Value:
 _ROOMY: Base = with_values(
     paper_impact(),
     Discretisation(),
-    {
-        "sphere_youngs_modulus": 1e300,
-        "sphere_yield_stress": 1e-300,
-        "beam_youngs_modulus": 1e300,
-        "beam_yield_stress": 1e-300,
-        "beam_span": 1e300,
-        "beam_depth": 1e-300,
-    },
+    dict.fromkeys(("sphere_youngs_modulus", "beam_youngs_modulus", "beam_span"), 1e300)
+    | dict.fromkeys(("sphere_yield_stress", "beam_yield_stress", "beam_depth"), 1e-300),
 )
 """An impact with which only the limits of a parameter itself apply."""

@@ -116,11 +116,8 @@ def refine_cases(runs: xr.Dataset, solve: Step, count: int | None = None) -> xr.
         raise ValueError(f"study {study!r}: its runs are not of a beam model, so they have no grid")
     names, first = listed(runs, "varied"), _first(in_order(runs), count).compute()
     nodes, points = int(runs["nodes"]), int(runs["points"])
-    grids = {
-        "used": (nodes, points),
-        "finer": (2 * nodes - 1, points),
-        "more_points": (nodes, 2 * points - 1),
-    }
+    grids = {"used": (nodes, points), "finer": (2 * nodes - 1, points)}
+    grids["more_points"] = nodes, 2 * points - 1
     coarser = 2 * round((nodes - 1) / 4) + 1  # odd, for a node in the middle
     if coarser >= COARSEST:
         grids["coarser"] = coarser, points

@@ -138,8 +138,7 @@ def _automatic_discretisation(file: StudyFile) -> Reasons:
         if name in file.sampling.parameters:
             reason = "cannot be varied beside discretisation: auto, which finds it"
             yield f"sampling.parameters.{name}", reason
-    missing = set(auto.responses or () if auto else ()) - set(file.responses)
-    if missing:
+    if missing := set(auto.responses or () if auto else ()) - set(file.responses):
         reason = f"names {', '.join(sorted(missing))}, which `responses` of the study leaves out"
         yield "discretisation.auto.responses", reason
 
@@ -200,11 +199,8 @@ def _solid(file: StudyFile) -> Reasons:
             yield key, f"has no effect without beam_model: {SOLID}: take it out"
         return
     if not sizes:
-        reason = (
-            f"is required for beam_model: {SOLID} (runs with 1 mm take seconds, those with "
-            "0.5 mm a minute)"
-        )
-        yield f"discretisation.{ELEMENTS[0]}", reason
+        times = "runs with 1 mm take seconds, those with 0.5 mm a minute"
+        yield f"discretisation.{ELEMENTS[0]}", f"is required for beam_model: {SOLID} ({times})"
     for key in sizes[1:]:
         yield key, f"has no effect beside {sizes[0]}: take one of them out"
     if not isinstance(file.sampling, Grid):

@@ -44,7 +44,10 @@ def read_any(path: str | Path) -> Study | FunctionStudy | Verification:
 
 def read_study(path: str | Path) -> Study | FunctionStudy:
     """Read a study of runs. Raises StudyError as `read_any`, and for a file of checks."""
-    return _of_runs(read_any(path))
+    declared = read_any(path)
+    if isinstance(declared, Verification):
+        raise _wrong_kind(declared.path, "lists checks and has no runs", "verify")
+    return declared
 
 
 def read_impacts(path: str | Path) -> Study:
@@ -64,12 +67,9 @@ def study_of_text(name: str, text: str, path: Path | None = None) -> Study | Fun
     """Read a study of runs from the text of NAME.yaml; see `read_any`. path: that errors name."""
     path = path or Path(f"{name}.yaml")
     source = Source(name, path, text, read_mapping(text, str(path)))
-    return _of_runs(_READERS[_kind(source)](source))
-
-
-def _of_runs(declared: Study | FunctionStudy | Verification) -> Study | FunctionStudy:
+    declared = _READERS[_kind(source)](source)
     if isinstance(declared, Verification):
-        raise _wrong_kind(declared.path, "lists checks and has no runs", "verify")
+        raise _wrong_kind(path, "lists checks and has no runs", "verify")
     return declared
 
 
