@@ -26,20 +26,16 @@ from impactlab.analysis.surrogate.stored import OUTER, Surrogate
 from impactlab.model.distributions import quantile
 from impactlab.types import Floats
 
-MOST = 5
-"""Largest number of calibrated parameters."""
+MOST = 5  # largest number of calibrated parameters
 FEWEST = 400.0
 """Least effective sample size: the mean is then known to 5 % of the posterior's deviation."""
 EDGE, LEANING = 0.02, 0.1
 """Share of the prior at an end of its range, and share of the posterior there that is too much."""
 SILENT = 0.9
 """Posterior over prior standard deviation from which on the data cannot tell a parameter."""
-CONTRADICTED = 0.01
-"""Posterior predictive p-value below which the data contradict the models."""
-NEGLIGIBLE = 0.01
-"""Weight below which a model's own doubts do not matter."""
-DRAWS = 2000
-"""Equally weighted draws that are kept."""
+CONTRADICTED = 0.01  # posterior predictive p-value below which the data contradict the models
+NEGLIGIBLE = 0.01  # weight below which a model's own doubts do not matter
+DRAWS = 2000  # equally weighted draws that are kept
 _SEED = 1
 
 

@@ -10,8 +10,7 @@ import xarray as xr
 
 from impactlab.types import Floats
 
-TOLERANCE = 0.01
-"""Relative numerical error up to which a response counts as converged."""
+TOLERANCE = 0.01  # relative numerical error up to which a response counts as converged
 ROUND_OFF = 1e-9
 """Relative difference below which values count as equal: round-off adds up over the time steps."""
 

@@ -18,10 +18,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-SINGLE, DOUBLE = 89.0, 183.0
-"""Widths of one and of two columns of a paper, mm."""
-MILLIMETRE = 1.0 / 25.4
-"""In inches, matplotlib's unit of length."""
+SINGLE, DOUBLE = 89.0, 183.0  # widths of one and of two columns of a paper, mm
+MILLIMETRE = 1.0 / 25.4  # in inches, matplotlib's unit of length
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 MARKERS = ("o", "s", "^", "D", "v", "P")

@@ -27,8 +27,7 @@ from impactlab.variables import provenance as made_now
 
 log = logging.getLogger(__name__)
 
-MIXED = "depends on the reading"
-"""What is said of a statement whose cases differ."""
+MIXED = "depends on the reading"  # what is said of a statement whose cases differ
 SECTIONS = {
     Kind.STATEMENT: ("Statements", "Each entry has a test, and a row per case or reading."),
     Kind.MISPRINT: (

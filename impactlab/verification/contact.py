@@ -109,8 +109,7 @@ def stronge_restitution() -> Finding:
 
 VELOCITIES = (0.012, 0.03, 0.1, 0.3, 0.99, 3.0, 10.0)
 """In m/s, from just above the first yield of all laws but Hertz's."""
-DRAWN = 0.99
-"""Velocity in m/s of the curves of force against indentation."""
+DRAWN = 0.99  # velocity in m/s of the curves of force against indentation
 _QUADRATURE = "quadrature of the law"
 
 

@@ -24,8 +24,7 @@ from impactlab.verification.solutions import beam_modes, hertz
 from impactlab.verification.solutions.contact_laws import LAWS
 from impactlab.verification.solutions.modal import ModalSolution, solve_with
 
-LONGER, SAMPLES, TOLERANCE = 0.3e-3, 601, 2e-3
-"""Of the checks of the compliance; modes as below."""
+LONGER, SAMPLES, TOLERANCE = 0.3e-3, 601, 2e-3  # of the checks of the compliance; modes as below
 VELOCITY, DURATION, STEPS, MODES = 10.0, 0.2e-3, 1000, 150
 GRIDS = {
     ("euler_bernoulli", "leapfrog", "half_space"): (801, 0.15),

@@ -28,8 +28,7 @@ HISTORIES = {
 }
 """The compared histories: (name, units)."""
 
-GridKey = tuple[str, int]
-"""Scheme and nodes."""
+GridKey = tuple[str, int]  # scheme and nodes
 
 
 @dataclass(frozen=True)

@@ -183,8 +183,7 @@ def _order_panel(
 
 
 FINE = 1601
-DURATION = 1.5e-3
-"""Duration of the yielding cases in s, past the last of the sub-impacts."""
+DURATION = 1.5e-3  # duration of the yielding cases in s, past the last of the sub-impacts
 TOLERANCES = {
     "peak_force": 3e-4,
     "permanent_indentation": 3e-4,
@@ -203,8 +202,7 @@ HINGED = 5.0
 """How many times the tolerances the modal scheme's may be where mid-span yields at the peak force:
 at 20 m/s."""
 
-NODES = (51, 101, 201, 401, 601, 801)
-"""Numbers of nodes in the figures."""
+NODES = (51, 101, 201, 401, 601, 801)  # numbers of nodes in the figures
 
 
 @check(

@@ -36,8 +36,7 @@ _DIMENSIONS = {
 }
 """Powers of mass, length and time in each unit."""
 
-TOLERANCE = 1e-9
-"""Round-off, the only allowed effect of the scale, and of the way back."""
+TOLERANCE = 1e-9  # round-off, the only allowed effect of the scale, and of the way back
 _SCALED_GRIDS = {
     "leapfrog": Discretisation(nodes=101, points=21),
     "modal": Discretisation(nodes=41, points=21, scheme="modal"),

@@ -18,8 +18,7 @@ from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DO
 from impactlab.analysis.verdicts import Verdict
 from impactlab.types import Floats
 
-FEWEST = 4
-"""Grids that a fit of three coefficients needs."""
+FEWEST = 4  # grids that a fit of three coefficients needs
 ORDERS = (0.5, 2.0)
 """Fitted orders that are kept; outside, the powers are assumed to be 1, 2, or both."""
 _HIGHEST_RELIABLE = 2.1  # fitted order from which on convergence is too fast to be more than chance

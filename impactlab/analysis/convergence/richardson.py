@@ -21,8 +21,7 @@ from scipy.optimize import brentq
 
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict
 
-FORMAL_ORDER = 2.0
-"""Order in dx of the central differences."""
+FORMAL_ORDER = 2.0  # order in dx of the central differences
 ASYMPTOTIC_BAND = 0.5
 """How far an observed order may lie from the formal one in the asymptotic range."""
 CREDIBLE_ORDERS = (0.5, 3.0)

@@ -21,14 +21,10 @@ from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.method import Index, Method, apart_from_dummy, dummy_column
 from impactlab.types import Floats
 
-GRID = 200
-"""Places at which densities are compared."""
-WIDTH = 0.5
-"""Width of the kernels, relative to Silverman's."""
-SAFETY = 1.5
-"""Bias over change; one would do for an error that each halving of the width halves."""
-COARSE = 20
-"""Resamples for the bias of the estimate with half the classes and twice the width."""
+GRID = 200  # places at which densities are compared
+WIDTH = 0.5  # width of the kernels, relative to Silverman's
+SAFETY = 1.5  # bias over change; one would do for an error that each halving of the width halves
+COARSE = 20  # resamples for the bias of the estimate with half the classes and twice the width
 Mask = npt.NDArray[np.bool_]
 _2013 = "Plischke et al. (2013), Eur. J. Oper. Res. 226, 536"
 _INDICES = {

@@ -104,10 +104,8 @@ def _variables(
     return variables
 
 
-MOST_IMPUTED = 0.2
-"""Largest share of runs that may be supplied."""
-FEWEST_PER_PARAMETER = 10
-"""Good runs that a surrogate needs per parameter."""
+MOST_IMPUTED = 0.2  # largest share of runs that may be supplied
+FEWEST_PER_PARAMETER = 10  # good runs that a surrogate needs per parameter
 _AT_ONCE = 100_000  # runs that are predicted together
 
 

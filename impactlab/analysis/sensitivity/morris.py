@@ -9,8 +9,7 @@ from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.method import Index, Method
 from impactlab.types import Floats
 
-SAME = 1e-13
-"""Difference, relative to the largest value, up to which two values are one level."""
+SAME = 1e-13  # difference, relative to the largest value, up to which two values are one level
 _1991 = "Morris (1991), Technometrics 33, 161"
 _2007 = "Campolongo et al. (2007), Environ. Model. Softw. 22, 1509, eq. 2"
 _UNIT = (

@@ -29,8 +29,7 @@ from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
 from impactlab.types import Floats
 from impactlab.variables import attributes, status_bits
 
-SHOWN = ("contact_force", "midspan_deflection")
-"""The histories that get indices."""
+SHOWN = ("contact_force", "midspan_deflection")  # the histories that get indices
 GROUPS = 512
 """Most groups of base samples, which are what is resampled: their number leaves an interval
 uncertain by sqrt(1 / (2 groups)), 3 %."""

@@ -24,10 +24,8 @@ from impactlab.analysis.sensitivity.method import (
 )
 from impactlab.types import Floats
 
-SLIDES = 10
-"""Classes of a parameter's values, as in SALib."""
-FEWEST = 10
-"""Runs that a slide needs on average."""
+SLIDES = 10  # classes of a parameter's values, as in SALib
+FEWEST = 10  # runs that a slide needs on average
 _2018 = "Pianosi and Wagener (2018), Environ. Model. Softw. 108, 197"
 _INDICES = {
     "pawn": Index("PAWN index, median over the slides", f"{_2018}, eqs. 2 and 3"),

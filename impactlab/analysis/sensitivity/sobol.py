@@ -23,8 +23,7 @@ _ALONE = 4  # columns of the statistics that belong to no factor: a, b, a^2, b^2
 
 
 ALL = slice(None)
-MOST_ROWS = 1 << 18
-"""Base samples that are resampled as they are; more are resampled in groups."""
+MOST_ROWS = 1 << 18  # base samples that are resampled as they are; more are resampled in groups
 
 
 @dataclass(frozen=True)
@@ -117,10 +116,8 @@ def estimates(means: Floats, factors: int) -> dict[str, Floats]:
     return found
 
 
-HALVINGS = 5
-"""Number of halvings of the sample that show how its indices settle: from N/32 on."""
-FEWEST = 8
-"""Base samples below which halves are not shown."""
+HALVINGS = 5  # number of halvings of the sample that show how its indices settle: from N/32 on
+FEWEST = 8  # base samples below which halves are not shown
 _2010 = "Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2"
 _2002 = "Saltelli (2002), Comput. Phys. Commun. 145, 280, Theorem 2"
 _NESTED = "from the first base samples alone, which are a smaller sample of the same kind"

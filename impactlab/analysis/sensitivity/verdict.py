@@ -12,8 +12,7 @@ from impactlab.types import Floats
 
 MOSTLY = 0.9
 """Share of runs with one and the same value from which on a response is mostly constant."""
-FEW_VALUES = 10
-"""Distinct values up to which a response moves in jumps."""
+FEW_VALUES = 10  # distinct values up to which a response moves in jumps
 TAIL, TAIL_SHARE = 0.01, 0.5
 """The share of runs that may not carry more than this share of the variance."""
 WIDE = 0.1

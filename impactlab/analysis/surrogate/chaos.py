@@ -93,8 +93,7 @@ class Chaos:
         return np.asarray(self.coefficients @ basis(unit, self.degrees))
 
 
-MOST_RUNS = 20_000
-"""Largest number of runs that a fit uses; of more, it draws as many."""
+MOST_RUNS = 20_000  # largest number of runs that a fit uses; of more, it draws as many
 _MOST_CANDIDATES = 400
 _MOST_TERMS = 200
 _HIGHEST_DEGREE = 20

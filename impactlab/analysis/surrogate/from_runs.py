@@ -84,11 +84,9 @@ class Divided:
         return self._units[key]
 
 
-GOOD = 0.9
-"""Predictivity on held-out runs from which on a surrogate needs no warning."""
+GOOD = 0.9  # predictivity on held-out runs from which on a surrogate needs no warning
 MOSTLY = 0.9
-FEW = 20
-"""Distinct values up to which a response jumps between levels, where each comes ten times."""
+FEW = 20  # distinct values up to which a response jumps between levels, where each comes ten times
 
 
 class SurrogateVerdict(Verdict):

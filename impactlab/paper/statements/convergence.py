@@ -27,8 +27,7 @@ from impactlab.paper.statements.statement import (
 )
 
 NODES_STUDY, POINTS_STUDY = "fig06_nodes", "fig06_points"
-VELOCITIES = (VELOCITY, 15.0)
-"""Without and with yielding fibres, m/s."""
+VELOCITIES = (VELOCITY, 15.0)  # without and with yielding fibres, m/s
 MOTION = ("peak_force", "contact_duration", "maximum_indentation", "maximum_deflection")
 """Responses that the paper's histories show."""
 STRAIN = ("peak_plastic_strain", "remote_plastic_strain")
@@ -150,8 +149,7 @@ def _points_error(data: Data, where: dict[str, Any], points: int, name: str) -> 
     return Number(f"error of the {name.replace('_', ' ')}", error, "1", spread, percent=True)
 
 
-PRINTED_LAYERS = 0.069
-"""What the paper says of Zhang's layered beam against finite elements."""
+PRINTED_LAYERS = 0.069  # what the paper says of Zhang's layered beam against finite elements
 
 
 @statement(

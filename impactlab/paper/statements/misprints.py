@@ -26,8 +26,7 @@ from impactlab.paper.statements.statement import (
 from impactlab.verification.solutions import bending, explicit_beam, hertz, quadrature
 from impactlab.verification.solutions.stronge import CONSTRAINT, HARDNESS, U_PLASTIC, stronge_impact
 
-EQUAL = 1e-9
-"""Relative difference within which two forces agree."""
+EQUAL = 1e-9  # relative difference within which two forces agree
 
 
 @statement(

@@ -26,14 +26,11 @@ from impactlab.paper.statements.statement import (
     uncertain,
 )
 
-LATE, EARLY = "fig10_nodes", "fig10_first"
-"""Studies: after all contacts, and after the first one."""
-SOLID_STUDY = "witness"
-"""The study of beam and 3-D models over the velocities."""
+LATE, EARLY = "fig10_nodes", "fig10_first"  # studies: after all contacts, and after the first one
+SOLID_STUDY = "witness"  # the study of beam and 3-D models over the velocities
 PROFILES = ("fig10_fine", "fig10", "fig10_coarse")
 """Studies of the strain along the beam after all contacts, the finest grid first."""
-LIMIT = 0.002
-"""The plastic strain that the paper compares with."""
+LIMIT = 0.002  # the plastic strain that the paper compares with
 AWAY = (
     ("after all contacts (25 ms)", LATE, "remote_plastic_strain", True),
     ("after 1 ms", EARLY, "remote_plastic_strain", False),

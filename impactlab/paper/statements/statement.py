@@ -17,13 +17,10 @@ from impactlab.analysis.convergence.judgement import judge
 from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL
 from impactlab.variables import RESPONSES, reasons, status_bits
 
-Data = Mapping[str, xr.Dataset]
-"""The runs of each study by its name."""
+Data = Mapping[str, xr.Dataset]  # the runs of each study by its name
 Case = tuple[Any, ...]
-BEAM = "euler_bernoulli"
-"""The paper's beam, among `beam_model`."""
-VELOCITY = 0.99
-"""The paper's impact velocity, m/s."""
+BEAM = "euler_bernoulli"  # the paper's beam, among `beam_model`
+VELOCITY = 0.99  # the paper's impact velocity, m/s
 PRINTED_DIFFERENCE = 0.024
 """What the paper says of its force against finite elements; its scale where it says "small"."""
 

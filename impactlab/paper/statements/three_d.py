@@ -228,8 +228,7 @@ def duration_of_witness(case: str, data: Data, velocity: float) -> Judgement:
     return judged(case, numbers, stands, why, literal=False)
 
 
-PRINTED_EXTENT = 1.52e-3
-"""Extent of the plastic zone in figure 9, m."""
+PRINTED_EXTENT = 1.52e-3  # extent of the plastic zone in figure 9, m
 _ZONE = {
     "along the surface, PEEQ above 0.2 %": ("plastic_zone_radius", 1.0),
     "at any depth, half the length with a PEEQ above 1e-5": ("plastic_zone_length", 0.5),

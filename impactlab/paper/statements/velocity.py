@@ -23,8 +23,7 @@ from impactlab.paper.statements.statement import (
 )
 from impactlab.verification.solutions.stronge import stronge_impact
 
-CONTACT_STUDY = "fig08"
-"""The first contact over velocities, contact laws, beam models and grids."""
+CONTACT_STUDY = "fig08"  # the first contact over velocities, contact laws, beam models and grids
 
 
 def _contact_laws(data: Data) -> Iterator[tuple[str, str]]:

@@ -22,10 +22,8 @@ from impactlab.model.impact import Impact
 from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.contact_laws import LawOnHalfSpace
 
-CONSTRAINT = 1.1
-"""th: mean contact pressure over yield stress at first yield."""
-HARDNESS = 2.8
-"""Mean contact pressure over yield stress when fully plastic."""
+CONSTRAINT = 1.1  # th: mean contact pressure over yield stress at first yield
+HARDNESS = 2.8  # mean contact pressure over yield stress when fully plastic
 U_PLASTIC = math.exp(3.0 * (HARDNESS - CONSTRAINT))
 """u = 164.02 (x = 82.511), where the two plastic branches meet without a jump."""
 
