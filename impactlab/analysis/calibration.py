@@ -71,12 +71,9 @@ class Model:
         Raises ValueError, with every reason, where it cannot predict one of them.
         """
         reasons = list(_mismatches(surrogate, measurements))
+        known = surrogate.parameters
         stated = [
-            {
-                name: float(value)
-                for name, value in one.conditions.items()
-                if name in surrogate.parameters
-            }
+            {name: float(value) for name, value in one.conditions.items() if name in known}
             for one in measurements
         ]
         free = tuple(n for n in surrogate.parameters if not all(n in each for each in stated))
@@ -115,15 +112,9 @@ class Model:
         shared = np.array([numerical.get(name, 0.0) / 2.0 for name in names]) * measured
         own = model_error * measured
         covariance = covariance + (np.outer(shared, shared) + np.outer(own, own)) * alike
-        ends = (
-            surrogate.dataset[["lowest", "highest"]].sel(parameter=list(free)).to_array().values.T
-        )
-        limits = np.array(
-            [
-                [surrogate.probability(name, end) for end in pair]
-                for name, pair in zip(free, ends.tolist(), strict=True)
-            ]
-        )
+        sampled = surrogate.dataset.sel(parameter=list(free))
+        ends = zip(free, sampled[["lowest", "highest"]].to_array().values.T.tolist(), strict=True)
+        limits = np.array([[surrogate.probability(n, end) for end in pair] for n, pair in ends])
         return cls(
             surrogate, free, tuple(places), limits, tuple(names), measured, error, covariance
         )

@@ -119,12 +119,9 @@ def _of_responses(runs: xr.Dataset, resolution: xr.Dataset) -> dict[str, xr.Data
     deviation = xr.concat(deviations, "response", coords="minimal", compat="override")
     squares = (asked["grid_uncertainty"] ** 2).mean("case")
     share = (squares / deviation.where(deviation > 0) ** 2).where(squares > 0, 0.0)
-    return {
-        "numerical_uncertainty": relative,
-        "numerical_share": share.fillna(np.inf)
-        .reset_coords(drop=True)
-        .assign_attrs(long_name="share of the variance that may be numerical error", units="1"),
-    }
+    words = "share of the variance that may be numerical error"
+    share = share.fillna(np.inf).reset_coords(drop=True).assign_attrs(long_name=words, units="1")
+    return {"numerical_uncertainty": relative, "numerical_share": share}
 
 
 USED, FINER, COARSER, MORE_POINTS = "used", "finer", "coarser", "more_points"

@@ -84,15 +84,9 @@ def audit(impact: Impact, grid: Discretisation, duration: float) -> Audit:
     spent = mass * gravity * float(fallen.max() - fallen[-1])
     kinetic = 0.5 * mass * earlier * later + moving
     pushed = mass * (impact.velocity + gravity * duration)
-    return Audit(
-        impact=impact,
-        run=run,
-        energy=(kinetic + spent + contact + stored + plastic) / brought - 1.0,
-        momentum=(0.5 * mass * (earlier + later) + impulse) / pushed - 1.0,
-        contact=contact,
-        plastic=plastic,
-        brought=brought,
-    )
+    energy = (kinetic + spent + contact + stored + plastic) / brought - 1.0
+    excess = (0.5 * mass * (earlier + later) + impulse) / pushed - 1.0
+    return Audit(impact, run, energy, excess, contact, plastic, brought)
 
 
 def _bend_differences(

@@ -106,15 +106,10 @@ def _fit(
     coefficients = np.linalg.lstsq(design * root[:, None], f * root, rcond=None)[0]
     residuals = f - design @ coefficients
     parameters = 1 + len(powers) + (expansion is Expansion.FREE)
-    return Fit(
-        expansion,
-        min(powers),
-        powers[0] if free_order is None else free_order,
-        float(coefficients[0]),
-        abs(terms @ coefficients[1:]),
-        residuals,
-        float(np.sqrt(f.size * np.sum(weights * residuals**2) / (f.size - parameters))),
-    )
+    deviation = float(np.sqrt(f.size * np.sum(weights * residuals**2) / (f.size - parameters)))
+    free_order = powers[0] if free_order is None else free_order
+    limit, errors = float(coefficients[0]), np.asarray(abs(terms @ coefficients[1:]))
+    return Fit(expansion, min(powers), free_order, limit, errors, residuals, deviation)
 
 
 def _free_order(f: Floats, h: Floats, weights: Floats) -> float:

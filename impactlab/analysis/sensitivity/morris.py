@@ -52,20 +52,11 @@ def _check(sample: Sample) -> None:
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    problem = {
-        "num_vars": len(sample.parameters),
-        "names": list(sample.parameters),
-        "groups": list(sample.memberships),
-    }
-    found = morris.analyze(
-        problem,
-        levels(sample.inputs),
-        outputs,
-        num_resamples=sample.resamples,
-        conf_level=sample.confidence,
-        num_levels=sample.number("levels"),
-        seed=sample.rng(response),
-    )
+    names, groups = list(sample.parameters), list(sample.memberships)
+    problem = {"num_vars": len(names), "names": names, "groups": groups}
+    bootstrap = {"num_resamples": sample.resamples, "conf_level": sample.confidence}
+    settings = bootstrap | {"num_levels": sample.number("levels"), "seed": sample.rng(response)}
+    found = morris.analyze(problem, levels(sample.inputs), outputs, **settings)
     alone = np.array([sample.memberships.count(name) == 1 for name in sample.factors])
     return {
         "morris_mu": np.where(alone, np.asarray(found["mu"], float), np.nan),

@@ -24,7 +24,7 @@ from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.indices import MOST_IMPUTED
 from impactlab.analysis.sensitivity.method import counts
 from impactlab.analysis.sensitivity.sobol import FEWEST, check, step
-from impactlab.analysis.sensitivity.verdict import WIDE, inconsistent
+from impactlab.analysis.sensitivity.verdict import WIDE, SensitivityVerdict, inconsistent
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
 from impactlab.types import Floats
 from impactlab.variables import attributes, status_bits
@@ -44,17 +44,8 @@ class HistoryVerdict(Verdict):
     """Verdicts on the generalised indices of a history; the worst counts."""
 
     USABLE = 0, True, "every run has its history, and the history varies"
-    WIDE_INTERVALS = (
-        1,
-        False,
-        "the sample is small: an interval is wider than 0.1 to either side, or cannot be given",
-    )
-    INCONSISTENT = (
-        2,
-        False,
-        "the sample is too small: by more than their intervals, first-order indices add up to "
-        "more than 1, are below zero, or exceed their total",
-    )
+    WIDE_INTERVALS = 1, False, SensitivityVerdict.WIDE_INTERVALS.meaning
+    INCONSISTENT = 2, False, SensitivityVerdict.INCONSISTENT.meaning
     RUNS_LEFT_OUT = 3, False, "runs failed: their base samples are left out"
     CONSTANT = 4, False, "the history is the same in all runs: indices are undefined"
     TOO_FEW_RUNS = 5, False, "too many runs failed: no index is given"

@@ -26,14 +26,10 @@ _LENGTHS = {"fast": "samples"}
 
 def applies(runs: xr.Dataset) -> bool:
     """Return True if the runs are a sample of independent numbers with distributions."""
-    return (
-        "run" in runs.dims
-        and not correlations(runs)
-        and all(
-            name in runs.coords and runs[name].attrs.get("distribution") in ARGUMENTS
-            for name in listed(runs, "varied")
-        )
-    )
+    if "run" not in runs.dims or correlations(runs):
+        return False
+    drawn = (runs[n].attrs if n in runs.coords else {} for n in listed(runs, "varied"))
+    return all(each.get("distribution") in ARGUMENTS for each in drawn)
 
 
 @dataclass(frozen=True)

@@ -179,14 +179,10 @@ def strip_odd_modes(beam: Beam, count: int, inertia: float) -> StripModes:
     many = _odd_wave_numbers(beam, 100 * count)
     rest = np.linalg.solve(springs(many), np.broadcast_to(middle[:, None], (many.size, 3, 1)))
     statics = 2.0 / beam.span * np.array([np.sum(rest[:, :, 0] @ middle), -many @ rest[:, 1, 0]])
-    return StripModes(
-        beam,
-        np.tile(q, 3),
-        np.sqrt(squares).T.ravel(),
-        flexibilities.T.ravel(),
-        curvatures.T.ravel(),
-        statics=(float(statics[0]), float(statics[1])),
-    )
+    spectra = np.sqrt(squares), flexibilities, curvatures
+    omega, flexible, bent = (each.T.ravel() for each in spectra)
+    still = float(statics[0]), float(statics[1])
+    return StripModes(beam, np.tile(q, 3), omega, flexible, bent, statics=still)
 
 
 def shear_stiffness(beam: Beam) -> float:

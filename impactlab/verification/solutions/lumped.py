@@ -117,14 +117,9 @@ def solve(
     ends = np.concatenate(([0.0], later, [np.nan] * ((later.size + 1) % 2)))
     depths = [state[0] - state[1] for state in (*found.y_events[1], found.y[:, -1])]
     deepest = int(np.argmax(depths))
-    return LumpedSolution(
-        impact,
-        duration,
-        np.asarray(ends.reshape(-1, 2)),
-        float(_force(depths[deepest], k)),
-        float([*turns, duration][deepest]),
-        found.sol,
-    )
+    contacts = np.asarray(ends.reshape(-1, 2))
+    peak, time = float(_force(depths[deepest], k)), float([*turns, duration][deepest])
+    return LumpedSolution(impact, duration, contacts, peak, time, found.sol)
 
 
 def _force(delta: Any, k: float) -> Any:
