@@ -72,8 +72,7 @@ class Needs(NamedTuple):
             text = f"{dim.replace('_', ' ')} {labels.values(one, [at])[0]}{labels.unit(one)}"
             told.append(labels.value(one, at) if dim in ("nodes", "points") else text)
         kinds = [self.runs[dim] for dim in _KINDS if dim in self.runs.dims]
-        kinds_told = (labels.values(kind, [0])[0] for kind in kinds)
-        return ", ".join([labels.listing(told), *kinds_told])
+        return ", ".join([labels.listing(told), *(labels.values(kind, [0])[0] for kind in kinds)])
 
     def doubts(self, analysis: xr.Dataset, name: str) -> list[str]:
         """Return the verdicts on a response at the finest grid that are warnings."""

@@ -34,8 +34,8 @@ def counts(findings: xr.Dataset) -> tuple[str, str]:
     size = f"{labels.counted(len(outcomes), 'check')}, {labels.counted(total, 'comparison')}"
     if outcomes and not bad:
         return size, ""
-    doubts = labels.counted(len(bad), "check"), labels.counted(failed, "comparison")
-    return size, f"{' and '.join(doubts)} failed"
+    checks, comparisons = labels.counted(len(bad), "check"), labels.counted(failed, "comparison")
+    return size, f"{checks} and {comparisons} failed"
 
 
 def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -> None:

@@ -34,9 +34,9 @@ from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
 MOST_TIME = 30 * 86400.0
 """Limit of the time on one core, in s: a month."""
-_NUMBER = 8  # bytes of a number
+_NUMBER = 8  # bytes per number
 _IN_MEMORY = 2  # copies of a column of answers in memory, read and in order
-_PER_RUN = 60.0  # bytes of a run in memory beside them: its key, place and cost
+_PER_RUN = 60.0  # bytes per run in memory beside them: its key, place and cost
 _ON_DISK = 2  # copies of answers on disk: in shards and in runs.nc
 _PROGRAM = 4e8  # bytes of the program and its compiler
 _FUNCTION = 1e-6  # seconds per value of a test function
@@ -93,7 +93,8 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
 
     folder: for its results; what they take already counts as free. Of many runs a sample is taken,
     always the same one; the largest run is sought at the extremes of parameters. Pilot runs of
-    `auto` and the analysis are not included. Raises StudyError where a sampled run is impossible.
+    `auto` and the analysis are not included. Raises StudyError where a sampled run is impossible,
+    or where pilot runs solved before found no discretisation within the tolerance.
     """
     study = resolved(study, folder) or study
     there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
