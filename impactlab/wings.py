@@ -19,12 +19,12 @@ COMMANDS = {
 """Commands, by name: module and function, as `pkgutil.resolve_name` takes them."""
 COMPILE = "impactlab.fem3d.solver.solve:compile_all"
 """What compiles the kernels of the 3-D model."""
-SOLVERS = {"witness": "impactlab.fem3d.study.solver:SOLVER"}
+SOLVERS = {"witness": "impactlab.fem3d.study:SOLVER"}
 """Solvers of runs, see study.solvers, by the name that designs hold."""
 SOLID = {
-    "cases": "impactlab.fem3d.study.solver",
-    "figures": "impactlab.fem3d.figures:FIGURES",
-    "sections": "impactlab.fem3d.study.report:sections",
+    "cases": "impactlab.fem3d.study",
+    "figures": "impactlab.fem3d.figures.witness:FIGURES",
+    "sections": "impactlab.fem3d.report:sections",
 }
 """What the 3-D model adds to studies that have runs of it: their table of cases and its costs (see
 study.estimate), figures by name and sections of the report."""

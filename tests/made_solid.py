@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.comparison.run import simulate_beams
+from impactlab.fem3d.comparison import simulate_beams
 from impactlab.fem3d.solver import quarter_mesh
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact

@@ -18,7 +18,7 @@ from impactlab.cli.options import given, new_folder
 if TYPE_CHECKING:
     import xarray as xr
 
-    from impactlab.fem3d.comparison.plan import Plan
+    from impactlab.fem3d.plan import Plan
     from impactlab.fem3d.solver.march import Progress
 
 _UNITS = {"velocity": "m s-1", "element-size": "m", "patch": "m", "duration": "s"}
@@ -79,8 +79,8 @@ def witness(
     A table compares their answers; fields, histories and figures are kept. Ctrl-C keeps what was
     computed until then.
     """
-    from impactlab.fem3d.comparison.plan import case_of, planned, print_plan
     from impactlab.fem3d.deck import FLAVOURS
+    from impactlab.fem3d.plan import case_of, planned, print_plan
     from impactlab.study.schema.files import read_impacts
     from impactlab.study.steps import results_folder
 
@@ -121,7 +121,7 @@ def witness(
     if deck:
         _write_deck(plan, deck, folder, plastic=not elastic)
         return
-    from impactlab.fem3d.comparison.run import compare, print_comparison
+    from impactlab.fem3d.comparison import compare, print_comparison
 
     solid, responses, folder = compare(plan, folder, workers=workers, watched=_watched())
     print_comparison(responses, solid)
@@ -129,7 +129,7 @@ def witness(
 
 
 def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
-    from impactlab.fem3d.comparison.run import check_writable
+    from impactlab.fem3d.comparison import check_writable
     from impactlab.fem3d.deck import FLAVOURS, write_deck
 
     check_writable(folder)

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 from command_line import here
 
-from impactlab.fem3d.comparison.plan import case_of
+from impactlab.fem3d.plan import case_of
 from impactlab.fem3d.solver import solve
 
 COARSE = ("--element-size", "2 mm", "--duration", "0.05 ms")
@@ -30,7 +30,7 @@ responses: [peak_force]
 @pytest.fixture
 def undrawn(monkeypatch):
     """Skip the figures, which are slow."""
-    monkeypatch.setattr("impactlab.fem3d.comparison.run.draw_witness", lambda *_: None)
+    monkeypatch.setattr("impactlab.fem3d.comparison.draw_witness", lambda *_: None)
 
 
 @pytest.fixture
@@ -129,7 +129,7 @@ def test_a_deck_is_written_and_nothing_solved(impactlab, tmp_path):
 
 
 def test_a_run_that_goes_wrong_keeps_what_it_has(impactlab, tmp_path, undrawn, monkeypatch):
-    from impactlab.fem3d.comparison import run as package
+    from impactlab.fem3d import comparison as package
 
     whole = package.solve_on
     stopped = {"stopped": "an element was squeezed flat"}
@@ -155,7 +155,7 @@ def test_a_contact_that_outgrows_the_patch_keeps_what_it_has(impactlab, tmp_path
 def test_what_was_broken_off_does_not_take_the_place_of_a_whole_run(
     impactlab, tmp_path, undrawn, monkeypatch
 ):
-    from impactlab.fem3d.comparison import run as package
+    from impactlab.fem3d import comparison as package
 
     impactlab("witness", *COARSE)
     first = (tmp_path / FOLDER / "witness.nc").read_bytes()
@@ -172,7 +172,7 @@ def test_what_was_broken_off_does_not_take_the_place_of_a_whole_run(
 def test_a_folder_that_cannot_be_written_to_is_told_before_anything_is_solved(
     impactlab, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("impactlab.fem3d.comparison.run.solve_on", None)
+    monkeypatch.setattr("impactlab.fem3d.comparison.solve_on", None)
     (tmp_path / "file").touch()
     code, said = impactlab("witness", *COARSE, "--output", "file/folder")
     assert code == 1
@@ -201,7 +201,7 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path):
 
 PRESSED = """
 import os, signal
-import impactlab.fem3d.comparison.run as comparison
+import impactlab.fem3d.comparison as comparison
 from impactlab.cli import main
 from impactlab.fem3d.solver.march import March
 comparison.draw_witness = lambda *_: None

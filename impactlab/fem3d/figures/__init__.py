@@ -1,3 +1,1 @@
 """Figures of the 3-D FE model: those of a study with runs of it, and those of one run."""
-
-from impactlab.fem3d.figures.witness import FIGURES as FIGURES

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure as MplFigure
 from matplotlib.text import Text
 
 from impactlab.analysis import distribution
-from impactlab.fem3d.figures import FIGURES
+from impactlab.fem3d.figures.witness import FIGURES
 from impactlab.figures import style
 from impactlab.figures.catalogue import CATALOGUE, applicable
 from impactlab.figures.distributions import exceedance

@@ -7,8 +7,9 @@ import pytest
 import witnesses
 import xarray as xr
 
-from impactlab.fem3d.figures import FIGURES, witness
-from impactlab.fem3d.study.report import _cell, sections
+from impactlab.fem3d.figures import witness
+from impactlab.fem3d.figures.witness import FIGURES
+from impactlab.fem3d.report import _cell, sections
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.data import drawn
 from impactlab.figures.labels import display

@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from distributed.system import MEMORY_LIMIT
 from numpy.lib.recfunctions import require_fields
 
 from impactlab.analysis.responses import listed
-from impactlab.fem3d.solver import Cost, estimate, least_cost, quarter_mesh
+from impactlab.fem3d.plan import MOST_TIME, cost_of
+from impactlab.fem3d.solver import Cost, quarter_mesh
 from impactlab.fem3d.solver import solve as solve_alone
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.jit import COMPILER
@@ -132,15 +132,11 @@ def _priced(
 def _cost(record: bytes) -> Cost:
     """Return a run's cost, the least one if above an hour or memory; zeros where no mesh fits."""
     case = np.frombuffer(record, dtype=SOLID_CASE)[0]
-    given, size, duration = _impact_of(case), case["element_size"].item(), case["duration"].item()
+    size, duration = case["element_size"].item(), case["duration"].item()
     try:
-        least = least_cost(given, element_size=size, duration=duration)
-        if least.cpu_seconds > 3600.0 or least.memory_bytes > MEMORY_LIMIT:
-            return least
-        mesh = quarter_mesh(given, element_size=size)
+        return cost_of(_impact_of(case), size, duration, longest=MOST_TIME)[0]
     except ValueError:  # the run will say so in its status
         return Cost(0, 0, 0.0, 0)
-    return estimate(mesh, given, duration=duration)
 
 
 def solve_one(case: Any, samples: int) -> dict[str, Any]:

@@ -250,7 +250,7 @@ def _comment(text: str) -> str:
 
 
 _TEMPLATES = Environment(
-    loader=PackageLoader("impactlab.fem3d.deck"),
+    loader=PackageLoader("impactlab.fem3d"),
     trim_blocks=True,
     lstrip_blocks=True,
     keep_trailing_newline=True,

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from impactlab.fem3d.comparison import plan as plans
-from impactlab.fem3d.comparison.plan import USUAL_TIME, case_of, planned
+from impactlab.fem3d import plan as plans
+from impactlab.fem3d.plan import USUAL_TIME, case_of, planned
 from impactlab.fem3d.solver import estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.study.errors import StudyError
 from impactlab.study.schema.files import read_impacts
 
-STUDIES = Path(__file__).parents[4] / "studies"
+STUDIES = Path(__file__).parents[3] / "studies"
 
 STUDY = """
 title: Some

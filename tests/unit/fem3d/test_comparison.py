@@ -12,9 +12,9 @@ import witnesses
 import xarray as xr
 from made_solid import RESPONSES, beam_models, solid
 
-from impactlab.fem3d.comparison import run
-from impactlab.fem3d.comparison.run import compared, print_comparison, write_csv, write_vtu
-from impactlab.fem3d.study.report import sections
+from impactlab.fem3d import comparison
+from impactlab.fem3d.comparison import compared, print_comparison, write_csv, write_vtu
+from impactlab.fem3d.report import sections
 from impactlab.variables import STATUS_FLAGS
 
 MODELS = ["solid", "euler_bernoulli", "timoshenko", "spring_mass"]
@@ -92,7 +92,7 @@ def test_a_failed_write_is_told_and_leaves_the_old_file_and_no_rubbish(tmp_path,
         Path(f"{file}.vtu").write_text("half of i")
         raise OSError("No space left on device")
 
-    monkeypatch.setattr(run, "unstructuredGridToVTK", full)
+    monkeypatch.setattr(comparison, "unstructuredGridToVTK", full)
     with pytest.raises(OSError, match=r"witness\.vtu: could not be written .* are free"):
         write_vtu(solid(), path)
     assert path.read_bytes() == before

@@ -16,8 +16,8 @@ from rich import box
 from rich.console import Console
 from rich.table import Column, Table
 
-from impactlab.fem3d.comparison.plan import MODELS, Plan
 from impactlab.fem3d.figures.run import draw_witness
+from impactlab.fem3d.plan import MODELS, Plan
 from impactlab.fem3d.solver import solve_on
 from impactlab.fem3d.solver.march import Progress
 from impactlab.figures import labels

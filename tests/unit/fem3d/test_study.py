@@ -10,8 +10,8 @@ import pytest
 
 import impactlab as il
 from impactlab.fem3d import solver as solid
+from impactlab.fem3d import study as witness
 from impactlab.fem3d.solver.estimates import contact_radius
-from impactlab.fem3d.study import solver as witness
 from impactlab.model.cost import A_SECOND
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate

@@ -152,7 +152,7 @@ def planned(
         usual = min(float(f"{_CONTACTS * first:.2g}"), usual)
     simulated = usual if duration is None else duration
     size = _usual_size(case.impact, patch, simulated) if element_size is None else element_size
-    solid, mesh = _cost(case.impact, size, patch, simulated)
+    solid, mesh = cost_of(case.impact, size, simulated, patch)
     half = checked_patch(case.impact, size, patch)
     grid = replace(case.discretisation, scheme="leapfrog")
     beams = case_table(case.impact, grid, duration=simulated, varied={"beam_model": MODELS})
@@ -160,12 +160,19 @@ def planned(
     return Plan(case, size, half, simulated, first, usual, beside, solid, mesh)
 
 
-def _cost(
-    impact: Impact, size: float, patch: float | None, duration: float
+def cost_of(
+    impact: Impact,
+    size: float,
+    duration: float,
+    patch: float | None = None,
+    longest: float = math.inf,
 ) -> tuple[Cost, Mesh | None]:
-    """Return the cost on the mesh, or the least cost if that does not fit memory already."""
+    """Return the cost on the mesh, and the mesh.
+
+    Where the least cost exceeds the memory or `longest` (s of one core) already: that, and None.
+    """
     least = least_cost(impact, element_size=size, duration=duration, patch=patch)
-    if least.memory_bytes > MEMORY_LIMIT:
+    if least.memory_bytes > MEMORY_LIMIT or least.cpu_seconds > longest:
         return least, None
     mesh = quarter_mesh(impact, element_size=size, patch=patch)
     return estimate(mesh, impact, duration=duration), mesh
@@ -183,9 +190,10 @@ def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
     usual, *finer = [size for size in sizes if size <= largest]
     for size in finer:
         least = least_cost(impact, element_size=size, duration=duration, patch=patch)
-        large = least.cpu_seconds > USUAL_TIME or least.elements > _MOST_ELEMENTS
-        if large or _cost(impact, size, patch, duration)[0].cpu_seconds > USUAL_TIME:
-            break  # no mesh is made of what is known to be large
+        if least.elements > _MOST_ELEMENTS:
+            break
+        if cost_of(impact, size, duration, patch, USUAL_TIME)[0].cpu_seconds > USUAL_TIME:
+            break
         usual = size
     return usual
 
