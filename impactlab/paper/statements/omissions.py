@@ -20,10 +20,8 @@ from impactlab.paper.statements.statement import (
     UnknownError,
     finest_grid,
     judged,
-    relative,
     runs_of,
     statement,
-    within,
 )
 from impactlab.simulate import case_table, solve
 
@@ -64,13 +62,13 @@ def shear(case: str, data: Data, velocity: float, limit: float) -> Judgement:
             finest_grid(runs, name, velocity=velocity, beam_rate_coefficient=0.0, beam_model=model)
             for model in ("timoshenko", BEAM)
         )
-        gaps.append(relative(with_shear, without, f"change of the {words}"))
+        gaps.append(with_shear.relative_to(without, f"change of the {words}"))
     return _judge_changes(case, gaps, limit)
 
 
 def _judge_changes(case: str, gaps: Sequence[Number], limit: float) -> Judgement:
     """Judge changes of responses against the limit of a reading."""
-    small = all(within(gap, limit) for gap in gaps)
+    small = all(gap.within(limit) for gap in gaps)
     worst = max(gaps, key=lambda gap: abs(gap.value))
     why = f"The largest is the {worst.name}, {labels.number(100 * worst.value, 2)} %."
     return judged(case, tuple(gaps), small, why, literal=not limit)
@@ -99,7 +97,7 @@ def strain_rate(case: str, data: Data, velocity: float, limit: float) -> Judgeme
     for name, words in RESPONSES.items():
         static = finest_grid(runs, name, **where, beam_rate_coefficient=0.0)
         rated = [
-            relative(finest_grid(runs, name, **where, beam_rate_coefficient=D), static, words)
+            finest_grid(runs, name, **where, beam_rate_coefficient=D).relative_to(static, words)
             for D in coefficients[coefficients > 0.0]
         ]
         low, high = min(gap.low for gap in rated), max(gap.high for gap in rated)

@@ -70,6 +70,21 @@ class Number:
         """The largest value that the uncertainty allows; NaN where it is not known."""
         return self.value + self.uncertainty
 
+    def within(self, limit: float) -> bool:
+        """Return whether a difference may be as small as `limit`: |value| - U <= limit.
+
+        Raises UnknownError where its uncertainty is not known.
+        """
+        if not np.isfinite(self.uncertainty):
+            raise UnknownError(f"nothing bounds the numerical error of the {self.name}")
+        return abs(self.value) - self.uncertainty <= limit
+
+    def relative_to(self, other: Number, name: str) -> Number:
+        """Return self/other - 1 in %, with the uncertainties of both."""
+        ratio = self.value / other.value
+        share = self.uncertainty / abs(self.value) + other.uncertainty / abs(other.value)
+        return Number(name, ratio - 1.0, "1", abs(ratio) * share, percent=True)
+
 
 @dataclass(frozen=True)
 class Judgement:
@@ -135,23 +150,6 @@ def judged(
     if not stands:
         return Judgement(case, numbers, Verdict.FAILS, otherwise or why)
     return Judgement(case, numbers, Verdict.HOLDS if literal else Verdict.READING, why)
-
-
-def within(gap: Number, limit: float) -> bool:
-    """Return whether a difference may be as small as `limit`: |gap| - U <= limit.
-
-    Raises UnknownError where its uncertainty is not known.
-    """
-    if not np.isfinite(gap.uncertainty):
-        raise UnknownError(f"nothing bounds the numerical error of the {gap.name}")
-    return abs(gap.value) - gap.uncertainty <= limit
-
-
-def relative(ours: Number, other: Number, name: str) -> Number:
-    """Return ours/other - 1 in %, with the uncertainties of both."""
-    ratio = ours.value / other.value
-    share = ours.uncertainty / abs(ours.value) + other.uncertainty / abs(other.value)
-    return Number(name, ratio - 1.0, "1", abs(ratio) * share, percent=True)
 
 
 def runs_of(data: Data, study: str) -> xr.Dataset:

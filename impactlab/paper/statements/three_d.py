@@ -23,11 +23,9 @@ from impactlab.paper.statements.statement import (
     UnknownError,
     finest_grid,
     judged,
-    relative,
     runs_of,
     select_response,
     statement,
-    within,
 )
 from impactlab.types import Floats
 from impactlab.variables import RESPONSES, WITNESS
@@ -131,7 +129,7 @@ def _gap(data: Data, velocity: float, response: str) -> tuple[Number, ...]:
     runs = runs.isel({elements: 0})
     ours = _bounded(finest_grid(runs, response, velocity=velocity, beam_model=BEAM))
     theirs = _solid_response(data, response, velocity)
-    return ours, theirs, relative(ours, theirs, "difference, relative to the 3-D model")
+    return ours, theirs, ours.relative_to(theirs, "difference, relative to the 3-D model")
 
 
 def _spelled(gap: Number) -> str:
@@ -148,7 +146,7 @@ def _impulses(data: Data) -> tuple[Number, ...]:
         finest, next_finer = (float(np.trapezoid(curve, time)) for curve in curves[:2])
         width = 3.0 * abs(finest - next_finer)
         found.append(Number(f"impulse ({words})", finest, "N s", width))
-    return *found, relative(found[0], found[1], "difference, relative to the 3-D model")
+    return *found, found[0].relative_to(found[1], "difference, relative to the 3-D model")
 
 
 @statement(
@@ -176,7 +174,7 @@ def force_history(case: str, data: Data, measure: str) -> Judgement:
     else:
         numbers = (_distance(data, "contact_force", _norm, measure == "shifted"),)
     gap = numbers[-1]
-    stands = within(gap, PRINTED_DIFFERENCE)
+    stands = gap.within(PRINTED_DIFFERENCE)
     why = f"{_spelled(gap)}: {'compatible with' if stands else 'more than'} 2.4 %."
     return judged(case, numbers, stands, why, literal=measure == "L2")
 
@@ -197,7 +195,7 @@ def force_history(case: str, data: Data, measure: str) -> Judgement:
 def deflection_history(case: str, data: Data, limit: float) -> Judgement:
     """Judge the histories of the deflection at mid-span."""
     gap = _distance(data, "midspan_deflection", _largest)
-    stands = within(gap, limit)
+    stands = gap.within(limit)
     why = f"{_spelled(gap)} of the largest deflection."
     return judged(case, (gap,), stands, why, literal=False)
 
@@ -223,7 +221,7 @@ def duration_of_witness(case: str, data: Data, velocity: float) -> Judgement:
     """Judge the durations of the first contact."""
     numbers = _gap(data, velocity, "contact_duration")
     gap = numbers[-1]
-    stands = within(gap, 0.0)
+    stands = gap.within(0.0)
     why = f"{_spelled(gap)}: {'compatible' if stands else 'more than the uncertainty'}."
     return judged(case, numbers, stands, why, literal=False)
 

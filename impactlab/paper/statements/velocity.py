@@ -15,11 +15,9 @@ from impactlab.paper.statements.statement import (
     UnknownError,
     Verdict,
     judged,
-    relative,
     response_curve,
     runs_of,
     statement,
-    within,
 )
 from impactlab.verification.solutions.stronge import stronge_impact
 
@@ -172,9 +170,9 @@ def both_laws_measured(case: str, data: Data, velocity: float) -> Judgement:
         response_curve(data, CONTACT_STUDY, "contact_duration", contact=law)[velocity]
         for law in ("hertz", "stronge")
     )
-    gap = relative(hertz, stronge, "Hertz's duration over Stronge's, less 1")
+    gap = hertz.relative_to(stronge, "Hertz's duration over Stronge's, less 1")
     why = f"Both hold only if durations are measured no better than ± {50 * abs(gap.value):.0f} %."
-    return judged(case, (gap,), within(gap, 0.0), "The laws agree.", why)
+    return judged(case, (gap,), gap.within(0.0), "The laws agree.", why)
 
 
 @statement(
