@@ -148,7 +148,7 @@ def _watched() -> Iterator[Progress]:
 
     with stop_kept() as asked_to_stop, share_done("3-D FE model") as show:
 
-        def progress(time: float, share: float) -> None:
+        def progress(share: float) -> None:
             show(share)
             if asked_to_stop() and share < 1.0:
                 raise KeyboardInterrupt

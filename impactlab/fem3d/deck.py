@@ -13,7 +13,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from impactlab.fem3d.solver.estimates import contact_radius
-from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Integers, Mesh, sphere_density
+from impactlab.fem3d.solver.mesh import BEAM, FACES, SPHERE, Integers, Mesh, sphere_density
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import instance, one_of, positive
@@ -26,10 +26,6 @@ LENGTH, _STRESS = 1e3, 1e-6
 """mm per m, and MPa per Pa."""
 _BODIES = {BEAM: "BEAM", SPHERE: "SPHERE"}
 
-_CORNERS = np.array(
-    [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]]
-)
-"""An element's nodes on its faces S1 to S6."""
 _PER_LINE = 16
 """Entries that a data line may hold in both programs."""
 _OVERCLOSURE = 0.002
@@ -169,7 +165,7 @@ def _check_mesh(mesh: Mesh, impact: Impact) -> None:
 def _outer(mesh: Mesh, body: int) -> tuple[Integers, Integers]:
     """Return the body's outer faces, (f, 2): element (from 0) and face (from 1); nodes, (f, 4)."""
     own = np.flatnonzero(mesh.body == body)
-    nodes = mesh.elements[own][:, _CORNERS].reshape(-1, 4)
+    nodes = mesh.elements[own][:, FACES].reshape(-1, 4)
     _, first, count = np.unique(
         np.sort(nodes, axis=1), axis=0, return_index=True, return_counts=True
     )

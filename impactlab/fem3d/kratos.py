@@ -55,7 +55,7 @@ def solve_on(
 
     mesh: of solver.quarter_mesh. duration, time_step: in s. penalty: of the contact in N/m3,
     pressure over penetration. threads: they pay on an idle machine only. progress: called after
-    each step with the simulated time (s) and the share done.
+    each step with the share done.
 
     Returns a Dataset with the names of impactlab.fem3d: histories on `time` (one per step),
     responses (NaN where the run ends before they do), and plastic strains on `element`;
@@ -196,7 +196,7 @@ class Run:
             while analysis.KeepAdvancingSolutionLoop() and not self.history.stopped:
                 self._take()
                 if progress:
-                    progress(analysis.time, min(analysis.time / self.duration, 1.0))
+                    progress(min(analysis.time / self.duration, 1.0))
         except KeyboardInterrupt:
             self.history.stopped = f"interrupted at {analysis.time:.4g} s"
         self.cpu_seconds = time.process_time() - self._started
@@ -235,8 +235,7 @@ class Run:
         if np.any(mesh.gaps[mesh.rim] < down[upper] - down[lower]):
             raise PatchTooSmallError(
                 f"the contact reaches the rim of the patch of matched nodes: patch must be above "
-                f"{mesh.patch:.4g} m",
-                mesh.patch,
+                f"{mesh.patch:.4g} m"
             )
         moment = Moment(
             time=self._analysis.time,

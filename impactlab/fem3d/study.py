@@ -24,7 +24,7 @@ from impactlab.fem3d.solver import Cost, quarter_mesh
 from impactlab.fem3d.solver import solve as solve_alone
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.jit import COMPILER
-from impactlab.fem3d.solver.responses import depth_reach, surface_reach
+from impactlab.fem3d.solver.responses import plastic_reach
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.model import cost
 from impactlab.model.checks import column, positive
@@ -173,8 +173,9 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
         for name in HISTORIES:
             if name in run:
                 answers[name] = np.interp(times, run["time"].values, run[name].values)
-    zone = {"plastic_zone_radius": surface_reach(run), "plastic_zone_depth": depth_reach(run)}
-    return answers | zone | {"processor_time": taken, "status": int(run["status"])}
+    for name, along in (("plastic_zone_radius", 0), ("plastic_zone_depth", 2)):
+        answers[name] = plastic_reach(run, along)
+    return answers | {"processor_time": taken, "status": int(run["status"])}
 
 
 def cases(design: xr.Dataset, runs: Array) -> Array:

@@ -14,17 +14,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
-from impactlab.fem3d.solver.mesh import BEAM
+from impactlab.fem3d.solver.mesh import BEAM, FACES
 from impactlab.figures import labels, record, scales, style
 from impactlab.figures.draw import draw
 from impactlab.figures.labels import display
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.types import Floats
 
-_FACES = np.array(
-    [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
-)
-"""Corners of a hexahedron's faces, in VTK's order."""
 _FLAT = 1e-6
 """Distance from the plane, over the element size, that counts as zero."""
 
@@ -36,7 +32,7 @@ def faces(solid: xr.Dataset, axis: int) -> tuple[Floats, NDArray[np.int64]]:
     element that each belongs to, (faces,).
     """
     nodes, elements = solid["node_position"].values, solid["element_nodes"].values
-    corners = elements[:, _FACES]
+    corners = elements[:, FACES]
     near = np.abs(nodes[corners, axis]) < _FLAT * float(solid["element_size"])
     element, face = np.nonzero(near.all(axis=2))
     places = nodes[corners[element, face]]

@@ -80,16 +80,6 @@ def checked_patch(impact: Impact, element_size: float, patch: float | None) -> f
     return half
 
 
-def bending_yields(impact: Impact) -> bool:
-    """Return whether an infinite beam would yield in bending if its middle moved at `velocity`.
-
-    M = v sqrt(rho A EI) there, the yield moment at v = sigma_y/sqrt(3 rho E).
-    """
-    steel = impact.beam.material
-    limit = steel.yield_stress / math.sqrt(3.0 * steel.density * steel.youngs_modulus)
-    return impact.velocity > limit
-
-
 ONE_POINT_SECONDS, FULL_SECONDS = 170e-9, 350e-9
 """Time per element and step on one core, nodes included, on meshes that the caches of a busy
 machine do not hold; a small mesh takes half."""

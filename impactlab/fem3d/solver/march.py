@@ -75,8 +75,8 @@ class History:
         return np.array(self.moments).T
 
 
-Progress = Callable[[float, float], None]
-"""Called with the simulated time in s and the share done."""
+Progress = Callable[[float], None]
+"""Called with the share done."""
 
 SAFETY = 0.9
 """Time step over the largest stable one."""
@@ -89,12 +89,7 @@ _FLAT = 0.1
 
 
 class PatchTooSmallError(ValueError):
-    """Contact where nodes are not matched. needed: the patch to take, in m."""
-
-    def __init__(self, message: str, needed: float) -> None:
-        """Take the message, and the patch needed in m."""
-        super().__init__(message)
-        self.needed = needed
+    """Contact where nodes are not matched."""
 
 
 class March:
@@ -128,12 +123,11 @@ class March:
                 if self.history.stopped:
                     break
                 if progress:
-                    progress(self._time, checkpoint / CHECKPOINTS)
+                    progress(checkpoint / CHECKPOINTS)
         except (PatchTooSmallError, KeyboardInterrupt) as reason:
             if len(self.history.moments) < 2:
                 raise  # there is nothing to keep
             self.history.stopped = str(reason) or f"interrupted at {self._time:.4g} s"
-            self.history.patch_needed = getattr(reason, "needed", 0.0)
         return self.history
 
     def _advance(self, end: float) -> None:
@@ -179,7 +173,8 @@ class March:
             )
             if needed > (room := largest_patch(self.impact)):
                 message += f"; beam and sphere have room for {room:.4g} m"
-            raise PatchTooSmallError(message, needed)
+            self.history.patch_needed = needed
+            raise PatchTooSmallError(message)
         force = 4.0 * impulse / self._velocity_dt
         mass = self.impact.sphere.total_mass
         self._velocity += self._velocity_dt * (self.impact.gravity - force / mass)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from impactlab.fem3d.solver.contact import bulges
-from impactlab.fem3d.solver.estimates import bending_yields, checked_patch, checked_size, uniform
+from impactlab.fem3d.solver.estimates import checked_patch, checked_size, uniform
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
 from impactlab.types import Floats
@@ -31,6 +31,10 @@ BEAM, SPHERE = 0, 1
 _RING = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 CORNERS = np.array([(*place, level) for level in (-1.0, 1.0) for place in _RING])
 """Natural coordinates of a hexahedron's nodes, (8, 3), in VTK's order."""
+FACES = np.array(
+    [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+)
+"""A hexahedron's nodes around each face, in the order of Abaqus' and CalculiX's S1 to S6."""
 NEIGHBOURS = np.array(
     [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
 )
@@ -198,7 +202,10 @@ def quarter_mesh(
     body = np.repeat(np.array([BEAM, SPHERE], np.int32), [len(beam_elements), len(sphere_elements)])
     centres = nodes[elements].mean(axis=1)
     full = np.all(np.abs(centres) < 1.5 * half, axis=1)
-    if bending_yields(impact):
+    # An infinite beam whose middle moves at v has M = v sqrt(rho A EI) there: does it yield?
+    steel = beam.material
+    yields = steel.yield_stress / math.sqrt(3.0 * steel.density * steel.youngs_modulus)
+    if impact.velocity > yields:
         full |= (body == BEAM) & (centres[:, 0] < 2.5 * beam.depth)
     touching = nodes[pairs[:, 0]]
     slopes = touching[:, :2] / (impact.sphere.radius - touching[:, 2:])
@@ -250,7 +257,14 @@ def quarter_sphere(
     i, j, k = lattice[border].T
     away = np.clip((np.maximum(i, j) - count) / (sides - count), 0.0, 1.0)
     blend = np.where(k == -height, away**2 * (3.0 - 2.0 * away), 1.0)
-    outer = radius * _surface(lattice[border], lines / radius, blend, height)
+    # On the unit sphere: x and y of the lines where blend is 0, rays where it is 1.
+    rays = np.tan(math.pi / 4 * lattice[border] / most)
+    outer = rays / np.linalg.norm(rays, axis=1, keepdims=True)
+    low = k == -height
+    for axis, at in enumerate((i[low], j[low])):
+        outer[low, axis] = (1.0 - blend[low]) * (lines / radius)[at] + blend[low] * outer[low, axis]
+    outer[low, 2] = -np.sqrt(1.0 - outer[low, 0] ** 2 - outer[low, 1] ** 2)
+    outer *= radius
     # The share of the way out, (layers, border places): fine at the pole, even elsewhere.
     even = np.linspace(0.0, 1.0, layers.size)
     along = layers[:, None] * (1.0 - blend) + even[:, None] * blend
@@ -261,20 +275,6 @@ def quarter_sphere(
     squares = nodes[surface, 0] ** 2 + nodes[surface, 1] ** 2
     nodes[surface, 2] = squares / (radius + np.sqrt(radius**2 - squares))
     return nodes, elements, surface
-
-
-def _surface(lattice: Integers, lines: Floats, blend: Floats, height: int) -> Floats:
-    """Return points of the unit sphere: x and y of the lines where blend is 0, rays where 1."""
-    sides = lines.size - 1
-    rays = np.tan(math.pi / 4 * lattice / np.array([sides, sides, height]))
-    points = rays / np.linalg.norm(rays, axis=1, keepdims=True)
-    low = lattice[:, 2] == -height
-    i, j = lattice[low, 0], lattice[low, 1]
-    blend = blend[low]
-    for axis, at in enumerate((i, j)):
-        points[low, axis] = (1.0 - blend) * lines[at] + blend * points[low, axis]
-    points[low, 2] = -np.sqrt(1.0 - points[low, 0] ** 2 - points[low, 1] ** 2)
-    return np.asarray(points)
 
 
 def _cells(border: NDArray[np.bool_], layers: int) -> tuple[Integers, Integers]:

@@ -162,28 +162,13 @@ LIMIT = 0.002
 """PEEQ at the border of the zone: the strain of the usual proof stress."""
 
 
-def surface_reach(run: xr.Dataset, limit: float = LIMIT) -> float:
-    """Return the distance in m along the beam from the impact's centre to where PEEQ is `limit`.
+def plastic_reach(run: xr.Dataset, along: int, limit: float = LIMIT) -> float:
+    """Return how far from the impact's centre the PEEQ of the beam exceeds `limit`, in m.
 
-    run: as solve gives it. On the struck surface at mid-width, see _outermost.
-    """
-    return _outermost(run, limit, along=0)
-
-
-def depth_reach(run: xr.Dataset, limit: float = LIMIT) -> float:
-    """Return the depth in m below the centre of the impact at which PEEQ falls to `limit`.
-
-    run: as solve gives it. At mid-width and mid-span, see _outermost.
-    """
-    return _outermost(run, limit, along=2)
-
-
-def _outermost(run: xr.Dataset, limit: float, along: int) -> float:
-    """Return how far from the centre a row of beam elements has a PEEQ above `limit`, in m.
-
-    along: the axis of the row, 0 (the beam's) or 2 (depth). In the shape before the impact: the
-    outermost place where the line through the means of the elements comes down to the limit; 0
-    where none is above it, the last element's middle where all are.
+    run: as solve gives it. along: 0, the beam on its struck surface; 2, the depth at mid-span; both
+    at mid-width. In the shape before the impact: the outermost place where the line through the
+    means of the elements comes down to the limit; 0 where none is above it, the last element's
+    middle where all are.
     """
     points = run["node_position"].values[run["element_nodes"].values]
     edge = 1e-6 * float(run["element_size"])

@@ -44,7 +44,7 @@ def solve_on(
 
     duration: simulated time in s. samples: length of `time`, equally spaced. threads: the answers
     are the same to the last bit for any number. progress: called a hundred times per run with the
-    simulated time (s) and the share done.
+    share done.
 
     Returns a Dataset with the histories and responses of impactlab.variables that a 3-D FE model
     has (`status` says why one is NaN), energies on `checkpoint`, plastic strains and von Mises

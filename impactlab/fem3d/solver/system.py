@@ -16,14 +16,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from impactlab.fem3d.solver.contact import RULE, close_gaps
-from impactlab.fem3d.solver.elements import (
-    FULL_MEAN,
-    FULL_ROWS,
-    MEAN,
-    ROWS,
-    add_forces,
-    blocks_of,
-)
+from impactlab.fem3d.solver.elements import FULL_ROWS, ROWS, add_forces, blocks_of
 from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
 from impactlab.fem3d.solver.jit import Array, compiled, inlined
 from impactlab.fem3d.solver.material import PAST_ROWS, STRESS_ROWS, Metal
@@ -48,17 +41,11 @@ class Group:
         filled = np.append(numbers, np.repeat(numbers[-1], blocks * W - numbers.size))
         nodes = elements[filled].reshape(blocks, W, 8).transpose(0, 2, 1).reshape(blocks, 8 * W)
         self.elements, self.points, self.metal = numbers, 8 if full else 1, metal
-        self.nodes = np.ascontiguousarray(
-            nodes, dtype=np.uint32
-        )  # signed ones may count from the end
+        # Signed ones may count from the end.
+        self.nodes = np.ascontiguousarray(nodes, dtype=np.uint32)
         self.state = np.zeros((blocks, (FULL_ROWS if full else ROWS) * W))
         self.past = np.zeros((blocks, self.points * PAST_ROWS * W))
         self.works = np.zeros((MOST_THREADS, 3 * W))
-
-    @property
-    def mean_stress(self) -> Array:
-        """Return the mean stress of each element in Pa, (g,)."""
-        return self._rows(self.state)[FULL_MEAN if self.points == 8 else MEAN]
 
     @property
     def deviators(self) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.elements import add_forces
+from impactlab.fem3d.solver.elements import FULL_MEAN, MEAN, add_forces
 from impactlab.fem3d.solver.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.mesh import brick
 from impactlab.fem3d.solver.system import MOST_THREADS, ForceAssembly, Group, metal
@@ -56,7 +56,8 @@ class Body:
     def stress(self):
         """(6, points, elements): xx, yy, zz, yz, zx, xy."""
         stress = self.deviators().copy()
-        stress[:3] += self.group.mean_stress
+        mean = FULL_MEAN if self.group.points == 8 else MEAN
+        stress[:3] += self.group._rows(self.group.state)[mean]
         return stress
 
 

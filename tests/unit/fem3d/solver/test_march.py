@@ -78,7 +78,7 @@ def test_a_contact_that_leaves_the_patch_stops_the_run_and_tells_the_radius():
 
 
 def test_what_is_interrupted_is_kept(mesh):
-    def stop(_, share):
+    def stop(share):
         if share > 0.4:
             raise KeyboardInterrupt
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.fem3d.solver import quarter_mesh
-from impactlab.fem3d.solver.responses import contacts, depth_reach, peak, surface_reach
+from impactlab.fem3d.solver.responses import contacts, peak, plastic_reach
 
 
 def test_start_and_end_between_steps_and_short_pauses_do_not_count():
@@ -61,8 +61,8 @@ def planted():
 
 
 def test_the_line_is_followed_down_to_the_limit(planted):
-    assert surface_reach(planted(20e-3), limit=0.002) == pytest.approx(16e-3)
-    assert surface_reach(planted(20e-3), limit=0.005) == pytest.approx(10e-3)
+    assert plastic_reach(planted(20e-3), 0, limit=0.002) == pytest.approx(16e-3)
+    assert plastic_reach(planted(20e-3), 0, limit=0.005) == pytest.approx(10e-3)
 
 
 def test_depth_is_followed_below_the_centre(planted):
@@ -70,12 +70,12 @@ def test_depth_is_followed_below_the_centre(planted):
     run = planted(1e3)
     depth = -run["node_position"].values[run["element_nodes"].values][:, :, 2].mean(axis=1)
     strain = 0.01 - depth
-    found = depth_reach(run.assign(equivalent_plastic_strain=("element", strain)), limit=0.004)
+    found = plastic_reach(run.assign(equivalent_plastic_strain=("element", strain)), 2, limit=0.004)
     assert found == pytest.approx(6e-3)
-    assert depth_reach(planted(1e3, peak=0.001)) == 0.0
+    assert plastic_reach(planted(1e3, peak=0.001), 2) == 0.0
 
 
 def test_no_zone_and_a_whole_beam_of_it(planted):
-    assert surface_reach(planted(20e-3, peak=0.001)) == 0.0
-    everywhere = surface_reach(planted(1e3))
+    assert plastic_reach(planted(20e-3, peak=0.001), 0) == 0.0
+    everywhere = plastic_reach(planted(1e3), 0)
     assert everywhere == pytest.approx(0.39, abs=3e-3)
