@@ -22,12 +22,10 @@ from impactlab.model.impact import Impact, Material
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.verification.solutions import hertz
 
-LENGTH, _STRESS = 1e3, 1e-6
-"""mm per m, and MPa per Pa."""
+LENGTH, _STRESS = 1e3, 1e-6  # mm per m, and MPa per Pa
 _BODIES = {BEAM: "BEAM", SPHERE: "SPHERE"}
 
-_PER_LINE = 16
-"""Entries that a data line may hold in both programs."""
+_PER_LINE = 16  # entries that a data line may hold in both programs
 _OVERCLOSURE = 0.002
 """Overclosure at the contact's centre over the indentation, in Hertz's contact, in CalculiX."""
 _LONGEST = 10.0

@@ -27,14 +27,12 @@ from impactlab.model.impact import Impact, Material
 from impactlab.variables import provenance
 
 ELEMENT, LAW = "SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw"
-TIME_STEP, PENALTY = 8e-6, 1e15
-"""s, and N/m3 (1e6 N/mm3)."""
+TIME_STEP, PENALTY = 8e-6, 1e15  # s, and N/m3 (1e6 N/mm3)
 MM, MPA, TONNES_PER_MM3, N_PER_MM3 = 1e3, 1e-6, 1e-12, 1e-9
 """Kratos' units over SI: of lengths and velocities, stresses, densities, and penalties."""
 PART, BEAM_TOP, SPHERE_BOTTOM = "Structure", "BeamTop", "SphereBottom"
 """Names of the whole model and of the two surfaces that may touch."""
-RESIDUAL_RATIO = 1e-5
-"""Residual over that at a step's beginning, at which the step has converged."""
+RESIDUAL_RATIO = 1e-5  # residual over that at a step's beginning, at which the step has converged
 
 
 class KratosMissingError(ImportError):

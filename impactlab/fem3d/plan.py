@@ -23,8 +23,7 @@ from impactlab.study.schema.study import Study
 
 MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")
 """Models of the beam, in the order of tables and figures."""
-_COARSE = 101
-"""Nodes that resolve the duration of a contact within some percent."""
+_COARSE = 101  # nodes that resolve the duration of a contact within some percent
 _LONGEST = 5e-3
 """Simulated time of the paper's case in s, within which its first contact ends at any velocity."""
 
@@ -67,18 +66,14 @@ def case_of(
     return Case(study.name, str(study.path), impact, grid, study.duration, held)
 
 
-USUAL_TIME = 120.0
-"""Seconds of one core that a run may take where no element size is given."""
-MOST_TIME = 3600.0
-"""Seconds that a run may take unless it is forced."""
+USUAL_TIME = 120.0  # seconds of one core that a run may take where no element size is given
+MOST_TIME = 3600.0  # seconds that a run may take unless it is forced
 _CONTACTS = 2.25
 """Usual duration over that of the first contact: 0.45 ms in the paper's case, as in the paper."""
-_LONG = 2.0
-"""Durations over the usual one at which the duration counts as the cause of a long run."""
+_LONG = 2.0  # durations over the usual one at which the duration counts as the cause of a long run
 _MOST_ELEMENTS = 10_000
 """Elements of a chosen size at most, by the least cost: time alone does not limit short runs."""
-_FEWEST = 2.0
-"""Elements over the contact's radius at least, of a chosen size."""
+_FEWEST = 2.0  # elements over the contact's radius at least, of a chosen size
 
 
 @dataclass(frozen=True)

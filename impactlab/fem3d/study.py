@@ -46,8 +46,7 @@ log = logging.getLogger(__name__)
 
 SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
 """Record type of the table of cases."""
-SOLID_MODEL = len(BEAM_MODELS)
-"""Number of the 3-D FE model, after those of the kernels."""
+SOLID_MODEL = len(BEAM_MODELS)  # number of the 3-D FE model, after those of the kernels
 _BEAM_MODELS_ONLY = (
     *("contact", "load", "shear_coefficient", "compliance", "bending_compliance"),
     *("nodes", "points", "rule", "scheme", "courant"),

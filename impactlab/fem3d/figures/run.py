@@ -21,8 +21,7 @@ from impactlab.figures.labels import display
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.types import Floats
 
-_FLAT = 1e-6
-"""Distance from the plane, over the element size, that counts as zero."""
+_FLAT = 1e-6  # distance from the plane, over the element size, that counts as zero
 
 
 def faces(solid: xr.Dataset, axis: int) -> tuple[Floats, NDArray[np.int64]]:
@@ -108,8 +107,7 @@ def mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     return figure
 
 
-THRESHOLD = 1e-5
-"""PEEQ from which on an element counts as plastic."""
+THRESHOLD = 1e-5  # PEEQ from which on an element counts as plastic
 _STRAIN = "equivalent_plastic_strain"
 
 

@@ -21,8 +21,7 @@ import numpy as np
 from impactlab.fem3d.solver.jit import Array, compiled, inlined
 from impactlab.types import Floats
 
-_SIDE = 4
-"""Integration points along a face's side."""
+_SIDE = 4  # integration points along a face's side
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(_SIDE)
 _XI, _ETA = (place.ravel() for place in np.meshgrid(_PLACES, _PLACES, indexing="ij"))
 SHAPE = 0.25 * np.stack(

@@ -55,10 +55,8 @@ FULL_MEAN, MEAN = 8 * STRESS_ROWS, STRESS_ROWS
 """Row of the mean stress (Pa) in `state`, after the points' deviators."""
 _HOURGLASS = MEAN + 1
 """First row of the hourglass forces in N in the element's frame, three of each a."""
-FULL_ROWS, ROWS = FULL_MEAN + 1, _HOURGLASS + 12
-"""Rows of `state`."""
-WORK, DISSIPATED, HOURGLASS_WORK = range(3)
-"""Rows of `works`: energies in J."""
+FULL_ROWS, ROWS = FULL_MEAN + 1, _HOURGLASS + 12  # rows of `state`
+WORK, DISSIPATED, HOURGLASS_WORK = range(3)  # rows of `works`: energies in J
 
 _C, _W, _T = F + 24, F + 45, F + 66
 """First rows in `s` of the modes of position and velocity, and of the modes' forces, 21 each."""

@@ -83,8 +83,7 @@ def checked_patch(impact: Impact, element_size: float, patch: float | None) -> f
 ONE_POINT_SECONDS, FULL_SECONDS = 170e-9, 350e-9
 """Time per element and step on one core, nodes included, on meshes that the caches of a busy
 machine do not hold; a small mesh takes half."""
-_BYTES = 1000
-"""Approximate memory per element, with its share of the nodes."""
+_BYTES = 1000  # approximate memory per element, with its share of the nodes
 _ONE_POINT_BYTES, _FULL_BYTES, _NODE_BYTES = 700, 1600, 250
 
 

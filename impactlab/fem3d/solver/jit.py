@@ -12,8 +12,7 @@ import numpy as np
 
 from impactlab.jit import Compiler
 
-Array: TypeAlias = np.ndarray[Any, Any]
-"""An array as an argument of compiled functions."""
+Array: TypeAlias = np.ndarray[Any, Any]  # an array as an argument of compiled functions
 
 COMPILER = Compiler(Path(__file__).parent)
 compiled = COMPILER.decorator(fastmath={"contract"})

@@ -75,13 +75,10 @@ class History:
         return np.array(self.moments).T
 
 
-Progress = Callable[[float], None]
-"""Called with the share done."""
+Progress = Callable[[float], None]  # called with the share done
 
-SAFETY = 0.9
-"""Time step over the largest stable one."""
-CHECKPOINTS = 100
-"""Checks on energies and elements in a run."""
+SAFETY = 0.9  # time step over the largest stable one
+CHECKPOINTS = 100  # checks on energies and elements in a run
 _SLID = 1.0
 """Distance across z of nodes that touch, over the element size: beyond, they are no pairs."""
 _FLAT = 0.1

@@ -25,8 +25,7 @@ from impactlab.types import Floats
 
 Integers = NDArray[np.int32]
 
-BEAM, SPHERE = 0, 1
-"""Values of Mesh.body."""
+BEAM, SPHERE = 0, 1  # values of Mesh.body
 
 _RING = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 CORNERS = np.array([(*place, level) for level in (-1.0, 1.0) for place in _RING])
@@ -39,10 +38,8 @@ NEIGHBOURS = np.array(
     [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
 )
 """The three corners that share an edge with each corner, turning right-handed."""
-_CORE = 0.45
-"""Half the height of the sphere's core, over the radius."""
-_ROUND = 0.5
-"""Shape of the core between a cube (0) and a ball (1)."""
+_CORE = 0.45  # half the height of the sphere's core, over the radius
+_ROUND = 0.5  # shape of the core between a cube (0) and a ball (1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

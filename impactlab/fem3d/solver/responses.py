@@ -112,8 +112,7 @@ def peak(time: Floats, values: Floats) -> tuple[float, float]:
     return float(time[at]) + shift, float(top + 0.5 * slope * shift)
 
 
-PLASTIC_ZONE_STRAIN = 1e-5
-"""PEEQ from which on a section counts as plastic, as in the beam models."""
+PLASTIC_ZONE_STRAIN = 1e-5  # PEEQ from which on a section counts as plastic, as in the beam models
 
 
 def fields(groups: list[Group], count: int) -> dict[str, Floats]:
@@ -158,8 +157,7 @@ def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, f
     }
 
 
-LIMIT = 0.002
-"""PEEQ at the border of the zone: the strain of the usual proof stress."""
+LIMIT = 0.002  # PEEQ at the border of the zone: the strain of the usual proof stress
 
 
 def plastic_reach(run: xr.Dataset, along: int, limit: float = LIMIT) -> float:

@@ -24,8 +24,7 @@ from impactlab.fem3d.solver.mesh import BEAM, NEIGHBOURS, SPHERE, Mesh, nodal_ma
 from impactlab.model.impact import Impact, Material
 from impactlab.types import Floats
 
-MOST_THREADS = 24
-"""Pieces of a group, each the work of one thread."""
+MOST_THREADS = 24  # pieces of a group, each the work of one thread
 
 
 class Group:
@@ -247,8 +246,7 @@ class System:
         )
 
 
-_TINY = 1e-12
-"""Seconds of motion at about 1 m/s: strains stay far below 1."""
+_TINY = 1e-12  # seconds of motion at about 1 m/s: strains stay far below 1
 
 
 def critical_step(system: System) -> float:

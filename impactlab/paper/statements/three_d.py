@@ -244,9 +244,7 @@ def _contact_radius(data: Data, factor: float) -> Number:
 
 def _zone_extent(data: Data, variable: str, factor: float) -> Number:
     """Return an extent from the centre of the impact in m, to within an element at best."""
-    if MESHES not in data:
-        raise UnknownError(f"the study {MESHES} has not been solved")
-    runs = data[MESHES].expand_dims("velocity").sortby("element_size")
+    runs = runs_of(data, MESHES).expand_dims("velocity").sortby("element_size")
     values = select_response(runs, variable, velocity=VELOCITY, beam_model=SOLID).values
     if values.size < 3:
         raise UnknownError(f"the study {MESHES} has fewer than three meshes")

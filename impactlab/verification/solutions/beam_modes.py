@@ -33,8 +33,8 @@ class BeamModes:
     """Constants of the first odd modes, each of shape (modes,).
 
     wave_numbers: n pi/L in 1/m. frequencies: omega_n in rad/s. flexibilities: 1/(m_n omega_n^2) in
-    m/N. curvatures: of bending at mid-span, over y_n, in 1/m2. shear_compliance: 1/(k G A) in 1/N,
-    zero where shear does not deform the beam.
+    m/N. curvatures: of bending at mid-span, over y_n, in 1/m2. statics: deflection (m/N) and
+    curvature (1/(m N)) at mid-span per load at rest.
     """
 
     beam: Beam
@@ -42,20 +42,17 @@ class BeamModes:
     frequencies: Floats
     flexibilities: Floats
     curvatures: Floats
-    shear_compliance: float = 0.0
+    statics: tuple[float, float]
 
     @property
     def residual_flexibility(self) -> float:
         """Mid-span deflection per load of the modes left out, in m/N."""
-        bending = self.beam.span**3 / (48.0 * self.beam.bending_stiffness)
-        whole = bending + 0.25 * self.beam.span * self.shear_compliance
-        return float(whole - self.flexibilities.sum())
+        return float(self.statics[0] - self.flexibilities.sum())
 
     @property
     def residual_curvature(self) -> float:
         """Mid-span curvature per load of the modes left out, in 1/(m N)."""
-        whole = -self.beam.span / (4.0 * self.beam.bending_stiffness)
-        return float(whole - self.curvatures @ self.flexibilities)
+        return float(self.statics[1] - self.curvatures @ self.flexibilities)
 
 
 def odd_modes(beam: Beam, count: int) -> BeamModes:
@@ -64,7 +61,14 @@ def odd_modes(beam: Beam, count: int) -> BeamModes:
     squares = wave_numbers**2
     frequencies = squares * math.sqrt(beam.bending_stiffness / beam.mass_per_length)
     mass = 0.5 * beam.mass_per_length * beam.span
-    return BeamModes(beam, wave_numbers, frequencies, 1.0 / (mass * frequencies**2), -squares)
+    flexibilities = 1.0 / (mass * frequencies**2)
+    statics = _bending_statics(beam)
+    return BeamModes(beam, wave_numbers, frequencies, flexibilities, -squares, statics)
+
+
+def _bending_statics(beam: Beam) -> tuple[float, float]:
+    EI = beam.bending_stiffness
+    return beam.span**3 / (48.0 * EI), -beam.span / (4.0 * EI)
 
 
 def _odd_wave_numbers(beam: Beam, count: int) -> Floats:
@@ -121,36 +125,18 @@ def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
     both = np.tile(q, 2)
     flexibilities = 2.0 * shares / (mu * beam.span * squares)
     curvatures = mu * squares / a - both**2
-    return BeamModes(beam, both, np.sqrt(squares), flexibilities, curvatures, 1.0 / a)
+    deflection, curvature = _bending_statics(beam)
+    statics = deflection + 0.25 * beam.span * (1.0 / a), curvature
+    return BeamModes(beam, both, np.sqrt(squares), flexibilities, curvatures, statics)
 
 
-@dataclass(frozen=True)
-class StripModes(BeamModes):
-    """Modes of a strip (solver/strip.py): y_n (m) of its middle; no mode's deflection is w alone.
-
-    statics: deflection (m/N) and curvature (1/(m N)) per load at rest.
-    """
-
-    statics: tuple[float, float] = (0.0, 0.0)
-
-    @property
-    def residual_flexibility(self) -> float:
-        """Mid-span deflection per load of the modes left out, in m/N."""
-        return float(self.statics[0] - self.flexibilities.sum())
-
-    @property
-    def residual_curvature(self) -> float:
-        """Mid-span curvature per load of the modes left out, in 1/(m N)."""
-        return float(self.statics[1] - self.curvatures @ self.flexibilities)
-
-
-def strip_odd_modes(beam: Beam, count: int, inertia: float) -> StripModes:
+def strip_odd_modes(beam: Beam, count: int, inertia: float) -> BeamModes:
     """Return the three spectra of the first `count` odd n of a strip; inertia: of s, in kg m3.
 
-    With s = S sin(q x) beside W and Psi, n gives three oscillators: the Hessians of the energies of
-    solver/strip.py are their masses and springs. The load is 2 F/L on the middle W - S B^2/24.
-    The shape of zero mean is a quadrature's over the width, not a closed form's. Statics: 100 times
-    as many n.
+    y_n (m) is that of the strip's middle; no mode's deflection is w alone. With s = S sin(q x)
+    beside W and Psi, n gives three oscillators: the Hessians of the energies of solver/strip.py are
+    their masses and springs. The load is 2 F/L on the middle W - S B^2/24. The shape of zero mean
+    is a quadrature's over the width, not a closed form's. Statics: 100 times as many n.
     """
     steel, B = beam.material, beam.width
     nu, a, mu = steel.poissons_ratio, shear_stiffness(beam), beam.mass_per_length
@@ -182,7 +168,7 @@ def strip_odd_modes(beam: Beam, count: int, inertia: float) -> StripModes:
     spectra = np.sqrt(squares), flexibilities, curvatures
     omega, flexible, bent = (each.T.ravel() for each in spectra)
     still = float(statics[0]), float(statics[1])
-    return StripModes(beam, np.tile(q, 3), omega, flexible, bent, statics=still)
+    return BeamModes(beam, np.tile(q, 3), omega, flexible, bent, still)
 
 
 def shear_stiffness(beam: Beam) -> float:
