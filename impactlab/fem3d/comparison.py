@@ -120,18 +120,16 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
 
 
 def write_csv(found: xr.Dataset, path: Path) -> None:
-    """Write one row per response and model, in SI units; whole or not at all (see whole)."""
+    """Write one row per response and model, in SI units; all or nothing (see files.replaced)."""
     table = found.to_dataframe(["response", "model"]).reset_index()
     why = table["status"].map(lambda status: "; ".join(reasons(status)))
     table["missing_because"] = why.where(table["value"].isna(), "")
-    table["value"] = table["value"].map("{:.9g}".format, na_action="ignore")
     share = 100.0 * table["difference"]
     table["difference_percent"] = share.map("{:.6g}".format, na_action="ignore")
-    with (
-        replaced(path, found["value"].size * len(_HEAD) * 8) as unfinished,
-        unfinished.open("w", encoding="utf-8", newline="") as file,
-    ):
-        table.to_csv(file, columns=_HEAD, index=False, lineterminator="\n")
+    with replaced(path) as unfinished:
+        table.to_csv(
+            unfinished, columns=_HEAD, index=False, lineterminator="\n", float_format="%.9g"
+        )
 
 
 def write_vtu(dataset: xr.Dataset, path: Path) -> None:
@@ -139,7 +137,7 @@ def write_vtu(dataset: xr.Dataset, path: Path) -> None:
 
     dataset: of fem3d.solver. What lies on `element` becomes cell data, what lies on `node` and
     `axis` vectors of the points, in SI units; points are where they were at first touch.
-    Raises OSError: see whole.
+    Raises OSError: see files.replaced.
     """
     elements, count = dataset["element_nodes"].values, dataset.sizes["element"]
     cells, points = {}, {}

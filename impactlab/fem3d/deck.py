@@ -26,10 +26,8 @@ LENGTH, _STRESS = 1e3, 1e-6  # mm per m, and MPa per Pa
 _BODIES = {BEAM: "BEAM", SPHERE: "SPHERE"}
 
 _PER_LINE = 16  # entries that a data line may hold in both programs
-_OVERCLOSURE = 0.002
-"""Overclosure at the contact's centre over the indentation, in Hertz's contact, in CalculiX."""
-_LONGEST = 10.0
-"""Plastic strain at which the tables end; both programs keep the stress from there on."""
+_OVERCLOSURE = 0.002  # at the centre, over the indentation, in Hertz's contact, in CalculiX
+_LONGEST = 10.0  # plastic strain at which the tables end; the stress remains from there on
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,11 +21,9 @@ from impactlab.model.quantities import amount, time
 from impactlab.simulate import case_table, solve
 from impactlab.study.schema.study import Study
 
-MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")
-"""Models of the beam, in the order of tables and figures."""
+MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")  # in the order of tables and figures
 _COARSE = 101  # nodes that resolve the duration of a contact within some percent
-_LONGEST = 5e-3
-"""Simulated time of the paper's case in s, within which its first contact ends at any velocity."""
+_LONGEST = 5e-3  # simulated time in s within which the paper's first contact ends at any velocity
 
 
 @dataclass(frozen=True)
@@ -67,12 +65,10 @@ def case_of(
 
 
 USUAL_TIME = 120.0  # seconds of one core that a run may take where no element size is given
-MOST_TIME = 3600.0  # seconds that a run may take unless it is forced
-_CONTACTS = 2.25
-"""Usual duration over that of the first contact: 0.45 ms in the paper's case, as in the paper."""
+MOST_TIME = 3600.0  # seconds that runs may take unless they are forced
+_CONTACTS = 2.25  # usual duration over the first contact's: 0.45 ms in the paper's case, as printed
 _LONG = 2.0  # durations over the usual one at which the duration counts as the cause of a long run
-_MOST_ELEMENTS = 10_000
-"""Elements of a chosen size at most, by the least cost: time alone does not limit short runs."""
+_MOST_ELEMENTS = 10_000  # of a chosen size, by the least cost: time alone does not limit short runs
 _FEWEST = 2.0  # elements over the contact's radius at least, of a chosen size
 
 

@@ -44,16 +44,14 @@ from impactlab.variables import FAILURES, HISTORIES, RESPONSES, WITNESS, describ
 
 log = logging.getLogger(__name__)
 
-SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))
-"""Record type of the table of cases."""
+SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))  # the table's records
 SOLID_MODEL = len(BEAM_MODELS)  # number of the 3-D FE model, after those of the kernels
 _BEAM_MODELS_ONLY = (
     *("contact", "load", "shear_coefficient", "compliance", "bending_compliance"),
     *("nodes", "points", "rule", "scheme", "courant"),
 )
 """Fields that the 3-D FE model does not use."""
-_STEPS = 10_001
-"""Samples of a history before it is brought to the study's times: closer than the time steps."""
+_STEPS = 10_001  # samples of a history until it has the study's times: closer than the time steps
 
 
 def table(

@@ -34,8 +34,7 @@ SHAPE = 0.25 * np.stack(
 """Shape functions of a face's corners at its integration points, (points, 4)."""
 PARTS = SHAPE * np.outer(_WEIGHTS, _WEIGHTS).reshape(-1, 1)
 """Parts of a point's overlap that belong to the corners, of sum 1 for each corner, (points, 4)."""
-RULE = SHAPE, PARTS
-"""Integration over a face; at its corners alone, the contact would be one of pairs of nodes."""
+RULE = SHAPE, PARTS  # at the corners alone, the contact would be one of pairs of nodes
 
 
 def bulges(corners: Floats, radius: float) -> Floats:

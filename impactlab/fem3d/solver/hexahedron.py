@@ -25,8 +25,7 @@ from __future__ import annotations
 from impactlab.fem3d.solver.jit import Array, inlined
 
 W = 16  # lanes of a block
-X, V = 0, 24
-"""First rows of the nodes' positions and velocities in `s`: node 0's x, y, z, node 1's ..."""
+X, V = 0, 24  # first rows of positions and velocities in `s`: node 0's x, y, z, node 1's ...
 F = 48  # first row of the nodes' forces in `s`
 SCRATCH = 48 + 24 + 63 + 5  # rows of `s`
 

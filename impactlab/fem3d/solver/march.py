@@ -79,10 +79,8 @@ Progress = Callable[[float], None]  # called with the share done
 
 SAFETY = 0.9  # time step over the largest stable one
 CHECKPOINTS = 100  # checks on energies and elements in a run
-_SLID = 1.0
-"""Distance across z of nodes that touch, over the element size: beyond, they are no pairs."""
-_FLAT = 0.1
-"""Volume at an element's corner, over that at the start, from which on it is too distorted."""
+_SLID = 1.0  # slide of nodes that touch, over the element size, beyond which they are no pairs
+_FLAT = 0.1  # volume at a corner over that at the start, below which an element is too distorted
 
 
 class PatchTooSmallError(ValueError):

@@ -79,10 +79,10 @@ def _rate(s: Six, r: Vector) -> Six:
     )
 
 
-STRESS_ROWS = 6  # rows of a point in `state`: the deviator
+STRESS_ROWS = 6  # rows per point in `state`: the deviator
 BACK, PEEQ, ALONG = 0, 6, 7
 """Rows of a point in `past`: back stress, PEEQ, plastic strain along the beam."""
-PAST_ROWS = 8  # rows of a point in `past`
+PAST_ROWS = 8  # rows per point in `past`
 _NONE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
