@@ -27,7 +27,8 @@ circles than R/16 (from R/33 to R/8, 6 % of it).
 
 The same statics have the stress under the force beyond the half-space's: that of beam theory by the
 moment, and one by the force, which keeps the section from bending freely beneath it. They are what
-`contact_prestress: bending` takes (solver/contact/prestress.py).
+`contact_prestress: bending` takes (solver/contact/prestress.py). A strip's own static stress across
+the width, -3/4 (1 + 5 nu)/sqrt(6 (1 + nu)) F/H^2 at the surface of a long beam, is no part of it.
 """
 
 from __future__ import annotations
@@ -101,7 +102,9 @@ STRESS_ALONG = np.array(
         [0.2225, 1.8398, 3.806],
     ]
 )
-"""Stress along the beam per F/H^2 a tenth of the depth under the force, beyond half-space and M."""
+"""Stress along the beam per F/H^2 below the force, beyond those of half-space and moment."""
+AT = 0.1
+"""How far below, in depths."""
 STRESS_ACROSS = np.array(
     [
         [-0.424, -0.6382, -0.7655],
@@ -192,8 +195,8 @@ def axis_compliance(impact: Impact) -> tuple[Floats, Floats]:
 def contact_stress(impact: Impact) -> tuple[Floats, Floats]:
     """Return the stress under the contact along and across the beam per contact force, in 1/m2.
 
-    Beyond those of the half-space and of the moment, of one impact or of many; zero where
-    `contact_prestress` is ignored.
+    Beyond those of the half-space, of the moment and of a strip's own bending, of one impact or of
+    many; zero where `contact_prestress` is ignored.
 
     Raises ValueError where the beam is none of Timoshenko's, or outside the table.
     """
@@ -201,6 +204,9 @@ def contact_stress(impact: Impact) -> tuple[Floats, Floats]:
     _within_table(impact, asked, "Impact.contact_prestress = 'bending': ")
     square = impact.beam.depth * impact.beam.depth
     along, across = (_from_table(impact, each) for each in (STRESS_ALONG, STRESS_ACROSS))
+    nu = np.asarray(impact.beam.material.poissons_ratio)
+    strip = (1.0 - 2.0 * AT) * 0.75 * (1.0 + 5.0 * nu) / np.sqrt(6.0 * (1.0 + nu))
+    across = across + np.where(np.equal(impact.contact_compliance, "strip"), strip, 0.0)
     return np.where(asked, along / square, 0.0), np.where(asked, across / square, 0.0)
 
 

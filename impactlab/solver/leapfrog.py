@@ -130,7 +130,7 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
 def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C901 one loop
     """Return the time loop of a model of the beam; extended: see _kernel."""
     _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight, _ = model[:9]
-    sag, beneath, moment = model.sag, model.beneath, model.moment
+    sag, beneath, moments = model.sag, model.beneath, model.moments
     fly = None if flight is None else _leaps(flight)
 
     @inlined
@@ -188,9 +188,13 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
                 kappa = mid_curvature(state, now)
                 contact.shift = pair.bending * (plastic.M_0[mid] / section.stiffness - kappa)
                 approach = delta - contact.shift
-            if moment is not None and pair.prestress[0] > 0.0:
-                outermost = 6.0 / (case.beam_width * case.beam_depth * case.beam_depth)
-                contact.bending_stress = outermost * moment(state, now)
+            if moments is not None and pair.prestress[0] > 0.0:
+                per_moment = 6.0 / (case.beam_width * case.beam_depth * case.beam_depth)
+                along, across = moments(state, now)
+                contact.stress_along, contact.stress_across = (
+                    per_moment * along,
+                    per_moment * across,
+                )
                 F = prestressed_force(contact, events, pair, approach, step * dt, dt)
             else:
                 F = contact_force(contact, events, pair, approach, step * dt, dt)

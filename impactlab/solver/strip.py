@@ -178,13 +178,13 @@ def _beneath(state: State, now: int, F: float) -> float:
 
 
 @compiled
-def _moment(state: State, now: int) -> float:
+def _moments(state: State, now: int) -> tuple[float, float]:
     strip, section, mid = state.own, state.section, state.grid.mid
     kappa = _curvature(state, now)
-    M = state.plastic.M_0[mid] - section.stiffness * kappa
+    across = 0.0
     if strip.inertia > 0.0:
-        M -= strip.nu * strip.stiffness * (strip.s[mid] + strip.nu * kappa)
-    return float(M)
+        across = -strip.stiffness * (strip.s[mid] + strip.nu * kappa)
+    return float(state.plastic.M_0[mid] - section.stiffness * kappa + strip.nu * across), across
 
 
 MODEL = timoshenko.MODEL._replace(
@@ -194,5 +194,5 @@ MODEL = timoshenko.MODEL._replace(
     energy=_energy,
     sag=_sag,
     beneath=_beneath,
-    moment=_moment,
+    moments=_moments,
 )

@@ -44,15 +44,15 @@ class Pair(NamedTuple):
 CONTACT = record(
     """
     delta_m F_m K delta_r n work delta_w approach_m largest shift shift_before bending_work
-    bending_stress peak_force
+    stress_along stress_across peak_force
     """
 )
 """delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
 unloading curve from there. work (J): integral of the loading force from 0 to delta_w (m).
 approach_m (m): the approach at delta_m. Where bending counts, shift (m): what it adds to the
 approach, now and a step before; bending_work (J): of the force on it; largest (m): approach and
-shift. With prestress: bending_stress (Pa), of the beam's lower face; peak_force (N); approach_m is
-the largest of all, and work what is dissipated."""
+shift. With prestress: stress_along, stress_across (Pa), by bending, of the beam's lower face;
+peak_force (N); approach_m is the largest of all, and work what is dissipated."""
 
 PANELS = 8
 _ITERATIONS, _ROUNDING = 60, 1e-14

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.linalg import solve_banded
 from scipy.optimize import minimize_scalar
 
+import impactlab as il
+from impactlab.model.contact_compliance import AT, contact_stress
 from impactlab.solver.contact import LAWS, finite_element, prestress
 from impactlab.solver.contact.history import CONTACT, Pair, energies
 from impactlab.solver.contact.history import force as plain_force
@@ -74,7 +78,7 @@ def test_force_under_an_even_stress_is_that_of_finite_elements(stress, span):
 
     loaded, plain = (DATA[DATA.stress == each].set_index("x").F for each in (stress, 0.0))
     change = (loaded / plain - 1.0)[span[0] : span[1]]
-    assert np.mean(raised(change.index)) == pytest.approx(change.mean(), abs=0.012)
+    assert np.mean(raised(change.index)) == pytest.approx(change.mean(), abs=0.016)
     assert abs(change.mean()) > 0.03
 
 
@@ -89,7 +93,7 @@ def test_stress_that_changes_creates_no_energy(compliance):
     contact, forces, dissipated = untouched(), [], []
     bodies = pair(compliance=compliance)
     for delta, stress in zip(approach, bending, strict=True):
-        contact.bending_stress = stress
+        contact.stress_along = stress
         forces.append(prestress.force(contact, bodies, delta))
         dissipated.append(energies(contact, bodies, delta)[1])
     assert np.diff(dissipated).min() >= 0.0
@@ -108,8 +112,33 @@ def test_without_stress_the_law_is_as_it_was(law):
     for delta in (
         1e-6 * np.r_[np.linspace(0, 60, 40), np.linspace(60, 45, 10), np.linspace(45, 70, 9)]
     ):
-        ours.bending_stress = -0.5 * S_y if law == "hertz" else 0.0
+        ours.stress_along = -0.5 * S_y if law == "hertz" else 0.0
         expected = plain_force(plain, alone._replace(prestress=(0.0, 0.0, 0.0)), delta)
         assert prestress.force(ours, alone, delta) == pytest.approx(expected, rel=1e-9, abs=1e-3)
     lost = energies(plain, alone._replace(prestress=(0.0, 0.0, 0.0)), delta)[1]
     assert energies(ours, alone, delta)[1] == pytest.approx(lost, rel=2e-2, abs=1e-6)
+
+
+def test_a_strip_has_its_static_stress_across_from_its_own_bending():
+    """By finite differences of its equilibrium under a force and the beam's moment."""
+    base = replace(il.paper_impact(), beam_model="timoshenko", contact_prestress="bending")
+    beam, nu = base.beam, base.beam.material.poissons_ratio
+    H, B, EI = beam.depth, beam.width, beam.bending_stiffness
+    DB, n = EI / (1.0 - nu**2), 4000
+    T = (1.0 - nu) * DB * B * B / 6.0
+    x = np.linspace(0.0, 6.0 * B, n)  # from mid-span on, where the half force acts
+    M, dx = 0.5 * (x[-1] - x), x[1]
+    # M = -EI kappa - nu DB (s + nu kappa): kappa = -(M + nu DB s)/(EI + nu^2 DB)
+    stiff = EI + nu**2 * DB
+    diagonal = -2.0 * T / dx**2 - DB * (1.0 - nu**2 * DB / stiff)
+    bands = np.array([np.full(n, T / dx**2), np.full(n, diagonal), np.full(n, T / dx**2)])
+    bands[0, 1] *= 2.0  # symmetry
+    push = -nu * DB * M / stiff
+    push[0] += B * B / 24.0 / dx
+    s = solve_banded((1, 1), bands, push)
+    kappa = -(M[0] + nu * DB * s[0]) / stiff
+    own = 6.0 * DB / B / H**2 * (s[0] + nu * kappa) * (1.0 - 2.0 * AT)
+    beams, strips = (
+        contact_stress(replace(base, contact_compliance=name))[1] for name in ("beam", "strip")
+    )
+    assert own == pytest.approx(float(beams - strips), rel=2e-3)
