@@ -151,11 +151,11 @@ def test_whole_floats_count(run, count):
 
 
 SOLID = {
-    0.99: ("0.28 ms", 11466.0, 0.21243e-3, 69.65e-6, 41.03e-6, 1.3784),
-    5.0: ("0.21 ms", 66000.0, 0.16311e-3, 286.9e-6, 220.5e-6, 6.0244),
-    10.0: ("0.19 ms", 135365.0, 0.14821e-3, 529.2e-6, 441.9e-6, 11.277),
+    0.99: ("0.28 ms", 11459.0, 0.21380e-3, 69.70e-6, 40.58e-6, 1.3780),
+    5.0: ("0.21 ms", 66034.0, 0.16539e-3, 286.0e-6, 218.0e-6, 5.9998),
+    10.0: ("0.19 ms", 135616.0, 0.15179e-3, 533.7e-6, 442.2e-6, 11.241),
 }
-"""Of 3-D finite elements, the mean of four meshes (docs/agreement.md), by velocity in m/s: duration
+"""Of 3-D finite elements, the mean of several meshes (docs/agreement.md), by velocity in m/s: duration
 of the run, peak force (N), contact duration (s), largest and permanent indentation (m), impulse."""
 COMPARED = (
     *("peak_force", "contact_duration", "maximum_indentation", "permanent_indentation"),
