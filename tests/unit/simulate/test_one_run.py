@@ -155,7 +155,7 @@ SOLID = {
     5.0: ("0.21 ms", 66034.0, 0.16539e-3, 286.0e-6, 218.0e-6, 5.9998),
     10.0: ("0.19 ms", 135616.0, 0.15179e-3, 533.7e-6, 442.2e-6, 11.241),
 }
-"""Of 3-D finite elements, the mean of several meshes (docs/agreement.md), by velocity in m/s: duration
+"""Of 3-D finite elements, means of several meshes (docs/agreement.md), by velocity in m/s: duration
 of the run, peak force (N), contact duration (s), largest and permanent indentation (m), impulse."""
 COMPARED = (
     *("peak_force", "contact_duration", "maximum_indentation", "permanent_indentation"),
