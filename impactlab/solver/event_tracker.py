@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
+from impactlab.solver.contact.history import Pair
 from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.types import Record, record
 
@@ -39,6 +43,24 @@ def vertex(before: float, here: float, after: float) -> tuple[float, float]:
         return 0.0, here
     offset = 0.5 * (before - after) / bend
     return offset, here - 0.25 * (before - after) * offset
+
+
+def between_steps(load_to: Callable[..., Any], force: Callable[..., float]) -> Any:
+    """Return the contact force of a law's two functions, a peak just passed between the steps."""
+
+    @inlined
+    def contact_force(
+        contact: Record, events: Record, pair: Pair, delta: float, t: float, dt: float
+    ) -> float:
+        """Return the contact force (N) at time t."""
+        falls = delta < events.delta and events.delta >= events.delta_before
+        if falls and events.delta == contact.approach_m:
+            offset, peak = vertex(events.delta_before, events.delta, delta)
+            load_to(contact, pair, peak)
+            events.t_peak = t + (offset - 1.0) * dt
+        return force(contact, pair, delta)
+
+    return contact_force
 
 
 @inlined

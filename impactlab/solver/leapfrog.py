@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -27,7 +26,7 @@ from impactlab.solver import (
 from impactlab.solver.beam import Beam, make_beam, make_grid, rest_beam
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact import prestress
-from impactlab.solver.contact.history import Pair, make_pair
+from impactlab.solver.contact.history import make_pair
 from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import (
     PlasticState,
@@ -73,24 +72,8 @@ def _sample(
         k += 1
 
 
-def _between_steps(load_to: Callable[..., Any], force: Callable[..., float]) -> Any:
-    @inlined
-    def contact_force(
-        contact: Record, events: Record, pair: Pair, delta: float, t: float, dt: float
-    ) -> float:
-        """Return the contact force (N) at time t; a peak just passed is taken between the steps."""
-        falls = delta < events.delta and events.delta >= events.delta_before
-        if falls and events.delta == contact.approach_m:
-            offset, peak = event_tracker.vertex(events.delta_before, events.delta, delta)
-            load_to(contact, pair, peak)
-            events.t_peak = t + (offset - 1.0) * dt
-        return force(contact, pair, delta)
-
-    return contact_force
-
-
-contact_force = _between_steps(contact_history.load_to, contact_history.force)
-prestressed_force = _between_steps(prestress.force, prestress.force)
+contact_force = event_tracker.between_steps(contact_history.load_to, contact_history.force)
+prestressed_force = event_tracker.between_steps(prestress.force, prestress.force)
 
 
 def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
