@@ -14,7 +14,8 @@ import xarray as xr
 
 from impactlab.files import write_netcdf
 from impactlab.variables import provenance
-from impactlab.verification.finding import Finding, Outcome, relative
+from impactlab.verification.comparisons import Comparisons
+from impactlab.verification.finding import Finding, Outcome
 from impactlab.verification.stored import packed
 
 ROOT = Path(__file__).parents[2]
@@ -45,7 +46,7 @@ def folder(tmp_path_factory):
     for name in ("checks", "bad"):
         (copy / "studies" / f"{name}.yaml").write_text(text)
     # Snakemake takes files newer than their sources as made
-    entry = relative("peak force", "here", "N", 2.0, 1.0, 0.1)
+    [entry] = Comparisons("here").relative("peak force", "N", 2.0, 1.0, 0.1)
     outcome = Outcome("half_space", "Half-space", "made up", 0.0, Finding([entry]))
     findings = packed([outcome]).assign_attrs(study="bad", study_text=text, **provenance())
     write_netcdf(findings, copy / "results" / "bad" / "findings.nc", "findings")

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache
 from itertools import pairwise
 
 from scipy.integrate import quad
@@ -75,7 +75,9 @@ def jackson_green(
     return F_c * (faded * math.pow(y, 1.5) + 4.0 * H / (C * S) * grown * y)
 
 
-mjg = partial(jackson_green, modified=True)
+def mjg(d: float, E: float, R: float, S: float, nu: float) -> float:
+    """Return the modified force of Jackson and Green."""
+    return jackson_green(d, E, R, S, nu, modified=True)
 
 
 def thornton(d: float, E: float, R: float, S: float, nu: float) -> float:

@@ -8,7 +8,8 @@ from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.schema.study import Verification
 from impactlab.study.steps import check, failure, removable
 from impactlab.verification.catalogue import CATALOGUE
-from impactlab.verification.finding import Check, Finding, relative
+from impactlab.verification.comparisons import Comparisons
+from impactlab.verification.finding import Check, Finding
 from impactlab.verification.stored import unpacked
 
 
@@ -18,7 +19,7 @@ def made(name, value):
     def check():
         if value != value:
             raise RuntimeError("no value")
-        return Finding([relative("a", "b", "1", value, 1.0, 0.1)])
+        return Finding(Comparisons("b").relative("a", "1", value, 1.0, 0.1))
 
     return Check(name, "t", "s", check)
 
