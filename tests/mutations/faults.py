@@ -36,8 +36,8 @@ FAULTS = (
     Fault(
         "contact: stress of bending as tension",
         "contact/prestress.py",
-        "along * contact.F_m - bending",
-        "along * contact.F_m + bending",
+        "along * contact.F_m - left",
+        "along * contact.F_m + left",
     ),
     Fault(
         "fibre: sign of the back stress",
