@@ -90,6 +90,8 @@ AXIS_MOMENT = np.array(
     ]
 )
 """As MOMENT of the axis."""
+AT = 0.1
+"""Where the stresses of the next two tables are: so many depths below the force."""
 STRESS_ALONG = np.array(
     [
         [0.0672, 0.0245, -0.004],
@@ -102,9 +104,7 @@ STRESS_ALONG = np.array(
         [0.2225, 1.8398, 3.806],
     ]
 )
-"""Stress along the beam per F/H^2 below the force, beyond those of half-space and moment."""
-AT = 0.1
-"""How far below, in depths."""
+"""Stress along the beam per F/H^2, beyond those of half-space and moment."""
 STRESS_ACROSS = np.array(
     [
         [-0.424, -0.6382, -0.7655],
@@ -117,7 +117,7 @@ STRESS_ACROSS = np.array(
         [1.4004, 3.8179, 6.3569],
     ]
 )
-"""Across it."""
+"""Stress across it."""
 SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
 FREE_STRIP = 720.0 / 4.730041**4

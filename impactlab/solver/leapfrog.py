@@ -113,7 +113,7 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
 def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C901 one loop
     """Return the time loop of a model of the beam; extended: see _kernel."""
     _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight, _ = model[:9]
-    sag, beneath, moments = model.sag, model.beneath, model.moments
+    sag, beneath, lift, moments = model.sag, model.beneath, model.lift, model.moments
     fly = None if flight is None else _leaps(flight)
 
     @inlined
@@ -174,15 +174,13 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
             if moments is not None and pair.prestress[0] > 0.0:
                 per_moment = 6.0 / (case.beam_width * case.beam_depth * case.beam_depth)
                 along, across = moments(state, now)
-                contact.stress_along, contact.stress_across = (
-                    per_moment * along,
-                    per_moment * across,
-                )
+                contact.stress_along = per_moment * along
+                contact.stress_across = per_moment * across
                 F = prestressed_force(contact, events, pair, approach, step * dt, dt)
             else:
                 F = contact_force(contact, events, pair, approach, step * dt, dt)
-            if beneath is not None:
-                delta -= beneath(state, now, F)
+            if beneath is not None and lift is not None:
+                delta += lift(state, contact, F) - beneath(state, now, F)
             if pair.bending != 0.0:
                 contact.largest = max(contact.largest, delta)
                 grown = contact.shift - contact.shift_before
@@ -268,7 +266,7 @@ def _keep_profiles(
 
 def _run(model: Model, extended: bool) -> Callable[..., int]:
     """Return a function that solves a case; extended: see _kernel."""
-    march = _time_loop(model, extended)
+    march, lift = _time_loop(model, extended), model.lift
     largest_deflection = None if model.flight is None else model.flight.largest
 
     @inlined
@@ -295,6 +293,8 @@ def _run(model: Model, extended: bool) -> Callable[..., int]:
             pair, section, grid, plastic = state.pair, state.section, state.grid, state.plastic
             _, dissipated = plastic_energy(plastic, section, grid)
             responses.read_contact(answer, events, contact, pair)
+            if lift is not None:
+                answer.permanent_indentation += lift(state, contact, 0.0)
             responses.read_rebound(answer, case, events)
             responses.read_beam(answer, case, events, plastic.peeq, grid, dissipated)
         return now

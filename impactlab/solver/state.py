@@ -51,8 +51,9 @@ class Model(NamedTuple):
     return how far the mean under it has moved beyond mid-span (m), and what `energy` lacks (J).
     flight_stride: steps between two audits of the energy without contact, at least. flight: see
     above. sag(state): how far the middle of mid-span's section lies below its mean, m; None: not at
-    all. beneath(state, now, F): how far the axis lies below that, m. moments(state,
-    now): at mid-span, along the beam and across its width, both times the width, N m.
+    all. beneath(state, now, F): how far the axis lies below that, m; lift(state, contact, F): how
+    far the contact lifts it, m. moments(state, now): at mid-span, along the beam and across its
+    width, both times the width, N m.
     """
 
     make: Callable[..., Any]
@@ -66,4 +67,5 @@ class Model(NamedTuple):
     renew: Callable[..., None] | None = None
     sag: Callable[..., float] | None = None
     beneath: Callable[..., float] | None = None
+    lift: Callable[..., float] | None = None
     moments: Callable[..., tuple[float, float]] | None = None

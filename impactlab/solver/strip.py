@@ -27,12 +27,14 @@ eq. 47; the free strip's frequency, the same as a free beam's, Rayleigh, Theory 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from impactlab.solver import timoshenko
 from impactlab.solver.beam import Grid
+from impactlab.solver.contact.axis_lift import axis_lift
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
 from impactlab.solver.section import Section
@@ -46,8 +48,9 @@ class Strip(NamedTuple):
 
     inertia: m (kg m3), 0 where nothing bends across; stiffness = D B (N m2); twist = T (N m4);
     lever = B^2/24 (m2). axis (m/N, m2): how much lower than the middle of the section the axis
-    lies, per F and per M/(EI). s (1/m): the curvature across the width, rate = dt s_t its
-    increment, d_rate the last change of that; bent = s + nu kappa, where the step began.
+    lies, per F and per M/(EI); lifting: the last arguments of contact/axis_lift.py, by how much it
+    lies higher again. s (1/m): the curvature across the width, rate = dt s_t its increment, d_rate
+    the last change of that; bent = s + nu kappa, where the step began.
     """
 
     shear: Shear
@@ -56,6 +59,7 @@ class Strip(NamedTuple):
     twist: float
     lever: float
     axis: tuple[float, float]
+    lifting: tuple[float, float, float]
     nu: float
     s: Array
     rate: Array
@@ -76,6 +80,8 @@ def _make(case: Record, section: Section, grid: Grid) -> Strip:
     """Return the state at rest."""
     shear, size = timoshenko.make(case, section, grid), grid.mid + 3
     DB, twist, lever = across_width(case)
+    z, nu = 0.5 * case.beam_depth, case.beam_poissons_ratio
+    pressure = (1.0 + nu) * (5.0 - 2.0 * nu) / (8.0 * math.pi * case.beam_youngs_modulus * z**3)
     return Strip(
         shear,
         case.width_inertia,
@@ -83,7 +89,8 @@ def _make(case: Record, section: Section, grid: Grid) -> Strip:
         twist,
         lever,
         (case.axis_compliance, case.axis_bending),
-        case.beam_poissons_ratio,
+        (z, pressure, case.sphere_yield_stress),
+        nu,
         np.zeros(size),
         np.zeros(size),
         np.zeros(size),
@@ -178,6 +185,14 @@ def _beneath(state: State, now: int, F: float) -> float:
 
 
 @compiled
+def _lift(state: State, contact: Record, F: float) -> float:
+    strip = state.own
+    if strip.inertia == 0.0:
+        return 0.0
+    return axis_lift(contact, state.pair, F, *strip.lifting)
+
+
+@compiled
 def _moments(state: State, now: int) -> tuple[float, float]:
     strip, section, mid = state.own, state.section, state.grid.mid
     kappa = _curvature(state, now)
@@ -194,5 +209,6 @@ MODEL = timoshenko.MODEL._replace(
     energy=_energy,
     sag=_sag,
     beneath=_beneath,
+    lift=_lift,
     moments=_moments,
 )

@@ -15,9 +15,11 @@ ratios give 1 to 4 % less force than 400 even ones, 200 even ones 0.1 % less.
 Lengths are in radii of the sphere, stresses in yield stresses, nu = 0.3. x = delta/delta_y and
 F/F_y are those of the contact laws, for first yield at a mean pressure of 1.1 yield stresses
 (stronge). With --stress the half-space is stretched evenly beforehand, in all directions along its
-surface: the data of `contact_prestress`. Output: one row per equilibrium: elastic sphere or rigid,
-small strains or not, E*/S_y, that stress, elements over the largest radius, largest x so far, x,
-F/F_y, contact radius over that of the sphere.
+surface: the data of `contact_prestress`. With --axis a second file is written, the data of
+solver/contact/axis_lift.py: the displacement of the axis above that of the elastic half-space under
+the same contact pressure, over delta_y, at the depth where a/z is what the column says. Output: one
+row per equilibrium: elastic sphere or rigid, small strains or not, E*/S_y, that stress, elements
+over the largest radius, largest x so far, x, F/F_y, contact radius over that of the sphere.
 """
 
 from __future__ import annotations
@@ -37,6 +39,8 @@ from scipy.sparse.linalg import splu
 NU = 0.3
 Array = np.ndarray[Any, Any]
 COLUMNS = ("sphere", "strains", "E_over_S", "stress", "elements", "x_max", "x", "F", "a_over_R")
+AXIS = (0.1, 0.2, 0.3, 0.4)
+"""Contact radius over the depths below the surface at which the axis is looked at."""
 _G = 1.0 / math.sqrt(3.0)
 
 
@@ -192,13 +196,14 @@ class Solve:
         self.u, self.stress = np.zeros_like(self.X), np.zeros((len(self.elements), 4, 4))
         self.force, self.delta, self.radius = np.zeros(self.surface.size), 0.0, 0.0
         self.rate, self.last = np.zeros_like(self.X), 0.0
-        self.compliance = np.zeros((self.surface.size, self.surface.size))
-        if not rigid:
-            none = np.zeros_like(self.X)
-            args = self.X, self.elements, none, none, self.stress, self.E, 1.0, False
-            push = np.zeros((self.free.size, self.surface.size))
-            push[self.place[2 * self.surface + 1], range(self.surface.size)] = 1.0
-            self.compliance = push.T @ splu(self._matrix(assemble(*args)[1])).solve(push)
+        none = np.zeros_like(self.X)
+        args = self.X, self.elements, none, none, self.stress, self.E, 1.0, False
+        push = np.zeros((self.free.size, self.surface.size))
+        push[self.place[2 * self.surface + 1], range(self.surface.size)] = 1.0
+        moved = splu(self._matrix(assemble(*args)[1])).solve(push)
+        self.compliance = 0.0 * push.T @ push if rigid else push.T @ moved
+        self.axis = np.arange(m - 1)  # the last one is held
+        self.elastic = moved[self.place[2 * self.axis + 1]]
 
     def _matrix(self, K: Array) -> sparse.csc_array:
         size = self.place.size
@@ -213,6 +218,11 @@ class Solve:
             self.move(0.5 * (self.delta + delta), halvings + 1)
             self.move(delta, halvings + 1)
         return float(self.force.sum()), self.radius
+
+    def lift(self) -> Array:
+        """Return how much higher the axis lies than by the same forces on elastic metal."""
+        above = self.u[self.axis, 1] + self.elastic @ self.force
+        return np.interp(self.radius / np.array(AXIS), -self.X[self.axis, 1], above)
 
     def _balance(self, delta: float) -> bool:
         """Find the equilibrium at `delta` and keep it; return False where Newton's method fails."""
@@ -275,11 +285,12 @@ def run(args: argparse.Namespace) -> None:
     solve.stress[:, :, [0, 2]] = args.stress
     bodies = "rigid" if args.rigid else "elastic", "small" if args.small else "large"
     kind = *bodies, args.modulus, args.stress
-    begun, rows = time.process_time(), []
+    begun, rows, lifts = time.process_time(), [], []
 
     def note(x: float, top: float) -> float:
         F, a = solve.move(x * solve.delta_y)
         rows.append((*kind, args.elements, top, f"{x:.6g}", f"{F / solve.F_y:.7g}", f"{a:.5g}"))
+        lifts.append((f"{x:.6g}", *(f"{each:.4g}" for each in solve.lift() / solve.delta_y)))
         return F
 
     tops = {*(args.unload or []), args.depth}
@@ -303,6 +314,9 @@ def run(args: argparse.Namespace) -> None:
         if new:
             table.writerow(COLUMNS)
         table.writerows(rows)
+    if args.axis:
+        with Path(args.axis).open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([("x", *AXIS), *lifts])
     print(*kind, args.depth, len(solve.X), f"{time.process_time() - begun:.0f} s", flush=True)
 
 
@@ -315,6 +329,7 @@ if __name__ == "__main__":
     parser.add_argument("--elements", type=int, default=60, help="over the largest radius")
     parser.add_argument("--stress", type=float, default=0.0, help="along the surface, over S_y")
     parser.add_argument("--steps", type=int, default=200, help="of loading")
+    parser.add_argument("--axis", help="write the displacement of the axis to this file, too")
     parser.add_argument("--rigid", action="store_true")
     parser.add_argument("--small", action="store_true", help="small strains, a paraboloid")
     run(parser.parse_args())
