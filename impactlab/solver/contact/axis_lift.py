@@ -1,4 +1,4 @@
-"""How far plastic flow beneath the contact lifts the beam's axis.
+"""The lift of a strip's axis by the contact above it.
 
 A strip's indentation is reckoned from the beam's axis, the depth z below the surface
 (model/contact_compliance.py). There a contact of the radius a differs from a point force on an
@@ -9,9 +9,10 @@ elastic half-space in two ways, both of which leave the axis higher:
 The first is what the plastic strains do. It stays when the contact unloads, so that a dent, seen
 from the axis, is that much deeper. A and B, quadratic in the logarithm of x = delta_m/delta_y, are
 fitted to axis_lift.csv (tests/benchmarks/sphere_indentation.py --depth 320 --elements 60 --axis),
-the displacement of the axis above that of the elastic half-space under the same pressure: within
-0.09 % of delta_m from x = 5 on up to a/z = 0.4. Beyond that the plastic zone reaches the axis, and
-a/z counts as 0.45 at most. The second is an even pressure, to second order in a/z.
+the displacement of the axis above that of the elastic half-space under the same pressure, for
+E*/S_y = 333 and nu = 0.3: within 0.09 % of delta_m from x = 5 on up to a/z = 0.4. Beyond that the
+plastic zone reaches the axis, and a/z counts as 0.45 at most. The second is an even pressure, to
+second order in a/z.
 
 Neglected: the beam's lower face, and what the plastic strains do to the bending of the beam.
 """
