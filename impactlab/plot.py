@@ -1,12 +1,13 @@
 """Plots of runs and of their analysis, on matplotlib axes: those of the reports.
 
 As in xarray, a function that draws one panel takes `ax` (by default the current axes) and returns
-it. Those of indices draw a panel per response where none is named, and return all of the axes.
+it. Those of indices draw a panel per response where none is named, and return all of the axes;
+indices of FAST are Sobol indices.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import xarray as xr
@@ -118,21 +119,6 @@ def run(one: xr.Dataset) -> Any:
         return np.array(single_runs.picture(one).axes)
 
 
-def sobol(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
-    """Draw Sobol indices (or those of FAST) of `il.analyse` with their intervals.
-
-    Returns the axes of one response, or an array of axes, a panel per response. Pale bars are
-    within the noise; a verdict stands above indices that should not be trusted. Raises ValueError
-    where the analysis has none, or does not know the response.
-
-    >>> study = il.Study(
-    ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=64, parameters={
-    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
-    >>> ax = il.plot.sobol(il.analyse(study.run(workers=1)), "value")
-    """
-    return _indices(measures.SOBOL, analysis, response, ax)
-
-
 def sobol_over_time(analysis: xr.Dataset) -> Any:
     """Draw Sobol indices of contact force and deflection against time, above their means.
 
@@ -157,52 +143,6 @@ def sobol_over_time(analysis: xr.Dataset) -> Any:
     return figure(indices.indices_over_time.name, xr.Dataset(), analysis)
 
 
-def delta(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
-    """Draw delta indices; see `sobol`.
-
-    >>> study = il.Study(
-    ...     title="Ishigami", function="ishigami", sampling=il.Delta(samples=128, parameters={
-    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
-    >>> ax = il.plot.delta(il.analyse(study.run(workers=1)), "value")
-    """
-    return _indices(measures.DELTA, analysis, response, ax)
-
-
-def pawn(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
-    """Draw PAWN indices; see `sobol`.
-
-    >>> study = il.Study(
-    ...     title="Ishigami", function="ishigami", sampling=il.Pawn(samples=128, parameters={
-    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
-    >>> ax = il.plot.pawn(il.analyse(study.run(workers=1)), "value")
-    """
-    return _indices(measures.PAWN, analysis, response, ax)
-
-
-def regression(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
-    """Draw regression coefficients of values and ranks; see `sobol`.
-
-    >>> study = il.Study(
-    ...     title="Ishigami", function="ishigami", sampling=il.Regression(samples=128, parameters={
-    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
-    >>> ax = il.plot.regression(il.analyse(study.run(workers=1)), "value")
-    """
-    return _indices(measures.REGRESSION, analysis, response, ax)
-
-
-def morris(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
-    """Draw Morris' plane: the mean of the magnitudes of elementary effects, and their spread.
-
-    See `sobol`.
-
-    >>> study = il.Study(
-    ...     title="Ishigami", function="ishigami", sampling=il.Morris(trajectories=16, parameters={
-    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
-    >>> ax = il.plot.morris(il.analyse(study.run(workers=1)), "value")
-    """
-    return _indices(measures.MORRIS, analysis, response, ax)
-
-
 def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> Any:
     """Draw a figure of the report by the name of its file, such as "parameter_effects".
 
@@ -223,32 +163,62 @@ def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> A
         return np.array(found[name].plot(runs, analysis).axes)
 
 
-def _indices(
-    family: measures.Family, analysis: xr.Dataset, response: str | None, ax: Axes | None
-) -> Any:
-    if not family.given(analysis):
-        missing = ", ".join(one.name for one in family.measures if not one.optional)
-        raise ValueError(f"the analysis holds no {missing}: it is not of runs for {family.title}")
-    listed = [str(each) for each in analysis["response"].values]
-    stand_ins = {
-        each: ((), np.nan, {"units": str(unit)})
-        for each, unit in zip(listed, analysis["response_units"].values, strict=True)
-    }
-    runs = xr.Dataset(stand_ins, attrs={"responses": listed})  # of which names and units are used
-    if response is None and ax is None:
-        return figure(family.figure, runs, analysis)
-    if response is None:
-        raise ValueError(f"response: is needed with ax, one of {', '.join(listed)}")
-    _require("response", response, listed)
-    ax = _current(ax)
-    ax.set_title(labels.sentence(labels.response(response)), loc="left")
-    if family is measures.MORRIS:
-        indices.plane(ax, runs, analysis, response)
-    else:
-        indices.bars(ax, analysis, family, response)
-        ax.set_xlabel(family.axis)
-    ax.legend()
-    return ax
+class _Draw(Protocol):
+    def __call__(
+        self, analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None
+    ) -> Any: ...
+
+
+def _indices(name: str, family: measures.Family, size: str) -> _Draw:
+    """Return the function `name`, which draws one family; size: of the sample in its example."""
+
+    def draw(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
+        if not family.given(analysis):
+            missing = ", ".join(one.name for one in family.measures if not one.optional)
+            raise ValueError(
+                f"the analysis holds no {missing}: it is not of runs for {family.title}"
+            )
+        listed = [str(each) for each in analysis["response"].values]
+        stand_ins = {
+            each: ((), np.nan, {"units": str(unit)})
+            for each, unit in zip(listed, analysis["response_units"].values, strict=True)
+        }
+        runs = xr.Dataset(stand_ins, attrs={"responses": listed})  # their names and units are used
+        if response is None and ax is None:
+            return figure(family.figure, runs, analysis)
+        if response is None:
+            raise ValueError(f"response: is needed with ax, one of {', '.join(listed)}")
+        _require("response", response, listed)
+        ax = _current(ax)
+        ax.set_title(labels.sentence(labels.response(response)), loc="left")
+        if family is measures.MORRIS:
+            indices.plane(ax, runs, analysis, response)
+        else:
+            indices.bars(ax, analysis, family, response)
+            ax.set_xlabel(family.axis)
+        ax.legend()
+        return ax
+
+    draw.__name__ = draw.__qualname__ = name
+    draw.__doc__ = f"""Draw "{family.title}" of `il.analyse`, with their intervals if they have any.
+
+    Returns the axes of one response, or an array of axes, a panel per response. Pale bars are
+    within the noise; a verdict stands above indices that should not be trusted. Raises ValueError
+    where the analysis has none, or does not know the response.
+
+    >>> study = il.Study(
+    ...     title="Ishigami", function="ishigami", sampling=il.{name.title()}({size}, parameters={{
+    ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}}))
+    >>> ax = il.plot.{name}(il.analyse(study.run(workers=1)), "value")
+    """
+    return draw
+
+
+sobol = _indices("sobol", measures.SOBOL, "base_samples=64")
+delta = _indices("delta", measures.DELTA, "samples=128")
+pawn = _indices("pawn", measures.PAWN, "samples=128")
+regression = _indices("regression", measures.REGRESSION, "samples=128")
+morris = _indices("morris", measures.MORRIS, "trajectories=16")
 
 
 def _current(ax: Axes | None) -> Axes:
