@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from known_indices import INDICES
 
 from impactlab.verification.functions import FUNCTIONS
 
@@ -27,8 +28,11 @@ def partial_variances(function, which, nodes):
 
 
 def test_ishigami():
-    ishigami = FUNCTIONS["ishigami"]
-    part = {w: partial_variances(ishigami, w, 24) for w in ((0,), (1,), (2,), (0, 2), (0, 1, 2))}
+    ishigami = INDICES["ishigami"]
+    part = {
+        w: partial_variances(FUNCTIONS["ishigami"], w, 24)
+        for w in ((0,), (1,), (2,), (0, 2), (0, 1, 2))
+    }
     variance = part[0, 1, 2]
     expected = np.array([part[w,] for w in range(3)]) / variance
     np.testing.assert_allclose(ishigami.first_order, expected, atol=1e-9)
@@ -40,7 +44,7 @@ def test_ishigami():
 
 
 def test_g_by_its_factors():
-    g = FUNCTIONS["g"]
+    g = INDICES["g"]
     x = (np.arange(20_000) + 0.5) / 20_000
     factors = (np.abs(4 * x - 2)[:, None] + A) / (1 + A)
     parts = factors.var(axis=0)
@@ -51,14 +55,14 @@ def test_g_by_its_factors():
     assert g.second_order[0, 1] == pytest.approx(parts[0] * parts[1] / variance, rel=1e-6)
     point = np.linspace(0.05, 0.95, 8)
     at = np.prod((np.abs(4 * point - 2) + A) / (1 + A))
-    assert g.value(point[None]) == pytest.approx(at)
+    assert FUNCTIONS["g"].value(point[None]) == pytest.approx(at)
 
 
-@pytest.mark.parametrize("function", FUNCTIONS.values())
-def test_shapes(function):
-    count = len(function.ranges)
-    assert function.first_order.shape == function.total_order.shape == (count,)
-    pairs = function.second_order
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_shapes(name):
+    indices, count = INDICES[name], len(FUNCTIONS[name].ranges)
+    assert indices.first_order.shape == indices.total_order.shape == (count,)
+    pairs = indices.second_order
     assert pairs.shape == (count, count)
     assert np.isnan(np.diagonal(pairs)).all()
     np.testing.assert_array_equal(pairs, pairs.T)
