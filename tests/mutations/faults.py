@@ -40,6 +40,12 @@ FAULTS = (
         "along * contact.F_m + left",
     ),
     Fault(
+        "contact: sign of the axis' lift by pressure",
+        "contact/axis_lift.py",
+        "lift = pressure * F",
+        "lift = -pressure * F",
+    ),
+    Fault(
         "fibre: sign of the back stress",
         "section.py",
         "(strain - plastic_strain) - H_k * plastic_strain\n",
