@@ -17,15 +17,8 @@ _ENERGY_LIMIT = 1e-3
 """Largest energy imbalance, relative to the initial kinetic energy, of a run without suspicion."""
 
 
-def cautions(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[str]:
+def cautions(runs: xr.Dataset) -> Iterator[str]:
     """Yield what holds for a study as a whole; what one response is about stands beside it."""
-    solved = runs.attrs.get("created")
-    if analysis.attrs.get("created", solved) != solved:
-        yield (
-            "The analysis does not belong to these runs: it was made from runs that were solved at "
-            "another time. The verdicts and indices below may be wrong; repeat the analysis "
-            "(impactlab analyse)."
-        )
     if "status" in runs and "contact" in runs.coords:
         beyond = (runs["status"] & MARKS["outside_contact_law"][0]) != 0
         for law in np.unique(runs["contact"].values).tolist():

@@ -61,7 +61,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     if rest or not drawn:
         lead = "" if rest else "This study stores no data that a figure could show."
         sections.append(Section("figures", "Figures", lead, figures=rest))
-    if warnings := list(cautions(runs, analysis)):
+    if warnings := list(cautions(runs)):
         title = "Before using these numbers"
         sections.insert(0, Section("cautions", title, sentences=warnings, grave=True))
     if remarks := list(notes(runs)):

@@ -214,7 +214,4 @@ def load_surrogate(path: str | Path) -> Surrogate:
             f"{path}: there is no such file: `impactlab analyse` writes it for a sample, unless "
             "words are drawn, over which no surrogate is fitted"
         )
-    found = read_netcdf(Path(path), "surrogate")
-    if "outer" not in found:
-        raise ValueError(f"{path}: is of an earlier impactlab: write it anew (impactlab analyse)")
-    return Surrogate(found)
+    return Surrogate(read_netcdf(Path(path), "surrogate"))

@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationInfo
 
 from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.samples import Fast, Latin, Morris, Sobol
+from impactlab.study.sampling.samples import Fast, Latin, Morris, Pawn, Sobol
 from impactlab.study.sampling.sections import Sampling
 from impactlab.study.schema.section import name_at
 
@@ -21,7 +21,7 @@ METHODS: Mapping[str, type[Sampling]] = {
     "morris": Morris,
     "fast": Fast,
     "delta": Latin,
-    "pawn": Latin,
+    "pawn": Pawn,
     "regression": Latin,
 }
 """Sections by their method's name in study files: a new one is a class and a line."""

@@ -263,3 +263,10 @@ class Latin(Sample):
         if not self.correlations:
             return unit
         return correlated(unit, correlation_matrix(list(self.varied), self.correlations))
+
+
+class Pawn(Latin):
+    """Latin hypercube with ten runs or more in each of PAWN's ten slides."""
+
+    method: Literal["pawn"]
+    samples: Annotated[Whole, Field(ge=100, le=MOST_RUNS)]

@@ -65,27 +65,18 @@ def test_a_run_that_lacks_a_response_has_not_failed(velocity_study: Study, faili
 
 
 def test_runs_whose_contact_law_created_energy_are_counted(material_study: Study) -> None:
-    runs, analysis = material_study
+    runs, _ = material_study
     words = "the contact law created energy"
-    assert not _said(cautions(runs, analysis), words)
+    assert not _said(cautions(runs), words)
     runs["remarks"] = xr.zeros_like(runs["status"])
-    assert not _said(cautions(runs, analysis), words)
+    assert not _said(cautions(runs), words)
     runs["remarks"][0, :, 0] = 1
-    assert _said(cautions(runs, analysis), f"In 3 of 24 runs {words}")
-
-
-def test_an_analysis_of_other_runs_is_told(material_study: Study) -> None:
-    runs, analysis = material_study
-    words = "The analysis does not belong to these runs"
-    assert not _said(cautions(runs, analysis), words)
-    assert not _said(cautions(runs, xr.Dataset()), words)
-    stale = analysis.assign_attrs(created="1999-12-31T23:59:59+00:00")
-    assert _said(cautions(runs, stale), words)
+    assert _said(cautions(runs), f"In 3 of 24 runs {words}")
 
 
 def test_a_study_without_trouble_has_no_caution(material_study: Study) -> None:
-    runs, analysis = material_study
-    assert list(cautions(runs, analysis)) == []
+    runs, _ = material_study
+    assert list(cautions(runs)) == []
 
 
 def test_notes_on_the_contact_law(velocity_study: Study) -> None:

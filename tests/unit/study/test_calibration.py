@@ -131,7 +131,7 @@ def test_the_command_refuses_without_a_traceback(tmp_path):
         STUDY.replace("METHOD", "grid").replace("VALUES", "[300 MPa, 400 MPa]").rsplit("\n", 2)[0]
     )
     (tmp_path / "force.yaml").write_text(json.dumps(values()))
-    sample = STUDY.replace("METHOD", "pawn\n  samples: 64").replace("VALUES", RANGE)
+    sample = STUDY.replace("METHOD", "pawn\n  samples: 100").replace("VALUES", RANGE)
     (tmp_path / "drawn.yaml").write_text(sample)
     for file, options, words in (
         ("steel.yaml", [], "sampling.method: calibration needs a sample"),

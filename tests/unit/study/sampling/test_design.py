@@ -269,7 +269,7 @@ title: A function
 function: ishigami
 sampling:
   method: pawn
-  samples: 64
+  samples: 100
   parameters:
     x1: {distribution: uniform, low: -1, high: 1}
     x3: {distribution: uniform, low: -1, high: 1}

@@ -114,7 +114,7 @@ def test_every_stratum_of_every_parameter_is_met_once(sampled, cube):
 def test_the_methods_share_their_runs(sampled, cube):
     """So that a change of method asks for no new run."""
     delta, pawn, regression = (
-        cube(sampled(method, samples=64, seed=0)) for method in ("delta", "pawn", "regression")
+        cube(sampled(method, samples=100, seed=0)) for method in ("delta", "pawn", "regression")
     )
     np.testing.assert_array_equal(delta, pawn)
     np.testing.assert_array_equal(delta, regression)

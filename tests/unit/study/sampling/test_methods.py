@@ -16,7 +16,7 @@ SETTINGS = {
     "morris": {"trajectories": 12, "levels": 6, "optimal_trajectories": 5},
     "fast": {"samples": 65, "harmonics": 4},
     "delta": {"samples": 64},
-    "pawn": {"samples": 64},
+    "pawn": {"samples": 100},
     "regression": {"samples": 64},
 }
 methods = pytest.mark.parametrize("method", SETTINGS)

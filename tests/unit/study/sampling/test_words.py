@@ -101,7 +101,7 @@ def test_methods_that_need_an_order_refuse_words(problems, text, method, own):
             "analysis.failed_runs",
             "no surrogate",
         ),
-        ({"method": "pawn", "samples": 79}, "sampling.parameters.contact", "raise samples to 80"),
+        ({"method": "delta", "samples": 79}, "sampling.parameters.contact", "raise samples to 80"),
         (
             {"parameters": {"velocity": CHOICE}},
             "sampling.parameters.velocity.distribution",
@@ -137,7 +137,8 @@ def test_runs_are_those_of_the_words(text, tmp_path):
     """Against the same impacts one by one, and stored words against drawn ones."""
     models = {"distribution": "choice", "values": ["euler_bernoulli", "timoshenko"]}
     study = il.Study._of(
-        study_of_text("some", text("pawn", parameters={"beam_model": models}, samples=80)), tmp_path
+        study_of_text("some", text("pawn", parameters={"beam_model": models}, samples=100)),
+        tmp_path,
     )
     runs, drawn = study.run(workers=1), study.design()
     names = ["contact", "beam_model", "velocity"]
@@ -150,7 +151,7 @@ def test_runs_are_those_of_the_words(text, tmp_path):
         varied={name: drawn[name].values[:20] for name in names},
     )
     np.testing.assert_array_equal(runs.peak_force[:20], again.peak_force)
-    assert np.unique(runs.peak_force).size == 80
+    assert np.unique(runs.peak_force).size == 100
 
 
 def test_pilot_runs_and_costs_know_every_word(text, tmp_path):

@@ -34,6 +34,7 @@ WRONG = [
     ("fast", {"samples": 64}, "samples", "must be at least 65 (above 4 harmonics²)"),
     ("fast", {"samples": 144, "harmonics": 6}, "samples", "must be at least 145"),
     ("delta", {"samples": 63}, "samples", "must be at least 64"),
+    ("pawn", {"samples": 99}, "samples", "must be at least 100"),
     ("pawn", {"samples": 100, "base_samples": 8}, "base_samples", "unknown key; did you mean"),
     ("sobol", {}, "base_samples", "is required"),
 ]
