@@ -11,12 +11,11 @@ from impactlab.analysis import distribution, sensitivity, surrogate
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.axes import ELEMENT_SIZE, NODES, TIME_STEP
 from impactlab.analysis.numerical import numerical
-from impactlab.analysis.responses import failures
+from impactlab.analysis.responses import labels
 from impactlab.analysis.sensitivity import over_time
 from impactlab.variables import ANALYSES
 
 _TABLE: dict[str, tuple[Callable[[xr.Dataset], bool], Callable[[xr.Dataset], xr.Dataset]]] = {
-    "failures": (lambda runs: True, failures),
     "convergence_in_nodes": (NODES.applies, NODES.analysis),
     "convergence_in_time_step": (TIME_STEP.applies, TIME_STEP.analysis),
     "convergence_in_element_size": (ELEMENT_SIZE.applies, ELEMENT_SIZE.analysis),
@@ -38,14 +37,14 @@ variables.ANALYSES.
 def analyse(
     runs: xr.Dataset, resolution: xr.Dataset | None = None, refinement: xr.Dataset | None = None
 ) -> xr.Dataset:
-    """Return failures, convergence, sensitivity and distributions of a study, whichever apply.
+    """Return convergence, sensitivity and distributions of a study, whichever apply.
 
     runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
     attribute `analyses` lists the wanted ones (without it: all). resolution, refinement: results of
     adaptive.recommendation and adaptive.sobol for this study, which add the numerical
     uncertainty of sensitivity indices (see `numerical`). Returns the variables that the applying
     analyses document, on `response` and the dimensions that they leave, with the attributes of the
-    runs.
+    runs; without any, the coordinates of the responses alone.
 
     Raises ValueError when the runs are not a study's, or contradict their attributes.
 
@@ -66,7 +65,8 @@ def analyse(
         for name, (applies, analysis) in _TABLE.items()
         if applies(runs) and name not in ANALYSES.keys() - wanted
     ]
-    merged = xr.merge(parts, join="exact", compat="equals", combine_attrs="override")
+    requested = xr.Dataset(coords=labels(runs))
+    merged = xr.merge([requested, *parts], join="exact", compat="equals", combine_attrs="override")
     if resolution is not None or refinement is not None:
         merged = merged.merge(numerical(runs, merged, resolution, refinement), join="exact")
     return merged.assign_attrs(runs.attrs).drop_encoding()

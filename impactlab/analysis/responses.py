@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from impactlab.model.distributions import CHOICE
 from impactlab.types import Floats
-from impactlab.variables import FAILED, FAILURES, status_bits
+from impactlab.variables import status_bits
 
 
 def listed(runs: xr.Dataset, attribute: str) -> list[str]:
@@ -39,28 +39,33 @@ def usable(runs: xr.Dataset, response: str | None = None) -> xr.DataArray:
     coordinates on `run`, so that memory holds little beside it. Raises ValueError when a requested
     response is not among the variables.
     """
-    names = listed(runs, "responses")
-    if absent := [name for name in names if name not in runs.data_vars]:
-        raise ValueError(
-            f"the runs of study {runs.attrs.get('study', '?')!r} hold no {', '.join(absent)}, "
-            "which its attribute `responses` lists: solve the study again"
-        )
-    excluded = _excluded(runs, names if response is None else [response])
+    described = labels(runs, *([] if response is None else [response]))
+    names: list[str] = described["response"][1]
     if response is None:
         values = runs[names].compute().to_array("response", name="value")
     else:
         alone = runs[response].rename("value")
         of_runs = [name for name, each in alone.coords.items() if "run" in each.dims]
         values = alone.drop_vars(of_runs).compute().expand_dims(response=[response])
-    values = values.astype(float, copy=False)
-    values = values.assign_coords(labels(runs, *values["response"].values))
+    values = values.astype(float, copy=False).assign_coords(described)
+    status = xr.DataArray(runs["status"].variable.compute())
+    bits = np.array([status_bits([name]) for name in names], status.dtype)
+    excluded = (status & xr.DataArray(bits, dims="response")) != 0
     good = np.isfinite(values) & ~excluded.transpose(*values.dims)
     return values if good.all() else values.where(good)
 
 
 def labels(runs: xr.Dataset, *names: Any) -> dict[str, Any]:
-    """Return the coordinates of these responses, of all requested ones by default."""
+    """Return the coordinates of these responses, of all requested ones by default.
+
+    Raises ValueError when one is not among the variables.
+    """
     of = [str(name) for name in names or listed(runs, "responses")]
+    if absent := [name for name in of if name not in runs.data_vars]:
+        raise ValueError(
+            f"the runs of study {runs.attrs.get('study', '?')!r} hold no {', '.join(absent)}, "
+            "which its attribute `responses` lists: solve the study again"
+        )
     found: dict[str, Any] = {"response": ("response", of, {"long_name": "response"})}
     for key in ("units", "long_name"):
         found[f"response_{key}"] = "response", [str(runs[name].attrs.get(key, "")) for name in of]
@@ -71,63 +76,6 @@ def in_order(runs: xr.Dataset) -> xr.Dataset:
     """Return a sample in the order of `run`: as it is, not read, where it has that order."""
     numbers = runs["run"].values
     return runs if (numbers[1:] >= numbers[:-1]).all() else runs.sortby("run")
-
-
-def _excluded(runs: xr.Dataset, names: list[str]) -> xr.DataArray:
-    """Return True, on `response` and the dimensions of runs, where its status takes one away."""
-    status, bits = _status(runs), [status_bits([name]) for name in names]
-    return (status & xr.DataArray(np.array(bits, status.dtype), dims="response")) != 0
-
-
-def _status(runs: xr.Dataset) -> xr.DataArray:
-    return xr.DataArray(runs["status"].variable.compute())
-
-
-UNEXPLAINED = ("unexplained", "a response is missing and the run's status does not say why")
-
-
-def failures(runs: xr.Dataset) -> xr.Dataset:
-    """Count the runs: in all, failed, failed by reason, and missing a response.
-
-    Returns number_of_runs, number_of_failed_runs, failed_runs (reason), missing_runs (response).
-    A run that failed for two reasons counts under both. `reason` holds the names of the status
-    flags and "unexplained"; reason_long_name explains them.
-    """
-    status = _status(runs)
-    counts = [int(((status & bit) != 0).sum()) for bit, _ in FAILURES.values()]
-    failed, size = (status & FAILED) != 0, status.size
-    del status  # before the columns are read
-    unexplained, missing = xr.zeros_like(failed), []
-    for name in listed(runs, "responses"):
-        gaps = usable(runs, name).isnull().drop_vars(["response_units", "response_long_name"])
-        missing.append(gaps.sum([dim for dim in gaps.dims if dim != "response"]))
-        gaps = gaps & ~_excluded(runs, [name])
-        unexplained = unexplained | gaps.isel(response=0, drop=True)
-    failed = failed | unexplained
-    words = [words for _, words in FAILURES.values()]
-    dataset = xr.Dataset(
-        {
-            "number_of_runs": size,
-            "number_of_failed_runs": int(failed.sum()),
-            "failed_runs": ("reason", [*counts, int(unexplained.sum())]),
-            "missing_runs": xr.concat(missing, "response", coords="minimal", compat="override"),
-        },
-        {
-            "reason": ("reason", [*FAILURES, UNEXPLAINED[0]], {"long_name": "reason of failure"}),
-            "reason_long_name": ("reason", [*words, UNEXPLAINED[1]]),
-        },
-    )
-    for name, long_name in _COUNTS.items():
-        dataset[name].attrs = {"long_name": long_name, "units": "1"}
-    return dataset
-
-
-_COUNTS = {
-    "number_of_runs": "runs in the study",
-    "number_of_failed_runs": "runs that miss a response, or whose status says that they failed",
-    "failed_runs": "runs that failed, by reason",
-    "missing_runs": "runs without a usable value",
-}
 
 
 @dataclass(frozen=True)

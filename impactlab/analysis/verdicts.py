@@ -69,19 +69,14 @@ def flagged(codes: xr.DataArray, kind: type[Verdict], long_name: str) -> xr.Data
 def verdict_variables(
     codes: xr.DataArray, kind: type[Verdict], axis: str, words: str
 ) -> dict[str, xr.DataArray]:
-    """Return the variables that hold a verdict on (response, *dims): each, the worst, and counts.
+    """Return the variables that hold a verdict on (response, *dims): each, and the worst.
 
-    Returns <axis>_verdict, <axis>_summary on (response) and <axis>_tally on
-    (response, <axis>_outcome): at how many points of the rest of the grid each verdict holds.
+    Returns <axis>_verdict and, on (response), <axis>_summary, the worst over the rest of the grid.
     """
     rest = [dim for dim in codes.dims if dim != "response"]
-    tally = xr.concat([(codes == member).sum(rest) for member in kind], f"{axis}_outcome")
     return {
         f"{axis}_verdict": flagged(codes, kind, f"verdict on {words}"),
         f"{axis}_summary": flagged(
             codes.max(rest), kind, f"worst verdict on {words} over the rest of the grid"
         ),
-        f"{axis}_tally": tally.assign_coords({f"{axis}_outcome": names(kind)})
-        .transpose("response", f"{axis}_outcome")
-        .assign_attrs(long_name=f"grid points with each verdict on {words}", units="1"),
     }

@@ -48,9 +48,8 @@ class Axis:
         """Judge every response at every point of the rest of the grid.
 
         Returns the fields of Judgement as <axis>_<field> on (response, *other grid dims), flags as
-        CF flags; beside them <axis>_summary (response) and <axis>_tally (response, <axis>_outcome).
-        What has no limit by design keeps its observed order alone. Raises ValueError for a repeated
-        value on the axis.
+        CF flags; beside them <axis>_summary (response). What has no limit by design keeps its
+        observed order alone. Raises ValueError for a repeated value on the axis.
         """
         dim = next(name for name in self.spacings if name in runs.dims)
         values = usable(runs)

@@ -39,7 +39,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     Returns points_error on (response, *grid dims): |value - reference|/|reference|, NaN where
     either is missing, infinite where only the reference is zero. On (response, *other dims):
     points_uncertainty, points_needed (NaN where none below the most do), points_verdict; beside
-    them points_summary (response) and points_tally (response, points_outcome).
+    them points_summary (response).
     """
     values = usable(runs).sortby("points")
     reference = values.isel(points=-1, drop=True)

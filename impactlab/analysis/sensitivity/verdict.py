@@ -56,7 +56,7 @@ class SensitivityVerdict(Verdict):
         "and no delta is given (use pawn)",
     )
     CONSTANT = 9, False, "the response does not vary: indices are undefined"
-    FAILED_RUNS = 10, False, "runs are missing (see missing_runs): no index is given"
+    FAILED_RUNS = 10, False, "runs are missing: no index is given"
     TOO_FEW_RUNS = (
         11,
         False,

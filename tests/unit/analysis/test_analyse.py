@@ -1,4 +1,4 @@
-"""The analyses that apply, counts of failures, and the way through netCDF."""
+"""The analyses that apply, and the way through netCDF."""
 
 from __future__ import annotations
 
@@ -64,42 +64,11 @@ def test_a_sample_study_gets_indices(sample: xr.Dataset) -> None:
     assert "run" not in found.dims
 
 
-def test_a_study_without_either_gets_counts_alone(grid_runs: Build) -> None:
+def test_a_study_without_either_gets_its_responses_alone(grid_runs: Build) -> None:
     runs = grid_runs({"velocity": [1.0, 2.0]}, peak_force=lambda velocity: velocity)
     found = analyse(runs)
     assert found["response"].values.tolist() == ["peak_force"]
-    counts = {"number_of_runs", "number_of_failed_runs", "failed_runs", "missing_runs"}
-    assert set(found.data_vars) == counts
-    assert found["number_of_runs"] == 2
-    assert found["number_of_failed_runs"] == 0
-
-
-def test_failures_are_counted_by_reason_and_by_response(grid_runs: Build) -> None:
-    runs = grid_runs(
-        {"velocity": [1.0, 2.0, 3.0, 4.0, 5.0]},
-        contact_duration=lambda velocity: velocity,
-        number_of_contacts=lambda velocity: velocity,
-        plastic_dissipation=lambda velocity: velocity,
-    )
-    runs["status"][:] = [0, 1, 2, 3, 0]
-    for name in runs.data_vars:
-        if name != "status":
-            runs[name][[1, 3]] = np.nan
-    runs["contact_duration"][2] = np.nan
-    runs["plastic_dissipation"][4] = np.nan  # with no reason given
-    found = analyse(runs)
-    by_reason = dict(
-        zip(found["reason"].values.tolist(), found["failed_runs"].values.tolist(), strict=True)
-    )
-    assert {key: count for key, count in by_reason.items() if count} == {
-        "diverged": 2,
-        "first_contact_unfinished": 2,
-        "unexplained": 1,
-    }
-    assert found["missing_runs"].values.tolist() == [3, 2, 3]
-    assert found["number_of_failed_runs"] == 4
-    words = found["reason_long_name"].sel(reason="first_contact_unfinished").item()
-    assert "duration ends before the first contact" in words
+    assert not found.data_vars
 
 
 @pytest.mark.parametrize("study", ["discretisation", "sample"])
@@ -168,7 +137,6 @@ def test_only_the_wanted_analyses_are_made(discretisation: xr.Dataset) -> None:
     found = analyse(discretisation.assign_attrs(analyses=["convergence_in_points"]))
     assert "points_verdict" in found
     assert "nodes_verdict" not in found
-    assert "missing_runs" in found  # failures are always counted
 
 
 def test_a_sample_is_analysed_one_response_at_a_time(
@@ -191,7 +159,7 @@ def test_a_sample_is_analysed_one_response_at_a_time(
         del runs, outputs
         tracemalloc.start()
         found = analyse_runs(tmp_path / "runs.nc", tmp_path / "analysis.nc")
-        assert {"missing_runs", "first_order", "surrogate_q2"} <= found.keys()
+        assert {"first_order", "surrogate_q2"} <= found.keys()
         most = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         return most

@@ -114,10 +114,6 @@ def test_analysis_of_a_grid(grid_runs: Build, verdicts_of: Callable[..., Any]) -
         ["at_round_off", "divergent"],
     ]
     assert verdicts_of(found["nodes_summary"]) == ["converged_second_order", "divergent"]
-    tally = found["nodes_tally"].sel(response="peak_plastic_strain")
-    assert tally.sel(nodes_outcome="at_round_off") == 1
-    assert tally.sel(nodes_outcome="divergent") == 1
-    assert tally.sum() == 2
     assert found["response_units"].values.tolist() == ["N", "1"]
 
 
