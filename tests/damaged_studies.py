@@ -35,7 +35,7 @@ VALID = {
     + " until: {interval: 0.02, runs: 20000, responses: [peak_force]}}\n"
     + "analysis: {confidence: 0.9, resamples: 50, failed_runs: impute}\n",
     "morris": _HEAD
-    + f"sampling: {{method: morris, trajectories: 8, levels: 4, optimal_trajectories: 4, {_ENDS},"
+    + f"sampling: {{method: morris, trajectories: 8, levels: 4, {_ENDS},"
     + " groups: {a: [velocity], b: [gravity]}}\n",
     "fast": _HEAD + f"sampling: {{method: fast, samples: 65, harmonics: 4, {_PAIR}}}\n",
     "delta": _HEAD + f"sampling: {{method: delta, samples: 64, seed: 3, {_PAIR}}}\n",

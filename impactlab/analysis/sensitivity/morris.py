@@ -37,7 +37,6 @@ _INDICES = {
 
 def _check(sample: Sample) -> None:
     trajectories, factors = sample.number("trajectories"), len(sample.factors)
-    trajectories = sample.number("optimal_trajectories") or trajectories
     sample.expect(trajectories * (factors + 1), f"{trajectories} trajectories of {factors} steps")
 
 

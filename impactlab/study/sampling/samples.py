@@ -18,8 +18,6 @@ _FEWEST_TO_GROW = 64
 _FEWEST_OF_WORD = 20
 """Runs per word: bootstrap resamples then practically never hold fewer than two."""
 _EVEN = "must be even: the steps would favour some levels otherwise"
-_SEARCH = 500_000
-"""Limit on trajectories times chosen ones squared: the search then takes about a minute."""
 
 
 class Until(Section):
@@ -94,11 +92,8 @@ class Morris(Grouped):
 
     They lie on a grid of levels; along each, every parameter (or group) steps once. trajectories:
     how many are drawn. levels: number of grid levels, evenly spaced in probability, ends included.
-    optimal_trajectories: how many of them, far apart, are kept (Campolongo et al. 2007; chosen as
-    by Ruano et al. 2012); 0: all.
 
-    Raises ValueError for a distribution without ends, and unless fewer trajectories are chosen
-    than drawn.
+    Raises ValueError for a distribution without ends.
     """
 
     method: Literal["morris"]
@@ -106,37 +101,25 @@ class Morris(Grouped):
     levels: Annotated[
         Whole, Field(ge=2, le=100), requires(lambda levels: levels % 2 == 0, _EVEN)
     ] = 4
-    optimal_trajectories: Annotated[Whole, Field(ge=0, le=1000)] = 0
 
     @property
     def runs(self) -> int:
         """Number of runs: per trajectory a start, and one step per parameter or group."""
-        return (self.optimal_trajectories or self.trajectories) * (self.group_count + 1)
+        return self.trajectories * (self.group_count + 1)
 
     @model_validator(mode="after")
-    def _check_choice(self) -> Self:
-        """Refuse draws without ends, and a choice that SALib cannot make, or not in time."""
+    def _check_ends(self) -> Self:
         if endless := [name for name, given in self.varied.items() if not given.bounds()]:
             reason = (
                 "has no ends, where method morris has its outer levels: "
                 "use truncated_normal, or another with low and high"
             )
             raise at_key(f"parameters.{endless[0]}.distribution", reason)
-        most, chosen = self.trajectories - 1, self.optimal_trajectories
-        if chosen and not 2 <= chosen <= most:
-            reason = f"must lie from 2 to {most} (below trajectories), or be 0"
-            raise at_key("optimal_trajectories", reason)
-        if self.trajectories * chosen**2 > _SEARCH:
-            reason = "takes too long to choose: trajectories × optimal_trajectories² may be at most"
-            raise at_key("optimal_trajectories", f"{reason} {_SEARCH:,}")
         return self
 
     def draws(self) -> Floats:
         """Draw trajectories of levels, 0 and 1 included: a start, and one step per factor."""
-        chosen = self.optimal_trajectories or None
-        return self.by_salib(
-            "morris", self.trajectories, num_levels=self.levels, optimal_trajectories=chosen
-        )
+        return self.by_salib("morris", self.trajectories, num_levels=self.levels)
 
 
 class Fast(Sample):

@@ -181,7 +181,7 @@ class Sobol(_Sample):
 class Morris(_Sample):
     """Trajectories for elementary effects: trajectories times (D + 1) runs.
 
-    levels: of the grid, even. optimal_trajectories: how many of them, far apart, are kept.
+    levels: of the grid, even.
 
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.Morris(trajectories=20, parameters={"velocity": speed, "beam_depth": depth})
@@ -189,7 +189,6 @@ class Morris(_Sample):
 
     trajectories: int
     levels: int | None = None
-    optimal_trajectories: int | None = None
     groups: Mapping[str, Sequence[str]] | None = None
 
 

@@ -17,14 +17,14 @@ from impactlab.analysis.sensitivity.morris import levels
 Build = Callable[..., xr.Dataset]
 
 
-def _unit(size: int, groups: list[str] | None = None, number: int = 20, **options: Any) -> Any:
+def _unit(size: int, groups: list[str] | None = None, number: int = 20) -> Any:
     names = [f"x{i}" for i in range(size)]
     problem = {"num_vars": size, "names": names, "bounds": [[0, 1]] * size, "groups": groups}
-    return sampler.sample(problem, number, num_levels=4, seed=5, **options)
+    return sampler.sample(problem, number, num_levels=4, seed=5)
 
 
 def _runs(drawn: Build, inputs: Any, outputs: Any, **attrs: Any) -> xr.Dataset:
-    given = {"trajectories": 20, "levels": 4, "optimal_trajectories": 0}
+    given = {"trajectories": 20, "levels": 4}
     return drawn("morris", inputs, outputs, **(given | attrs))
 
 
@@ -73,12 +73,6 @@ def test_groups_have_no_sign(drawn: Build) -> None:
     np.testing.assert_allclose(found["morris_mu_star"], [3, 2], atol=1e-12)
     np.testing.assert_allclose(found["morris_mu"], [np.nan, -2], atol=1e-12)
     np.testing.assert_allclose(found["morris_sigma"], [np.nan, 0], atol=1e-12)
-
-
-def test_optimal_trajectories_count(drawn: Build) -> None:
-    unit = _unit(3, optimal_trajectories=4)
-    runs = _runs(drawn, unit, unit @ [3.0, -2.0, 0.0], optimal_trajectories=4)
-    np.testing.assert_allclose(sensitivity.analysis(runs)["morris_mu"][0], [3, -2, 0], atol=1e-12)
 
 
 def test_few_trajectories_of_a_rough_function_are_wide(

@@ -80,7 +80,7 @@ def test_netcdf_holds_what_the_table_holds(
 
 def test_effects_have_the_unit_of_the_response(drawn: Build) -> None:
     unit = morris_sampler.sample(PROBLEM, 20, seed=5)
-    attrs = {"trajectories": 20, "levels": 4, "optimal_trajectories": 0}
+    attrs = {"trajectories": 20, "levels": 4}
     found = analyse(drawn("morris", unit, unit @ [3.0, 2.0, 1.0], **attrs))
     (row,) = [
         row

@@ -53,21 +53,6 @@ def test_parameters_of_a_group_step_together(sampled, cube):
     assert not (moved[..., 0] & moved[..., 1]).any()
 
 
-def test_trajectories_far_apart_are_chosen_from_those_drawn(sampled, cube):
-    every = cube(sampled("morris", trajectories=40)).reshape(40, 4, 3)
-    chosen = cube(sampled("morris", trajectories=40, optimal_trajectories=6)).reshape(6, 4, 3)
-    among = [any(np.array_equal(one, other) for other in every) for one in chosen]
-    assert all(among)
-
-    def spread(trajectories):
-        """Mean distance of the points of one trajectory from those of another (Campolongo)."""
-        apart = trajectories[:, None, :, None] - trajectories[None, :, None, :]
-        distances = np.sqrt((apart**2).sum(axis=-1)).sum(axis=(2, 3))
-        return distances[~np.eye(len(trajectories), dtype=bool)].mean()
-
-    assert spread(chosen) > 1.1 * spread(every)
-
-
 def spectra(draws):
     """Magnitudes of each parameter's frequencies along a curve: (frequency, parameter)."""
     return np.abs(np.fft.rfft(draws - draws.mean(axis=0), axis=0))

@@ -13,7 +13,7 @@ from impactlab.study.sampling import METHODS
 
 SETTINGS = {
     "sobol": {"base_samples": 16, "second_order": False},
-    "morris": {"trajectories": 12, "levels": 6, "optimal_trajectories": 5},
+    "morris": {"trajectories": 12, "levels": 6},
     "fast": {"samples": 65, "harmonics": 4},
     "delta": {"samples": 64},
     "pawn": {"samples": 100},

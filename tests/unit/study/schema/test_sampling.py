@@ -13,7 +13,7 @@ RUNS = [
     ("sobol", {"base_samples": 16}, 16 * (2 * 3 + 2)),
     ("sobol", {"base_samples": 16, "second_order": False}, 16 * (3 + 2)),
     ("morris", {"trajectories": 10}, 10 * (3 + 1)),
-    ("morris", {"trajectories": 10, "optimal_trajectories": 4, "levels": 6}, 4 * (3 + 1)),
+    ("morris", {"trajectories": 4, "levels": 6}, 4 * (3 + 1)),
     ("fast", {"samples": 65}, 65 * (3 + 1)),
     ("fast", {"samples": 145, "harmonics": 6}, 145 * (3 + 1)),
     ("delta", {"samples": 100}, 100),
@@ -23,14 +23,6 @@ RUNS = [
 WRONG = [
     ("morris", {"trajectories": 1}, "trajectories", "must be at least 2"),
     ("morris", {"trajectories": 4, "levels": 5}, "levels", "must be even"),
-    ("morris", {"trajectories": 4, "optimal_trajectories": 4}, "optimal_trajectories", "2 to 3"),
-    ("morris", {"trajectories": 4, "optimal_trajectories": 1}, "optimal_trajectories", "2 to 3"),
-    (
-        "morris",
-        {"trajectories": 1000, "optimal_trajectories": 50},
-        "optimal_trajectories",
-        "takes too long to choose",
-    ),
     ("fast", {"samples": 64}, "samples", "must be at least 65 (above 4 harmonics²)"),
     ("fast", {"samples": 144, "harmonics": 6}, "samples", "must be at least 145"),
     ("delta", {"samples": 63}, "samples", "must be at least 64"),
@@ -128,7 +120,6 @@ WRONG_GROUPS = [
         ("sobol", {"base_samples": 16}, 16 * (2 * 2 + 2)),
         ("sobol", {"base_samples": 16, "second_order": False}, 16 * (2 + 2)),
         ("morris", {"trajectories": 10}, 10 * (2 + 1)),
-        ("morris", {"trajectories": 10, "optimal_trajectories": 4}, 4 * (2 + 1)),
     ],
 )
 def test_groups_count_instead_of_parameters(read, sampled, method, given, runs):
