@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -29,8 +28,6 @@ from impactlab.variables import NO_DISTRIBUTION, attributes
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
 _FAILED_RUNS = 20  # largest number of failed runs listed one by one
-_PRINTED_RUNS = 48  # grids up to this size are printed run by run
-_COLUMNS = 6  # responses side by side in a printed table
 _EACH = "Each response against each parameter"
 _SCATTER = (
     "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
@@ -97,7 +94,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             *convergence(runs, analysis),
             *measured.sections(analysis),
             *(added(runs, analysis) if added else []),
-            Section("results", "Results", tables=[ranges], folded=_all_values(runs)),
+            Section("results", "Results", tables=[ranges]),
             _outcome(runs, analysis),
             inputs,
         ]
@@ -270,33 +267,3 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     head = ["Response", "Unit", *heads, "Smallest", "Largest", "Runs missing"]
     remarks = distribution.remarks(runs, analysis) if heads else []
     return Table("Range of each response", head, rows, remarks)
-
-
-def _all_values(runs: xr.Dataset) -> list[Table]:
-    """Return all values of a small grid, a few responses per table; none for other grids."""
-    if count(runs) > _PRINTED_RUNS:
-        return []
-    dims = [dim for dim in design_dims(runs) if runs.sizes[dim] > 1]
-    varied_heads = [
-        labels.axis(labels.parameter(dim), labels.unit(runs[dim]).strip()).removesuffix(" (–)")
-        for dim in dims
-    ]
-    shown = responses(runs)
-    groups = [shown[at : at + _COLUMNS] for at in range(0, len(shown), _COLUMNS)]
-    tables = []
-    for number, group in enumerate(groups, 1):
-        units = {name: display(runs[name]) for name in group}
-        arrays = {name: usable(runs, name).squeeze() for name in group}
-        rows: list[Row] = []
-        for position in product(*(range(runs.sizes[dim]) for dim in dims)):
-            where = dict(zip(dims, position, strict=True))
-            row = [Cell(labels.values(runs[dim], [at])[0], "number") for dim, at in where.items()]
-            for name, array in arrays.items():
-                value = float(units[name](array.isel(where)))
-                kind = "number" if np.isfinite(value) else "warning"
-                row.append(Cell(labels.number(value), kind))
-            rows.append(row)
-        heads = [labels.axis(labels.response(name), unit.symbol) for name, unit in units.items()]
-        caption = f"Every run, responses {number} of {len(groups)}"
-        tables.append(Table(caption, [*varied_heads, *heads], rows))
-    return tables

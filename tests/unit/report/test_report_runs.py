@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -122,17 +121,3 @@ def test_ranges_of_a_grid_say_where(report: Any, velocity_study: Study, failing:
     assert row[3] == f"{largest:.4g}impact velocity = 20 m/s, contact law = “{STRONGE}”"
     assert row[4] == "1"
     assert _row(page, "Range of each response", "Number of contacts")[2] == "2in every run"
-
-
-def test_small_grids_are_printed_run_by_run(
-    report: Any, velocity_study: Study, failing: Any
-) -> None:
-    runs, analysis = velocity_study
-    page = report(failing(runs, {"velocity": 1, "contact": 0}), analysis)
-    tables = [rows for name, rows in page.tables.items() if name.startswith("Every run")]
-    assert [len(rows) for rows in tables] == [17] * math.ceil(len(RESPONSES) / 6)
-    head, *rows = tables[0]
-    assert head[:3] == ["Impact velocity (m/s)", "Contact law", "Peak force (kN)"]
-    assert rows[2][:3] == ["0.99", "Hertz", "missing"]
-    stored = 1e-3 * float(runs["peak_force"].sel(velocity=0.99, contact="stronge"))
-    assert rows[3][:3] == ["0.99", "Stronge, unloading after Wang et al.", f"{stored:.4g}"]
