@@ -31,44 +31,35 @@ def extend_sample(design: xr.Dataset, solve: Step, analyse: Step) -> xr.Dataset:
     first_order_interval, total_order_interval (response, parameter) and sensitivity_verdict
     (response) of runs.
 
-    Attributes of the runs are until_reached (1: the intervals are narrow enough), until_reason (why
-    it stopped, in words), until_widest (the largest half-width) and its index, response and
-    parameter, until_widest_index, until_widest_response and until_widest_parameter, and
-    until_left_out: one line per response without indices, with the reason. Raises ValueError when
-    this version of impactlab draws other runs than the design has.
+    Attributes of the runs are until_reached (1: the intervals are narrow enough) and until_reason
+    (why it stopped, in words). Raises ValueError when this version of impactlab draws other runs
+    than the design has.
     """
     limit, most = float(design.attrs["until_interval"]), int(design.attrs["until_runs"])
     names = np.atleast_1d(design.attrs.get("until_responses", design.attrs["responses"]))
     while True:
         runs = solve(design)
         analysis = analyse(runs.assign_attrs(analyses="sensitivity"))
-        found, count = largest_interval(analysis, [str(name) for name in names]), runs.sizes["run"]
-        half_width, index = found["until_widest"], found["until_widest_index"].replace("_", "-")
-        response, parameter = found["until_widest_response"], found["until_widest_parameter"]
-        widest = f"the widest interval is that of the {index} index of {response} to {parameter}"
-        if not response:
-            reason = "no response has indices that more runs could narrow"
-        elif half_width <= limit:
-            reason = f"{widest}, ± {half_width:.3g}, within {limit:g}"
-        elif 2 * count > most:
-            more = f"but twice as many runs are more than {most:,}"
-            reason = f"{widest}, ± {half_width:.3g}, above {limit:g}, {more}"
-        else:
-            log.info("%d runs: %s, ± %.3g: twice as many", count, widest, half_width)
+        half_width, reason = largest_interval(analysis, [str(name) for name in names])
+        count = runs.sizes["run"]
+        if half_width > limit and 2 * count <= most:
+            log.info("%d runs: %s: twice as many", count, reason)
             design = doubled(design)
             continue
+        if half_width <= limit:
+            reason += f", within {limit:g}"
+        elif half_width > limit:
+            reason += f", above {limit:g}, but twice as many runs are more than {most:,}"
         log.info("%d runs: %s", count, reason)
-        reached = int(half_width <= limit)
-        return runs.assign_attrs(until_reached=reached, until_reason=reason, **found)
+        return runs.assign_attrs(until_reached=int(half_width <= limit), until_reason=reason)
 
 
-def largest_interval(analysis: xr.Dataset, responses: Sequence[str]) -> dict[str, Any]:
-    """Return the largest interval of the first and total-order indices of these responses.
+def largest_interval(analysis: xr.Dataset, responses: Sequence[str]) -> tuple[float, str]:
+    """Return the half-width of the widest interval of these responses' indices, and words on it.
 
     analysis: <index>_interval on (response, parameter), NaN for a response without indices, and
-    sensitivity_verdict (response) with the reason. It is returned as the attributes until_widest,
-    until_widest_index, until_widest_response, until_widest_parameter and until_left_out (see
-    extend_sample): NaN and empty where no response has indices.
+    sensitivity_verdict (response) with the reason. The words name the index and every response
+    without indices. The half-width is NaN where no response has any.
     """
     requested = analysis.sel(response=list(responses))
     intervals = requested[["first_order_interval", "total_order_interval"]].to_array("index")
@@ -77,20 +68,14 @@ def largest_interval(analysis: xr.Dataset, responses: Sequence[str]) -> dict[str
     lines = str(verdicts.attrs["flag_descriptions"]).splitlines()
     told = dict(zip(np.atleast_1d(verdicts.attrs["flag_values"]), lines, strict=True))
     without = zip(np.array(responses)[missing], verdicts.values[missing], strict=True)
-    left_out = "\n".join(f"{name} ({told[verdict]})" for name, verdict in without)
-    half_width, index, response, parameter = np.nan, "", "", ""
-    if not missing.all():
-        given = intervals.isel(response=~missing).fillna(np.inf)
-        widest = given.isel(given.argmax(["index", "response", "parameter"]))
-        half_width, index = widest.item(), widest["index"].item().removesuffix("_interval")
-        response, parameter = widest["response"].item(), widest["parameter"].item()
-    return {
-        "until_widest": half_width,
-        "until_widest_index": index,
-        "until_widest_response": response,
-        "until_widest_parameter": parameter,
-        "until_left_out": left_out,
-    }
+    left_out = "".join(f"{name} has no indices ({told[verdict]}); " for name, verdict in without)
+    if missing.all():
+        return np.nan, f"{left_out}no response has indices that more runs could narrow"
+    given = intervals.isel(response=~missing).fillna(np.inf)
+    widest = given.isel(given.argmax(["index", "response", "parameter"]))
+    index = widest["index"].item().removesuffix("_interval").replace("_", "-")
+    of = f"{widest['response'].item()} to {widest['parameter'].item()}, ± {widest.item():.3g}"
+    return widest.item(), f"{left_out}the widest interval is that of the {index} index of {of}"
 
 
 def refine_cases(runs: xr.Dataset, solve: Step, count: int | None = None) -> xr.Dataset:

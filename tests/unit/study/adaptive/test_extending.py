@@ -86,23 +86,19 @@ def test_the_sample_grows_until_the_widest_interval_is_narrow_enough(sample, sol
     assert solve.runs == [256, 512, 1024]  # N (D + 2)
     assert runs.attrs["base_samples"] == 256
     assert runs.attrs["until_reached"] == 1
-    assert runs.attrs["until_widest"] == pytest.approx(0.1)
-    assert runs.attrs["until_widest_index"] == "first_order"
-    assert runs.attrs["until_widest_response"] == "contact_duration"
-    assert runs.attrs["until_widest_parameter"] == "velocity"
     assert runs.attrs["until_reason"] == (
+        "number_of_contacts has no indices (constant: it is still); "
         "the widest interval is that of the first-order index of contact_duration to velocity, "
         "± 0.1, within 0.1"
     )
-    assert runs.attrs["until_left_out"] == "number_of_contacts (constant: it is still)"
 
 
 def test_it_stops_before_there_are_more_runs_than_allowed(sample, solve, shrinking):
     runs = extend_sample(sample(interval=0.01, runs=2047), solve, shrinking)
     assert solve.runs == [256, 512, 1024]
     assert runs.attrs["until_reached"] == 0
-    assert runs.attrs["until_widest"] == pytest.approx(0.1)
-    assert "twice as many runs are more than 2,047" in runs.attrs["until_reason"]
+    expected = "± 0.1, above 0.01, but twice as many runs are more than 2,047"
+    assert runs.attrs["until_reason"].endswith(expected)
 
 
 def test_as_many_runs_as_allowed_are_made(sample, solve, shrinking):
@@ -113,16 +109,16 @@ def test_as_many_runs_as_allowed_are_made(sample, solve, shrinking):
 def test_only_the_responses_it_is_asked_of_count(sample, solve, shrinking):
     runs = extend_sample(sample(interval=0.1, responses=["peak_force"]), solve, shrinking)
     assert solve.runs == [256]
-    assert runs.attrs["until_widest_response"] == "peak_force"
-    assert runs.attrs["until_left_out"] == ""
+    assert runs.attrs["until_reason"].startswith("the widest")
+    assert "peak_force" in runs.attrs["until_reason"]
 
 
 def test_responses_without_indices_alone_ask_for_no_runs(sample, solve, shrinking):
     runs = extend_sample(sample(responses=["number_of_contacts"]), solve, shrinking)
     assert solve.runs == [256]
     assert runs.attrs["until_reached"] == 0
-    assert np.isnan(runs.attrs["until_widest"])
-    assert runs.attrs["until_reason"] == "no response has indices that more runs could narrow"
+    expected = "; no response has indices that more runs could narrow"
+    assert runs.attrs["until_reason"].endswith(expected)
 
 
 def test_the_analysis_of_the_package_decides(sample, solve, tmp_path):
@@ -133,8 +129,10 @@ def test_the_analysis_of_the_package_decides(sample, solve, tmp_path):
     analysis = analyse(xr.load_dataset(tmp_path / "runs.nc"))
     assert len(solve.runs) > 1
     widths = [analysis[f"{name}_order_interval"] for name in ("first", "total")]
-    assert max(width.max().item() for width in widths) == analysis.attrs["until_widest"] <= 0.08
-    assert "number_of_contacts (constant: " in runs.attrs["until_left_out"]
+    widest = max(width.max().item() for width in widths)
+    assert widest <= 0.08
+    assert f"± {widest:.3g}, within 0.08" in analysis.attrs["until_reason"]
+    assert "number_of_contacts has no indices (constant: " in runs.attrs["until_reason"]
     # S = (a_i width_i)^2 / sum for a linear function
     first = analysis["first_order"].sel(response="peak_force")
     np.testing.assert_allclose(first, [0.8, 0.2], atol=0.08)
@@ -158,34 +156,36 @@ def analysis():
     )
 
 
+def widest(index, of):
+    return f"the widest interval is that of the {index} index of {of}"
+
+
+STILL = "still has no indices (constant: does not vary); "
+
+
 def test_the_widest_is_named(analysis):
-    assert largest_interval(analysis, ["force", "still", "time"]) == {
-        "until_widest": 0.5,
-        "until_widest_index": "first_order",
-        "until_widest_response": "force",
-        "until_widest_parameter": "a",
-        "until_left_out": "still (constant: does not vary)",
-    }
+    found = largest_interval(analysis, ["force", "still", "time"])
+    assert found == (0.5, f"{STILL}{widest('first-order', 'force to a')}, ± 0.5")
 
 
 def test_only_what_is_asked_counts(analysis):
     found = largest_interval(analysis, ["time"])
-    assert list(found.values()) == [0.4, "first_order", "time", "b", ""]
+    assert found == (0.4, f"{widest('first-order', 'time to b')}, ± 0.4")
 
 
 def test_total_order_counts_too(analysis):
     analysis["first_order_interval"] *= 0
     found = largest_interval(analysis, ["time", "force"])
-    assert list(found.values()) == [0.3, "total_order", "time", "a", ""]
+    assert found == (0.3, f"{widest('total-order', 'time to a')}, ± 0.3")
 
 
 def test_without_any_index_there_is_none(analysis):
-    half_width, *names = largest_interval(analysis, ["still"]).values()
+    half_width, words = largest_interval(analysis, ["still"])
     assert math.isnan(half_width)
-    assert names == ["", "", "", "still (constant: does not vary)"]
+    assert words == f"{STILL}no response has indices that more runs could narrow"
 
 
 def test_a_gap_among_numbers_is_not_narrow(analysis):
     analysis["total_order_interval"][2, 1] = np.nan
     found = largest_interval(analysis, ["force", "time"])
-    assert list(found.values()) == [math.inf, "total_order", "time", "b", ""]
+    assert found == (math.inf, f"{widest('total-order', 'time to b')}, ± inf")
