@@ -14,12 +14,8 @@ from impactlab.figures import access, curves, labels, record, responses_grid, sc
 from impactlab.figures.access import physical, responses, usable
 from impactlab.figures.curves import Plan, plan
 from impactlab.figures.labels import Display, display
-from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import paper_impact
-from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.types import Floats
 from impactlab.variables import MARKS
-from impactlab.verification.solutions.beam_modes import impact_share
 
 _PEAK, _DURATION, _RESTITUTION = "peak_force", "contact_duration", "restitution"
 _FORCE, _INDENTATION, _DENT = "contact_force", "indentation", "permanent_indentation"
@@ -29,7 +25,6 @@ _THRESHOLD = 1.0  # changes by shear that matter, %
 _WIDE = 10.0  # largest change in % up to which an axis is linear
 _WITHOUT, _WITH = "euler_bernoulli", "timoshenko"
 _SHEARED = (_PEAK, _DURATION)
-_BEAM = [name for name, entry in PARAMETERS.items() if entry.path[:2] == ("impact", "beam")]
 _velocity_plan = partial(plan, along=["velocity"], prefer=["contact"])
 _plan_shear = partial(plan, variable=_PEAK, along=["beam_depth", "beam_model"])
 
@@ -264,9 +259,9 @@ def parameter_axis(along: xr.DataArray) -> str:
 @record.figure(
     "When shear matters",
     "Relative change by shear and rotary inertia: a Timoshenko beam over an Euler-Bernoulli "
-    "one, minus one. Below, the same changes against how much shear and "
-    "rotary inertia slow the wave that turns by π during the contact, which goes with depth "
-    "over contact duration: if it decided alone, the curves would coincide.",
+    "one, minus one. Below, the same changes against depth over contact "
+    "duration, with which shear and rotary inertia slow the wave that turns by π during the "
+    "contact: if that decided alone, the curves of one material would coincide.",
     lambda runs, analysis: (
         runs.sizes.get("beam_depth", 0) >= _FEWEST
         and {_WITHOUT, _WITH} <= set(runs.get("beam_model", xr.DataArray()).values.ravel())
@@ -279,41 +274,33 @@ def parameter_axis(along: xr.DataArray) -> str:
     ),
 )
 def shear(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
-    """Draw a column per response: against depth over span above, against the share below."""
+    """Draw a column per response: against depth over span above, over contact duration below."""
     selected = _plan_shear(runs)
     figure, axes = style.panels(4, columns=2, height=55)
     for at, name in enumerate(_SHEARED):
         above, below = axes[at], axes[at + 2]
-        for curve in selected.curves:  # joined by depth: two pushes may reverse the share
-            slenderness, share, change = _shear_curve(runs, name, curve.where)
+        for curve in selected.curves:  # joined by depth: two pushes may reverse the pace
+            slenderness, pace, change = _shear_curve(runs, name, curve.where)
             curves.add(above, slenderness, change, curve)
-            curves.add(below, share, change, curve)
+            curves.add(below, pace, change, curve)
         for ax in (above, below):
             ax.set_ylabel(labels.axis(f"change of {labels.response(name)}", "%"))
             _scale_changes(ax)
         above.set_xlabel(labels.axis("depth of the beam over its span", ""))
-        below.set_xlabel(labels.axis("slowing of the wave of the contact", "%"))
+        below.set_xlabel(labels.axis("depth of the beam over contact duration", "m/s"))
     return selected.finish(figure)
 
 
 def _shear_curve(
     runs: xr.Dataset, name: str, where: dict[str, int]
 ) -> tuple[Floats, Floats, Floats]:
-    """Return depth over span, the contact's share (NaN without one) and the change, both in %."""
+    """Return depth over span, depth over contact duration (m/s, NaN without one), change in %."""
     run = runs.isel(where)
+    depth = run["beam_depth"]
     values, durations = usable(run, name), usable(run, _DURATION).sel(beam_model=_WITHOUT)
     change = values.sel(beam_model=_WITH) / values.sel(beam_model=_WITHOUT) - 1.0
-    beams = []
-    for at in range(run.sizes["beam_depth"]):
-        one = run.isel(beam_depth=at)
-        given = {name: float(one[name]) for name in _BEAM if name in one.coords}
-        beams.append(with_values(paper_impact(), Discretisation(), given)[0].beam)
-    share = [
-        100.0 * impact_share(beam, duration) if duration > 0 else np.nan
-        for beam, duration in zip(beams, durations.values.tolist(), strict=True)
-    ]
-    slenderness = np.array([beam.depth / beam.span for beam in beams])
-    return slenderness, np.array(share), 100 * change.values
+    pace = depth / durations.where(durations > 0)
+    return (depth / run["beam_span"]).values, pace.values, 100 * change.values
 
 
 def _scale_changes(ax: Axes) -> None:
@@ -340,11 +327,11 @@ def _scale_changes(ax: Axes) -> None:
 
 
 def _shear_finding(runs: xr.Dataset, name: str) -> str:
-    """Return a sentence on the drawn curves: their change, where it matters, and the share."""
+    """Return a sentence on the drawn curves: their change, where it matters, and the pace."""
     selected = _plan_shear(runs)
     found = [_shear_curve(runs, name, curve.where) for curve in selected.curves]
-    slenderness, share, change = (np.concatenate(part) for part in zip(*found, strict=True))
-    known = np.isfinite(change + share)
+    slenderness, pace, change = (np.concatenate(part) for part in zip(*found, strict=True))
+    known = np.isfinite(change + pace)
     if not known.any():
         return ""
     matters = known & (abs(change) >= _THRESHOLD)
@@ -352,5 +339,5 @@ def _shear_finding(runs: xr.Dataset, name: str) -> str:
     return (
         f"The {labels.response(name)} changes by {labels.span(change[known], 2)} %, by "
         f"{labels.number(_THRESHOLD)} % or more in {matters.sum()} of {known.sum()} "
-        f"impacts{deep}, while the slowing goes from {labels.span(share[known], 2)} %."
+        f"impacts{deep}, while depth over duration goes from {labels.span(pace[known], 2)} m/s."
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -11,9 +10,7 @@ import xarray as xr
 from drawings import curve
 
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.model.impact import paper_impact
 from impactlab.solver.contact import LAWS
-from impactlab.verification.solutions.beam_modes import impact_share
 
 NONE = xr.Dataset()
 LAWS_FIGURE, SHEAR_FIGURE = CATALOGUE["contact_laws"], CATALOGUE["shear"]
@@ -67,13 +64,11 @@ def test_changes_in_per_cent_against_depth_over_span(shear_study):
         assert y == pytest.approx(change)
 
 
-def test_below_the_same_against_the_share_of_the_contact_without_shear(shear_study):
+def test_below_the_same_against_depth_over_the_duration_without_shear(shear_study):
     runs, _ = shear_study
     x, y = curve(SHEAR_FIGURE.plot(runs, NONE).axes[2], "0.25 m/s")
     durations = runs["contact_duration"].sel(velocity=0.25, beam_model="euler_bernoulli").values
-    beams = [replace(paper_impact().beam, depth=depth) for depth in DEPTHS.tolist()]
-    shares = [impact_share(beam, time) for beam, time in zip(beams, durations, strict=True)]
-    assert x == pytest.approx(100.0 * np.array(shares))
+    assert x == pytest.approx(DEPTHS / durations)
     assert y == pytest.approx(-30.0 * DEPTHS)
 
 
