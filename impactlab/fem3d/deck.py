@@ -13,7 +13,15 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from impactlab.fem3d.solver.estimates import contact_radius
-from impactlab.fem3d.solver.mesh import BEAM, FACES, SPHERE, Integers, Mesh, sphere_density
+from impactlab.fem3d.solver.mesh import (
+    BEAM,
+    FACES,
+    SPHERE,
+    Integers,
+    Mesh,
+    check_mesh,
+    sphere_density,
+)
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import instance, one_of, positive
@@ -103,7 +111,7 @@ def write_deck(
         raise ValueError(
             f"deck.interval = {interval!r} s: must not be above the duration ({duration!r} s)"
         )
-    _check_mesh(mesh, impact)
+    check_mesh(mesh, impact)
     beam, ball = impact.beam.material, impact.sphere.material
     for material in (beam, ball):
         refuse_rate(material)
@@ -140,22 +148,6 @@ def write_deck(
     except OSError as error:
         raise ValueError(f"deck: cannot write {path}: {error.strerror}") from error
     return path
-
-
-def _check_mesh(mesh: Mesh, impact: Impact) -> None:
-    """Raise ValueError where the mesh is that of other bodies."""
-    beam, nodes = impact.beam, mesh.nodes
-    for name, meshed, wanted in (
-        ("beam's span", 2.0 * nodes[mesh.support, 0].max(), beam.span),
-        ("beam's width", 2.0 * nodes[mesh.support, 1].max(), beam.width),
-        ("beam's depth", -nodes[:, 2].min(), beam.depth),
-        ("sphere's radius", 0.5 * nodes[:, 2].max(), impact.sphere.radius),
-    ):
-        if not math.isclose(meshed, wanted, rel_tol=1e-9):
-            raise ValueError(
-                f"deck.mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in the "
-                "impact: make the mesh from this impact (quarter_mesh)"
-            )
 
 
 def _outer(mesh: Mesh, body: int) -> tuple[Integers, Integers]:

@@ -18,7 +18,7 @@ import xarray as xr
 
 from impactlab.fem3d.solver import Mesh, PatchTooSmallError
 from impactlab.fem3d.solver.march import History, Moment, Progress
-from impactlab.fem3d.solver.mesh import BEAM, SPHERE, nodal_masses, sphere_density
+from impactlab.fem3d.solver.mesh import BEAM, SPHERE, check_mesh, nodal_masses, sphere_density
 from impactlab.fem3d.solver.responses import history_responses, plastic_responses
 from impactlab.fem3d.solver.solve import OWN, histories, named
 from impactlab.fem3d.solver.system import refuse_rate
@@ -60,12 +60,13 @@ def solve_on(
     `iterations` are Newton's. A run that was interrupted by Ctrl-C, or in which a step did not
     converge, gives what it has computed until then, and the attribute `stopped` says why.
 
-    Raises KratosMissingError when Kratos is not installed; ValueError when a number is not valid or
-    a material has kinematic hardening; and PatchTooSmallError (a ValueError) when the contact
-    leaves the patch of matched nodes.
+    Raises KratosMissingError when Kratos is not installed; ValueError when a number is not valid,
+    the mesh is of other bodies or a material has kinematic hardening; and PatchTooSmallError (a
+    ValueError) when the contact leaves the patch of matched nodes.
     """
     for name, value in (("duration", duration), ("time_step", time_step), ("penalty", penalty)):
         positive("solve", name, value)
+    check_mesh(mesh, impact)
     kratos = engine(integer("solve", "threads", threads, 1))
     run = Run(kratos, mesh, impact, duration=duration, time_step=time_step, penalty=penalty)
     run.go(progress)

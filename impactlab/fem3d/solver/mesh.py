@@ -120,6 +120,22 @@ def _faces(pairs: int) -> Integers:
     return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
+def check_mesh(mesh: Mesh, impact: Impact) -> None:
+    """Raise ValueError where the mesh is that of other bodies."""
+    beam, nodes = impact.beam, mesh.nodes
+    for name, meshed, wanted in (
+        ("beam's span", 2.0 * nodes[mesh.support, 0].max(), beam.span),
+        ("beam's width", 2.0 * nodes[mesh.support, 1].max(), beam.width),
+        ("beam's depth", -nodes[:, 2].min(), beam.depth),
+        ("sphere's radius", 0.5 * nodes[:, 2].max(), impact.sphere.radius),
+    ):
+        if not math.isclose(meshed, wanted, rel_tol=1e-9):
+            raise ValueError(
+                f"mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in the "
+                "impact: make the mesh from this impact (quarter_mesh)"
+            )
+
+
 def nodal_masses(mesh: Mesh, impact: Impact) -> Floats:
     """Return the lumped mass of each node in kg, (n,): an eighth of each of its elements.
 

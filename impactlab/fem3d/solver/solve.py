@@ -11,7 +11,7 @@ import xarray as xr
 
 from impactlab.fem3d.solver.jit import COMPILER
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
-from impactlab.fem3d.solver.mesh import Mesh, quarter_mesh
+from impactlab.fem3d.solver.mesh import Mesh, check_mesh, quarter_mesh
 from impactlab.fem3d.solver.responses import fields, plastic_responses, responses
 from impactlab.fem3d.solver.system import System, ThreadPool
 from impactlab.model.checks import integer, positive
@@ -53,9 +53,11 @@ def solve_on(
     left the patch of matched nodes, returns what it has computed until then, and the attribute
     `stopped` gives the reason; `patch_needed` is the patch to take, in m.
 
-    Raises ValueError when a number is not valid or the duration below a time step.
+    Raises ValueError when a number is not valid, the mesh is of other bodies, or the duration below
+    a time step.
     """
     positive("solve", "duration", duration)
+    check_mesh(mesh, impact)
     samples = integer("solve", "samples", samples, 2)
     with ThreadPool(integer("solve", "threads", threads, 1)) as pool:
         system = System(mesh, impact, pool)

@@ -8,8 +8,10 @@ import decks
 import numpy as np
 import pytest
 
+from impactlab.fem3d import kratos
 from impactlab.fem3d.deck import FLAVOURS, write_deck
 from impactlab.fem3d.solver.mesh import SPHERE
+from impactlab.fem3d.solver.solve import solve_on
 
 both = pytest.mark.parametrize("flavour", FLAVOURS)
 
@@ -126,5 +128,10 @@ def test_mistakes_are_named(tmp_path, impact, mesh, options, words):
 def test_the_mesh_of_another_impact_is_refused(tmp_path, impact, mesh, length, wrong):
     body = "sphere" if length == "radius" else "beam"
     other = replace(impact, **{body: replace(getattr(impact, body), **{length: wrong})})
-    with pytest.raises(ValueError, match=rf"deck\.mesh: the {body}'s {length} is .* {wrong} m in"):
-        write_deck(tmp_path / "deck.inp", other, mesh, flavour="abaqus", duration=1e-4)
+    for take in (
+        lambda: write_deck(tmp_path / "deck.inp", other, mesh, flavour="abaqus", duration=1e-4),
+        lambda: solve_on(mesh, other, duration=1e-4),
+        lambda: kratos.solve_on(mesh, other, duration=1e-4),
+    ):
+        with pytest.raises(ValueError, match=rf"mesh: the {body}'s {length} is .* {wrong} m in"):
+            take()
