@@ -179,7 +179,7 @@ class Study:
     def design(self) -> xr.Dataset:
         """Return the coordinates of all runs, in SI units.
 
-        Raises StudyError where a drawn run is impossible, or the discretisation still to be found.
+        Raises StudyError where the discretisation is still to be found.
         """
         from impactlab.study.sampling.design import design
 

@@ -329,7 +329,9 @@ def _one_by_one(
         try:
             yield with_values(impact, discretisation, values)
         except ValueError as error:
-            raise ValueError(f"run {run}: {error}") from None
+            stated = ", ".join(f"{name} = {value!r}" for name, value in values.items())
+            several = f" ({stated})" * (len(values) > 1)
+            raise ValueError(f"run {run}{several}: {error}") from None
 
 
 def _table(

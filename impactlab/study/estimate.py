@@ -23,7 +23,7 @@ from impactlab.model.quantities import amount, time
 from impactlab.simulate import case_table
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.netcdf import Array
-from impactlab.study.runs import file_stats
+from impactlab.study.runs import BOUND_IT, file_stats
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
@@ -185,7 +185,7 @@ def _cases(study: Study, model: Any, columns: Mapping[str, Sequence[Value] | Arr
     try:
         return np.asarray(model.table(*base, duration=study.duration, varied=columns))
     except ValueError as error:
-        reason = f"gives runs that are impossible ({error}): take bounded distributions"
+        reason = f"gives an impossible run: {error}: {BOUND_IT}"
         raise StudyError(Problem(str(study.path), "sampling.parameters", reason)) from None
 
 

@@ -32,6 +32,8 @@ from impactlab.study.store import (
     sound_runs,
 )
 
+BOUND_IT = "use a bounded distribution, such as truncated_normal, or narrower bounds"
+"""What to do about an impossible draw."""
 _CHUNK = 10_000  # runs whose cases are in memory together: a table of all would fill it
 
 
@@ -56,7 +58,11 @@ class Work:
         solver = solver_named(name)
         keys, cost, runs = [], [], np.arange(math.prod(run_shape(design)[1]))
         for start in range(0, runs.size, _CHUNK):
-            cases = solver.cases(design, runs[start : start + _CHUNK])
+            try:
+                cases = solver.cases(design, runs[start : start + _CHUNK])
+            except ValueError as error:
+                advice = f": {BOUND_IT}" * ("run" in design.dims)  # drawn
+                raise ValueError(f"{error}{advice}") from None
             keys.append(run_keys(cases, output, solver.version))
             cost.append(solver.cost(cases))
         return Work(design, name, solver, output, np.concatenate(keys), np.concatenate(cost))

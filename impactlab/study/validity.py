@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -63,17 +63,6 @@ def refused_corner(base: Base, extremes: Mapping[str, Iterable[Value]]) -> Refus
             if found := refusal(base, dict(zip(names, corner, strict=True))):
                 return found
     return None
-
-
-def refused_run(base: Base, columns: Mapping[str, Sequence[Value]]) -> Refusal | None:
-    """Return the first run that the model refuses; columns hold one value per run."""
-    box = {
-        name: sorted({*values} if isinstance(values[0], str) else {min(values), max(values)})
-        for name, values in columns.items()
-    }
-    runs = zip(*columns.values(), strict=True) if refused_corner(base, box) else ()
-    found = (refusal(base, dict(zip(columns, run, strict=True))) for run in runs)
-    return next((each for each in found if each), None)
 
 
 def check_alone(parameter: Parameter, value: Value) -> Value:

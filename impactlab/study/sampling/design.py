@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.responses import listed
-from impactlab.model.parameters import PARAMETERS, flatten, with_values
+from impactlab.model.parameters import flatten, with_values
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
@@ -21,7 +21,6 @@ from impactlab.study.schema.checks import has_solid_runs
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.schema.study import FunctionStudy, Study
 from impactlab.study.solvers import run_shape
-from impactlab.study.validity import Refusal, check_alone, refused_run
 from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
 
@@ -34,8 +33,8 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
     where it is given); a parameter of a test function keeps the middle of its range. SI units. The
     attributes name the solver and the responses, describe the sample, and hold the study's text.
 
-    Raises StudyError, naming parameter and value, when a drawn run is physically impossible; and
-    for a study whose discretisation is still to be found (impactlab.study.adaptive.recommendation).
+    Raises StudyError for a study whose discretisation is still to be found
+    (impactlab.study.adaptive.recommendation). What is drawn is checked before it is solved.
     """
     sampling = study.sampling
     fixed: dict[str, Any]
@@ -64,11 +63,8 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
     if isinstance(sampling, Grid):
         varied = {name: (name, np.array(values)) for name, values in sampling.parameters.items()}
     else:
-        drawn = sampling.columns()
-        if isinstance(study, Study):
-            _check_draws(study, drawn)
         varied = {"run": xr.Variable("run", np.arange(sampling.runs), {"long_name": "run"})}
-        for name, values in drawn.items():
+        for name, values in sampling.columns().items():
             varied[name] = "run", values, sampling.varied[name].arguments()
     scalars = {name: ((), value) for name, value in fixed.items()}
     found = xr.Dataset(coords=scalars | varied, attrs=study.attributes() | own)
@@ -78,29 +74,6 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
         words = f"{name} of the {FUNCTIONS[study.function].title}"
         found[name].attrs = {"long_name": words, "units": "1"} | found[name].attrs
     return found
-
-
-def _check_draws(study: Study, drawn: dict[str, np.ndarray[Any, Any]]) -> None:
-    """Raise StudyError where the model refuses a run that was drawn; words are checked before."""
-    found = None
-    for name in [name for name in drawn if name not in study.sampling.words]:
-        for extreme in (float(drawn[name].min()), float(drawn[name].max())):
-            try:
-                check_alone(PARAMETERS[name], extreme)
-            except ValueError as error:
-                found = found or Refusal(name, str(error), {name: extreme})
-    if found is None:
-        base = with_values(study.impact, study.discretisation, study.sampling.fixed)
-        found = refused_run(base, {name: values.tolist() for name, values in drawn.items()})
-    if found is None:
-        return
-    run = ", ".join(f"{name} = {value!r}" for name, value in found.values.items())
-    name = found.name if found.name in found.values else next(iter(found.values))
-    reason = (
-        f"a run was drawn with {run}, but {found.name} {found.reason}: use a bounded "
-        "distribution such as truncated_normal, or narrower bounds"
-    )
-    raise StudyError(Problem(str(study.path), f"sampling.parameters.{name}", reason))
 
 
 def doubled(small: xr.Dataset) -> xr.Dataset:

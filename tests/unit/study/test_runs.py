@@ -96,7 +96,9 @@ def test_work_is_the_same_in_chunks(small_design, monkeypatch, chunk):
 
 def test_a_refused_run_is_named_by_its_number(small_design, monkeypatch):
     monkeypatch.setattr("impactlab.study.runs._CHUNK", 2)
-    with pytest.raises(ValueError, match=r"run 4: .*velocity"):
+    with pytest.raises(
+        ValueError, match=r"^run 4 \(velocity = -3\.0, nodes = 11\): .*velocity.*zero$"
+    ):
         Work.of(small_design(1.0, 2.0, -3.0))
 
 

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -7,9 +9,13 @@ from SALib.analyze import sobol as sobol_analysis
 
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import ELEMENTS, PARAMETERS
+from impactlab.study.engine import Engine
 from impactlab.study.errors import StudyError
+from impactlab.study.estimate import estimate
+from impactlab.study.execute import execute
 from impactlab.study.runs import Work
 from impactlab.study.sampling.design import doubled
+from impactlab.study.schema.files import study_of_text
 from impactlab.variables import ANALYSES, RESPONSES
 
 GRID = """
@@ -181,17 +187,17 @@ def test_indices_of_a_linear_function_come_out(drawn):
     np.testing.assert_allclose(result["ST"], effects / effects.sum(), atol=0.01)
 
 
-def test_an_impossible_draw_is_named(designed):
+def test_an_impossible_draw_is_named_before_anything_is_solved(designed, tmp_path):
     text = SAMPLE.format(base_samples=64, second_order=True, seed=1).replace(
         "uniform, low: 20 mm, high: 30 mm", "normal, mean: 20 mm, standard_deviation: 15 mm"
     )
-    with pytest.raises(StudyError) as caught:
-        designed(text)
-    said = str(caught.value)
-    assert "some.yaml: sampling.parameters.beam_depth: " in said
-    assert "beam_depth = -0.0" in said
-    assert "must be above zero" in said
-    assert "truncated_normal" in said
+    with pytest.raises(ValueError, match="must be above zero") as caught:
+        execute(designed(text), tmp_path, Engine())
+    assert re.search(r"run \d+ \(.*beam_depth = -0\.0.*\): Beam\.depth", str(caught.value))
+    assert "truncated_normal" in str(caught.value)
+    assert not list(tmp_path.glob("*/*.nc"))
+    with pytest.raises(StudyError, match=r"some\.yaml: sampling\.parameters: .*beam_depth = -0\.0"):
+        estimate(study_of_text("some", text), tmp_path, workers=1)
 
 
 def test_an_impossible_combination_is_named_and_a_possible_one_is_not(designed):
@@ -200,10 +206,11 @@ def test_an_impossible_combination_is_named_and_a_possible_one_is_not(designed):
         "velocity: {distribution: uniform, low: 1 m/s, high: 2 m/s}",
         "beam_span: {distribution: normal, mean: 40 mm, standard_deviation: SPREAD mm}",
     )
-    with pytest.raises(StudyError, match="beam_depth must be below the span") as caught:
-        designed(text.replace("SPREAD", "8"))
+    with pytest.raises(ValueError, match="must be below the span") as caught:
+        Work.of(designed(text.replace("SPREAD", "8")))
     assert "beam_span = " in str(caught.value)
     possible = designed(text.replace("SPREAD", "4"))
+    assert Work.of(possible).keys.size == possible.sizes["run"]
     assert possible["beam_span"].min() < possible["beam_depth"].max()
 
 
