@@ -82,16 +82,17 @@ def clean(
     results: Results = RESULTS,
     yes: Annotated[bool, typer.Option("--yes", help="Remove without asking.")] = False,
 ) -> None:
-    """Remove solved runs that no study asks for any more.
+    """Remove solved runs that the studies in a folder do not ask for any more.
 
-    Asks first. Runs that a changed study still needs stay, and so do runs.nc and the reports.
+    Asks first. Runs that a changed study still needs stay, and so do runs.nc, the reports, and all
+    of studies that have no file there.
     """
     from impactlab.report.console import print_files
     from impactlab.study.steps import removable
 
     with removable(folder, results) as found:
         if not found:
-            print("Nothing to remove: every shard is asked for.")
+            print("Nothing to remove: every shard of a study there is asked for.")
             return
         print_files(found)
         if yes or typer.confirm("Remove these files?"):

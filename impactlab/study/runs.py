@@ -186,9 +186,9 @@ def file_stats(paths: Iterable[Path]) -> Iterator[os.stat_result]:
 def removable_files(folder: Path, designs: Collection[xr.Dataset] | None) -> dict[Path, str]:
     """Return the files of a study's folder of shards that may be removed, and the reasons.
 
-    designs: all that the study may need; none where it does not exist any more; None of pilot runs
-    and refinements, which are all kept but those of another solver: only a search tells which would
-    be needed again. A shard stays as long as one of its runs is needed, or it cannot be read.
+    designs: all that the study may need; None of pilot runs and refinements, which are all kept but
+    those of another solver: only a search tells which would be needed again. A shard stays as long
+    as one of its runs is needed, or it cannot be read.
     """
     wanted: dict[Path, list[Array]] = {}
     for name in SOLVERS if designs is None else ():
@@ -208,6 +208,4 @@ def removable_files(folder: Path, designs: Collection[xr.Dataset] | None) -> dic
                 sound = sound_runs(path)
                 if sound and not any(np.isin(sound[0], each).any() for each in wanted[place]):
                     found[path] = "holds no run of the study"
-    if designs is not None and not designs:
-        found = dict.fromkeys(found, "its study does not exist")
     return {path: why for path, why in sorted(found.items()) if path.is_file()}

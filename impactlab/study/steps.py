@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-_STUDY = "study"  # file in a folder of shards that names the study file
-PYTHON = "python_functions.txt"
 """File for the text of a study of Python functions, which only Python can read again."""
 AnyStudy = Study | FunctionStudy
 Tell = Callable[[xr.Dataset], object]
@@ -125,14 +123,7 @@ def run(
     if (exceeded := cost.exceeded()) and not force:
         raise StudyError(*exceeded)
     if drawn is None:
-        drawn, source = design(resolved(study, path.parent, engine, tell) or study), study.path
-        if not source.is_file():  # made in Python: `clean` finds its text there
-            source = path.with_name(PYTHON if study.python else f"{study.name}.yaml")
-            with replaced(source) as unfinished:
-                unfinished.write_text(study.text, encoding="utf-8")
-        path.with_name(SHARDS).mkdir(parents=True, exist_ok=True)
-        with suppress(OSError):  # a full disk is reported where more of it is needed
-            path.with_name(SHARDS).joinpath(_STUDY).write_text(f"{source.resolve()}\n")
+        drawn = design(resolved(study, path.parent, engine, tell) or study)
     solve(drawn, path, engine)
 
 
@@ -191,7 +182,7 @@ def status(study: AnyStudy, folder: Path) -> Status | None:
 
 @contextmanager
 def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
-    """Give the files of solved runs that no study asks for any more, and the reasons.
+    """Give the files of solved runs that their studies do not ask for any more, and the reasons.
 
     studies, results: folders of the study files and of their results. No other process works on
     these studies within the context. Raises FileNotFoundError where there are no study files.
@@ -213,17 +204,12 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
 
 
 def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
-    """Return a study's files to remove. file: perhaps gone; home: its folder of results."""
+    """Return a study's files to remove: none where it has no file; home: its folder of results."""
     from impactlab.study.runs import removable_files
     from impactlab.study.sampling.design import design, stages
     from impactlab.study.schema.files import read_study
 
-    with suppress(OSError, ValueError):
-        if not file.exists():
-            file = Path((home / SHARDS / _STUDY).read_text().strip())
     if not file.is_file():
-        return removable_files(shards, ())
-    if file.name == PYTHON:
         return {}
     if shards != home / SHARDS:
         return removable_files(shards, None)

@@ -34,28 +34,30 @@ def test_status_and_clean(folder):
     assert "nobody" in told
     assert "Nothing to remove" in impactlab("clean", cwd=folder).stdout
     (folder / "studies" / "gone.yaml").unlink()
-    (shard,) = folder.glob("results/gone/shards/*/*.nc")
-    (kept,) = folder.glob("results/small/shards/*/*.nc")
+    assert "Nothing to remove" in impactlab("clean", "--yes", cwd=folder).stdout
+    (kept,) = folder.glob("results/gone/shards/*/*.nc")
+    (shard,) = folder.glob("results/small/shards/*/*.nc")
+    (folder / "studies" / "small.yaml").write_text(STUDY.replace("[1.0, 2.0, 3.0]", "[5.0]"))
     refused = impactlab("clean", cwd=folder, said="n\n")
-    assert "its study does not exist" in refused.stdout
+    assert "holds no run of the study" in refused.stdout
     assert shard.exists()
     assert impactlab("clean", "--yes", cwd=folder).returncode == 0
     assert not shard.exists()
     assert kept.exists()
 
 
-def test_clean_finds_a_study_that_lies_elsewhere(folder):
+def test_clean_takes_the_folder_of_studies_that_lie_elsewhere(folder):
     (folder / "elsewhere").mkdir()
     mine = folder / "elsewhere" / "mine.yaml"
     mine.write_text(STUDY)
     assert impactlab("run", mine, cwd=folder).returncode == 0
+    mine.write_text(STUDY.replace("[1.0, 2.0, 3.0]", "[5.0]"))
     assert "Nothing to remove" in impactlab("clean", "--yes", cwd=folder).stdout
-    mine.unlink()
-    assert "its study does not exist" in impactlab("clean", "--yes", cwd=folder).stdout
+    assert "holds no run" in impactlab("clean", "elsewhere", "--yes", cwd=folder).stdout
     assert not list(folder.glob("results/mine/shards/*/*.nc"))
 
 
-def test_clean_does_not_take_a_wrong_folder_for_studies_that_are_gone(folder):
+def test_clean_does_not_take_a_wrong_folder_for_studies(folder):
     impactlab("run", "studies/small.yaml", cwd=folder)
     done = impactlab("clean", "results", "--yes", cwd=folder)
     assert done.returncode == 1

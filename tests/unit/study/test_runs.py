@@ -119,7 +119,6 @@ def test_what_is_not_is_named_with_the_reason(small_design, tmp_path):
     (shard,) = tmp_path.glob("*/*.nc")
     assert removable_files(tmp_path, [small_design(3.0)]) == {shard: "holds no run of the study"}
     assert removable_files(tmp_path, [small_design(1.0, profiles=1)]) == {shard: OTHER_SOLVER}
-    assert removable_files(tmp_path, ()) == {shard: "its study does not exist"}
 
 
 def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path, caplog):
