@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-"""File for the text of a study of Python functions, which only Python can read again."""
 AnyStudy = Study | FunctionStudy
 Tell = Callable[[xr.Dataset], object]
 
