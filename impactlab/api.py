@@ -343,7 +343,7 @@ def calibrate(
 
     >>> study = il.Study(
     ...     title="Decay", function=lambda rate, start: start - 2 * rate, sampling=il.Pawn(
-    ...         samples=64, parameters={"rate": il.Uniform(0, 1), "start": il.Uniform(5, 6)}))
+    ...         samples=128, parameters={"rate": il.Uniform(0, 1), "start": il.Uniform(5, 6)}))
     >>> value = {"quantity": "value", "value": 4.5, "standard_uncertainty": 0.1}
     >>> ours = {"title": "Value", "source": "an example, not measured", "measurements": [value]}
     >>> found = il.calibrate(study, ours, workers=1)

@@ -177,20 +177,20 @@ def test_evidence_of_other_runs_is_refused(results):
 
 
 def test_figures_of_other_results_are_refused(results):
-    path = results / "checks" / "findings.nc"
-    done("figures", path, cwd=results)
-    done("report", path, cwd=results)
+    runs, path = (results / "small" / name for name in ("runs.nc", "analysis.nc"))
+    done("figures", runs, path, cwd=results)
+    done("report", runs, path, cwd=results)
     captions = path.parent / "figures" / "captions.json"
     sound = captions.read_text()
     for hostile in ("[]", "{", '{"../../other": {}}', '{"a": 1}'):
         captions.write_text(hostile)
-        ended = called("report", path, cwd=results)
+        ended = called("report", runs, path, cwd=results)
         assert ended.returncode
         assert "captions.json: is damaged" in ended.stderr
     captions.write_text(sound)
-    findings = read_netcdf(path, "findings")
-    write_netcdf(findings.assign(ours=2 * findings["ours"]), path, "findings")
-    ended = called("report", path, cwd=results)
+    analysis, solved = read_netcdf(path, "analysis"), read_netcdf(runs, "runs")
+    write_netcdf(analysis.assign_attrs(title="Another"), path, "analysis", solved)
+    ended = called("report", runs, path, cwd=results)
     assert ended.returncode
     assert "figures: its figures were drawn from other results" in ended.stderr
 
@@ -246,10 +246,10 @@ def test_every_file_follows_cf(results):
     pytest.importorskip("compliance_checker")
     from compliance_checker.runner import CheckSuite, ComplianceChecker
 
-    done("figures", "checks/findings.nc", cwd=results)
+    done("figures", "small/runs.nc", "small/analysis.nc", cwd=results)
     done("simulate", "--nodes", "21", "--output", "one.nc", cwd=results)
     paths = [*results.glob("s*/*.nc"), *results.glob("*.nc"), results / "checks" / "findings.nc"]
-    paths.append(next(results.glob("checks/figures/*.nc")))
+    paths.append(next(results.glob("small/figures/*.nc")))
     CheckSuite.load_all_available_checkers()
     for path in paths:
         passed, _ = ComplianceChecker.run_checker(
