@@ -42,7 +42,7 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
         ranges = {} if study.python else FUNCTIONS[study.function].ranges
         fixed = {name: 0.5 * (low + high) for name, (low, high) in ranges.items()}
         fixed |= {name: float(value) for name, value in sampling.fixed.items()}
-        own: dict[str, Any] = {"solver": study.function, "function": study.function}
+        own: dict[str, Any] = {"solver": "function", "function": study.function}
         own |= {"histories": 0, "profiles": 0, "history_samples": 0}
     else:
         if study.auto is not None:

@@ -77,12 +77,17 @@ class Solver:
     """Python functions that a worker has to know (own.Task)."""
 
 
-SOLVERS = {"impact": "impactlab.study.solvers.impact:SOLVER"} | wings.SOLVERS
+SOLVERS = {
+    "impact": "impactlab.study.solvers.impact:SOLVER",
+    "function": "impactlab.study.solvers.function:SOLVER",
+} | wings.SOLVERS
 """References to solvers, by the name that designs hold in their attribute `solver`."""
 
 
 def solver_named(name: str) -> Solver:
     """Return a solver. Raises ValueError for Python functions that this process does not know."""
-    own = "impactlab.study.solvers.own:solver"
-    found: Solver = resolve_name(SOLVERS[name]) if name in SOLVERS else resolve_name(own)(name)
+    if name.startswith("own "):
+        own: Solver = resolve_name("impactlab.study.solvers.own:solver")(name)
+        return own
+    found: Solver = resolve_name(SOLVERS[name])
     return found

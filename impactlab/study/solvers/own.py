@@ -1,7 +1,7 @@
-"""Python functions: as responses of an impact, or as a model in place of the solver.
+"""Functions of the user: as responses of an impact, or as a model in place of the solver.
 
-A study holds the user's by keys, NAME@FINGERPRINT, under which this process knows them; workers are
-sent what they need with each batch. Test functions are models that every process knows by name.
+A study holds them by keys, NAME@FINGERPRINT, under which this process knows them; workers are sent
+what they need with each batch.
 """
 
 from __future__ import annotations
@@ -29,7 +29,6 @@ from impactlab.study.solvers.fingerprint import fingerprint
 from impactlab.study.solvers.impact import SOLVER as IMPACT
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES
-from impactlab.verification.functions import FUNCTIONS, sources_hash
 
 _COST = 3e6  # cost of calling functions once, about 10 ms
 
@@ -113,17 +112,14 @@ def solver_name(study: Study | FunctionStudy) -> str:
 
 def solver(name: str) -> Solver:
     """Return the solver of this name. Raises ValueError where its functions are not known."""
-    if name in FUNCTIONS:
-        task, version = _test_function(name), f"{name} {sources_hash()}"
-    elif name in TASKS:
-        task, version = TASKS[name], name
-    else:
+    if name not in TASKS:
         raise ValueError(
             "these runs are of Python functions, which no file holds: build the study in Python"
         )
+    task = TASKS[name]
     if "" in task.functions:
         return Solver(
-            version=version,
+            version=name,
             columns=lambda design: (*task.responses, "status"),
             cases=partial(_points, task),
             cost=lambda cases: np.full(cases.size, _COST),
@@ -140,17 +136,6 @@ def solver(name: str) -> Solver:
         labelled=partial(_labelled_responses, task),
         functions=task,
     )
-
-
-def _test_function(name: str) -> Task:
-    """Return a function of verification.functions as a model."""
-    given = FUNCTIONS[name]
-
-    def call(**point: float) -> Any:
-        return given.value(np.array([[*point.values()]]))
-
-    function = Function(call, long_name=f"value of the {given.title}")
-    return Task({"": function}, parameters=tuple(given.ranges), responses=("value",))
 
 
 def _number(function: Function, name: str, *args: Any, **values: Any) -> Any:

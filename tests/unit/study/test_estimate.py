@@ -141,5 +141,5 @@ def test_a_function_costs_next_to_nothing():
     sampling = f"{{method: delta, samples: 1000000, parameters: {{{ranges}}}}}"
     text = f"title: F\nfunction: ishigami\nsampling: {sampling}"
     found = estimate(study_of_text("some", text), NOWHERE, 2)
-    assert found.seconds < 60
+    assert found.seconds < 10
     assert found.disk < 1e9

@@ -6,13 +6,13 @@ import xarray as xr
 
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.solvers import solver_named
+from impactlab.study.solvers import function
 from impactlab.study.store import OutputSpec
 from impactlab.verification.functions import FUNCTIONS
 
 
 def design(**coords):
-    attrs = {"solver": "ishigami", "function": "ishigami", "varied": [*coords], "histories": 0}
+    attrs = {"solver": "function", "function": "ishigami", "varied": [*coords], "histories": 0}
     given = {"x3": 0.5} | {name: ("run", values) for name, values in coords.items()}
     return xr.Dataset(
         coords=given, attrs=attrs | {"profiles": 0, "history_samples": 10, "study": "f"}
@@ -32,7 +32,6 @@ def test_values_are_the_functions_under_the_designs_labels(tmp_path):
 @pytest.mark.parametrize("size", [1, 3, 7])
 def test_the_same_bits_in_any_batch(size):
     asked = design(x1=np.linspace(-3, 3, 40), x2=np.linspace(1, 2, 40))
-    function = solver_named("ishigami")
     cases, form = function.cases(asked, np.arange(40)), OutputSpec(0, False)
     whole = function.solve(cases, form)["value"]
     parts = [function.solve(cases[at : at + size], form)["value"] for at in range(0, 40, size)]
