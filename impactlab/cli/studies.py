@@ -82,7 +82,7 @@ def clean(
     results: Results = RESULTS,
     yes: Annotated[bool, typer.Option("--yes", help="Remove without asking.")] = False,
 ) -> None:
-    """Remove solved runs that the studies in a folder do not ask for any more.
+    """Remove solved runs that no study of a folder asks for any more.
 
     Asks first. Runs that a changed study still needs stay, and so do runs.nc, the reports, and all
     of studies that have no file there.
