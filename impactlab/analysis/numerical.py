@@ -16,13 +16,13 @@ import xarray as xr
 
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
-from impactlab.analysis.responses import Sample, listed, usable
+from impactlab.analysis.responses import Sample, in_order, listed, usable
 from impactlab.analysis.sensitivity import sobol
 from impactlab.analysis.sensitivity.indices import imputed
 from impactlab.analysis.sensitivity.method import half_widths
 from impactlab.analysis.sensitivity.sobol import Outputs, estimates
 from impactlab.analysis.sensitivity.verdict import still, tail
-from impactlab.analysis.verdicts import Verdict, flagged
+from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
 from impactlab.types import Floats
 
 ORDERS = ("first_order", "total_order")
@@ -59,7 +59,7 @@ def numerical(
     <order>_numerical (response, parameter), by how much the first_order and the total_order may be
     off, and numerical_from (response). An index S lies between 0 and 1: it is off by no more than
     the larger of S and 1 - S, whatever bounds the error or not. Raises ValueError when resolution
-    is not of these runs.
+    or refinement is not of these runs.
 
     The bound: an index is the square of the length of a projection of the response over that of
     the response, and an error of relative length e moves either length by no more than e, so that
@@ -68,6 +68,7 @@ def numerical(
     found = {} if resolution is None else _of_responses(runs, resolution)
     changed, estimator = xr.Dataset(), _BOUND
     if refinement is not None:
+        _check_refinement(runs, refinement)
         changed = measured(refinement)
         estimator = _MEASURED.format(refinement.attrs["base_samples"]) + _BOUND
     nothing = xr.full_like(analysis["response"], np.inf, dtype=float).reset_coords(drop=True)
@@ -131,6 +132,20 @@ Above, single runs decide, such as those in which a further impact falls into th
 which of them another grid moves, and whether it moves one, so few base samples cannot tell.
 """
 _TO_LIMIT = 2.0  # distance to the limit over change, where each refinement takes half of the error
+
+
+def _check_refinement(runs: xr.Dataset, refinement: xr.Dataset) -> None:
+    """Raise ValueError unless the used grid of the refinement gives what the runs give."""
+    there, ordered = usable(refinement).sel(grid=USED), in_order(runs)
+    numbers, wanted = ordered["run"].values, there["run"].values
+    places = np.searchsorted(numbers, wanted).clip(max=numbers.size - 1)
+    here = usable(ordered.isel(run=places)).transpose(*there.dims)
+    same = np.allclose(here, there, rtol=ROUND_OFF, atol=0.0, equal_nan=True)
+    if not same or (numbers[places] != wanted).any():
+        raise ValueError(
+            "the refinement was made from other runs: make it again (impactlab refine "
+            f"results/{runs.attrs.get('study', 'NAME')}/runs.nc)"
+        )
 
 
 def measured(refinement: xr.Dataset) -> xr.Dataset:

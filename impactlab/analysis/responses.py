@@ -178,6 +178,22 @@ class Sample:
                 f"{self.study} has {self.size} runs, but {words} make {runs}: solve it again"
             )
 
+    def ordered(self) -> None:
+        """Raise ValueError where words are drawn for a method that needs an order of the values."""
+        if self.words:
+            raise ValueError(
+                f"{self.study}: the method {self.settings['method']!r} needs an order of the "
+                f"values, and {next(iter(self.words))} takes words: use sobol, delta or pawn"
+            )
+
+    def ungrouped(self) -> None:
+        """Raise ValueError where groups are stated for a method that has none."""
+        if self.groups:
+            raise ValueError(
+                f"{self.study}: the method {self.settings['method']!r} has no groups: remove them, "
+                "or use sobol or morris"
+            )
+
     def rng(self, *purpose: str) -> np.random.Generator:
         """Return the random stream of a purpose, such as a response, independent of all others."""
         key = tuple("\0".join(purpose).encode())

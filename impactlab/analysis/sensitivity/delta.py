@@ -128,4 +128,4 @@ def _density(
     return np.asarray(sums / (np.sqrt(2 * np.pi) * width * sizes))
 
 
-METHOD = Method("delta", _INDICES, _estimate)
+METHOD = Method("delta", _INDICES, Sample.ungrouped, _estimate)

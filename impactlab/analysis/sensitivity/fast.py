@@ -36,9 +36,16 @@ _INDICES = {
 
 
 def _check(sample: Sample) -> None:
+    sample.ungrouped()
+    sample.ordered()
     curves = len(sample.parameters) + 1
-    points = sample.size // curves
+    points, harmonics = sample.size // curves, sample.number("harmonics")
     sample.expect(points * curves, f"{curves} curves of {points} points")
+    if points <= 4 * harmonics**2:
+        raise ValueError(
+            f"{sample.study}: {points} points per curve are too few for {harmonics} harmonics: "
+            f"take more than {4 * harmonics**2}"
+        )
 
 
 def _curves(outputs: Floats, sample: Sample) -> list[Floats]:
@@ -70,4 +77,4 @@ def _orders(curve: Floats, harmonics: int) -> tuple[float, float]:
     return float(first), float(total)
 
 
-METHOD = Method("fast", _INDICES, _estimate, _check, _curves)
+METHOD = Method("fast", _INDICES, _check, _estimate, _curves)

@@ -46,16 +46,16 @@ class Index:
 class Method:
     """One method of sensitivity analysis.
 
-    name: as in study files. indices: by variable name. estimate: from finite and varying outputs
+    name: as in study files. indices: by variable name. check: raises ValueError where the runs are
+    not the sample that their attributes describe. estimate: from finite and varying outputs
     (runs,), the sample and the response's name to indices and half-widths, by variable name.
-    check: raises ValueError where the number of runs is not that of the sample that their
-    attributes describe. varying: the parts of the outputs each of which has to vary.
+    varying: the parts of the outputs each of which has to vary.
     """
 
     name: str
     indices: Mapping[str, Index]
+    check: Callable[[Sample], None]
     estimate: Callable[[Floats, Sample, str], dict[str, Floats]]
-    check: Callable[[Sample], None] = lambda sample: None
     varying: Callable[[Floats, Sample], list[Floats]] = lambda outputs, sample: [outputs]
 
 

@@ -36,8 +36,18 @@ _INDICES = {
 
 
 def _check(sample: Sample) -> None:
+    sample.ordered()
     trajectories, factors = sample.number("trajectories"), len(sample.factors)
     sample.expect(trajectories * (factors + 1), f"{trajectories} trajectories of {factors} steps")
+    path = levels(sample.inputs).reshape(trajectories, factors + 1, -1)
+    moved = np.diff(path, axis=1) != 0
+    members = np.array(sample.factors)[:, None] == np.array(sample.memberships)
+    steps = (moved[:, :, None, :] == members).all(axis=-1)
+    if not (steps.sum(axis=1) == 1).all():
+        raise ValueError(
+            f"the runs of {sample.study} are not Morris' trajectories, each step of which changes "
+            "one parameter or group: solve the study again"
+        )
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
@@ -69,4 +79,4 @@ def levels(inputs: Floats) -> Floats:
     return found
 
 
-METHOD = Method("morris", _INDICES, _estimate, _check)
+METHOD = Method("morris", _INDICES, _check, _estimate)

@@ -25,6 +25,7 @@ from impactlab.analysis.sensitivity.method import (
 from impactlab.types import Floats
 
 SLIDES = 10  # classes of a parameter's values, as in SALib
+FEWEST = 10  # runs that a slide needs on average
 _2018 = "Pianosi and Wagener (2018), Environ. Model. Softw. 108, 197"
 _INDICES = {
     "pawn": Index("PAWN index, median over the slides", f"{_2018}, eqs. 2 and 3"),
@@ -33,6 +34,14 @@ _INDICES = {
     ),
     "dummy_pawn": Index.of_dummy("PAWN index of a dummy", f"{_2018}, section 2.3"),
 }
+
+
+def _check(sample: Sample) -> None:
+    sample.ungrouped()
+    if (runs := len(sample.inputs)) < SLIDES * FEWEST:
+        raise ValueError(
+            f"{sample.study}: {runs} runs are too few for PAWN: take {SLIDES * FEWEST} or more"
+        )
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
@@ -96,4 +105,4 @@ def distances(
     return np.asarray(np.abs(apart).max(axis=0))
 
 
-METHOD = Method("pawn", _INDICES, _estimate)
+METHOD = Method("pawn", _INDICES, _check, _estimate)

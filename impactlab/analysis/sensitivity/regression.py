@@ -27,6 +27,17 @@ _INDICES = {
 }
 
 
+def _check(sample: Sample) -> None:
+    sample.ungrouped()
+    sample.ordered()
+    runs, needed = sample.inputs.shape[0], 2 * (sample.inputs.shape[1] + 2)
+    if runs < needed:
+        raise ValueError(
+            f"{sample.study}: {runs} runs are too few for a regression on "
+            f"{len(sample.parameters)} parameters: take {needed} or more"
+        )
+
+
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     table = np.column_stack([sample.inputs, dummy_column(sample), outputs])
     ranks = rankdata(table, axis=0)  # among all runs, in resamples, too
@@ -62,4 +73,4 @@ def _coefficients(correlation: Floats) -> tuple[Floats, Floats]:
     return found, np.asarray((found * outer).sum(axis=-1))
 
 
-METHOD = Method("regression", _INDICES, _estimate)
+METHOD = Method("regression", _INDICES, _check, _estimate)

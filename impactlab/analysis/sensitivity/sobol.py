@@ -201,4 +201,4 @@ def _matrix(values: Floats, factors: int) -> Floats:
     return np.where(np.isnan(matrix), matrix.T, matrix)
 
 
-METHOD = Method("sobol", _INDICES, _estimate, check, varying)
+METHOD = Method("sobol", _INDICES, check, _estimate, varying)

@@ -212,3 +212,10 @@ def test_it_takes_the_place_of_the_bound_where_it_is_known():
     left = numerical(runs, analysis_of([0.6, 0.3, 0.1]), None, refine_cases(runs, failing))
     assert left["numerical_from"].item() == 2
     np.testing.assert_array_equal(left["total_order_numerical"].values[0], [0.6, 0.7, 0.9])
+
+
+def test_a_refinement_of_other_runs_is_refused():
+    runs = sample_of(solver())
+    other = refine_cases(sample_of(solver(common=1.0)), solver(common=1.0))
+    with pytest.raises(ValueError, match=r"impactlab refine results/some/runs.nc"):
+        numerical(runs, analysis_of([0.6, 0.3, 0.1]), None, other)

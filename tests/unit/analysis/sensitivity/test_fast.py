@@ -90,3 +90,7 @@ def test_refuses_what_is_not_its_sample(drawn: Build, ishigami: Any) -> None:
     runs = _runs(drawn, ishigami)
     with pytest.raises(ValueError, match="has 4099 runs, but 4 curves of 1024 points make 4096"):
         sensitivity.analysis(runs.isel(run=slice(None, -1)))
+    with pytest.raises(ValueError, match="too few for 16 harmonics: take more than 1024"):
+        sensitivity.analysis(runs.isel(run=slice(None, 4096)).assign_attrs(harmonics=16))
+    with pytest.raises(ValueError, match="'fast' has no groups"):
+        sensitivity.analysis(runs.assign_attrs(groups=["a", "a", "b"]))

@@ -204,3 +204,16 @@ def test_seed_and_order(drawn: Build, normal: Any, method: str) -> None:
     assert not none[f"dummy_{method}"].equals(one[f"dummy_{method}"])
     backwards = found(0).isel(run=slice(None, None, -1))
     xr.testing.assert_identical(none, sensitivity.analysis(backwards))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_no_groups(drawn: Build, normal: Any, method: str) -> None:
+    runs = drawn(method, normal, normal @ WEIGHTS, groups=["a", "a", "b"])
+    with pytest.raises(ValueError, match=f"'{method}' has no groups"):
+        sensitivity.analysis(runs)
+
+
+@pytest.mark.parametrize("method", ["pawn", "regression"])
+def test_too_few_runs(drawn: Build, normal: Any, method: str) -> None:
+    with pytest.raises(ValueError, match="9 runs are too few"):
+        sensitivity.analysis(drawn(method, normal[:9], normal[:9] @ WEIGHTS))

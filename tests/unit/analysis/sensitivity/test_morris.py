@@ -83,7 +83,10 @@ def test_few_trajectories_of_a_rough_function_are_wide(
     assert verdicts_of(found["sensitivity_verdict"]) == ["wide_intervals"]
 
 
-def test_refuses_what_is_not_its_sample(drawn: Build) -> None:
+def test_refuses_what_is_not_trajectories(drawn: Build) -> None:
     unit = _unit(3)
     with pytest.raises(ValueError, match="has 79 runs, but 20 trajectories of 3 steps make 80"):
         sensitivity.analysis(_runs(drawn, unit[1:], unit[1:, 0]))
+    rolled = np.roll(unit, 1, axis=0)
+    with pytest.raises(ValueError, match="not Morris' trajectories"):
+        sensitivity.analysis(_runs(drawn, rolled, rolled[:, 0]))

@@ -122,6 +122,16 @@ def test_the_order_of_the_words_changes_nothing(indices: Any) -> None:
         np.testing.assert_allclose(one, other, rtol=1e-12)
 
 
+@pytest.mark.parametrize("method", ["morris", "fast", "regression"])
+def test_methods_that_need_an_order_refuse_stored_words(drawn: Any, method: str) -> None:
+    """Places of words would make plausible indices."""
+    runs = drawn(method, np.zeros((40, 2)), np.arange(40.0))
+    choice = {"distribution": "choice", "values": ["a", "b"], "weights": [0.5, 0.5]}
+    runs = runs.assign_coords(x1=("run", np.array(["a", "b"] * 20), choice))
+    with pytest.raises(ValueError, match="needs an order of the values, and x1 takes words"):
+        sensitivity.analysis(runs)
+
+
 def test_values_of_failed_runs_are_not_supplied_over_words(drawn: Any) -> None:
     outputs = np.where(np.arange(100) == 7, np.nan, 1.0 * np.arange(100))
     runs = drawn("pawn", np.random.default_rng(1).random((100, 2)), outputs, failed_runs="impute")
