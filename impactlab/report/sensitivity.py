@@ -207,14 +207,35 @@ def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
         rows.append([named(analysis, name), quality, Cell(error, "number")])
     caption = "The surrogate on held-out runs (1: perfect, 0: no better than the mean)"
     head = ["Response", "Predictivity Q² on held-out runs", "Root mean square error"]
+    fitted = SURROGATE.given(analysis)
     return Section(
         "surrogate",
         "Surrogate",
         "A surrogate was fitted to the runs and tested on runs that it had not seen.",
-        tables=[Table(caption, head, rows)],
-        figures=["surrogate_validation", SURROGATE.figure],
-        folded=index_tables(runs, analysis, SURROGATE) if SURROGATE.given(analysis) else [],
+        _differences(runs, analysis) if fitted and "first_order" in analysis else [],
+        [Table(caption, head, rows)],
+        ["surrogate_validation", SURROGATE.figure],
+        index_tables(runs, analysis, SURROGATE) if fitted else [],
     )
+
+
+def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    """Return one sentence per response and order whose two estimates do not overlap."""
+    found = []
+    keys = np.array([labels.parameter(key) for key in measures.parameters(analysis)])
+    for name in analysed(runs, analysis):
+        for order in SOBOL.measures:
+            sampled = measures.index(analysis, order.name, name)
+            fitted = measures.index(analysis, f"surrogate_{order.name}", name)
+            apart = np.abs(sampled.values - fitted.values) > sampled.margins + fitted.margins
+            if apart.any():
+                response = labels.sentence(labels.response(name))
+                found.append(
+                    f"{response}: the {order.words.replace(' ', '-')} indices of the runs and of "
+                    "the surrogate differ by more than their intervals for "
+                    f"{labels.listing(keys[apart].tolist())}."
+                )
+    return found
 
 
 def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:

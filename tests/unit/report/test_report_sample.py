@@ -218,10 +218,15 @@ def test_other_families_answer_in_their_own_measure(study: Study) -> None:
     assert answers(runs, fits)[0].endswith("(R² of the fit: 0.45).")
 
 
-def test_a_poor_surrogate_is_named(study: Study) -> None:
+def test_a_surrogate_that_disagrees_or_is_poor_is_named(study: Study) -> None:
     runs, analysis = study
+    analysis["surrogate_total_order"].loc[PEAK] = [0.5, 0.13, 0.0, 0.0]
     analysis["surrogate_q2"].loc[PEAK] = 0.6
     found = sensitivity.surrogate(runs, analysis)
+    assert found.sentences == [
+        "Peak force: the total-order indices of the runs and of the surrogate differ by more than "
+        "their intervals for impact velocity."
+    ]
     assert (found.tables[0].rows[0][1].text, found.tables[0].rows[0][1].detail) == ("0.6", "poor")
 
 
