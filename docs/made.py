@@ -14,16 +14,16 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
-from matplotlib.figure import Figure
 from PIL import Image
 
 import impactlab as il
+from impactlab.figures.draw import OVERVIEW
 from impactlab.figures.record import listed
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.page import leading
+from impactlab.report.results import FINDINGS
 from impactlab.study import steps
 from impactlab.study.schema.files import read_verification
-from impactlab.verification.finding import Outcome
 from impactlab.verification.stored import unpacked
 
 DOCS = Path(__file__).parent
@@ -205,8 +205,9 @@ def _verification() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     findings = steps.check(declared)
     write_netcdf(findings, folder / "findings.nc", "findings")
+    FINDINGS.draw(findings, folder / "figures")
+    shutil.copyfile(folder / "figures" / f"{OVERVIEW}.png", GALLERY / "verification.png")
     outcomes = unpacked(findings)
-    _ratios(outcomes)
     total = sum(len(each.finding.comparisons) for each in outcomes)
     passed = sum(each.passed for outcome in outcomes for each in outcome.finding.comparisons)
     lines = [
@@ -227,20 +228,6 @@ def _verification() -> None:
     lines += ["", ":::{dropdown} Where the independent values come from"]
     lines += [*(f"- {each.title}: {each.source}" for each in outcomes), ":::"]
     page.write_text("\n".join(lines) + "\n", encoding="utf-8")
-
-
-def _ratios(outcomes: Sequence[Outcome]) -> None:
-    """Draw error over tolerance of every comparison, a row per check, into the gallery."""
-    figure = Figure(figsize=(7.0, 1.0 + 0.25 * len(outcomes)), layout="constrained")
-    axes = figure.subplots()
-    for row, each in enumerate(outcomes):
-        ratios = [max(entry.ratio, 1e-6) for entry in each.finding.comparisons]
-        axes.plot(ratios, [row] * len(ratios), "o", color="tab:blue", alpha=0.4, markersize=4)
-    axes.axvline(1.0, color="0.4", linewidth=0.8)
-    axes.set(xscale="log", xlabel="Error over tolerance (no less than a millionth)")
-    axes.set_yticks(range(len(outcomes)), [each.title for each in outcomes])
-    axes.invert_yaxis()
-    figure.savefig(GALLERY / "verification.png", dpi=150)
 
 
 if __name__ == "__main__":

@@ -17,10 +17,14 @@ from matplotlib.figure import Figure
 from impactlab.figures import data, findings, record, style
 from impactlab.figures.catalogue import applicable
 from impactlab.files import identity, replaced
-from impactlab.verification.finding import Outcome, gravest_first
+from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 
 FORMATS = ("svg", "png")
+OVERVIEW = "overview"
+"""Name of the figure of all comparisons; the others are named for their checks."""
+
+
 Drawing = tuple[record.Figure, tuple[xr.Dataset, xr.Dataset]]
 """A figure with the datasets that it shows; attributes of the first one name the study."""
 
@@ -32,17 +36,18 @@ def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]
 
 
 def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
-    """Draw the curves of each check of a verification; see `draw`."""
+    """Draw the overview of a verification, and the curves of each check; see `draw`."""
+    outcomes = gravest_first(unpacked(stored))
 
-    def figure(outcome: Outcome) -> Drawing:
-        plot, caption = findings.plot_curves, findings.curves_caption
-        drawer, words = (lambda *_: plot(outcome)), (lambda *_: caption(outcome))
-        one = record.Figure(outcome.name, outcome.title, lambda *_: True, drawer, words)
-        return one, (stored, stored)
+    def figure(name: str, title: str, plot: Any, caption: Any, shown: Any) -> Drawing:
+        drawer, words = (lambda *_: plot(shown)), (lambda *_: caption(shown))
+        return record.Figure(name, title, lambda *_: True, drawer, words), (stored, stored)
 
-    drawings = [
-        figure(each)
-        for each in gravest_first(unpacked(stored))
+    overview = findings.plot_overview, findings.overview_caption
+    drawings = [figure(OVERVIEW, "All comparisons", *overview, outcomes)]
+    drawings += [
+        figure(each.name, each.title, findings.plot_curves, findings.curves_caption, each)
+        for each in outcomes
         if any(panel.curves for panel in each.finding.panels)
     ]
     return draw(drawings, folder, study=str(stored.attrs.get("study")), made_from=stored)

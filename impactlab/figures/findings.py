@@ -1,4 +1,4 @@
-"""Figures of a verification: the curves of each check."""
+"""Figures of a verification: all comparisons on one axis, and the curves of each check."""
 
 from __future__ import annotations
 
@@ -16,8 +16,85 @@ from impactlab.figures.labels import Display, display
 from impactlab.types import Floats
 from impactlab.verification.finding import Curve, Outcome, Panel
 
+_ROW = 8.0  # height of a check's row, mm
+_LEAST, _MOST = 1e-6, 1e3  # limits of the ratios; those beyond are drawn at the edge
+_SPREAD = 0.32  # largest distance of points from the middle of their row, in rows
+_LETTERS = 34
+_LOOKS: dict[str, dict[str, Any]] = {
+    "passed": {"marker": "o", "color": style.COLOURS[0], "alpha": 0.7},
+    "failed": {"marker": "X", "color": style.COLOURS[1], "markersize": 6.0},
+}
 _FEW = 25  # number of points up to which a curve has markers
 _TITLE, _LABEL = 46, 32  # letters per line of a panel's title, and of the label at its side
+
+
+def overview_caption(outcomes: Sequence[Outcome]) -> str:
+    """Return the caption, with the numbers of points at the edges."""
+    ratios = np.concatenate([_ratios(outcome) for outcome in outcomes])
+    small = int(np.count_nonzero(ratios < _LEAST))
+    large = int(np.count_nonzero(ratios > _MOST))
+    left = f"{small} below {labels.number(_LEAST)} or without any error at the left edge"
+    right = f"{large} above {labels.number(_MOST)} or without a number at the right edge"
+    edges = [text for count, text in ((small, left), (large, right)) if count]
+    shown = f" Drawn as triangles: {labels.listing(edges)}." if edges else ""
+    return (
+        "Error over tolerance, a point per comparison and a row per check; right of the line at "
+        f"1 a comparison fails. Within a row, points are spread in the order of the "
+        f"comparisons.{shown}"
+    )
+
+
+@style.paper
+def plot_overview(outcomes: Sequence[Outcome]) -> Figure:
+    """Draw a row per check, the first on top; failed comparisons have a shape of their own."""
+    figure, (axes,) = style.panels(1, columns=1, height=18.0 + _ROW * len(outcomes))
+    figure.set_figwidth(style.DOUBLE * style.MILLIMETRE)
+    for row, outcome in enumerate(outcomes):
+        _draw_row(axes, row, outcome)
+    axes.axvline(1.0, label="_limit", **style.GUIDE)
+    largest = max((float(_ratios(outcome).max(initial=0.0)) for outcome in outcomes), default=0.0)
+    ratios = np.clip(np.concatenate([*map(_ratios, outcomes), [0.01]]), _LEAST, _MOST)
+    least = 10.0 ** np.floor(np.log10(ratios.min()))  # the decade below all that is drawn
+    limits = 0.6 * float(least), 2.5 * min(max(largest, 4.0), _MOST)
+    scales.logarithmic(axes, "x", limits, ticks=8)
+    axes.set(xlim=limits, ylim=(len(outcomes) - 0.5, -0.5), xlabel="Error over tolerance (–)")
+    axes.set_yticks(range(len(outcomes)), [fill(outcome.title, _LETTERS) for outcome in outcomes])
+    axes.tick_params(axis="y", length=0)
+    axes.grid(visible=False, axis="y")
+    for row in range(1, len(outcomes)):
+        axes.axhline(row - 0.5, color="0.85", linewidth=0.5)
+    return style.finish(figure, order=["passed", "failed"])
+
+
+def _draw_row(axes: Axes, row: int, outcome: Outcome) -> None:
+    """Draw the ratios of a check, triangles at the edges, and write to the right how many fail."""
+    ratios = _ratios(outcome)
+    places = row + np.linspace(-_SPREAD, _SPREAD, ratios.size) if ratios.size > 1 else row
+    y = np.broadcast_to(places, ratios.shape)
+    passed = np.array([entry.passed for entry in outcome.finding.comparisons], dtype=bool)
+    shown = np.clip(ratios, _LEAST, _MOST)
+    kinds = {  # by marker
+        "<": ratios < _LEAST,
+        ">": ratios > _MOST,
+        "": (ratios >= _LEAST) & (ratios <= _MOST),
+    }
+    for verdict, chosen in (("passed", passed), ("failed", ~passed)):
+        for marker, where in kinds.items():
+            if not (mask := chosen & where).any():
+                continue
+            look = _LOOKS[verdict] | ({"marker": marker} if marker else {})
+            label = f"_{verdict}" if marker else verdict
+            axes.plot(shown[mask], y[mask], linestyle="", markeredgewidth=0.0, label=label, **look)
+    total, failed = len(outcome.finding.comparisons), len(outcome.failures)
+    text = f"{failed} of {total} failed" if failed else f"all {total}"
+    if outcome.verdict == "error" or not total:
+        text, failed = ("error" if outcome.reason else "nothing"), 1
+    beside = {"xycoords": axes.get_yaxis_transform(), "va": "center"}
+    style.note(axes, text, (1.0, row), (3, 0), warning=bool(failed), **beside)
+
+
+def _ratios(outcome: Outcome) -> Floats:
+    return np.array([entry.ratio for entry in outcome.finding.comparisons], dtype=float)
 
 
 def curves_caption(outcome: Outcome) -> str:

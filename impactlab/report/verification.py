@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.figures import labels
+from impactlab.figures.draw import OVERVIEW
 from impactlab.figures.labels import Display, display
 from impactlab.report.answer import entries
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
@@ -55,7 +56,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
         bad=bool(failed),
         answers=answer,
         note=note,
-        leading=drawn.pop(next(iter(drawn), ""), None),
+        leading=drawn.pop(OVERVIEW, None),
         facts=[size],
         ending=failed,
         pictures=drawn,

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from impactlab.figures import findings as drawn
 from impactlab.figures import style
 from impactlab.figures.draw import draw_findings
-from impactlab.verification.finding import Curve, Finding, Panel
+from impactlab.verification.finding import Curve, Finding, Panel, gravest_first
 from impactlab.verification.stored import packed
 
 Outcomes = Any
@@ -34,12 +34,12 @@ def _with_panels(outcomes: Outcomes, *panels: Panel) -> Any:
     return replace(outcomes[1], finding=Finding((), panels))
 
 
-def test_files_are_of_each_check_with_curves(
+def test_files_are_the_overview_and_each_check_with_curves(
     findings: xr.Dataset, outcomes: Outcomes, tmp_path: Path
 ) -> None:
     written = [path.name for path in draw_findings(findings, tmp_path)]
     kinds = ("svg", "png", "csv", "nc")
-    files = [f"bad.{kind}" for kind in kinds]
+    files = [f"{name}.{kind}" for name in ("overview", "bad") for kind in kinds]
     assert written == [*files, "captions.json"]
     captions = json.loads((tmp_path / "captions.json").read_text("utf-8"))
     assert captions["bad"]["title"] == "A bad check"
@@ -49,13 +49,35 @@ def test_files_are_of_each_check_with_curves(
     assert not list(tmp_path.glob("bad.*"))
 
 
-@pytest.mark.parametrize("kind", ["same legend", "other legends", "one", "many"])
+def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes: Outcomes) -> None:
+    (axes,) = drawn.plot_overview(outcomes).axes
+    found = [line for line in axes.lines if line.get_marker() not in ("None", "")]
+    assert sum(len(line.get_xdata()) for line in found) == 21
+    failed = [line for line in found if line.get_label() in ("failed", "_failed")]
+    assert sum(len(line.get_xdata()) for line in failed) == 3
+    assert all(np.min(line.get_xdata()) > 1.0 for line in failed)
+    assert {line.get_color() for line in failed} == {style.COLOURS[1]}
+    assert {line.get_color() for line in found if line not in failed} == {style.COLOURS[0]}
+    ends = [line for line in found if line.get_marker() == ">"]
+    assert [len(line.get_xdata()) for line in ends] == [1]  # NaN: at the edge, not left out
+    assert axes.get_xlim()[1] >= np.max(ends[0].get_xdata())
+    said = [text.get_text() for text in axes.texts]
+    assert said == ["all 3", "3 of 18 failed", "error", "nothing"]
+
+
+def test_the_caption_counts_what_lies_at_the_edges(outcomes: Outcomes) -> None:
+    assert "1 above 1000 or without a number at the right edge" in drawn.overview_caption(outcomes)
+    assert "triangles" not in drawn.overview_caption(outcomes[:1])
+
+
+@pytest.mark.parametrize("kind", ["overview", "same legend", "other legends", "one", "many"])
 def test_nothing_overlaps_at_paper_width(kind: str, outcomes: Outcomes) -> None:
     bad = outcomes[1]
     first, second = bad.finding.panels
     long = "a title that goes on and on, for it states every parameter of the case"
     figure = _laid_out(
         {
+            "overview": lambda: drawn.plot_overview(gravest_first(outcomes * 4)),
             "same legend": lambda: drawn.plot_curves(_with_panels(outcomes, first, first)),
             "other legends": lambda: drawn.plot_curves(bad),
             "one": lambda: drawn.plot_curves(_with_panels(outcomes, second)),

@@ -101,7 +101,7 @@ def test_the_page_is_sound_and_holds_its_figures(
     found = page((tmp_path / "report.html").read_text("utf-8"))
     assert found.open == []
     told = [image["alt"].partition(". ")[0] for image in found.named("img")]
-    assert told == ["A bad check"]
+    assert told == ["All comparisons", "A bad check"]
     assert all(image["src"].startswith("data:") for image in found.named("img"))
     ids = [attrs["id"] for _, attrs in found.elements if "id" in attrs]
     assert len(ids) == len(set(ids))
