@@ -12,7 +12,7 @@
 # make site    the same, then its pages, links and code blocks are tested
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings; both schemes' cost and error;
-#              the bootstrap of Sobol indices: wants an idle machine
+#              how often the intervals of Sobol indices hold: wants an idle machine
 # make scaling overhead, throughput and peak memory of a study: SCALING_ARGS=--full for a million runs
 # make mutants the tests' own test: faults seeded into the kernels, and what catches each
 # make lint | coverage | constraints | clean
@@ -92,7 +92,7 @@ bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
 	$(IN_VENV) python tests/benchmarks/schemes.py
-	$(IN_VENV) python tests/benchmarks/bootstrap.py
+	$(IN_VENV) python tests/benchmarks/coverage.py
 
 scaling: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/scaling.py $(SCALING_ARGS)

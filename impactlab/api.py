@@ -12,7 +12,7 @@ import xarray as xr
 
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.measurements import compared
-from impactlab.files import checked, opened, read_netcdf, replaced
+from impactlab.files import check_suffix, checked, opened, read_netcdf, replaced
 from impactlab.model.checks import integer
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
@@ -24,7 +24,8 @@ from impactlab.study.schema import files, yaml_file
 from impactlab.study.schema.measurements import Given, read_measurements
 from impactlab.study.schema.written import _Sampling, text_of
 from impactlab.study.solvers.own import Function, register, solver_name
-from impactlab.variables import FLAGS, RESPONSES, VARIABLES
+from impactlab.study.stored import check_unclaimed
+from impactlab.variables import FLAGS, VARIABLES
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -61,14 +62,14 @@ class Study:
     Raises StudyError, a ValueError, with every problem by key and value.
 
     >>> study = il.Study(
-    ...     title="Depth", impact=il.paper_impact(velocity="2 m/s"), duration="1 ms",
+    ...     title="Depth", impact={"base": "paper", "velocity": "2 m/s"}, duration="1 ms",
     ...     discretisation=il.Discretisation(nodes=41), responses=["peak_force"],
     ...     sampling=il.Grid(parameters={"beam_depth": ["26 mm", "29 mm"]}))
     >>> study
     <impactlab.Study depth: 2 runs, results/depth>
     title: Depth
-    impact: {base: paper, velocity: 2.0}
-    discretisation: {nodes: 41}
+    impact: {base: paper, velocity: 2 m/s}
+    discretisation: {nodes: 41, points: 9, rule: lobatto, scheme: leapfrog, courant: 0.9}
     duration: 1 ms
     sampling:
       method: grid
@@ -201,6 +202,7 @@ class Study:
         Raises StudyError for a study of a function.
         """
         declared = files.of_impacts(self.declared)
+        check_unclaimed(declared, self.folder / "runs.nc")
         return steps.recommend(declared, self.folder / RESOLUTION, _engine(workers))
 
     def run(
@@ -210,6 +212,7 @@ class Study:
         processes: bool = False,
         client: Client | None = None,
         force: bool = False,
+        replace: bool = False,
     ) -> xr.Dataset:
         """Solve the runs that are not solved yet; return all of them, in memory.
 
@@ -219,12 +222,16 @@ class Study:
         workers: threads, or processes of this machine (which begin with the script itself: they
         need its `if __name__ == "__main__":`). client: a dask client of your own in their
         place; it is not closed. force: also what takes a month of one core, or all memory.
+        replace: also where another study has results of this name; a study of the same runs, or an
+        earlier text of the same file, is the same study.
 
-        Raises StudyError where that is exceeded, ValueError where the model refuses a run, OSError
+        Raises StudyError where that is exceeded, ValueError where another study has results there
+        or the model refuses a run, OSError
         where a disk is full or workers fail, BlockingIOError where another process is at work here.
         """
         path = self.folder / "runs.nc"
-        steps.run(self.declared, path, _engine(workers, processes, client), force=force)
+        engine = _engine(workers, processes, client)
+        steps.run(self.declared, path, engine, force=force, replace=replace)
         return read_netcdf(path, "runs")
 
     def refine(self, *, workers: int = _CORES, base_samples: int | None = None) -> xr.Dataset:
@@ -260,12 +267,13 @@ class Study:
 
         Writes folder/ro-crate-metadata.json, too: what the folder holds, and what made it.
 
-        Raises ValueError where nothing is solved yet.
+        Raises ValueError where nothing is solved yet, or the file's name does not end in .html.
         """
         from impactlab.report.crate import write_crate
         from impactlab.report.results import RUNS
 
         path = self.folder / "report.html" if path is None else Path(path)
+        check_suffix("path", path, (".html",))
         found, figures = self.analyse(), self.folder / "figures"
         with checked(self._runs(), "runs", blocks=True) as solved:
             RUNS.draw(solved, found, figures)
@@ -374,7 +382,7 @@ def _key(path: str, name: str, function: Any) -> str:
 
 
 def _check_names(python: Iterable[str]) -> None:
-    taken = {*PARAMETERS, *VARIABLES, *FLAGS} - {*RESPONSES}
+    taken = {*PARAMETERS, *VARIABLES, *FLAGS}
     for name in python:
         if not name.isidentifier() or name in taken:
             why = "another variable has it" if name in taken else "use letters, digits and _"

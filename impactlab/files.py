@@ -10,7 +10,7 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from hashlib import blake2b
@@ -22,6 +22,31 @@ import numpy as np
 import xarray as xr
 from netCDF4 import Dataset, set_chunk_cache
 from rich.filesize import decimal
+
+KINDS = {
+    ".nc": "netCDF",
+    ".html": "HTML",
+    ".csv": "CSV",
+    ".png": "PNG",
+    ".svg": "SVG",
+    ".pdf": "PDF",
+}
+"""Kinds of files that are written, or that people expect to be, by their suffix."""
+
+
+def check_suffix(name: str, path: Path, suffixes: Sequence[str]) -> None:
+    """Raise ValueError, with the name of the argument, unless a file is named for its kind.
+
+    suffixes: those of the kinds that it is written as; none for a folder.
+    """
+    suffix = path.suffix.lower()
+    if suffixes and suffix not in suffixes:
+        kinds, ends = (" or ".join(each) for each in ([KINDS[one] for one in suffixes], suffixes))
+        raise ValueError(
+            f"{name} = {str(path)!r}: is written as {kinds}: its name must end in {ends}"
+        )
+    if not suffixes and suffix in KINDS:
+        raise ValueError(f"{name} = {str(path)!r}: names a folder of files: leave out {suffix}")
 
 
 @contextmanager

@@ -14,6 +14,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from impactlab.analysis.measurements import compared
+from impactlab.analysis.regimes import of_runs
 from impactlab.figures import (
     access,
     catalogue,
@@ -89,7 +90,8 @@ def response(
     along = runs[str(x)]
     if sample:
         values, label = responses_grid.shown(runs, name)
-        samples.scatter_runs(ax, along, values.values)
+        middles = labels.display(runs[name])(of_runs(runs, name))
+        samples.scatter_runs(ax, along, values.values, middles)
     else:
         most = runs.sizes[hue] if hue else 1
         selected = plan(runs, name, along=[str(x)], prefer=[hue] if hue else [], most=most)

@@ -11,14 +11,21 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from impactlab.duration import too_short
 from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
-from impactlab.model.plausibility import ImplausibleWarning, implausibilities, numbers
+from impactlab.model.plausibility import (
+    ImplausibleWarning,
+    TooShortWarning,
+    implausibilities,
+    numbers,
+)
 from impactlab.model.quantities import Quantity, as_text, in_si
+from impactlab.model.quantities import duration as duration_of
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LOADS, LUMPED_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
@@ -64,7 +71,9 @@ def simulate(
     `remarks`; a response that the run could not give is NaN, and `status` says why. `remarks` says
     what to know of the others.
 
-    Raises ValueError when duration or samples is not valid; warns of implausible values.
+    Raises ValueError when duration or samples is not valid, or a value is impossible; warns of
+    implausible values, and of a duration that ends before some responses can be given, with one
+    that lasts (TooShortWarning).
 
     >>> grid = il.Discretisation(nodes=41)
     >>> run = il.simulate(il.paper_impact("2 m/s"), grid, duration="0.5 ms")
@@ -73,12 +82,14 @@ def simulate(
     """
     import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
 
-    duration = in_si("simulate.duration", duration, "s")
+    duration = _seconds(duration)
     grid = (discretisation or Discretisation()).resolved([impact.beam_model])
     samples = integer("simulate", "samples", samples, 2)
     _warn(numbers(impact, grid))
     cases = case_table(impact, grid, duration=duration)
     answers = solve(cases, samples=samples, profiles=True)
+    if message := too_short(cases[0], int(answers["status"][0])):
+        warnings.warn(message, TooShortWarning, stacklevel=2)
     times = {"time": np.linspace(0.0, duration, samples)}
     dataset = xr.Dataset(
         answer_variables(answers, tuple(RESPONSES), ()),
@@ -118,7 +129,7 @@ def simulate_many(
     import xarray as xr
 
     grid = discretisation or Discretisation()
-    seconds = in_si("simulate.duration", duration, "s")
+    seconds = _seconds(duration)
     lists = {name: _in_si(name, values) for name, values in varied.items()}
     dims, shape, columns = _combined(lists, combine)
     cases = case_table(impact, grid, duration=seconds, varied=columns)
@@ -173,9 +184,22 @@ def _in_si(name: str, values: Any) -> Any:
     return [in_si(name, value, PARAMETERS[name].units) for value in values]
 
 
+def _seconds(value: Quantity) -> float:
+    try:
+        return positive("simulate", "duration", duration_of(as_text(value)))
+    except ValueError as error:
+        reason = str(error).removeprefix("simulate.duration = ")
+        raise ValueError(f"simulate.duration = {value!r}: {reason}") from None
+
+
 def _warn(ends: dict[str, Any]) -> None:
-    """Warn of values that are implausible, as studies and commands do."""
+    """Warn of values that are implausible, as studies and commands do.
+
+    Raises ValueError for one that is impossible.
+    """
     for each in implausibilities(ends):
+        if each.impossible:
+            raise ValueError(f"{each.name}: {each.reason}")
         warnings.warn(f"{each.name}: {each.reason}", ImplausibleWarning, stacklevel=3)
 
 

@@ -6,7 +6,7 @@ import os
 import platform
 import re
 import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
@@ -81,8 +81,40 @@ WARNINGS: dict[str, tuple[int, str]] = {
         outputs.CONTACT_LEFT_A_BULGE,
         "the contact law left a bulge: the permanent indentation is below zero",
     ),
+    "yield_ratio_outside_data": (
+        outputs.OUTSIDE_YIELD_RATIO,
+        "E*/S_y is outside 300 to 660, the data of the contact law: dents may be off by 3 to 6 %",
+    ),
+    "poissons_ratio_outside_data": (
+        outputs.OUTSIDE_POISSONS_RATIO,
+        "the beam's Poisson's ratio is outside 0.22 to 0.36, where the data of the contact law "
+        "hold: dents may be off by 5 to 6 %",
+    ),
+    "hardening_outside_data": (
+        outputs.OUTSIDE_HARDENING,
+        "the beam's hardening modulus is above 0.004 of its Young's modulus, and the contact law "
+        "has none: dents may be off by 11 %, forces by 5 %",
+    ),
+    "sphere_yield_outside_data": (
+        outputs.OUTSIDE_SPHERE_YIELD,
+        "the sphere's yield stress is below 1.7 times the beam's, and the sphere of the contact "
+        "law does not yield: dents may be off by 11 %, forces by 4 %",
+    ),
+    "stiffness_ratio_outside_data": (
+        outputs.OUTSIDE_STIFFNESS_RATIO,
+        "the sphere's Young's modulus is outside 0.7 to 1.8 times the beam's, where the data of "
+        "the contact law hold: dents may be off by 4 to 7 %",
+    ),
+    "contact_circle_outside_data": (
+        outputs.OUTSIDE_CONTACT_CIRCLE,
+        "the contact radius is above 0.4 of half the beam's depth, where the data of compliance "
+        "and prestress end: forces and indentations may be off by 3 to 4 % from 0.6 on, or where "
+        "the beam itself yields",
+    ),
 }
 """Warnings on responses that are there, by name: (bit in `remarks`, in words)."""
+OUTSIDE_DATA = sum(bit for name, (bit, _) in WARNINGS.items() if name.endswith("outside_data"))
+"""The bits of runs with an input outside the data of the contact law or of the corrections."""
 
 FLAGS: dict[str, tuple[str, dict[str, tuple[int, str]]]] = {
     "status": ("why responses are missing or to be taken with care (0: none is)", STATUS_FLAGS),
@@ -113,25 +145,66 @@ RESPONSES: dict[str, Variable] = {
 }
 """The scalar answers of a run, by name."""
 
-ANALYSES: dict[str, str] = {
-    "convergence_in_nodes": "a grid that varies `nodes` over at least 3 values",
-    "convergence_in_time_step": "a grid that varies `courant` over at least 3 values",
-    "convergence_in_element_size": "a grid that varies `element_size` or "
-    "`elements_per_radius` over at least 3 values",
-    "convergence_in_points": "a grid that varies `points` over at least 2 values",
-    "sensitivity": "a sample (any method but grid)",
-    "sensitivity_over_time": "a Sobol sample with histories (store: {histories: true})",
-    "distribution": "a sample that represents it (any method but grid, morris and fast)",
-    "surrogate": "a sample (any method but grid)",
-}
-"""Names of the analyses (modules of impactlab.analysis), and what runs each one needs."""
-
 NO_DISTRIBUTION: dict[str, str] = {
     "grid": "the runs of a grid have no probabilities",
     "morris": "trajectories step over a few levels of each parameter, whatever its distribution",
     "fast": "the runs lie along search curves, and are no independent draws",
 }
 """Why the runs of a method do not represent the distribution of a response."""
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """An analysis of the runs of a study.
+
+    place: of a module or object in impactlab.analysis with `applies(runs)`, True where the runs are
+    what it is about, and `analysis(runs)`, its variables with `response` or `history` among their
+    coordinates. needs: the runs that it needs, in words. possible: whether a study has them, by its
+    method of sampling, the number of values on each axis of its grid, and whether it stores
+    histories.
+    """
+
+    place: str
+    needs: str
+    possible: Callable[[str, Mapping[str, int], bool], bool]
+
+
+def _grid(least: int, *axes: str) -> tuple[str, Callable[[str, Mapping[str, int], bool], bool]]:
+    """Return needs and condition of an analysis along an axis of a grid."""
+    words = f"a grid that varies {' or '.join(f'`{axis}`' for axis in axes)} over at least {least} "
+    return words + "values", lambda _, sizes, __: any(sizes.get(axis, 0) >= least for axis in axes)
+
+
+_AXES = "impactlab.analysis.convergence.axes:"
+ANALYSES: dict[str, Analysis] = {
+    "convergence_in_nodes": Analysis(f"{_AXES}NODES", *_grid(3, "nodes")),
+    "convergence_in_time_step": Analysis(f"{_AXES}TIME_STEP", *_grid(3, "courant")),
+    "convergence_in_element_size": Analysis(
+        f"{_AXES}ELEMENT_SIZE", *_grid(3, "element_size", "elements_per_radius")
+    ),
+    "convergence_in_points": Analysis("impactlab.analysis.convergence.points", *_grid(2, "points")),
+    "sensitivity": Analysis(
+        "impactlab.analysis.sensitivity",
+        "a sample (any method but grid)",
+        lambda method, *_: method != "grid",
+    ),
+    "sensitivity_over_time": Analysis(
+        "impactlab.analysis.sensitivity.over_time",
+        "a Sobol sample with histories (store: {histories: true})",
+        lambda method, _, histories: method == "sobol" and histories,
+    ),
+    "distribution": Analysis(
+        "impactlab.analysis.distribution",
+        "a sample that represents it (any method but grid, morris and fast)",
+        lambda method, *_: method not in NO_DISTRIBUTION,
+    ),
+    "surrogate": Analysis(
+        "impactlab.analysis.surrogate",
+        "a sample (any method but grid)",
+        lambda method, *_: method != "grid",
+    ),
+}
+"""The registry of analyses, by the names that study files have for them."""
 
 UNLIKE: dict[str, str] = dict.fromkeys(
     ("peak_plastic_strain", "plastic_zone_length", "plastic_dissipation"),

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from impactlab.study.sampling.samples import REPLICATES
 from impactlab.variables import described
 
 Values = Callable[..., Any]
@@ -65,6 +66,7 @@ def sample_runs() -> Callable[..., xr.Dataset]:
             "varied": list(parameters),
             "base_samples": base_samples,
             "second_order": int(second_order),
+            "replicates": REPLICATES,
             "seed": seed,
         }
         status = xr.DataArray(np.zeros(number, int), run)

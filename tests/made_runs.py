@@ -170,6 +170,7 @@ def surrogates(runs: xr.Dataset) -> dict[str, Any]:
         ),
         "held_out": tested["run"].values,
         "surrogate_q2": ("response", np.where(constant, np.nan, 0.9876)),
+        "surrogate_q2_low": ("response", np.where(constant, np.nan, 0.98)),
         "surrogate_rmse": ("response", np.where(constant, np.nan, 0.01)),
         "surrogate_verdict": flags(verdict, "usable", "constant", "poor"),
     }

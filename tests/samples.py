@@ -124,6 +124,7 @@ def indices(runs: xr.Dataset, parameters: list[str] | None = None) -> xr.Dataset
     put("surrogate_first_order", lead, 0.02)
     put("surrogate_total_order", 1.1 * lead, 0.02)
     data["surrogate_q2"] = ("response", np.full(shape[0], 0.97))
+    data["surrogate_q2_low"] = ("response", np.full(shape[0], 0.95))
     data["surrogate_rmse"] = ("response", np.full(shape[0], 0.1))
     size = np.array([float(np.nanmax(np.abs(runs[name]))) for name in asked])[:, None]
     put("morris_mu_star", size * (lead + 0.01), 1.0)

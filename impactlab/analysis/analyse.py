@@ -2,36 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from pkgutil import resolve_name
 
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis import distribution, sensitivity, surrogate
-from impactlab.analysis.convergence import points
-from impactlab.analysis.convergence.axes import ELEMENT_SIZE, NODES, TIME_STEP
 from impactlab.analysis.numerical import numerical
 from impactlab.analysis.responses import labels
-from impactlab.analysis.sensitivity import over_time
+from impactlab.analysis.sensitivity.verdict import with_numerical_error
 from impactlab.variables import ANALYSES
-
-_TABLE: dict[str, tuple[Callable[[xr.Dataset], bool], Callable[[xr.Dataset], xr.Dataset]]] = {
-    "convergence_in_nodes": (NODES.applies, NODES.analysis),
-    "convergence_in_time_step": (TIME_STEP.applies, TIME_STEP.analysis),
-    "convergence_in_element_size": (ELEMENT_SIZE.applies, ELEMENT_SIZE.analysis),
-    "convergence_in_points": (lambda runs: runs.sizes.get("points", 0) >= 2, points.analysis),
-    "sensitivity": (
-        lambda runs: runs.attrs.get("method") in sensitivity.METHODS,
-        sensitivity.analysis,
-    ),
-    "sensitivity_over_time": (over_time.applies, over_time.analysis),
-    "distribution": (distribution.applies, distribution.analysis),
-    "surrogate": (surrogate.applies, surrogate.analysis),
-}
-"""Every analysis by its name: whether the runs are of the kind that it is about, and its variables,
-with `response` or `history` among their coordinates. A new one is one line here and one in
-variables.ANALYSES.
-"""
 
 
 def analyse(
@@ -52,21 +31,19 @@ def analyse(
     ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=256, parameters={
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
     >>> indices = il.analyse(study.run(workers=1))
-    >>> indices.total_order.sel(response="value").round(1).values
-    array([0.6, 0.4, 0.2])
+    >>> indices.total_order.sel(response="value", parameter=["x2", "x3"]).round(1).values
+    array([0.4, 0.2])
     """
     if "responses" not in runs.attrs:
         raise ValueError(
             "the runs are not those of a study: analyse what il.Study(...).run() gives"
         )
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
-    parts = [
-        analysis(runs)
-        for name, (applies, analysis) in _TABLE.items()
-        if applies(runs) and name not in ANALYSES.keys() - wanted
-    ]
+    listed = (resolve_name(entry.place) for name, entry in ANALYSES.items() if name in wanted)
+    parts = [module.analysis(runs) for module in listed if module.applies(runs)]
     requested = xr.Dataset(coords=labels(runs))
     merged = xr.merge([requested, *parts], join="exact", compat="equals", combine_attrs="override")
     if resolution is not None or refinement is not None:
         merged = merged.merge(numerical(runs, merged, resolution, refinement), join="exact")
+        merged = with_numerical_error(merged)
     return merged.assign_attrs(runs.attrs).drop_encoding()

@@ -1,9 +1,10 @@
 """Calibration: the posterior of parameters, and the weights of models, from measurements.
 
 The likelihood is normal, with the measurements' uncertainties, the error of the surrogates on runs
-held out, and the numerical uncertainty of the runs: Kennedy and O'Hagan (2001), J. R. Stat. Soc. B
-63, 425 (recalled, not read), with a discrepancy of given size in place of a fitted one. Weights of
-models are proportional to their evidence, times their probability before.
+held out, which neighbouring conditions share, and the numerical uncertainty of the runs: Kennedy
+and O'Hagan (2001), J. R. Stat. Soc. B 63, 425 (recalled, not read), with a discrepancy of given
+size in place of a fitted one. Weights of models are proportional to their evidence, times their
+probability before.
 """
 
 from __future__ import annotations
@@ -19,21 +20,25 @@ import xarray as xr
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from impactlab.analysis.importance import Posterior, normalised, posterior
+from impactlab.analysis.importance import Posterior, modes, normalised, posterior
 from impactlab.analysis.measurements import COVERAGE, Measurement, same
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
-from impactlab.analysis.surrogate.stored import OUTER, Surrogate
+from impactlab.analysis.surrogate.stored import Surrogate
 from impactlab.model.distributions import quantile
 from impactlab.types import Floats
 
 MOST = 5  # largest number of calibrated parameters
-FEWEST = 400.0
-"""Least effective sample size: the mean is then known to 5 % of the posterior's deviation."""
+FEWEST = 1000.0
+"""Least effective sample size, of 16384 draws: with fewer, parts of the posterior may be missed."""
+REACH = 0.3
+"""Difference of two conditions, in probability, at which the correlation of the surrogate's errors
+has fallen to 1/e: by measured coverage, see tests/benchmarks/calibration_coverage.py."""
 EDGE, LEANING = 0.02, 0.1
 """Share of the prior at an end of its range, and share of the posterior there that is too much."""
 SILENT = 0.9
 """Posterior over prior standard deviation from which on the data cannot tell a parameter."""
 CONTRADICTED = 0.01  # posterior predictive p-value below which the data contradict the models
+STRONG = 0.7  # correlation of two parameters from which on it is told
 NEGLIGIBLE = 0.01  # weight below which a model's own doubts do not matter
 DRAWS = 2000  # equally weighted draws that are kept
 _SEED = 1
@@ -73,7 +78,7 @@ class Model:
         reasons = list(_mismatches(surrogate, measurements))
         known = surrogate.parameters
         stated = [
-            {name: float(value) for name, value in one.conditions.items() if name in known}
+            {name: float(one.conditions[name]) for name in known if name in one.conditions}
             for one in measurements
         ]
         free = tuple(n for n in surrogate.parameters if not all(n in each for each in stated))
@@ -97,24 +102,37 @@ class Model:
         for at, first in enumerate(firsts.tolist()):
             unit = {n: surrogate.probability(n, value) for n, value in stated[first].items()}
             places.append((unit, np.flatnonzero(place == at)))
-        found = surrogate.dataset.sel(response=[one.quantity for one in measurements])
-        error = found["rmse"].values.astype(float)
-        for unit, members in places:  # at an end of a range the error may be larger
-            for name, probability in unit.items():
-                if abs(probability - 0.5) > 0.5 - OUTER:
-                    error[members] *= found["outer"].sel(parameter=name).values[members]
-        measured = np.array([one.value for one in measurements])
-        names = np.array([one.quantity for one in measurements])
-        alike = names[:, None] == names
-        covariance = np.diag([one.standard_uncertainty**2 for one in measurements])
-        # the same prediction has the same error, however often it is measured
-        covariance = covariance + np.outer(error, error) * (alike & (place[:, None] == place))
-        shared = np.array([numerical.get(name, 0.0) / 2.0 for name in names]) * measured
-        own = model_error * measured
-        covariance = covariance + (np.outer(shared, shared) + np.outer(own, own)) * alike
         sampled = surrogate.dataset.sel(parameter=list(free))
         ends = zip(free, sampled[["lowest", "highest"]].to_array().values.T.tolist(), strict=True)
         limits = np.array([[surrogate.probability(n, end) for end in pair] for n, pair in ends])
+        # root mean square over the prior: the error grows towards the ends of the ranges
+        draws = np.random.default_rng(_SEED).random((len(free), 256))
+        prior = limits[:, :1] + np.diff(limits) * draws
+        error = np.empty(len(measurements))
+        for unit, members in places:
+            columns = dict(zip(free, prior, strict=True)) | {
+                name: np.full(256, value) for name, value in unit.items()
+            }
+            widths = surrogate.errors(np.column_stack([columns[name] for name in known]))
+            for at in members.tolist():
+                row = surrogate.responses.index(measurements[at].quantity)
+                error[at] = np.sqrt(np.mean(widths[row] ** 2)) / COVERAGE
+        measured = np.array([one.value for one in measurements])
+        names = np.array([one.quantity for one in measurements])
+        alike = names[:, None] == names
+        systematic = np.array([one.systematic_uncertainty for one in measurements])
+        sources = np.array([one.source for one in measurements])
+        total = np.array([one.standard_uncertainty for one in measurements])
+        covariance = np.diag(total**2 - systematic**2)
+        common = alike & (sources[:, None] == sources)
+        covariance = covariance + np.outer(systematic, systematic) * common
+        # neighbouring predictions have nearly the same error, however often they are measured
+        conditions = np.array([list(each.values()) for each, _ in places]).reshape(len(places), -1)
+        distance = np.linalg.norm(conditions[:, None] - conditions, axis=-1)[np.ix_(place, place)]
+        covariance = covariance + np.outer(error, error) * alike * np.exp(-distance / REACH)
+        shared = np.array([numerical.get(name, 0.0) / 2.0 for name in names]) * measured
+        own = model_error * measured
+        covariance = covariance + (np.outer(shared, shared) + np.outer(own, own)) * alike
         return cls(
             surrogate, free, tuple(places), limits, tuple(names), measured, error, covariance
         )
@@ -258,6 +276,16 @@ def _packed(
     moments = [_moments(x, p.weights) for (x, _), p in zip(of_each, found.values(), strict=True)]
     prior_mean, prior_deviation = prior.mean(axis=0), prior.std(axis=0)
     low, high = np.quantile(values, (0.025, 0.975), axis=0, weights=weights, method="inverted_cdf")
+    inner = np.concatenate([each.points for each in found.values()])
+    of_modes = [modes(column, weights) for column in inner.T]
+    ranges = np.full((len(free), max(map(len, of_modes)), 3), np.nan)
+    for at, intervals in enumerate(of_modes):
+        for mode, (ends, mass) in enumerate(intervals):
+            corners = np.full((2, len(free)), 0.5)
+            corners[:, at] = ends
+            ranges[at, mode] = [*first.values(corners)[:, at], mass]
+    offsets = (values - mean) / np.where(deviation > 0, deviation, 1.0)
+    correlation = (offsets * weights[:, np.newaxis]).T @ offsets
     predicted_mean, predicted_deviation = _moments(predicted, weights)
     # systematic resampling: draws of equal weight, in a random order
     rng = np.random.default_rng(_SEED)
@@ -273,6 +301,10 @@ def _packed(
         "posterior_deviation": ("parameter", deviation),
         "posterior_low": ("parameter", low),
         "posterior_high": ("parameter", high),
+        "posterior_correlation": (("parameter", "other_parameter"), correlation),
+        "mode_low": (("parameter", "mode"), ranges[..., 0]),
+        "mode_high": (("parameter", "mode"), ranges[..., 1]),
+        "mode_weight": (("parameter", "mode"), ranges[..., 2]),
         "prior_mean": ("parameter", prior_mean),
         "prior_deviation": ("parameter", prior_deviation),
         "spread_ratio": ("parameter", deviation / prior_deviation),
@@ -299,7 +331,8 @@ def _packed(
         "measured_conditions": ("measurement", stated),
         "measured_source": ("measurement", [one.source for one in measurements]),
     }
-    dataset = xr.Dataset(variables, {"parameter": list(free), "model": list(found)})
+    names = {"parameter": list(free), "other_parameter": list(free), "model": list(found)}
+    dataset = xr.Dataset(variables, names)
     for name, words_of in _LONG_NAMES.items():
         dataset[name].attrs["long_name"] = words_of
     return dataset
@@ -310,6 +343,10 @@ _LONG_NAMES = {
     "posterior_deviation": "standard deviation of the parameter given the measurements",
     "posterior_low": "lower end of the central 95 % of the posterior",
     "posterior_high": "upper end of the central 95 % of the posterior",
+    "posterior_correlation": "correlation of two parameters given the measurements",
+    "mode_low": "lower end of the central 95 % of one mode of the parameter's posterior, SI",
+    "mode_high": "upper end of the central 95 % of one mode of the parameter's posterior, SI",
+    "mode_weight": "probability of the mode given the measurements",
     "prior_mean": "mean of the sampled range",
     "prior_deviation": "standard deviation of the sampled range",
     "spread_ratio": "standard deviation of the posterior over that of the prior",
@@ -324,7 +361,7 @@ _LONG_NAMES = {
     "measured_uncertainty": "expanded uncertainty of the measured value (k = 2)",
     "predicted_mean": "mean of the posterior predictions",
     "predicted_deviation": "standard deviation of the posterior predictions",
-    "surrogate_error": "root mean squared error of the surrogate on runs held out",
+    "surrogate_error": "half of the surrogate's 95 % interval, root mean square over the prior",
     "draws": "draws from the posterior, of equal weight, SI",
     "draw_model": "model of a draw",
     "draw_predicted": "the surrogate's prediction of each measurement at a draw",

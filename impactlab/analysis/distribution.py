@@ -7,7 +7,7 @@ to be (Stein 1987, Technometrics 29, 143).
 
 A missing answer may lie anywhere: intervals of quantiles and probabilities allow for every value
 that it could have. Mean, standard deviation and parameters beyond a limit are those of the rows
-that answered.
+that answered; distribution_verdict says where these differ from the others in a parameter.
 """
 
 from __future__ import annotations
@@ -24,11 +24,25 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from impactlab.analysis.responses import Sample, labels, listed, usable
+from impactlab.analysis.verdicts import Verdict, flagged, names
 from impactlab.types import Floats
 from impactlab.variables import NO_DISTRIBUTION
 
 PROBABILITIES = (0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99)
 """Probabilities below the quantiles."""
+
+
+class DistributionVerdict(Verdict):
+    """Verdicts on mean, standard deviation and quantiles of a response."""
+
+    USABLE = 0, True, "every draw has an answer"
+    MISSING = 1, True, "draws are missing, no more often at one value of a parameter than another"
+    SELECTED = (
+        2,
+        False,
+        "draws are missing more often at some values of a parameter: mean, standard deviation and "
+        "quantiles are those of the others, and biased",
+    )
 
 
 def applies(runs: xr.Dataset) -> bool:
@@ -76,19 +90,25 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     rows, level, given = draws(sample), sample.confidence, limits(runs)
     columns = {name: sample.runs[name].values[rows] for name in sample.parameters if given}
     found: list[dict[str, Any]] = []
+    verdicts = []
     for name in listed(runs, "responses"):
         outputs = drawn_outputs(sample.runs, name)
         found.append(_moments(outputs, level) | _quantiles(outputs, level))
+        verdicts.append(_verdict(outputs, sample, rows))
         if given:
             limit = given.get(name, np.nan)
-            found[-1] |= _exceedance(outputs, limit, level) | _filtered(outputs, limit, columns)
-    variables = {}
+            found[-1] |= _exceedance(outputs, limit, level) | filtered(outputs, limit, columns)
+    variables: dict[str, Any] = {}
     words = f"{100 * level:g} %"
     for name, (dims, units, long_name) in _VARIABLES.items():
         if name in found[0]:
             attrs = {"long_name": long_name.format(words)} | ({"units": units} if units else {})
             stacked = np.array([entry[name] for entry in found])
             variables[name] = (("response", *dims), stacked, attrs)
+    codes = xr.DataArray([int(verdict) for verdict in verdicts], dims="response")
+    variables["distribution_verdict"] = flagged(
+        codes, DistributionVerdict, "verdict on the moments"
+    )
     coordinates = labels(runs)
     attrs = {"long_name": "probability of a response below its quantile", "units": "1"}
     coordinates["probability"] = ("probability", list(PROBABILITIES), attrs)
@@ -213,7 +233,7 @@ def _exceedance(outputs: Floats, limit: float, level: float) -> dict[str, float]
     return {"limit": limit, "exceeding_draws": above} | exceedance
 
 
-def _filtered(outputs: Floats, limit: float, columns: dict[str, Any]) -> dict[str, list[float]]:
+def filtered(outputs: Floats, limit: float, columns: dict[str, Any]) -> dict[str, list[float]]:
     """Return how far parameters (draws,) of outputs above the limit are from those of others."""
     answered, above = ~np.isnan(outputs), outputs > limit
     one, other = above, answered & ~above
@@ -239,6 +259,21 @@ def _filtered(outputs: Floats, limit: float, columns: dict[str, Any]) -> dict[st
     return {name: [float(row[at]) for row in rows] for at, name in enumerate(names)}
 
 
+def _verdict(outputs: Floats, sample: Sample, rows: NDArray[np.int64]) -> DistributionVerdict:
+    """Return whether answers are missing, and more often at some values of a parameter.
+
+    By the tests of `filtered`, at the level of the intervals shared among the parameters.
+    """
+    missing = np.isnan(outputs)
+    if not missing.any():
+        return DistributionVerdict.USABLE
+    columns = {name: sample.runs[name].values[rows] for name in sample.parameters}
+    values = np.array(filtered(missing.astype(float), 0.5, columns)["exceedance_p_value"])
+    if (values < (1 - sample.confidence) / values.size).any():
+        return DistributionVerdict.SELECTED
+    return DistributionVerdict.MISSING
+
+
 def significance(analysis: xr.Dataset) -> float:
     """Return the p-value below which a parameter matters, after Bonferroni."""
     confidence = float(analysis.attrs.get("confidence", 0.95))
@@ -259,7 +294,18 @@ def cumulative(outputs: Floats, level: float) -> tuple[Floats, Floats, Floats, F
     return values, below / answered, np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
 
 
-COLUMNS = ("response", "quantity", "at", "value", "low", "high", "units", "draws", "missing")
+COLUMNS = (
+    "response",
+    "quantity",
+    "at",
+    "value",
+    "low",
+    "high",
+    "units",
+    "draws",
+    "missing",
+    "verdict",
+)
 """Of the table. at: probability, limit or parameter. low, high: ends of the interval."""
 
 
@@ -271,6 +317,7 @@ def table_rows(analysis: xr.Dataset) -> Iterator[dict[str, Any]]:
             "response": name,
             "draws": int(found["number_of_draws"]),
             "missing": int(found["missing_draws"]),
+            "verdict": names(DistributionVerdict)[int(found["distribution_verdict"])],
         }
         own = row | {"units": str(found["response_units"].item())}
         for key in ("mean", "standard_deviation"):

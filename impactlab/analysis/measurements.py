@@ -38,7 +38,8 @@ class Measurement:
 
     quantity: name of a response. standard_uncertainty: one standard deviation of the value.
     conditions: parameters of the impact by name; others are taken to be those of the study.
-    simulated: from another model, not measured.
+    simulated: from another model, not measured. systematic_uncertainty: the part of
+    standard_uncertainty that is the same error in all measurements of this quantity and source.
     """
 
     quantity: str
@@ -48,6 +49,7 @@ class Measurement:
     conditions: Mapping[str, float | int | str]
     source: str
     simulated: bool = False
+    systematic_uncertainty: float = 0.0
 
 
 class Agreement(Verdict):

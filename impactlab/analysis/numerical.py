@@ -2,9 +2,8 @@
 
 It is measured where the first base samples of a Sobol sample were solved again on other grids. All
 grids see the same points of the sample, so that the sampling error of an index nearly cancels in
-its change from grid to grid; what is left of it is bootstrapped, the base samples of all grids
-drawn together. Elsewhere it is bounded by the uncertainty of the responses, as if none of it were
-common to all runs.
+its change from grid to grid; the replicates of the sample tell what is left of it. Elsewhere it is
+bounded by the uncertainty of the responses, as if none of it were common to all runs.
 """
 
 from __future__ import annotations
@@ -18,8 +17,8 @@ from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
 from impactlab.analysis.responses import Sample, in_order, listed, usable
 from impactlab.analysis.sensitivity import sobol
-from impactlab.analysis.sensitivity.indices import imputed
-from impactlab.analysis.sensitivity.method import half_widths
+from impactlab.analysis.sensitivity.imputation import imputed
+from impactlab.analysis.sensitivity.method import half_width
 from impactlab.analysis.sensitivity.sobol import Outputs, estimates
 from impactlab.analysis.sensitivity.verdict import still, tail
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
@@ -187,30 +186,22 @@ def _of_response(
     name: str, outputs: Floats, spacings: Mapping[str, float], sample: Sample
 ) -> dict[str, Floats]:
     """Analyse one response; empty where a grid gives no index. outputs: (grid, run)."""
-    statistics = []
+    replicated, factors = [], len(sample.factors)
     for row in outputs:
-        complete = imputed(row, sample, name)
-        if complete is None or not np.isfinite(complete).all():
+        complete = imputed(row, sample, name).outputs
+        if not np.isfinite(complete).all():
             return {}
         if still(complete, sobol.varying(complete, sample)) or tail(complete) > TAIL_SHARE:
             return {}
-        statistics.append(Outputs.of(complete, sample).statistics())
-    factors, used = len(sample.factors), list(spacings).index(USED)
-
-    def changes(means: Floats) -> dict[str, Floats]:
-        parts = [estimates(part, factors) for part in np.split(means, len(spacings), axis=-1)]
-        return {
-            order: np.stack([part[order] - parts[used][order] for part in parts], axis=-2)
-            for order in ORDERS
-        }
-
-    columns = np.concatenate(statistics, axis=1)
-    found = changes(columns.mean(axis=0))
-    widths = half_widths(columns, changes, sample, "refinement", name)
+        replicated.append(estimates(Outputs.of(complete, sample).means(), factors))
     answer: dict[str, Floats] = {}
     for order in ORDERS:
-        change = dict(zip(spacings, found[order], strict=True))
-        width = dict(zip(spacings, widths[f"{order}_interval"], strict=True))
+        indices = {grid: each[order] for grid, each in zip(spacings, replicated, strict=True)}
+        changes = {grid: values - indices[USED] for grid, values in indices.items()}
+        change = {grid: values[0] for grid, values in changes.items()}
+        width = {
+            grid: half_width(values[1:], sample.confidence) for grid, values in changes.items()
+        }
         by_spacing = (1.0 + _safety(change, spacings)) * abs(change[FINER])
         by_points = points.SAFETY * abs(change[MORE_POINTS])
         by_chance = _TO_LIMIT * (width[FINER] + width[MORE_POINTS])

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from functools import partial
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,11 +14,28 @@ StudyFile = Annotated[
 RunsFile = Annotated[
     Path, typer.Argument(metavar="RUNS", help="Solved runs, results/NAME/runs.nc.")
 ]
-new_file: Any = partial(typer.Option, dir_okay=False)
-"""An option for a file to write; a folder of this name is refused before any work."""
-new_folder: Any = partial(typer.Option, file_okay=False)
-"""An option for a folder to write to; a file of this name is refused."""
 RESULTS = Path("results")
+
+
+def new_file(*suffixes: str, help: str) -> Any:
+    """Return an option for a file to write; other suffixes, and folders, are refused at once."""
+    return typer.Option(help=help, dir_okay=False, callback=_check(suffixes))
+
+
+def new_folder(*, help: str) -> Any:
+    """Return an option for a folder to write to; a file, or the name of one, is refused at once."""
+    return typer.Option(help=help, file_okay=False, callback=_check(()))
+
+
+def _check(suffixes: tuple[str, ...]) -> Callable[[typer.CallbackParam, Path | None], Path | None]:
+    def check(param: typer.CallbackParam, value: Path | None) -> Path | None:
+        if value is not None:
+            from impactlab.files import check_suffix  # late: it loads xarray
+
+            check_suffix(param.opts[0], value, suffixes)
+        return value
+
+    return check
 
 
 def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ def analyse(
     refinement: Annotated[
         Path | None, typer.Option(help="What `refine` solved: the same of Sobol indices, measured.")
     ] = None,
-    output: Annotated[Path | None, new_file(help="Default: beside the runs.")] = None,
+    output: Annotated[Path | None, new_file(".nc", help="Default: beside the runs.")] = None,
 ) -> None:
     """Convergence and sensitivity from solved runs.
 
@@ -52,8 +52,8 @@ def predict(
     """Predict the responses of one run without solving it.
 
     All parameters that the study varied have to be given. Beside each response stands the
-    surrogate's error on runs that it was not fitted to: on those of the outermost 1 % of a range
-    where a value lies there and the error is more than twice as large.
+    half-width of its 95 % interval, from the errors on runs that a fit had not seen, which grow
+    towards the ends of the ranges.
     """
     from impactlab.analysis.surrogate import load_surrogate
     from impactlab.report.console import print_predictions
@@ -80,7 +80,7 @@ def report(
     stored: StoredFiles,
     figures: Pictures = None,
     output: Annotated[
-        Path | None, new_file(help="Default: report.html beside the first of them.")
+        Path | None, new_file(".html", help="Default: report.html beside the first of them.")
     ] = None,
 ) -> None:
     """Write a study's report, and, beside the runs, ro-crate-metadata.json: what made each file."""
@@ -98,7 +98,7 @@ def report(
 
 def index(
     results: Annotated[Path, typer.Argument(help="Folder of results.")] = RESULTS,
-    output: Annotated[Path | None, new_file(help="Default: index.html in it.")] = None,
+    output: Annotated[Path | None, new_file(".html", help="Default: index.html in it.")] = None,
 ) -> None:
     """Write the index over all reports."""
     from impactlab.report.results import write_index

@@ -6,7 +6,7 @@ import logging
 import warnings
 from pathlib import Path
 from pkgutil import resolve_name
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -39,10 +39,15 @@ def simulate(
     scheme: Annotated[
         str, typer.Option(help="leapfrog, modal (the same from far fewer nodes) or auto.")
     ] = "leapfrog",
-    duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "3 ms",
-    output: Annotated[Path | None, new_file(help="Keep histories and fields as netCDF.")] = None,
+    duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "6 ms",
+    output: Annotated[
+        Path | None, new_file(".nc", help="Keep histories and fields as netCDF.")
+    ] = None,
     plot: Annotated[
-        Path | None, new_file(help="Draw force, motion and strain: a PNG, SVG or PDF file.")
+        Path | None,
+        new_file(
+            ".png", ".svg", ".pdf", help="Draw force, motion and strain: a PNG, SVG or PDF file."
+        ),
     ] = None,
 ) -> None:
     """Solve one impact on the paper's beam and print its responses."""
@@ -53,20 +58,22 @@ def simulate(
     values |= {"beam_model": beam_model} if beam_model else {}
     values |= {"nodes": nodes, "points": points, "rule": rule, "scheme": scheme}
     seconds = given("--duration", duration, "s")
-    if plot and plot.suffix not in (".png", ".svg", ".pdf"):
-        raise ValueError(f"--plot = {str(plot)!r}: its name must end in .png, .svg or .pdf")
     impact, grid = _checked(base, values)
-    if output is None and plot is None:
-        from impactlab.simulate import case_table, solve
-
-        print_responses(solve(case_table(impact, grid, duration=seconds)))
-        return
+    from impactlab.duration import too_short
+    from impactlab.simulate import case_table, solve
     from impactlab.simulate import simulate as solve_one
 
-    with warnings.catch_warnings():  # _checked has said them
-        warnings.simplefilter("ignore")
-        dataset = solve_one(impact, grid, duration=seconds)
-    print_responses(dataset)
+    cases = case_table(impact, grid, duration=seconds)
+    answers: Any
+    if output is None and plot is None:
+        answers = solve(cases)
+    else:
+        with warnings.catch_warnings():  # said by _checked, and below
+            warnings.simplefilter("ignore")
+            answers = dataset = solve_one(impact, grid, duration=seconds)
+    print_responses(answers)
+    if message := too_short(cases[0], int(answers["status"].item())):
+        print(f"--{message}.")
     if output:
         from impactlab.files import write_netcdf
 

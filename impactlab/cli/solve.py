@@ -16,6 +16,9 @@ Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
 Force = Annotated[
     bool, typer.Option("--force", help="Also what takes a month of one core, or all memory.")
 ]
+Replace = Annotated[
+    bool, typer.Option("--replace", help="Even where another study has results of this name.")
+]
 _ALL = os.cpu_count() or 1
 
 
@@ -34,7 +37,9 @@ def recommend(
             help="Which it is asked of, such as peak_force,impulse. Default: those of the study."
         ),
     ] = "",
-    output: Annotated[Path | None, new_file(help="Default: results/NAME/resolution.nc.")] = None,
+    output: Annotated[
+        Path | None, new_file(".nc", help="Default: results/NAME/resolution.nc.")
+    ] = None,
     workers: Threads = _ALL,
 ) -> None:
     """Find the cheapest discretisation that is fine enough.
@@ -47,10 +52,12 @@ def recommend(
     from impactlab.study.engine import Engine
     from impactlab.study.schema.files import read_impacts
     from impactlab.study.schema.study import Auto
+    from impactlab.study.stored import check_unclaimed
 
     declared = read_impacts(study)
     path = output or steps.results_folder(declared.name) / RESOLUTION
     stop_solving()
+    check_unclaimed(declared, path.with_name("runs.nc"))
     wishes = declared.auto or Auto()
     if tolerance:
         limit = given("--tolerance", tolerance, "1")
@@ -64,7 +71,7 @@ def recommend(
 
 def design(
     study: StudyFile,
-    output: Annotated[Path | None, new_file(help="Default: results/NAME/design.nc.")] = None,
+    output: Annotated[Path | None, new_file(".nc", help="Default: results/NAME/design.nc.")] = None,
 ) -> None:
     """Sample a study into its runs.
 
@@ -76,20 +83,24 @@ def design(
     from impactlab.study.engine import Engine
     from impactlab.study.sampling.design import design as design_of
     from impactlab.study.schema.files import read_study
+    from impactlab.study.stored import check_unclaimed, study_file
 
     declared = read_study(study)
     path = output or steps.results_folder(declared.name) / "design.nc"
     stop_solving()
+    check_unclaimed(declared, path.with_name("runs.nc"))
     engine = Engine(workers=_ALL)
     found = steps.resolved(declared, path.parent, engine, print_recommendation)
-    write_netcdf(design_of(found or declared), path, "design")
+    drawn = design_of(found or declared)
+    file = study_file(declared, path.parent)
+    write_netcdf(drawn.assign_attrs(study_file=file), path, "design")
 
 
 def run(
     design_file: Annotated[
         Path, typer.Argument(metavar="STUDY", help="A study file, or its design.nc.")
     ],
-    output: Annotated[Path | None, new_file(help="Default: results/NAME/runs.nc.")] = None,
+    output: Annotated[Path | None, new_file(".nc", help="Default: results/NAME/runs.nc.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Threads or processes.")] = _ALL,
     processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
     scheduler: Annotated[str, typer.Option(help="Address of a running dask scheduler.")] = "",
@@ -103,6 +114,7 @@ def run(
         bool, typer.Option("--dry-run", help="Tell runs, time, memory and disk, and solve nothing.")
     ] = False,
     force: Force = False,
+    replace: Replace = False,
 ) -> None:
     """Solve the runs of a study that have not been solved yet.
 
@@ -130,14 +142,15 @@ def run(
     engine = Engine(
         "processes" if processes else "threads", workers, scheduler, profile, batch_seconds
     )
-    steps.run(study, path, engine, drawn=stored, force=force, tell=print_recommendation)
+    options = {"force": force, "replace": replace}
+    steps.run(study, path, engine, drawn=stored, tell=print_recommendation, **options)
     print_solved(path)
 
 
 def refine(
     runs: RunsFile,
     output: Annotated[
-        Path | None, new_file(help="Default: refinement.nc, beside the runs.")
+        Path | None, new_file(".nc", help="Default: refinement.nc, beside the runs.")
     ] = None,
     base_samples: Annotated[
         int | None,
@@ -196,10 +209,13 @@ def verify(
     study: Annotated[
         Path, typer.Argument(metavar="STUDY", help="A study file of checks, or its findings.nc.")
     ],
-    output: Annotated[Path | None, new_file(help="Default: results/NAME/findings.nc.")] = None,
+    output: Annotated[
+        Path | None, new_file(".nc", help="Default: results/NAME/findings.nc.")
+    ] = None,
     exit_zero: Annotated[
         bool, typer.Option("--exit-zero", help="Exit with code 0 even if checks fail.")
     ] = False,
+    replace: Replace = False,
 ) -> None:
     """Compare the solver with independent solutions.
 
@@ -210,6 +226,7 @@ def verify(
     from impactlab.report.console import print_outcomes
     from impactlab.study import steps
     from impactlab.study.schema.files import read_verification
+    from impactlab.study.stored import check_unclaimed, study_file
     from impactlab.verification.stored import unpacked
 
     if study.suffix == ".nc":
@@ -217,7 +234,10 @@ def verify(
     else:
         declared = read_verification(study)
         path = output or steps.results_folder(declared.name) / "findings.nc"
-        findings = steps.check(declared)
+        if not replace:
+            check_unclaimed(declared, path)
+        file = study_file(declared, path.parent)
+        findings = steps.check(declared).assign_attrs(study_file=file)
         write_netcdf(findings, path, "findings")
     outcomes = unpacked(findings)
     print_outcomes(outcomes)
@@ -226,7 +246,9 @@ def verify(
         raise typer.Exit(code=0 if exit_zero else 1)
 
 
-def go(study: StudyFile, workers: Threads = _ALL, force: Force = False) -> None:
+def go(
+    study: StudyFile, workers: Threads = _ALL, force: Force = False, replace: Replace = False
+) -> None:
     """Do everything for one study: run, analyse, figures and report.
 
     Of a verification: verify, figures and report. Runs that are solved are not solved again.
@@ -242,13 +264,13 @@ def go(study: StudyFile, workers: Threads = _ALL, force: Force = False) -> None:
     if isinstance(declared, Verification):
         stored = [steps.results_folder(declared.name) / "findings.nc"]
         try:
-            verify(study)
+            verify(study, replace=replace)
         except typer.Exit:  # the report comes first, the verdict last
             failed = True
     else:
         folder = steps.results_folder(declared.name)
         stored = [folder / "runs.nc", folder / "analysis.nc"]
-        run(study, workers=workers, force=force)
+        run(study, workers=workers, force=force, replace=replace)
         if isinstance(declared, Study) and isinstance(declared.sampling, Sobol):
             refine(stored[0], workers=workers)
         results.analyse(stored[0], **steps.evidence(declared, stored[0]))

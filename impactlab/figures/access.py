@@ -45,7 +45,9 @@ def known(analysis: xr.Dataset, response: str) -> bool:
 
 def design_dims(runs: xr.Dataset, dims: Iterable[object] | None = None) -> list[str]:
     """Return the dimensions that number the runs (of `dims`, if given), in their order."""
-    return [str(dim) for dim in (runs.dims if dims is None else dims) if dim not in SAMPLED]
+    own = names(runs, "varied")  # functions may have a parameter x
+    every = runs.dims if dims is None else dims
+    return [str(dim) for dim in every if dim not in SAMPLED or dim in own]
 
 
 def is_sample(runs: xr.Dataset) -> bool:
@@ -96,15 +98,16 @@ def means_by_word(
     return found
 
 
-def absent(array: xr.DataArray) -> xr.DataArray:
-    """Return True for each run (design dimensions) in which the variable has no finite value."""
+def absent(runs: xr.Dataset, name: str) -> xr.DataArray:
+    """Return True for each run (design dimensions) in which a variable has no finite value."""
+    array = usable(runs, name)
     present: xr.DataArray = xr.apply_ufunc(np.isfinite, array, dask="allowed")
-    return ~present.any([dim for dim in array.dims if dim in SAMPLED])
+    return ~present.any([*set(array.dims) - {*design_dims(runs, array.dims)}])
 
 
 def failed(runs: xr.Dataset) -> xr.DataArray:
     """Return True, on the design dimensions, where a run failed or lacks a response."""
-    marks = [absent(usable(runs, name)) for name in responses(runs)]
+    marks = [absent(runs, name) for name in responses(runs)]
     if "status" in runs:
         marks.append((runs["status"] & FAILED) != 0)
     if not marks:
@@ -124,7 +127,7 @@ def causes(runs: xr.Dataset, mask: xr.DataArray) -> Counter[str]:
 
 def missing_note(runs: xr.Dataset, variables: Sequence[str]) -> str:
     """Return a caption's sentence on the runs that lack one of the variables; "" without any."""
-    held = [absent(usable(runs, name)) for name in variables if name in runs]
+    held = [absent(runs, name) for name in variables if name in runs]
     mask = xr.concat(held, "variable").any("variable") if held else xr.DataArray(False)
     return missing_words(runs, mask, "here" if len(held) == 1 else "in one panel or more")
 

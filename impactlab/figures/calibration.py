@@ -50,14 +50,15 @@ def _parameter(ax: Axes, one: xr.Dataset) -> None:
     ax.set(xlabel=labels.wrapped_axis(labels.parameter(name), unit.symbol), yticks=[])
     ax.set_ylabel("probability density")
     scales.linear(ax, "x", 4)
-    if float(one["spread_ratio"]) >= SILENT:
+    single = np.isfinite(one["mode_weight"]).sum() == 1
+    if single and float(one["spread_ratio"]) >= SILENT:
         corner: Any = {"xycoords": "axes fraction"}
         style.note(ax, "the data cannot tell", (0.0, 1.0), (0, 3), warning=True, **corner)
 
 
 def _predictions(ax: Axes, found: xr.Dataset) -> None:
-    """Draw each measurement and its prediction, relative to the measured value."""
-    scale = 100.0 / np.abs(found["measured"].values)
+    """Draw each measurement and its prediction, in standard uncertainties from the measurement."""
+    scale = COVERAGE / found["measured_uncertainty"].values
     rows = np.arange(found.sizes["measurement"], dtype=float)
     off = (found["predicted_mean"].values - found["measured"].values) * scale
     parts = [found[key].values for key in ("predicted_deviation", "surrogate_error")]
@@ -70,7 +71,7 @@ def _predictions(ax: Axes, found: xr.Dataset) -> None:
         ax.errorbar(centre, at, xerr=bar * scale, **looks)
     ax.set_yticks(rows, _words(found), fontsize=6)
     ax.set_ylim(rows.size - 0.5, -0.5)
-    ax.set(xlabel="from the measured value (%)", ylabel="measurement")
+    ax.set(xlabel="from the measured value (standard uncertainties)", ylabel="measurement")
 
 
 def _words(found: xr.Dataset) -> list[str]:

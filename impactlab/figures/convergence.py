@@ -18,6 +18,7 @@ from impactlab.figures.access import known, responses, usable
 from impactlab.figures.curves import Choice, Plan, plan
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
+from impactlab.figures.needs import needed
 from impactlab.model.cost import node_steps
 from impactlab.model.impact import SOLID
 from impactlab.model.parameters import ELEMENTS
@@ -80,7 +81,7 @@ class Refined:
         """Return a caption's sentences on what converges, is shown, held and missing."""
         names = self.names(runs)
         return (
-            _enough(runs, analysis, self),
+            _enough(runs, analysis),
             _unconverged(runs, analysis, self.name, names),
             self.plan(runs).note(runs),
             access.missing_note(runs, names),
@@ -216,27 +217,19 @@ def _unconverged(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[
     return f"Not converged: {labels.listing(found)}." if found else ""
 
 
-def _enough(runs: xr.Dataset, analysis: xr.Dataset, axis: Refined) -> str:
-    """Return a sentence on the coarsest grid that is within tolerance in all converging cases."""
-    from_on: dict[str, list[str]] = {}
-    finest = _finest(runs, axis.dim)
-    order = np.argsort(abs(np.argsort(np.argsort(runs[axis.dim].values)) - finest))
-    for name in axis.names(runs):
-        flags = _of(analysis, f"{axis.name}_verdict", name)
-        sound = [v.value for v in access.occurring(flags) if v.sound and v.flag != "at_round_off"]
-        values = usable(runs, name)
-        reference = values.isel({axis.dim: finest}, drop=True)
-        uncertainty = _of(analysis, f"{axis.name}_uncertainty", name)
-        distance = abs(values / reference.where(reference != 0) - 1.0) + uncertainty
-        outside = (distance > TOLERANCE) & flags.isin(sound)
-        passes = ~outside.any([dim for dim in outside.dims if dim != axis.dim]).values[order]
-        if sound and passes[0]:
-            last = len(passes) if passes.all() else int(np.argmin(passes))
-            at = labels.value(runs[axis.dim], int(order[last - 1])).replace("_", " ")
-            from_on.setdefault(at, []).append(labels.response(name))
-    found = [f"{labels.listing(names)} from {at} on" for at, names in from_on.items()]
-    head = f"At most {TOLERANCE} from the limit, uncertainty included, where it converges"
-    return f"{head}: {'; '.join(found)}." if found else ""
+def _enough(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+    """Return a sentence on the grid that each response needs, as the answer of the report."""
+    needs = needed(runs, analysis)
+    if needs is None:
+        return ""
+    grids: dict[str, list[str]] = {}
+    for name in needs.errors:
+        need = needs.grids.get(name)
+        where = f"from {needs.words(need)}" if need else "on no grid of this study"
+        grids.setdefault(where, []).append(labels.response(name))
+    places = "; ".join(f"{labels.listing(names)} {where}" for where, names in grids.items())
+    share = labels.percent(TOLERANCE)
+    return f"Within {share} of the finest grid, uncertainty included: {places}."
 
 
 def _above_round_off(difference: xr.DataArray, selected: Plan) -> Iterator[tuple[Choice, Floats]]:

@@ -213,7 +213,7 @@ def draw(
 def note(runs: xr.Dataset, variable: str) -> str:
     """Return a caption's sentences on the curves, what is held, and chosen runs without a curve."""
     selected = chosen(runs, variable)
-    absent = access.absent(usable(runs, variable))
+    absent = access.absent(runs, variable)
     gaps = [
         ", ".join(filter(None, (curve.label, panel.label)))
         for panel in selected.panels

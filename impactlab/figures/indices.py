@@ -50,8 +50,7 @@ def index_bars(family: Family) -> Figure:
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per response, a row per parameter (largest first), a bar per measure."""
         shown = family.measures_in(analysis)
-        ranking, given = measures.ranking(family).name, [measure.name for measure in shown]
-        ranked = abs(analysis[ranking if ranking in given else given[-1]])
+        ranked = abs(analysis[measures.ranking(family, analysis).name])
         largest = ranked.max([dim for dim in ranked.dims if dim != "parameter"]).fillna(-1.0)
         analysis = analysis.isel(parameter=np.argsort(-largest.values, kind="stable"))
         height = 10 + max(5.2, 2.4 * len(shown)) * analysis.sizes["parameter"]

@@ -81,9 +81,9 @@ def display(array: xr.DataArray) -> Display:
 
     A plastic strain is shown in %; a unit that is not in the table is shown as it is stored.
     """
-    if "plastic_strain" in str(array.name):
-        return Display(100.0, "%")
     units = str(array.attrs.get("units", "1"))
+    if "plastic_strain" in str(array.name) and units == "1":
+        return Display(100.0, "%")
     numbers = array.data if array.dtype.kind in "if" and array.size else np.zeros(1)
     largest = float(np.where(np.isfinite(numbers), np.abs(numbers), 0.0).max())  # also of dask's
     steps = _STEPS.get(units, ((0.0, 1.0, units),))
@@ -146,7 +146,9 @@ def number(value: float, digits: int = 4, plain: tuple[float, float] = (1e-4, 1e
 
 
 def percent(share: float, digits: int = 2) -> str:
-    """Return a share in per cent: "1.5 %"; NaN is a dash."""
+    """Return a share in per cent: "1.5 %"; NaN is a dash, infinity "no bound"."""
+    if math.isinf(share):
+        return "no bound"
     return "–" if math.isnan(share) else f"{number(100 * share, digits)} %"
 
 

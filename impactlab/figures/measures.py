@@ -96,7 +96,7 @@ class Index:
 SOBOL = Family(
     "sobol_indices",
     "Sobol indices",
-    (Measure("first_order", "first order"), Measure("total_order", "total order")),
+    (Measure("first_order", "first order"), Measure("total_order", "total order", optional=True)),
     "Share of the variance (–)",
     "Share of the variance of each response that comes from a parameter alone (first order) and "
     "with all its interactions (total order), over the ranges of this study.",
@@ -152,9 +152,9 @@ RANKED = (SOBOL, MORRIS, DELTA, PAWN, REGRESSION)
 """Families that rank the parameters, each by one measure of theirs (`ranking`)."""
 
 
-def ranking(family: Family) -> Measure:
-    """Return the measure that ranks the parameters: the total order of Sobol, else the first."""
-    return family.measures[1] if family is SOBOL else family.measures[0]
+def ranking(family: Family, analysis: xr.Dataset) -> Measure:
+    """Return the measure that ranks the parameters: the total order where given, else the first."""
+    return family.measures_in(analysis)[-1 if family in (SOBOL, SURROGATE) else 0]
 
 
 def analysed(runs: xr.Dataset, analysis: xr.Dataset, *needed: str) -> list[str]:

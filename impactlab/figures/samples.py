@@ -14,6 +14,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FixedFormatter
 from numpy.typing import NDArray
 
+from impactlab.analysis.regimes import of_runs
 from impactlab.figures import access, labels, record, responses_grid, scales, style
 from impactlab.figures.access import is_sample, usable, varied
 from impactlab.figures.labels import display
@@ -50,8 +51,8 @@ def scatter(response: str) -> Figure:
         what = (
             f"Points: {points}. Line: mean of the response over all runs with about this value of "
             "the parameter; where it is flat, the parameter alone changes nothing."
-            + " Diamonds: mean over all runs with this word."
-            * any(map(labels.words, columns))
+            + " Each regime has a line of its own." * bool(of_runs(runs, response).size)
+            + " Diamonds: mean over all runs with this word." * any(map(labels.words, columns))
         )
         return what, access.missing_note(runs, [response])
 
@@ -67,7 +68,10 @@ def scatter(response: str) -> Figure:
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per parameter; points are a bitmap, which keeps the vector file small."""
         values, label = responses_grid.shown(runs, response)
-        return along_parameters(runs, label, 42, lambda ax, at: scatter_runs(ax, at, values.values))
+        middles = display(runs[response])(of_runs(runs, response))
+        return along_parameters(
+            runs, label, 42, lambda ax, at: scatter_runs(ax, at, values.values, middles)
+        )
 
     return plot
 
@@ -117,10 +121,11 @@ def ticks(ax: Axes, which: Literal["x", "y"], column: xr.DataArray) -> None:
     ax.grid(visible=False, axis=which)
 
 
-def scatter_runs(ax: Axes, column: xr.DataArray, y: Floats) -> None:
+def scatter_runs(ax: Axes, column: xr.DataArray, y: Floats, middles: Floats) -> None:
     """Draw some of the runs over a parameter, and the mean of all about each value, or word.
 
-    column, y: (runs,), a varied coordinate and a response in its display unit.
+    column, y: (runs,), a varied coordinate and a response in its display unit. middles: of the gaps
+    between its regimes, in that unit; each regime has its own mean.
     """
     ticks(ax, "x", column)
     x = places(column)
@@ -132,14 +137,16 @@ def scatter_runs(ax: Axes, column: xr.DataArray, y: Floats) -> None:
         return
     some = np.random.default_rng(1).permutation(x.size)[:_SHOWN]  # a sample's order has structure
     ax.plot(_beside(column, x)[some], y[some], label="_runs", rasterized=True, **_POINTS)
-    if labels.words(column):
-        middle = np.unique(x)
-        mean = np.array([y[x == place].mean() for place in middle])
-        look: dict[str, Any] = {"linestyle": "", "marker": "D", "label": "mean by word"}
-    else:
-        middle, mean = conditional_mean(x, y)
-        look = {"linewidth": 1.5, "label": "conditional mean"}
-    ax.plot(middle, mean, color=style.COLOURS[1], **look)
+    regime = np.searchsorted(middles, y)
+    for part in (regime == number for number in np.unique(regime)):
+        if labels.words(column):
+            middle = np.unique(x[part])
+            mean = np.array([y[part & (x == place)].mean() for place in middle])
+            look: dict[str, Any] = {"linestyle": "", "marker": "D", "label": "mean by word"}
+        else:
+            middle, mean = conditional_mean(x[part], y[part])
+            look = {"linewidth": 1.5, "label": "conditional mean"}
+        ax.plot(middle, mean, color=style.COLOURS[1], **look)
     scales.linear(ax, "y", 4)
 
 
@@ -162,8 +169,8 @@ def _validation_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, 
     shown = f", {_MOST} of them shown" if tests > _MOST else ""
     what = (
         "Prediction of a polynomial chaos against the solver's answer, for "
-        f"{labels.counted(tests, 'run')} that it was not fitted to{shown}; on the line both agree. "
-        "Q²: 1 less the mean squared error over the variance of all of them."
+        f"{labels.counted(tests, 'run')}, by fits that left them out{shown}; on the line both "
+        "agree. Q²: 1 less the mean squared error over the variance of all of them."
     )
     return what, access.missing_note(runs, analysed(runs, analysis))
 

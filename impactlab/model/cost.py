@@ -48,13 +48,8 @@ def work(cases: Any) -> Any:
     """
     nodes, model = cases["nodes"], cases["beam_model"]
     lumped = model >= BEAM_MODELS.index("spring_mass")
-    compliance = sum(
-        (1.0 - cases[f"{body}_poissons_ratio"] ** 2) / cases[f"{body}_youngs_modulus"]
-        for body in ("sphere", "beam")
-    )
     radius, mass = cases["sphere_radius"], cases["sphere_mass"]
-    hertz = 4.0 / 3.0 / compliance * np.sqrt(radius)
-    indentation = (1.25 * mass * cases["velocity"] ** 2 / hertz) ** 0.4
+    hertz, indentation = _hertz(cases)
     stiffness = 1.5 * hertz * np.sqrt(np.minimum(indentation, radius))
     dx = cases["beam_span"] / (nodes - 1)
     node = cases["beam_density"] * cases["beam_width"] * cases["beam_depth"] * dx
@@ -75,6 +70,41 @@ def work(cases: Any) -> Any:
     share = np.where(model == BEAM_MODELS.index("elastic"), 0.0, beyond * beyond)
     modal = np.minimum(in_contact, 1.0) * touching + share * yielding
     return np.where(cases["scheme"] == SCHEMES.index("modal"), steps * modal, leapfrog)
+
+
+def contact_time(case: Any) -> float:
+    """Return an upper estimate of a run's time in contact, in s; case: a record of types.CASE."""
+    _, indentation = _hertz(case)
+    return float(_CONTACTS * 2.94 * indentation / case["velocity"])
+
+
+def swing(case: Any) -> float:
+    """Return an upper estimate of the time in s in which a run's sphere and beam swing once.
+
+    That is the period of one mass on the bending stiffness, with 17/35 of the mass of a beam that
+    is struck at mid-span (Cox), and the time in which a plastic hinge there stops the sphere. A
+    rigid beam does not swing.
+    """
+    if case["beam_model"] == BEAM_MODELS.index("rigid"):
+        return 0.0
+    span, depth = case["beam_span"], case["beam_depth"]
+    area = case["beam_width"] * depth
+    stiffness = 4.0 * case["beam_youngs_modulus"] * area * depth**2 / span**3
+    mass = case["sphere_mass"] + 17.0 / 35.0 * case["beam_density"] * area * span
+    yields = case["beam_model"] != BEAM_MODELS.index("elastic")
+    collapse = case["beam_yield_stress"] * area * depth / span
+    hinge = yields * case["sphere_mass"] * case["velocity"] / collapse
+    return float(2.0 * np.pi * np.sqrt(mass / stiffness) + hinge)
+
+
+def _hertz(cases: Any) -> tuple[Any, Any]:
+    """Return Hertz's F/d^1.5, and the indentation that takes all of the sphere's energy; SI."""
+    compliance = sum(
+        (1.0 - cases[f"{body}_poissons_ratio"] ** 2) / cases[f"{body}_youngs_modulus"]
+        for body in ("sphere", "beam")
+    )
+    hertz = 4.0 / 3.0 / compliance * np.sqrt(cases["sphere_radius"])
+    return hertz, (1.25 * cases["sphere_mass"] * cases["velocity"] ** 2 / hertz) ** 0.4
 
 
 def memory(cases: Any) -> Any:

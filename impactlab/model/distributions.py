@@ -80,6 +80,34 @@ def cumulative(attributes: Arguments, values: ArrayLike) -> Floats:
     return np.asarray(_frozen(attributes).cdf(values))
 
 
+LOGARITHMIC = ("log_uniform", "lognormal")
+"""Distributions whose draws spread evenly, or normally, in their logarithm."""
+_NEGLIGIBLE = 1e-40  # share of the draws beyond either end of a quadrature
+_PANELS, _NODES = 40, 40  # of Gauss and Legendre
+
+
+def quadrature(attributes: Arguments) -> tuple[bool, Floats, Floats]:
+    """Return nodes (SI units) and weights, which add up to 1, of integrals over a distribution.
+
+    The first is True where the nodes are logarithms of values. They integrate polynomials up to
+    degree 40 to rounding. Raises ValueError as `arguments`.
+    """
+    frozen = _frozen(attributes)
+    low, high = float(frozen.ppf(_NEGLIGIBLE)), float(frozen.isf(_NEGLIGIBLE))
+    is_logarithmic = attributes["distribution"] in LOGARITHMIC
+    if is_logarithmic:
+        low, high = np.log(low), np.log(high)
+    edges = np.linspace(low, high, _PANELS + 1)
+    if "mode" in attributes:  # where the density has a kink
+        edges = np.unique([*edges, float(attributes["mode"])])
+    half = np.diff(edges)[:, np.newaxis] / 2
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    x = (edges[:-1, np.newaxis] + half * (1 + nodes)).ravel()
+    density = frozen.pdf(np.exp(x)) * np.exp(x) if is_logarithmic else frozen.pdf(x)
+    shares = (half * weights).ravel() * density
+    return is_logarithmic, x, shares / shares.sum()
+
+
 def _frozen(attributes: Arguments) -> Any:
     given = arguments(attributes)
     return _FORMS[given.pop("distribution")](**given)

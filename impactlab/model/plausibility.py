@@ -28,6 +28,10 @@ class ImplausibleWarning(UserWarning):
     """A value that is implausible, or even impossible."""
 
 
+class TooShortWarning(UserWarning):
+    """A duration that ends before some responses can be given."""
+
+
 class Implausibility(NamedTuple):
     """A parameter with an implausible, or even impossible, value, and the reason."""
 

@@ -68,6 +68,28 @@ def si(value: object, units: str) -> float:
     raise ValueError(f"{reason}expected {kind} such as {such}")
 
 
+def si_units(value: Any) -> str:
+    """Return the SI units of a quantity given as text or by pint; "1" of anything else."""
+    given = as_text(value)
+    if not isinstance(given, str) or len(given) > _LONGEST:
+        return "1"
+    match = _QUANTITY.fullmatch(given.strip().translate(_SUPERSCRIPTS))
+    if match is None or match[2] in (None, "%"):
+        return "1"
+    try:
+        unit = _unit(match[2])
+    except ValueError:
+        return "1"
+    for known in (*KINDS, *PREFIXED):
+        if known not in ("1", "B") and _unit(known).dimensionality == unit.dimensionality:
+            return known
+    base = _registry().Quantity(1, unit).to_base_units().units
+    powers = {
+        _registry().get_symbol(name): int(float(str(power))) for name, power in base._units.items()
+    }
+    return " ".join(f"{name}{power if power != 1 else ''}" for name, power in powers.items()) or "1"
+
+
 def as_text(value: Any) -> Any:
     """Return a quantity of pint as text with its unit, an array as a list; all else as it is."""
     if not (hasattr(value, "m") and hasattr(value, "u")):
@@ -123,7 +145,7 @@ class SI(Generic[T]):
 def duration(value: object) -> float:
     """Return a simulated time in s. Raises ValueError as `si`, and for a long one without unit."""
     seconds = si(value, "s")
-    if seconds >= _LONG and str(value).strip()[-1].isdigit():
+    if seconds >= _LONG and str(value).strip()[-1] in "0123456789.":
         raise ValueError(
             f"is in seconds without a unit, and impacts last milliseconds: write '{seconds:g} ms', "
             f"or '{seconds:g} s' if it is meant so"

@@ -14,10 +14,11 @@ from impactlab.figures.access import design_dims, responses, usable
 from impactlab.figures.distributions import spread_evenly
 from impactlab.figures.labels import display
 from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family, Index, analysed
+from impactlab.figures.needs import ORDERED, Needs, finest, needed
 from impactlab.report import measured
 from impactlab.report.cautions import beside
-from impactlab.report.convergence import ORDERED, Needs, finest, needed
 from impactlab.report.distribution import limit_entries
+from impactlab.report.regimes import jump_entries, regime_entries
 from impactlab.report.sensitivity import (
     history_entries,
     in_units,
@@ -77,7 +78,8 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
     if analysis is None:
         return _packed(_verification(runs), LINES), ""
     if families := [one for one in RANKED if one.given(analysis) and analysed(runs, analysis)]:
-        found, kind = _ranking(runs, analysis, families[0]), measures.ranking(families[0]).words
+        found = _ranking(runs, analysis, families[0])
+        kind = measures.ranking(families[0], analysis).words
         note = f"{families[0].title}, {kind}, ± the half-width of the"
         note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
     elif needs := needed(runs, analysis):
@@ -91,7 +93,8 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
     if limits := limit_entries(runs, analysis):
         level, even = access.confidence(analysis), spread_evenly(runs)
         note = f"Above a limit: probability and its {level} interval{even}. {note}"
-    first, last = _packed(limits, _LIMITS), measured.entries(analysis)
+    first = _packed([*regime_entries(runs), *jump_entries(runs)], 1) + _packed(limits, _LIMITS)
+    last = measured.entries(analysis)
     if over := history_entries(analysis):
         note += " Over time: generalised total order, of the variance added up over all times."
     room = LINES - len(first) - bool(last)
@@ -127,9 +130,10 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
     """Return one entry per response: the parameters that matter, and whether to trust this."""
     names, shown = measures.parameters(analysis), analysed(runs, analysis)
     most = max(1, 4 - -(-len(shown) // LINES))  # named per response
+    measure = measures.ranking(family, analysis).name
     found: list[Entry] = []
     for name in shown:
-        index = measures.index(analysis, measures.ranking(family).name, name)
+        index = measures.index(analysis, measure, name)
         sizes = np.where(index.above_noise, np.abs(index.values), 0.0)
         listed: list[str] = []
         for at in np.argsort(-sizes, kind="stable")[:most].tolist():
@@ -144,12 +148,14 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
             fit = float(analysis["regression_r_squared"].sel(response=name))
             listed[-1] += f" (R² of the fit: {labels.number(fit, 2)})"
         verdict = access.verdict(analysis, "sensitivity_verdict", name)
+        if verdict and verdict.flag == "several_regimes":
+            continue  # the first line is about them
         subject = labels.sentence(labels.response(name))
         none = "no parameter stands out from the noise"
         if not np.isfinite(index.values).any():
             none = "no index is defined"
         told = ", ".join(listed) or none
-        if gaps := int(access.absent(usable(runs, name)).sum()):
+        if gaps := int(access.absent(runs, name).sum()):
             told += f" ({gaps:,} of {labels.counted(access.count(runs), 'run')} missing)"
         found.append((f"{subject} ({verdict.words})" if verdict else subject, told))
     return found
@@ -179,7 +185,7 @@ def _written(
     elif family is SOBOL:
         text = share(value, margin, float(index.numerical[at]))
         first = measures.index(analysis, "first_order", name)
-        surplus = value - first.values[at]
+        surplus = value - first.values[at]  # none where the first order ranks
         reach = margin + first.margins[at] + index.numerical[at] + first.numerical[at]
         if surplus > max(_INTERACTS, reach):
             text += f", {max(0.0, 100 * first.values[at]):.0f} % alone"

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.calibration import CONTRADICTED, FEWEST, NEGLIGIBLE, SILENT
+from impactlab.analysis.calibration import CONTRADICTED, FEWEST, NEGLIGIBLE, SILENT, STRONG
 from impactlab.analysis.measurements import COVERAGE
 from impactlab.figures import labels
 from impactlab.figures.calibration import calibration
@@ -36,9 +37,12 @@ def _sentences(found: xr.Dataset) -> Iterator[str]:
             "parameters in the sampled ranges reproduce them within their uncertainties. Do not "
             "use the numbers below; state the model's own error (--model-error) if it is known."
         )
-    silent = []
-    for name in map(str, found["parameter"].values):
+    silent, names = [], [str(name) for name in found["parameter"].values]
+    for name in names:
         one = found.sel(parameter=name)
+        if np.isfinite(one["mode_weight"]).sum() > 1:
+            yield f"{labels.sentence(labels.parameter(name))}: {_modes(one)}"
+            continue
         if (ratio := float(one["spread_ratio"])) >= SILENT:
             silent.append(f"{labels.parameter(name)} (spread {ratio:.2f} of the prior's)")
             continue
@@ -51,6 +55,17 @@ def _sentences(found: xr.Dataset) -> Iterator[str]:
         )
     if silent:
         yield f"The data cannot tell {labels.listing(silent)}."
+    correlation = found["posterior_correlation"].values
+    pairs = [
+        f"{' and '.join(labels.parameter(names[at]) for at in pair)} ({correlation[pair]:+.2f})"
+        for pair in combinations(range(len(names)), 2)
+        if abs(correlation[pair]) >= STRONG
+    ]
+    if pairs:
+        yield (
+            f"Correlated given the data: {labels.listing(pairs)}. Not every pair of values within "
+            "their intervals fits the data."
+        )
     if found.sizes["model"] > 1:
         order = np.argsort(-found["model_weight"].values, kind="stable")
         told = [_model(found.isel(model=at)) for at in order.tolist()]
@@ -66,14 +81,31 @@ def _sentences(found: xr.Dataset) -> Iterator[str]:
     least = found["effective_samples"].where(found["model_weight"] >= NEGLIGIBLE).min()
     text = f"Effective sample size: {float(least):,.0f} or more (least accepted: {FEWEST:g})."
     if "confirmed_error" in found:
-        worst = float((found["confirmed_error"] / abs(found["measured"])).max())
+        uncertainty = found["measured_uncertainty"] / COVERAGE
+        worst = float((found["confirmed_error"] / uncertainty).max())
         missing = int(found["confirmed_missing"].max())
         text = (
             f"Confirmed by {int(found['confirmed_runs'])} runs of the solver at draws of the "
-            f"posterior: there the surrogate is off by {labels.percent(worst)} or less (root mean "
-            "square)" + f", {missing} without an answer" * bool(missing) + f". {text}"
+            f"posterior: there the surrogate is off by {labels.percent(worst)} of the data's "
+            "standard uncertainty or less (root mean square)"
+            + f", {missing} without an answer" * bool(missing)
+            + f". {text}"
         )
     yield text
+
+
+def _modes(one: xr.Dataset) -> str:
+    """Return the separate ranges of a parameter, each with its probability."""
+    modes = [one.isel(mode=at) for at in np.flatnonzero(np.isfinite(one["mode_weight"].values))]
+    ranges = [
+        f"{_value(mode, 'mode_low')} to {_value(mode, 'mode_high')}{_unit(one)} (probability "
+        f"{labels.number(float(mode['mode_weight']), 2)})"
+        for mode in modes
+    ]
+    return (
+        f"the data allow {len(modes)} separate ranges, {labels.listing(ranges)}; mean and standard "
+        "deviation describe none of them."
+    )
 
 
 def _mean(one: xr.Dataset) -> xr.DataArray:

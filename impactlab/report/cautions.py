@@ -10,9 +10,11 @@ import xarray as xr
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
 from impactlab.model.distributions import CHOICE
+from impactlab.report.regimes import regime_doubt
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
-from impactlab.variables import MARKS, WARNINGS
+from impactlab.variables import MARKS, OUTSIDE_DATA, WARNINGS
 
+_OF_THE_CONTACT = {"peak_force", "maximum_indentation", "permanent_indentation"}
 _ENERGY_LIMIT = 1e-3
 """Largest energy imbalance, relative to the initial kinetic energy, of a run without suspicion."""
 
@@ -45,7 +47,7 @@ def cautions(runs: xr.Dataset) -> Iterator[str]:
 
 def endings(runs: xr.Dataset) -> str:
     """Return how many runs failed, and how many merely lack a response; "" where none does."""
-    gaps = [access.absent(usable(runs, name)) for name in responses(runs)]
+    gaps = [access.absent(runs, name) for name in responses(runs)]
     empty = xr.concat(gaps, "gap").all("gap") if gaps else access.failed(runs)
     failed, lacking = int(empty.sum()), int((access.failed(runs) & ~empty).sum())
     told = [f"{failed:,} failed"] * bool(failed)
@@ -60,9 +62,13 @@ def beside(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
         return f"above {labels.number(_ENERGY_LIMIT)} in {labels.counted(number, 'run')}"
     if name == "restitution" and (number := int((values > 1).sum())):
         return f"above 1 in {labels.counted(number, 'run')}"
+    remarks = runs["remarks"] if "remarks" in runs else np.zeros(1, int)
+    outside = int(((remarks & OUTSIDE_DATA) != 0).sum())
+    if outside and name in _OF_THE_CONTACT:
+        return f"inputs outside the contact law's data in {labels.counted(outside, 'run')}"
     if name == "peak_plastic_strain" and not verdict and bool((values > 0).any()):
         return "depends on the number of nodes, which this study does not vary"  # nor converges
-    return ""
+    return regime_doubt(runs, name)
 
 
 _LAST_CONTACT = {"rebound_velocity", "restitution", "impulse", "permanent_indentation"}

@@ -43,14 +43,14 @@ def print_responses(run: Any) -> None:
     for flag, (bit, words) in FAILURES.items():
         if status & bit:
             without = [name for name, entry in RESPONSES.items() if entry.missing == flag]
-            missing = f"Missing because {words}; a longer duration may help: {', '.join(without)}."
+            missing = f"Missing because {words}: {', '.join(without)}."
             console.print(missing if without else f"Missing: {words}.", markup=False)
     for note in (*reasons(status, MARKS), *reasons(run["remarks"].item(), WARNINGS)):
         console.print(f"note: {note}", markup=False)
 
 
 def print_predictions(predicted: Any) -> None:
-    """Print one line per response: its prediction, and the surrogate's error on held-out runs.
+    """Print one line per response: its prediction, and the half-width of its interval.
 
     predicted: a dataset of Surrogate.predict at one point.
     """
@@ -63,11 +63,10 @@ def print_predictions(predicted: Any) -> None:
             numbers = (engineering(value, attrs["units"]), error, f"{attrs['q2']:.4f}")
         if verdict == "imprecise":
             verdict += f": the error is {100 * attrs['error'] / abs(value):.0f} % of the prediction"
-        if attrs["outer"]:
-            ratio = attrs["error"] / attrs["rmse"]
-            verdict += f"; {ratio:.3g} times the usual error, as at the ends of {attrs['outer']}"
+        if verdict == "extrapolated":
+            verdict += ": farther out than any run tested on"
         rows.append((str(name), *numbers, verdict))
-    _print_table(("response", "prediction", "± rms error", "Q2", "verdict"), rows)
+    _print_table(("response", "prediction", "± 95 %", "Q2", "verdict"), rows)
 
 
 def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
@@ -138,6 +137,7 @@ def print_status(name: str, found: Status) -> None:
     if found.age is not None:
         print(f"on disk: {decimal(found.size)}, last written {time(found.age)} ago")
     print(f"at work: {found.holder or 'nobody'}")
+    print(found.written)
 
 
 def print_files(reasons_of: Mapping[Path, str]) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.distribution import significance
+from impactlab.analysis.distribution import DistributionVerdict, significance
 from impactlab.analysis.responses import correlations
 from impactlab.figures import access, labels
 from impactlab.figures.distributions import exceedance, limited, spread_evenly
@@ -40,7 +40,7 @@ def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str
     """Return one entry per limit: its probability, and the parameters that lead beyond it."""
     found = []
     for name in limited(runs, analysis):
-        text, led = probability(analysis.sel(response=name)), _leading(analysis, name)
+        text, led = probability(analysis.sel(response=name)), leading(analysis, name)
         response = labels.sentence(labels.response(name))
         text += f"; runs above it have {led}" * bool(led)
         found.append((f"{response} above {_limit(runs, analysis, name)}", text))
@@ -83,7 +83,7 @@ def _limit(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
     return f"{labels.number(float(unit(limit)))} {unit.symbol}".strip()
 
 
-def _leading(analysis: xr.Dataset, name: str) -> str:
+def leading(analysis: xr.Dataset, name: str) -> str:
     """Return the parameters that differ most in runs above the limit; "" where none does."""
     found = analysis.sel(response=name)
     matters = (found["exceedance_p_value"] < significance(analysis)).values
@@ -141,22 +141,24 @@ def _distances(analysis: xr.Dataset, found: xr.Dataset) -> list[Cell]:
 def summary(analysis: xr.Dataset, name: str, unit: Display) -> list[Cell]:
     """Return mean, standard deviation and PERCENTILES of a response, with their intervals below."""
     found, cells = analysis.sel(response=name), []
+    biased = int(found["distribution_verdict"]) == DistributionVerdict.SELECTED
     for key in ("mean", "standard_deviation"):
         value, margin = (float(unit(found[each])) for each in (key, f"{key}_interval"))
-        cells.append(_number(value, f"± {labels.number(margin, 2)}"))
+        cells.append(_number(value, f"± {labels.number(margin, 2)}", biased))
     for at in PERCENTILES.values():
         one = found.sel(probability=at)
         value, low, high = (
             float(unit(one[key])) for key in ("quantile", "quantile_low", "quantile_high")
         )
-        cells.append(_number(value, _range(low, high)))
+        cells.append(_number(value, _range(low, high), biased))
     return cells
 
 
-def _number(value: float, detail: str) -> Cell:
+def _number(value: float, detail: str, biased: bool) -> Cell:
     if np.isnan(value):
         return Cell("missing", "warning")
-    return Cell(labels.number(value), "number", "" if "missing" in detail else detail)
+    kind = "warning" if biased else "number"
+    return Cell(labels.number(value), kind, "" if "missing" in detail else detail)
 
 
 def _range(low: float, high: float) -> str:
@@ -180,7 +182,11 @@ def remarks(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
         "Where answers are missing, mean and standard deviation are those of the others; intervals "
         "of percentiles allow for any value that a missing answer could have."
     )
-    return [told, *[missing] * bool(gaps)]
+    codes = analysis["distribution_verdict"]
+    biased = analysis["response"].values[codes.values == DistributionVerdict.SELECTED].tolist()
+    warning = f"{labels.listing([labels.response(name) for name in biased])}: "
+    warning = labels.sentence(warning + DistributionVerdict.SELECTED.meaning) + "."
+    return [told, *[missing] * bool(gaps), *[warning] * bool(biased)]
 
 
 HEADS: Sequence[str] = ("Mean", "Standard deviation", *PERCENTILES)

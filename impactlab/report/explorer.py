@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
+from dataclasses import asdict
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from pathlib import Path
 from typing import Any
@@ -13,13 +13,13 @@ import xarray as xr
 
 from impactlab.analysis.surrogate import packed
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
-from impactlab.analysis.surrogate.stored import IMPRECISE, OUTER
+from impactlab.analysis.surrogate.polynomials import orthonormal
+from impactlab.analysis.surrogate.stored import IMPRECISE
 from impactlab.figures import labels
 from impactlab.model.quantities import PREFIXED, symbol
 from impactlab.report.page import described, write_page
 
 _POSITIONS = 200  # positions of a slider, about
-_LOGARITHMIC = ("log_uniform", "lognormal")
 
 
 def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
@@ -57,37 +57,32 @@ def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
         ],
         good=SurrogateVerdict.USABLE.meaning,
         imprecise=IMPRECISE,
-        outer=OUTER,
     )
     return path.name
 
 
 def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
-    """Return what the page knows of a parameter; all numbers are in its display unit."""
-    given = json.loads(str(entry["distribution"].item()))
-    given |= {key: entry[key].item() for key in ("lowest", "highest")}
-    unit, distribution = labels.display(column), given["distribution"]
-    numbers = {
-        key: _short(value if "geometric" in key else value * unit.scale)
-        for key, value in given.items()
-        if key != "distribution"
-    }
-    logarithmic = distribution in _LOGARITHMIC
+    """Return what the page knows of a parameter; its range is in its display unit.
+
+    si: what a value there is multiplied by for the polynomials, which take SI units.
+    """
+    unit, kind = labels.display(column), orthonormal(column.attrs)
+    lowest, highest = (_short(entry[key].item() * unit.scale) for key in ("lowest", "highest"))
     # the ends of the range in few digits, rounded so that they do not leave it
-    lowest, highest = numbers["lowest"], numbers["highest"]
     digits = 6 if highest - lowest > 1e-3 * max(abs(lowest), abs(highest)) else 12
     lowest = float(Context(digits, ROUND_CEILING).create_decimal(repr(lowest)))
     highest = float(Context(digits, ROUND_FLOOR).create_decimal(repr(highest)))
-    return numbers | {
+    return {
         "lowest": lowest,
         "highest": highest,
         "range": f"{lowest:.12g} to {highest:.12g} {unit.symbol}".rstrip(),
         "name": str(column.name),
         "label": labels.sentence(labels.parameter(str(column.name))),
         "unit": unit.symbol,
-        "distribution": distribution,
-        "logarithmic": logarithmic,
-        "values": _positions(lowest, highest, logarithmic),
+        "si": 1 / unit.scale,
+        "polynomials": asdict(kind),
+        "logarithmic": kind.logarithmic,
+        "values": _positions(lowest, highest, kind.logarithmic),
     }
 
 
@@ -128,8 +123,9 @@ def _response(found: xr.Dataset, values: xr.DataArray) -> dict[str, Any]:
         "symbol": symbol(units),
         "prefixed": units in PREFIXED,
         "terms": terms,
-        "rmse": float(found["rmse"]),
-        "outer": found["outer"].values.tolist(),
+        "error": float(found["error"]),
+        "growth": float(found["error_growth"]),
+        "reach": float(found["reach"]),
         "q2": f"{float(found['q2']):.4f}",
         "lowest": float(values.min()),
         "highest": float(values.max()),

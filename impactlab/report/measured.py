@@ -43,14 +43,21 @@ def entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
 
 def _difference(row: xr.Dataset) -> str:
     """Return by how much the model is off: "peak force +2.5 % (± 0.6, stronge)"."""
-    measured = abs(float(row["compared_measured"]))
-    share = 100 * float(row["compared_difference"]) / measured if measured else np.inf
-    width = 100 * float(row["compared_combined"]) / measured if measured else np.inf
+    difference, width = _relative(row, "difference"), _relative(row, "combined")
     case = str(row["compared_case"].item()).replace("_", " ")
-    inside = ", ".join(filter(None, (f"± {labels.number(width, 2)}", case)))
-    sign = "+" * (share > 0)
+    inside = ", ".join(filter(None, (f"± {width.removesuffix(' %')}", case)))
     name = labels.response(str(row["compared_quantity"].item()))
-    return f"{name} {sign}{labels.number(share, 2)} % ({inside})"
+    return f"{name} {'+' * (float(row['compared_difference']) > 0)}{difference} ({inside})"
+
+
+def _relative(row: xr.Dataset, key: str) -> str:
+    """Return a difference in per cent of the measured value, of zero in the quantity's unit."""
+    number, measured = (float(row[f"compared_{name}"]) for name in (key, "measured"))
+    if measured:
+        return f"{labels.number(100 * number / abs(measured), 2)} %"
+    quantity, units = (str(row[f"compared_{name}"].item()) for name in ("quantity", "units"))
+    unit = labels.display(xr.DataArray([number], name=quantity, attrs={"units": units}))
+    return f"{labels.number(float(unit(number)), 2)} {unit.symbol}".rstrip()
 
 
 def sections(analysis: xr.Dataset) -> list[Section]:
@@ -89,8 +96,7 @@ def _row(row: xr.Dataset) -> Row:
     stated = [_condition(*each) for each in json.loads(given).items()]
     difference = "–"
     if np.isfinite(model):
-        share = 100 * (model / measured - 1) if measured else np.inf
-        difference = f"{'+' * (share > 0)}{labels.number(share, 2)} %"
+        difference = "+" * (float(row["compared_difference"]) > 0) + _relative(row, "difference")
     kind = "" if verdict.sound else "warning"
     return [
         Cell(labels.sentence(labels.response(quantity))),

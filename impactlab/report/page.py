@@ -36,6 +36,7 @@ _PROVENANCE = {
     "trajectories": "Trajectories",
     "levels": "Levels",
     "harmonics": "Harmonics",
+    "replicates": "Replicates of the sample",
     "resamples": "Bootstrap resamples",
     "failed_runs": "Policy for failed runs",
 }

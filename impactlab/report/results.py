@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
@@ -77,11 +77,11 @@ def write_index(results: Path, path: Path) -> None:
                 with opened(report.with_name(kind.files[0]), "runs", "findings") as stored:
                     size, failed = kind.counts(stored)
                     entry = described(stored) | {"size": size, "failed": failed, "answer": ""}
-                with (
-                    suppress(OSError, ValueError),  # no analysis, or that of other runs
-                    open_stored([report.with_name(name) for name in kind.files]) as (_, datasets),
-                ):
-                    entry["answer"] = answers(*datasets)[0]
+                try:
+                    with open_stored([*map(report.with_name, kind.files)]) as (_, datasets):
+                        entry["answer"] = answers(*datasets)[0]
+                except (OSError, ValueError):  # no analysis, or that of other runs
+                    continue
                 figures = report.with_name("figures")
                 drawn = listed(figures) if (figures / CAPTIONS).exists() else {}
                 name = leading(drawn)  # the figure that answers the study's question

@@ -31,7 +31,7 @@ from impactlab.report.page import Cell, Row, Section, Table, largest
 
 _COARSE = 0.02  # smallest half-width of shares given in whole per cent
 _SMALL = 0.1  # smallest share given in whole per cent
-_GOOD = 0.9  # smallest predictivity of a surrogate that may replace the runs
+_GOOD = 0.9  # least lower end of the predictivity of a surrogate that may replace the runs
 _FINE = 0.005  # half-width below which a third decimal means something
 _LEAST = 0.001  # magnitude below which an index and its half-width are not printed separately
 _NAMED = 3  # most parameters that are named for a history
@@ -107,12 +107,13 @@ def shared(runs: xr.Dataset) -> str:
 
 def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
     if SOBOL.given(analysis):
+        total = "total_order" in analysis
         yield Section(
             "sensitivity",
-            "First and total order",
-            "A first-order index is the share of the variance that comes from a parameter "
-            "alone; a total-order index adds all its interactions. Indices in grey are not "
-            "distinguishable from zero.",
+            "First and total order" if total else "First order",
+            "A first-order index is the share of the variance that comes from a parameter alone"
+            + "; a total-order index adds all its interactions" * total
+            + ". Indices in grey are not distinguishable from zero.",
             tables=index_tables(runs, analysis, SOBOL),
             figures=[SOBOL.figure],
         )
@@ -125,14 +126,15 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             figures=["sobol_second_order"],
             folded=[second_order(runs, analysis)],
         )
-    if "total_order_by_samples" in analysis:
+    by_samples = [order.name for order in SOBOL.measures if f"{order.name}_by_samples" in analysis]
+    if by_samples:
         yield Section(
             "index-convergence",
             "Convergence of the indices",
             "The figures show the indices from the first part of the sample alone; no run was "
             "solved again. An index that still drifts at the right end is not known better than "
             "its drift.",
-            figures=[f"{measure.name}_convergence" for measure in SOBOL.measures],
+            figures=[f"{name}_convergence" for name in by_samples],
         )
     if histories := measures.histories(analysis):
         yield Section(
@@ -194,24 +196,29 @@ def _generalised(analysis: xr.Dataset, histories: list[str], measure: Measure) -
 
 
 def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
-    """Return the section on the surrogate: its error on held-out runs, and its indices."""
+    """Return the section on the surrogate: its error on runs left out, and its indices."""
     rows: list[Row] = []
     for name in analysed(runs, analysis):
         found = analysis.sel(response=name)
         q2 = float(found["surrogate_q2"])
         quality = Cell("undefined", "muted")
         if np.isfinite(q2):
-            kind, detail = ("number", "") if q2 >= _GOOD else ("warning", "poor")
-            quality = Cell(labels.number(q2, 3), kind, detail)
+            low = float(found["surrogate_q2_low"])
+            kind, detail = ("number", "at least") if low >= _GOOD else ("warning", "poor: at least")
+            quality = Cell(labels.number(q2, 3), kind, f"{detail} {labels.number(low, 3)}")
         error = in_units(runs[name], float(found["surrogate_rmse"]))
         rows.append([named(analysis, name), quality, Cell(error, "number")])
-    caption = "The surrogate on held-out runs (1: perfect, 0: no better than the mean)"
-    head = ["Response", "Predictivity Q² on held-out runs", "Root mean square error"]
+    caption = (
+        "The surrogate on runs left out (1: perfect, 0: no better than the mean), with the lower "
+        "end of the 95 % interval"
+    )
+    head = ["Response", "Predictivity Q² on runs left out", "Root mean square error"]
     fitted = SURROGATE.given(analysis)
     return Section(
         "surrogate",
         "Surrogate",
-        "A surrogate was fitted to the runs and tested on runs that it had not seen.",
+        "Of the runs, one part after another was left out and predicted by a surrogate fitted to "
+        "the others; the surrogate itself is fitted to all.",
         _differences(runs, analysis) if fitted and "first_order" in analysis else [],
         [Table(caption, head, rows)],
         ["surrogate_validation", SURROGATE.figure],
@@ -224,7 +231,7 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     found = []
     keys = np.array([labels.parameter(key) for key in measures.parameters(analysis)])
     for name in analysed(runs, analysis):
-        for order in SOBOL.measures:
+        for order in SOBOL.measures_in(analysis):
             sampled = measures.index(analysis, order.name, name)
             fitted = measures.index(analysis, f"surrogate_{order.name}", name)
             apart = np.abs(sampled.values - fitted.values) > sampled.margins + fitted.margins
@@ -240,7 +247,7 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 
 def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
     """Return one row per response: the rank of each parameter, a range where intervals overlap."""
-    measure = measures.ranking(family)
+    measure = measures.ranking(family, analysis)
     rows: list[Row] = []
     for name in analysed(runs, analysis):
         index, row = measures.index(analysis, measure.name, name), [named(analysis, name)]
@@ -345,7 +352,9 @@ def with_margin(value: float, margin: float) -> str:
 
 
 def uncertainty(share: float) -> str:
-    """Return a relative uncertainty in per cent: "± 1.5 %"; a tiny one is only bounded."""
+    """Return a relative uncertainty in per cent, "± 1.5 %", or its bound if tiny or vast."""
+    if share >= 1:
+        return "as large as the value, or larger"
     return f"± {labels.percent(share)}" if share >= _TINY else f"below {labels.percent(_TINY)}"
 
 
@@ -356,6 +365,10 @@ def in_units(response: xr.DataArray, value: float, margin: float = np.inf) -> st
     unit = display(response)
     text = labels.number(float(unit(value)), 3) + labels.unit(response)
     return f"{text} ± {labels.number(float(unit(margin)), 2)}" if np.isfinite(margin) else text
+
+
+def _bounded(share: float) -> str:
+    return "not usable: the error may be larger" if share > 1 else labels.percent(share)
 
 
 def numerical_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
@@ -373,7 +386,7 @@ def numerical_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     rows: list[Row] = []
     for name in analysed(runs, analysis):
         found = analysis.sel(response=name)
-        cells = [largest(found, key) for key in _OF_RESPONSES]
+        cells = [largest(found, key, _bounded) for key in _OF_RESPONSES]
         cells += [largest(found, key, labels.number) for key in orders]
         basis = access.verdict(analysis, "numerical_from", name)
         rows.append([named(analysis, name), *cells, *([Cell(basis.words)] if basis else [])])

@@ -24,6 +24,7 @@ from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
 from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
+from impactlab.report.regimes import regime_entries
 from impactlab.variables import NO_DISTRIBUTION, attributes
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
@@ -71,6 +72,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         **described(runs),
         answers=answer,
         note=note,
+        bad=bool(regime_entries(runs)),
         leading=drawn.pop(first, None),
         facts=[
             size + ", none failed" * (not ending),
@@ -222,7 +224,7 @@ def _failed_runs(runs: xr.Dataset, failed: xr.DataArray) -> Table:
     for position in positions[:_FAILED_RUNS]:
         where = dict(zip(dims, position, strict=True))
         why = access.causes(runs.isel(where), xr.DataArray(True))
-        absent = [name for name in responses(runs) if access.absent(usable(runs, name).isel(where))]
+        absent = [name for name in responses(runs) if access.absent(runs.isel(where), name)]
         listed = labels.listing([labels.response(name) for name in absent])
         listed = "all" if len(absent) == len(responses(runs)) else listed
         rows.append([_place(runs, where), Cell("; ".join(why), "warning"), listed])

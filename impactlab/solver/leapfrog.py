@@ -293,6 +293,7 @@ def _run(model: Model, extended: bool) -> Callable[..., int]:
             pair, section, grid, plastic = state.pair, state.section, state.grid, state.plastic
             _, dissipated = plastic_energy(plastic, section, grid)
             responses.read_contact(answer, events, contact, pair)
+            responses.read_inputs(answer, case, contact, pair)
             if lift is not None:
                 answer.permanent_indentation += lift(state, contact, 0.0)
             responses.read_rebound(answer, case, events)

@@ -26,6 +26,13 @@ OUTSIDE_CONTACT_LAW = 128
 # The bits of `remarks`: warnings on answers that are there (impactlab.variables.WARNINGS).
 CONTACT_CREATED_ENERGY = 1
 CONTACT_LEFT_A_BULGE = 2
+# The input that lies outside the data of the law finite_element and of the corrections.
+OUTSIDE_YIELD_RATIO = 4
+OUTSIDE_POISSONS_RATIO = 8
+OUTSIDE_HARDENING = 16
+OUTSIDE_SPHERE_YIELD = 32
+OUTSIDE_STIFFNESS_RATIO = 64
+OUTSIDE_CONTACT_CIRCLE = 128
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,21 @@ from __future__ import annotations
 import numpy as np
 
 from impactlab.solver.beam import Grid
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.finite_element import (
+    LARGEST_CIRCLE,
+    LARGEST_HARDENING,
+    LARGEST_POISSONS_RATIO,
+    LARGEST_RATIO,
+    LARGEST_STIFFNESS,
+    LEAST_HARDNESS,
+    LEAST_POISSONS_RATIO,
+    LEAST_RATIO,
+    LEAST_STIFFNESS,
+)
 from impactlab.solver.contact.history import Pair, energies
-from impactlab.solver.contact.switch import limit
+from impactlab.solver.contact.stronge import yield_indentation
+from impactlab.solver.contact.switch import limit, radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.outputs import (
     CONTACT_CREATED_ENERGY,
@@ -19,7 +32,13 @@ from impactlab.solver.outputs import (
     FIRST_CONTACT_UNFINISHED,
     IN_CONTACT_AT_END,
     INDENTATION_STILL_GROWING,
+    OUTSIDE_CONTACT_CIRCLE,
     OUTSIDE_CONTACT_LAW,
+    OUTSIDE_HARDENING,
+    OUTSIDE_POISSONS_RATIO,
+    OUTSIDE_SPHERE_YIELD,
+    OUTSIDE_STIFFNESS_RATIO,
+    OUTSIDE_YIELD_RATIO,
     SPHERE_NOT_LEAVING,
 )
 from impactlab.solver.types import Array, Record
@@ -29,6 +48,7 @@ PLASTIC_ZONE_STRAIN = 1e-5
 LARGEST_COMPLIANCE = 0.5
 """Of the contact, over that of its law, taken back by the bodies' ends: beyond it the circle is not
 small beside them."""
+_FINITE_ELEMENT = LAWS.index("finite_element")
 _ROUNDING = 1e-9
 """Share of the loading work below which the contact has created no energy."""
 
@@ -65,6 +85,34 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
             answer.remarks |= CONTACT_CREATED_ENERGY
         if contact.delta_r < 0.0:
             answer.remarks |= CONTACT_LEFT_A_BULGE
+
+
+@compiled
+def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> None:
+    """Remark which inputs lie outside the data of the law finite_element and of the corrections.
+
+    Those of materials count where the contact yields, with the law, a strip or prestress.
+    """
+    corrected = case.contact_prestress > 0 or case.width_inertia > 0.0
+    if corrected or pair.compliance != 0.0:
+        a = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
+        if a > LARGEST_CIRCLE * 0.5 * case.beam_depth:
+            answer.remarks |= OUTSIDE_CONTACT_CIRCLE
+    yields = contact.delta_m > yield_indentation(pair.E, pair.R, pair.S_y)
+    if not (yields and (corrected or pair.law == _FINITE_ELEMENT)):
+        return
+    if not LEAST_RATIO <= pair.E / pair.S_y <= LARGEST_RATIO:
+        answer.remarks |= OUTSIDE_YIELD_RATIO
+    if not LEAST_POISSONS_RATIO <= case.beam_poissons_ratio <= LARGEST_POISSONS_RATIO:
+        answer.remarks |= OUTSIDE_POISSONS_RATIO
+    hardening = case.beam_isotropic_hardening_modulus + case.beam_kinematic_hardening_modulus
+    if hardening > LARGEST_HARDENING * case.beam_youngs_modulus:
+        answer.remarks |= OUTSIDE_HARDENING
+    if case.sphere_yield_stress < LEAST_HARDNESS * pair.S_y:
+        answer.remarks |= OUTSIDE_SPHERE_YIELD
+    stiffness = case.sphere_youngs_modulus / case.beam_youngs_modulus
+    if not LEAST_STIFFNESS <= stiffness <= LARGEST_STIFFNESS:
+        answer.remarks |= OUTSIDE_STIFFNESS_RATIO
 
 
 @compiled

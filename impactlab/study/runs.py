@@ -141,7 +141,7 @@ class Status:
     """The progress of a study: all runs, those on disk, and those that lack a requested response.
 
     age: of the latest shard in s, None without one; size: of all shards in bytes, also of other
-    solvers and outputs; holder: who works on it now, or "".
+    solvers and outputs; holder: who works on it now, or "". written: what runs.nc holds.
     """
 
     runs: int
@@ -150,6 +150,7 @@ class Status:
     age: float | None
     size: int
     holder: str
+    written: str = ""
 
 
 def status(design: xr.Dataset, shards_folder: Path) -> Status:

@@ -9,7 +9,9 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace as changed
 from functools import partial
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,6 +30,7 @@ from impactlab.study import CALIBRATION, REFINEMENT, RESOLUTION, SHARDS, TRIALS
 from impactlab.study.errors import StudyError
 from impactlab.study.schema.study import Auto, FunctionStudy, Study, Verification
 from impactlab.study.schema.yaml_file import check_name
+from impactlab.study.stored import check_unclaimed, same_runs, study_file, write_runs
 
 if TYPE_CHECKING:
     from impactlab.study.engine import Engine
@@ -101,19 +104,26 @@ def run(
     *,
     drawn: xr.Dataset | None = None,
     force: bool = False,
+    replace: bool = False,
     tell: Tell = lambda found: None,
 ) -> None:
     """Price a study, resolve its discretisation, draw and solve its runs; write them to `path`.
 
-    drawn: its design, where it is drawn already. force: whatever it costs. tell: of `resolved`.
+    drawn: its design, where it is drawn already. force: whatever it costs. replace: whatever study
+    has results there. tell: of `resolved`.
 
     Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
-    `solve`.
+    `solve`; ValueError as `check_unclaimed`.
     """
     from impactlab.study.estimate import estimate
     from impactlab.study.sampling.design import design
     from impactlab.study.schema.measurements import read_measurements
 
+    source = study_file(study, path.parent)
+    if drawn is not None and (file := drawn.attrs.get("study_file")):
+        source = study_file(changed(study, path=study.path.parent / file), path.parent)
+    if not replace:
+        check_unclaimed(study, path, source)
     for file in study.measurements if isinstance(study, Study) else ():
         read_measurements(file)  # mistakes there are told before hours of runs
     cost = estimate(study, path.parent, engine.workers)
@@ -123,7 +133,7 @@ def run(
         raise StudyError(*exceeded)
     if drawn is None:
         drawn = design(resolved(study, path.parent, engine, tell) or study)
-    solve(drawn, path, engine)
+    solve(drawn.assign_attrs(study_file=source), path, engine)
 
 
 def solve(samples: xr.Dataset, path: Path, engine: Engine) -> None:
@@ -148,10 +158,10 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine) -> None:
                 last.close()
                 return last.enter_context(open_runs(samples, shards, engine))
 
-            write_netcdf(extend_sample(samples, stage, analyse), path, "runs")
+            write_runs(extend_sample(samples, stage, analyse), path)
     else:
         with open_runs(samples, shards, engine) as runs:
-            write_netcdf(runs, path, "runs")
+            write_runs(runs, path)
 
 
 def status(study: AnyStudy, folder: Path) -> Status | None:
@@ -162,21 +172,25 @@ def status(study: AnyStudy, folder: Path) -> Status | None:
     """
     from impactlab.study.runs import status as status_of
     from impactlab.study.sampling.design import design, stages
+    from impactlab.study.solvers import run_shape
 
     declared, runs = resolved(study, folder), folder / "runs.nc"
     if declared is None:
         return None
-    last = None
+    last, written = None, f"{runs}: not written yet"
     if runs.exists():
         with opened(runs, "runs") as dataset:
-            attrs = dataset.attrs
+            attrs, size = dataset.attrs, prod(run_shape(dataset)[1])
+        written = f"{runs}: {size:,} runs"
+        if not same_runs(study, attrs):
+            written += " of another study, or of an earlier text of this one"
         if attrs.get("study_sha256") == declared.sha256 and "until_reason" in attrs:
             last = attrs["base_samples"]  # at which it stopped growing
     for stage in stages(design(declared)):
         found = status_of(stage, folder / SHARDS)
         if found.done < found.runs or stage.attrs.get("base_samples") == last:
             break
-    return found
+    return changed(found, written=written)
 
 
 @contextmanager
@@ -212,7 +226,12 @@ def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
         return {}
     if shards != home / SHARDS:
         return removable_files(shards, None)
-    declared = resolved(read_study(file), home)
+    study = read_study(file)
+    try:
+        check_unclaimed(study, home / "runs.nc")
+    except ValueError:  # the runs are another study's
+        return {}
+    declared = resolved(study, home)
     return {} if declared is None else removable_files(shards, list(stages(design(declared))))
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import re
 from dataclasses import replace
+from functools import reduce
+from operator import getitem
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,10 +21,11 @@ import impactlab as il
 from impactlab.figures.catalogue import CATALOGUE as INDEX_FIGURES
 from impactlab.files import read_netcdf
 from impactlab.model.distributions import ARGUMENTS, CHOICE
+from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.study import steps
 from impactlab.study.sampling import METHODS
 from impactlab.study.schema.files import read_study
-from impactlab.study.schema.written import _Distribution, _Sampling
+from impactlab.study.schema.written import _Distribution, _Sampling, plain
 
 UNITS = pint.UnitRegistry()
 ROOT = Path(__file__).parents[2]
@@ -142,6 +145,18 @@ def test_an_impact_is_the_same_to_the_last_bit_in_the_file(impact):
     study = small(impact=impact, discretisation=grid)
     assert study.declared.impact == impact
     assert study.declared.discretisation == grid
+
+
+@pytest.mark.parametrize("value", [GRID, FAR, il.Discretisation(nodes=201, scheme="leapfrog")])
+def test_every_value_of_an_object_is_in_the_file(value):
+    """Those that equal a default, too: in another version it may be another one."""
+    section = plain(value)
+    own, other = (value, il.Discretisation()) if value is FAR else (FAR, value)
+    for name, held in flatten(own, other).items():
+        root, *path = PARAMETERS[name].path
+        if root == ("impact" if value is FAR else "discretisation"):
+            assert reduce(getitem, path, section) == held
+    assert "base" not in section
 
 
 @pytest.mark.parametrize(

@@ -2,11 +2,15 @@
 
 import re
 from importlib.metadata import version
+from inspect import Parameter, signature
+from pkgutil import resolve_name
+from typing import get_type_hints
 
 import pytest
-from command_line import CHECKS, SMALL, here
+from command_line import CHECKS, SMALL, called, here
 from command_line import done as impactlab
 
+from impactlab.cli.app import _COMMANDS
 from impactlab.study import engine
 
 
@@ -67,3 +71,36 @@ def test_mistakes_end_in_one_message(folder, args, words, monkeypatch, capsys):
     assert "Traceback" not in said
     for word in words:
         assert word in said, said
+
+
+def outputs():
+    """Yield command, number of required arguments and option of everything that is written."""
+    for name, place in _COMMANDS.items():
+        command = resolve_name(place)
+        hints = get_type_hints(command, include_extras=True)
+        defaults = [each.default for each in signature(command).parameters.values()]
+        for key, hint in hints.items():
+            infos = getattr(hint, "__metadata__", None) or [None]
+            if getattr(infos[0], "dir_okay", True) is not getattr(infos[0], "file_okay", True):
+                yield pytest.param(
+                    name, defaults.count(Parameter.empty), f"--{key}", id=f"{name} --{key}"
+                )
+
+
+@pytest.mark.parametrize(("name", "required", "option"), list(outputs()))
+def test_no_file_is_named_for_a_kind_that_it_is_not(tmp_path, name, required, option):
+    """All options for files and folders: none takes .csv, and the message says what it takes."""
+    done = called(name, *["none"] * required, option, "there.csv", cwd=tmp_path)
+    assert done.returncode == 1
+    assert re.fullmatch(
+        rf"ERROR: {option} = 'there.csv': (is written as .*: its name must end in \..*"
+        r"|names a folder of files: leave out \.csv)\n",
+        done.stderr,
+    )
+    assert not any(tmp_path.iterdir())
+
+
+def test_every_command_that_writes_one_file_is_among_them():
+    names = {each.id for each in outputs()}
+    writing = "simulate recommend design run refine analyse verify figures report index witness"
+    assert names >= {f"{name} --output" for name in writing.split()} | {"simulate --plot"}

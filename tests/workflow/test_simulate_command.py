@@ -20,9 +20,9 @@ def test_simulate_prints_and_keeps(tmp_path):
 
 
 def test_simulate_takes_a_scheme(tmp_path):
+    one = ("simulate", "--nodes", 101, "--duration", "3 ms")  # before a second, harder contact
     leapfrog, modal = (
-        impactlab("simulate", "--nodes", 101, "--scheme", scheme, cwd=tmp_path).stdout
-        for scheme in ("leapfrog", "modal")
+        impactlab(*one, "--scheme", scheme, cwd=tmp_path).stdout for scheme in ("leapfrog", "modal")
     )
     assert leapfrog != modal
     assert "11.75 kN" in leapfrog
@@ -86,4 +86,12 @@ def test_an_implausible_velocity_is_flagged_everywhere(tmp_path):
 
 def test_what_is_missing_is_named_with_its_reason(tmp_path):
     told = impactlab(*ONE, "--duration", "50 us", cwd=tmp_path).stdout
-    assert "longer duration may help: contact_duration." in " ".join(told.split())
+    told = " ".join(told.split())
+    assert "the first contact does: contact_duration." in told
+    assert "--duration = 50 µs is too short for" in told
+
+
+def test_the_default_duration_gives_every_response(tmp_path):
+    told = impactlab("simulate", "--nodes", 51, cwd=tmp_path).stdout
+    assert "restitution" in told
+    assert "missing" not in told.lower()

@@ -14,14 +14,17 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 
-from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL
+from impactlab.analysis.convergence.richardson import (
+    HIGHEST_RELIABLE,
+    SAFETY_CREDIBLE,
+    SAFETY_DOUBTFUL,
+)
 from impactlab.analysis.verdicts import Verdict
 from impactlab.types import Floats
 
 FEWEST = 4  # grids that a fit of three coefficients needs
 ORDERS = (0.5, 2.0)
 """Fitted orders that are kept; outside, the powers are assumed to be 1, 2, or both."""
-_HIGHEST_RELIABLE = 2.1  # fitted order from which on convergence is too fast to be more than chance
 _SEARCHED = np.linspace(-4.0, 8.0, 97)
 """Orders between which the free one is looked for: far beyond any that is kept."""
 
@@ -32,7 +35,7 @@ class Expansion(Verdict):
     FREE = 0, True, "a h^p, with the order p fitted (0.5 to 2)"
     FIRST = 1, False, "a h: the fitted order is no credible one, the first is assumed"
     SECOND = 2, False, "a h^2: the fitted order is no credible one, the second is assumed"
-    BOTH = 3, False, "a h + b h^2: the fitted order is below 0.5 or there is none"
+    BOTH = 3, False, "a h + b h^2: the fitted order is below 0.5, or the values turn"
     NONE = 4, False, "no fit: it needs four grids that differ"
 
 
@@ -59,7 +62,9 @@ def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
     values: f in any unit, spacings: h in any unit, both (grids,), four or more, all finite, in any
     order. The order is fitted with weights 1/h and without. Where one of the two is within
     ORDERS, the better such fit is taken; above, the better of the fixed orders 1 and 2; below, of
-    these and both together (weighted or not). Raises ValueError for fewer than four grids.
+    these and both together (weighted or not). One departure from the source: both together compete
+    wherever the values turn, which a single power cannot. Raises ValueError for fewer than four
+    grids.
     """
     f, h = np.asarray(values, float), np.asarray(spacings, float)
     if f.size < FEWEST:
@@ -67,13 +72,16 @@ def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
     h = h / h.min()
     weights = (np.full(f.size, 1.0 / f.size), (1.0 / h) / np.sum(1.0 / h))
     free = [_fit(f, h, w, (_free_order(f, h, w),)) for w in weights]
-    if credible := [found for found in free if ORDERS[0] <= found.order <= ORDERS[1]]:
-        return min(credible, key=lambda found: found.deviation)
-    order = min(free, key=lambda found: found.deviation).order
-    fixed = [(Expansion.FIRST, (1.0,)), (Expansion.SECOND, (2.0,)), (Expansion.BOTH, (1.0, 2.0))]
-    allowed = fixed if order < ORDERS[0] else fixed[:2]
-    found = [_fit(f, h, w, powers, kind, order) for kind, powers in allowed for w in weights]
-    return min(found, key=lambda found: found.deviation)
+    free_order = min(free, key=lambda fitted: fitted.deviation).order
+    steps = np.diff(f[np.argsort(h)])
+    turns = steps.min() < 0 < steps.max()
+    fits = [fitted for fitted in free if ORDERS[0] <= fitted.order <= ORDERS[1]]
+    fixed: list[tuple[Expansion, tuple[float, ...]]] = []
+    fixed += [] if fits else [(Expansion.FIRST, (1.0,)), (Expansion.SECOND, (2.0,))]
+    if turns or (not fits and free_order < ORDERS[0]):
+        fixed.append((Expansion.BOTH, (1.0, 2.0)))
+    fits += [_fit(f, h, w, powers, kind, free_order) for kind, powers in fixed for w in weights]
+    return min(fits, key=lambda fitted: fitted.deviation)
 
 
 def uncertainty(found: Fit, values: npt.ArrayLike) -> Floats:
@@ -87,7 +95,7 @@ def uncertainty(found: Fit, values: npt.ArrayLike) -> Floats:
     if found.deviation > delta:
         poor = SAFETY_DOUBTFUL * found.deviation / delta
         return poor * (found.errors + found.deviation + abs(found.residuals))
-    reliable = ORDERS[0] <= found.free_order < _HIGHEST_RELIABLE
+    reliable = ORDERS[0] <= found.free_order < HIGHEST_RELIABLE
     safety = SAFETY_CREDIBLE if reliable else SAFETY_DOUBTFUL
     return safety * found.errors + found.deviation + abs(found.residuals)
 

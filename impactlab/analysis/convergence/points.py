@@ -33,6 +33,11 @@ class PointsVerdict(Verdict):
     NOT_CONVERGED = 3, False, "the most points and the next fewer differ by more than 1 %"
 
 
+def applies(runs: xr.Dataset) -> bool:
+    """Return True for a grid of two or more numbers of points."""
+    return runs.sizes.get("points", 0) >= 2
+
+
 def analysis(runs: xr.Dataset) -> xr.Dataset:
     """Judge the points convergence of every response at every point of the rest of the grid.
 

@@ -26,6 +26,8 @@ ASYMPTOTIC_BAND = 0.5
 """How far an observed order may lie from the formal one in the asymptotic range."""
 CREDIBLE_ORDERS = (0.5, 3.0)
 """Orders to build an error estimate on: below, the limit is out of reach; above, p is chance."""
+HIGHEST_RELIABLE = 2.1
+"""Order from which on convergence is too fast to be more than chance (Eca and Hoekstra)."""
 SAFETY_CREDIBLE, SAFETY_DOUBTFUL = 1.25, 3.0
 
 
@@ -82,18 +84,33 @@ class Estimate:
         coarse = grid_convergence_index(f2, f3, r32, p)
         return coarse / (r21**p * fine) if 0 < fine < math.inf else math.nan
 
-    def uncertainty(self, safety: float) -> float:
-        """Return GCI of the finest grid times |f1|; NaN unless the sequence converges.
+    @property
+    def error(self) -> float:
+        """Richardson's estimate of the error of f1; NaN unless the sequence converges.
 
         An order above the formal one does not narrow it.
         """
         if self.behaviour not in (Behaviour.MONOTONE, Behaviour.OSCILLATORY):
             return math.nan
-        return safety * _error(*self.values[:2], self.ratios[0], min(self.order, FORMAL_ORDER))
+        return _error(*self.values[:2], self.ratios[0], min(self.order, FORMAL_ORDER))
+
+    @property
+    def largest_error(self) -> float:
+        """The larger of `error` and, for an order between 1 and 2, that of a h + b h^2.
+
+        Such an order may be that of two terms. Their error on three grids of ratio 2 is up to a
+        third above that of a single term of the observed order.
+        """
+        if not (self.behaviour is Behaviour.MONOTONE and 1.0 < self.order < FORMAL_ORDER):
+            return self.error
+        (f1, f2, f3), (r21, r32) = self.values, self.ratios
+        slopes = (f2 - f1) / (r21 - 1.0), (f3 - f2) / (r21 * (r32 - 1.0))  # over h/h1
+        curvature = (slopes[1] - slopes[0]) / (r21 * r32 - 1.0)
+        return max(self.error, abs(slopes[0] - r21 * curvature))
 
     def gci(self, safety: float) -> float:
         """Return the relative GCI of the finest grid; infinite where the finest value is zero."""
-        return relative(self.uncertainty(safety), self.values[0])
+        return relative(safety * self.error, self.values[0])
 
 
 def relative(amount: float, value: float) -> float:
@@ -145,9 +162,13 @@ def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
 
 
 def safety(triples: list[Estimate]) -> float:
-    """Return 1.25 where every three successive grids show a credible order, and 3 otherwise."""
+    """Return 1.25 where every three successive grids show a credible order, and 3 otherwise.
+
+    It is 3, too, where the order of the finest three (the first) is too high to be reliable.
+    """
     credible = all(triple.credible for triple in triples)
-    return SAFETY_CREDIBLE if credible else SAFETY_DOUBTFUL
+    reliable = credible and triples[0].order < HIGHEST_RELIABLE
+    return SAFETY_CREDIBLE if reliable else SAFETY_DOUBTFUL
 
 
 def observed_order(change: float, r21: float, r32: float) -> float:

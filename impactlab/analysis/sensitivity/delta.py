@@ -7,15 +7,20 @@ which brings back the bias that the reduction is to take away.
 Densities smoothed by Silverman's width, in SALib's few classes of a parameter, lie too close to
 each other where a response has several modes: of 2000 runs of Ishigami's function they give 0.21,
 0.32 and 0.16 for 0.264, 0.425 and 0.209. Here the kernels have half of that width, and there
-are twice as many classes: less smoothing would raise the noise of indices near zero. What bias is
-left is of the size of the change from half the classes and twice the width; the interval includes
-it, times SAFETY. The classes of a parameter that takes words are the words.
+are twice as many classes: less smoothing would raise the noise of indices near zero. Two biases are
+left, of opposite signs: that of smoothing is of the size of the change from half the classes and
+twice the width, times SAFETY; that of noise is the delta of a dummy. The interval includes the
+larger. The classes of a parameter that takes words are the words, and its dummy takes them, too.
+
+The first order is the covariance of neighbours among the runs in the order of the parameter:
+Gamboa et al. (2022). Neighbours share hardly any noise, so that few runs do not bias it.
 """
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
+import scipy  # its stats are loaded when first used
 
 from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.method import Index, Method, apart_from_dummy, dummy_column
@@ -27,33 +32,35 @@ SAFETY = 1.5  # bias over change; one would do for an error that each halving of
 COARSE = 20  # resamples for the bias of the estimate with half the classes and twice the width
 Mask = npt.NDArray[np.bool_]
 _2013 = "Plischke et al. (2013), Eur. J. Oper. Res. 226, 536"
+_2022 = "Gamboa et al. (2022), Bernoulli 28, 2345, the estimator by ranks"
 _INDICES = {
     "delta": Index(
         "delta, moment-independent importance",
         f"{_2013}, eqs. 26 and 30",
-        comment="the interval includes the bias of smoothing: 1.5 times the change of delta from "
-        "half the classes and twice the width of the kernels",
+        comment="the interval includes the larger of two biases: that of noise, which is the delta "
+        "of a dummy, and that of smoothing, 1.5 times the change of delta from half the classes "
+        "and twice the width of the kernels",
     ),
     "delta_first_order": Index(
         "first-order Sobol index from given data",
-        f"{_2013}, section 3",
-        comment="of the variance between classes: a tenth too small with 5 classes (500 runs); "
-        "of words, between the words",
+        _2022,
+        comment="below zero by noise alone",
     ),
     "dummy_delta": Index.of_dummy("delta of a dummy", f"{_2013}, eqs. 26 and 30"),
     "dummy_delta_first_order": Index.of_dummy(
-        "first-order Sobol index of a dummy from given data", f"{_2013}, section 3"
+        "first-order Sobol index of a dummy from given data", _2022
     ),
 }
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    runs = len(outputs)
-    inputs = np.column_stack([sample.inputs, dummy_column(sample)])
+    runs, of_words = len(outputs), np.array([name in sample.words for name in sample.parameters])
+    shuffled = sample.rng("dummy words").permutation(sample.inputs)[:, of_words]
+    inputs = np.column_stack([sample.inputs, dummy_column(sample), shuffled])
     exponent = 2.0 / (7.0 + np.tanh((1500.0 - runs) / 500.0))
     classes = round(min(int(np.ceil(runs**exponent)), 48))  # of a parameter's values, as in SALib
     places = np.linspace(outputs.min(), outputs.max(), GRID)
-    words = np.array([*(name in sample.words for name in sample.parameters), False])
+    words = np.array([*of_words, False, *of_words[of_words]])
 
     def reduced(count: int, width: float, rows: npt.NDArray[np.int64]) -> tuple[Floats, Floats]:
         """Return delta without its bias (eq. 30), and the resamples of it."""
@@ -64,10 +71,18 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
     drawn = sample.rng(response).integers(runs, size=(sample.resamples, runs))
     values, replicates = reduced(2 * classes, WIDTH, drawn)
     change = np.abs(values - reduced(classes, 2 * WIDTH, drawn[:COARSE])[0])
-    found = apart_from_dummy("delta", values, sample.half_width(replicates) + SAFETY * change)
-    again = np.array([first_orders(inputs[at], outputs[at], classes, words) for at in drawn])
-    first = first_orders(inputs, outputs, classes, words)
-    return found | apart_from_dummy("delta_first_order", first, sample.half_width(again))
+    margins, dummy = sample.half_width(replicates), len(of_words)
+    noise = np.full(dummy, values[dummy])
+    noise[of_words] = values[dummy + 1 :]
+    biases = np.maximum(SAFETY * change[:dummy], np.abs(noise))
+    # the noise of the dummy is as uncertain as that of an index
+    margins[:dummy] = np.hypot(margins[:dummy], margins[dummy]) + biases
+    rows = slice(dummy + 1)
+    first, errors = first_orders(inputs[:, rows], outputs)
+    quantile = float(scipy.stats.norm.ppf(0.5 + sample.confidence / 2))
+    return apart_from_dummy("delta", values[rows], margins[rows]) | apart_from_dummy(
+        "delta_first_order", first, quantile * errors
+    )
 
 
 def deltas(
@@ -91,18 +106,21 @@ def deltas(
     return np.array(found)
 
 
-def first_orders(inputs: Floats, outputs: Floats, classes: int, words: Mask) -> Floats:
-    """Return the share of the variance between the classes of each parameter, as for `deltas`."""
-    starts = _starts(len(outputs), classes)
-    sizes = np.diff(starts, append=len(outputs))[:, None]
-    ordered = outputs[np.argsort(inputs, axis=0, kind="stable")]
-    means = np.add.reduceat(ordered, starts, axis=0) / sizes
-    between = (sizes * (means - outputs.mean()) ** 2).sum(axis=0) / len(outputs)
-    for at in np.flatnonzero(words):
-        _, place, number = np.unique(inputs[:, at], return_inverse=True, return_counts=True)
-        apart = np.bincount(place, weights=outputs) / number - outputs.mean()
-        between[at] = (number * apart**2).sum() / len(outputs)
-    return np.asarray(between / (outputs.var() or np.nan))
+def first_orders(inputs: Floats, outputs: Floats) -> tuple[Floats, Floats]:
+    """Return first orders of each parameter and their standard errors, (parameters,).
+
+    Runs of one word are neighbours in the order of the runs. The products of neighbours are
+    correlated with the next; of that, what more distant ones have in common is no noise.
+    """
+    ordered = (outputs - outputs.mean())[np.argsort(inputs, axis=0, kind="stable")]
+    products, squares = ordered[1:] * ordered[:-1], (ordered[1:] ** 2 + ordered[:-1] ** 2) / 2
+    values = products.mean(axis=0) / outputs.var()
+    residuals = (products - values * squares) / outputs.var()
+    same, next_one, second = (
+        (residuals[lag:] * residuals[: len(residuals) - lag]).mean(axis=0) for lag in range(3)
+    )
+    variance = same + 2 * np.maximum(next_one - second, 0.0)
+    return values, np.sqrt(variance / len(outputs))
 
 
 def _starts(runs: int, classes: int) -> npt.NDArray[np.intp]:

@@ -1,28 +1,25 @@
-"""Extended FAST: indices from the spectrum of the response along a curve for each parameter.
+"""Extended FAST: indices from the spectrum of the response along curves for each parameter.
 
-By SALib's estimators. Its bootstrap of half curves is known to tell little (SALib issue 649: it
-leaves out the bias of the method), and draws from numpy's global stream: here the same half curves
-are drawn from a stream of their own, and what the method gives for a dummy, which ought to be zero,
-is added in quadrature.
+Each parameter has a few curves, with phases and other frequencies of their own, so that what
+differs between curves tells the error: intervals are Student's over the curves. A curve has whole
+multiples of its own frequency as its number of points: harmonics beyond the last one fold onto
+multiples, too, and none is lost. Harmonics of the other parameters that reach the upper half of
+the spectrum are counted into the total order of each; the dummy shows how much that is, and its
+index is added to the half-widths.
 """
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
-from SALib.analyze.fast import compute_orders
+import scipy  # its stats are loaded when first used
 
 from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.method import Index, Method, apart_from_dummy
 from impactlab.types import Floats
 
 _1999 = "extended FAST: Saltelli et al. (1999), Technometrics 41, 39"
-_DUMMY = "the index of a parameter that the model never sees, from a curve of its own"
-_INTERVAL = (
-    "intervals are indicative only: bootstrap of half curves, with the index of the dummy added in "
-    "quadrature"
-)
+_DUMMY = "the index of a parameter that the model never sees, from curves of its own"
+_INTERVAL = "the interval is Student's over the curves, widened by the index of the dummy"
 _INDICES = {
     "first_order": Index("first-order Sobol index", f"{_1999}, eq. 11", comment=_INTERVAL),
     "total_order": Index("total-order Sobol index", f"{_1999}, section 3", comment=_INTERVAL),
@@ -38,43 +35,37 @@ _INDICES = {
 def _check(sample: Sample) -> None:
     sample.ungrouped()
     sample.ordered()
-    curves = len(sample.parameters) + 1
-    points, harmonics = sample.size // curves, sample.number("harmonics")
+    points = (2 * sample.number("harmonics") + 1) * sample.number("frequency")
+    curves = sample.number("curves")
     sample.expect(points * curves, f"{curves} curves of {points} points")
-    if points <= 4 * harmonics**2:
-        raise ValueError(
-            f"{sample.study}: {points} points per curve are too few for {harmonics} harmonics: "
-            f"take more than {4 * harmonics**2}"
-        )
 
 
 def _curves(outputs: Floats, sample: Sample) -> list[Floats]:
-    """Return the dummy's curve behind one per parameter; each is divided by its own variance."""
+    """Return the runs of each parameter, and last those of the dummy; each part has to vary."""
     return list(outputs.reshape(len(sample.parameters) + 1, -1))
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    curves, harmonics = _curves(outputs, sample), sample.number("harmonics")
-    first, total = np.array([_orders(curve, harmonics) for curve in curves]).T
-    points = curves[0].size
-    half = math.ceil(points / 2)
-    starts = sample.rng(response).integers(points, size=(sample.resamples, len(curves)))
-    replicates = [
-        [_orders(np.roll(one, -at)[:half], harmonics) for one, at in zip(curves, row, strict=True)]
-        for row in starts
-    ]
-    spread = sample.half_width(np.array(replicates)).T
-    found = apart_from_dummy("first_order", first, np.hypot(spread[0], first[-1]))
-    return found | apart_from_dummy("total_order", total, np.hypot(spread[1], total[-1]))
-
-
-def _orders(curve: Floats, harmonics: int) -> tuple[float, float]:
-    """Return first and total order from a curve at SALib's frequency; NaN where it is constant."""
-    if np.ptp(curve) == 0:
-        return math.nan, math.nan
-    frequency = math.floor((curve.size - 1) / (2 * harmonics))
-    first, total = compute_orders(curve, curve.size, harmonics, frequency)
-    return float(first), float(total)
+    curves = outputs.reshape(
+        len(sample.parameters) + 1, -1, outputs.size // sample.number("curves")
+    )
+    number, own = curves.shape[1], sample.number("frequency")
+    spectrum = np.abs(np.fft.rfft(curves - curves.mean(axis=-1, keepdims=True))[..., 1:]) ** 2
+    variance = spectrum.sum(axis=-1)
+    parts = {
+        "first_order": spectrum[..., own - 1 :: own].sum(axis=-1),
+        "total_order": spectrum[..., own // 2 :].sum(axis=-1),
+    }
+    quantile = float(scipy.stats.t.ppf(0.5 + sample.confidence / 2, number - 1))
+    indices: dict[str, Floats] = {}
+    for name, part in parts.items():
+        mean = variance.mean(axis=1)
+        values = part.mean(axis=1) / mean
+        residuals = part - values[:, None] * variance
+        margins = quantile * residuals.std(axis=1, ddof=1) / (mean * np.sqrt(number))
+        margins[:-1] += values[-1]
+        indices |= apart_from_dummy(name, values, margins)
+    return indices
 
 
 METHOD = Method("fast", _INDICES, _check, _estimate, _curves)

@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from impactlab.analysis.responses import Sample, correlations, labels, listed, usable
+from impactlab.analysis import regimes
+from impactlab.analysis.responses import Sample, labels, listed, usable
 from impactlab.analysis.sensitivity import delta, fast, morris, pawn, regression, sobol, verdict
+from impactlab.analysis.sensitivity.imputation import imputed
 from impactlab.analysis.sensitivity.method import BY_SAMPLES, PAIR, Index, Method
 from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
-from impactlab.analysis.surrogate import fit
-from impactlab.analysis.surrogate.chaos import drawn
 from impactlab.analysis.verdicts import flagged
 from impactlab.types import Floats
 
@@ -26,11 +25,16 @@ METHODS: Mapping[str, Method] = {
 """By their names in study files."""
 
 
+def applies(runs: xr.Dataset) -> bool:
+    """Return True for the runs of a method that has indices."""
+    return runs.attrs.get("method") in METHODS
+
+
 def analysis(runs: xr.Dataset) -> xr.Dataset:
     """Return sensitivity indices of every response, by the method the sample was drawn for.
 
     Returns the indices of the method, on (response, *dims), with <name>_interval, the half-width
-    of the bootstrap interval; sensitivity_verdict, the worst verdict; sensitivity_remarks, all of
+    of the interval; sensitivity_verdict, the worst verdict; sensitivity_remarks, all of
     them; and imputed_share (response).
     `parameter` holds the varied parameters, or their groups. Indices are NaN where the verdict
     gives none. Raises ValueError when the runs are not the sample that their attributes describe.
@@ -71,15 +75,25 @@ def _answer(
 ) -> tuple[list[SensitivityVerdict], float, dict[str, Floats]]:
     """Return verdicts, share of runs that a surrogate supplied, and indices of a response."""
     outputs = usable(sample.runs, response).values[0]
-    complete = imputed(outputs, sample, response)
-    if complete is None:
-        return [SensitivityVerdict.TOO_FEW_RUNS], 0.0, {}
-    share = 0.0 if complete is outputs else float(np.isnan(outputs).mean())
-    verdicts = verdict.of_outputs(complete, method.varying(complete, sample), share)
+    filled = imputed(outputs, sample, response)
+    if filled.refusal is not None:
+        return [filled.refusal], 0.0, {}
+    complete = filled.outputs
+    verdicts = verdict.of_outputs(complete, method.varying(complete, sample), filled.share)
+    if (
+        max(verdicts, default=0) < SensitivityVerdict.CONSTANT
+        and regimes.of_sample(sample, outputs).size
+    ):
+        verdicts.append(SensitivityVerdict.SEVERAL_REGIMES)
     if verdicts and max(verdicts) >= SensitivityVerdict.CONSTANT:
         return verdicts, 0.0, {}
     found = method.estimate(complete, sample, response)
-    return verdicts + verdict.of_indices(found), share, found
+    for name in found.keys() & {f"{index}_interval" for index in method.indices}:
+        # Of an index with a unit, such as a mean effect, the largest is the scale; else 1.
+        index = method.indices[name.removesuffix("_interval")]
+        scale = 1.0 if index.units else np.abs(found[name.removesuffix("_interval")]).max()
+        found[name] = found[name] + filled.half_width * scale
+    return verdicts + verdict.of_indices(found), filled.share, found
 
 
 def _variables(
@@ -89,7 +103,9 @@ def _variables(
     coordinates: Mapping[str, Any],
 ) -> dict[str, Any]:
     """Return indices and half-widths from one mapping per response; an empty one is NaN."""
-    settings = {"confidence": sample.confidence, "resamples": sample.resamples}
+    settings: dict[str, Any] = {"confidence": sample.confidence}
+    if "replicates" not in sample.settings:
+        settings["resamples"] = sample.resamples
     variables: dict[str, Any] = {}
     for name, index in wanted.items():
         attrs = {"long_name": index.long_name, "estimator": index.estimator}
@@ -102,57 +118,6 @@ def _variables(
             stacked = np.array([row[key] if row else gap for row in rows], float)
             variables[key] = (("response", *index.dims), stacked, own)
     return variables
-
-
-MOST_IMPUTED = 0.2  # largest share of runs that may be supplied
-FEWEST_PER_PARAMETER = 10  # good runs that a surrogate needs per parameter
-_AT_ONCE = 100_000  # runs that are predicted together
-
-
-def imputed(outputs: Floats, sample: Sample, response: str) -> Floats | None:
-    """Return outputs (runs,) with a surrogate's predictions in the place of NaN.
-
-    They are returned as they are where none is NaN or the study does not ask for it
-    (`failed_runs: impute`); None where too few runs are left. A mean would take away variance; the
-    share of supplied runs is stored beside the indices. The runs that the surrogate is fitted to
-    are picked here: the places of all may not fit into memory.
-
-    The surrogate's place of a value is the share of runs below it. In a sample as even as those of
-    sensitivity analyses, this is the probability to 1/runs, whatever the distribution.
-    """
-    gaps = np.isnan(outputs)
-    if not gaps.any() or sample.settings.get("failed_runs") != "impute":
-        return outputs
-    over = f"words ({', '.join(sample.words)})" if sample.words else ""
-    if over := over or "correlated parameters" * bool(correlations(sample.runs)):
-        raise ValueError(
-            f"{sample.study}: no surrogate is fitted over {over}, so it cannot supply values: set "
-            "failed_runs: fail"
-        )
-    enough = np.count_nonzero(~gaps) >= FEWEST_PER_PARAMETER * len(sample.parameters)
-    if not enough or np.count_nonzero(gaps) > MOST_IMPUTED * outputs.size:
-        return None
-    seed = int(sample.rng("surrogate", response).integers(1, 2**31))
-    good, gone = np.flatnonzero(~gaps), np.flatnonzero(gaps)
-    good = good[drawn(good.size, seed)]
-    places = _places(sample, np.concatenate([good, gone]))
-    surrogate = fit(places[: good.size], outputs[good], seed)
-    filled = outputs.copy()
-    for start in range(0, gone.size, _AT_ONCE):
-        part = slice(good.size + start, good.size + min(start + _AT_ONCE, gone.size))
-        filled[gone[start : start + _AT_ONCE]] = surrogate(places[part])
-    return filled
-
-
-def _places(sample: Sample, runs: NDArray[np.int64]) -> Floats:
-    """Return the share of all runs below each parameter of these, (runs, parameter)."""
-    found = np.empty((runs.size, len(sample.parameters)))
-    for at, name in enumerate(sample.parameters):
-        column = sample.column(name)
-        wanted, ordered = column[runs], np.sort(column)
-        below, above = (np.searchsorted(ordered, wanted, side) for side in ("left", "right"))
-        found[:, at] = ((below + above + 1) / 2 - 0.5) / column.size
-    return found
 
 
 _BESIDE = ("sensitivity_verdict", "sensitivity_remarks", "imputed_share")

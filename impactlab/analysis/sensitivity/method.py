@@ -1,4 +1,4 @@
-"""Records of an index and of a method, and the bootstrap.
+"""Records of an index and of a method, the bootstrap, and the jackknife.
 
 The bootstrap resamples functions of means by matrix products: the mean over a resample is the mean
 weighted by how often each row was drawn, so that all resamples together are one product of counts
@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its stats are loaded when first used
 
 from impactlab.analysis.responses import Sample
 from impactlab.types import Floats
@@ -108,3 +109,22 @@ def half_widths(
         f"{name}_interval": sample.half_width(np.concatenate([part[name] for part in parts]))
         for name in parts[0]
     }
+
+
+def leave_one_out(sums: Floats) -> Floats:
+    """Return from sums of replicates, (replicate, ...), that of all, then those without each."""
+    total = sums.sum(axis=0, keepdims=True)
+    return np.concatenate([total, total - sums])
+
+
+def half_width(estimates: Floats, confidence: float) -> Floats:
+    """Return half-widths of intervals from estimates without one replicate each, (replicate, ...).
+
+    The standard error is that of the jackknife (Efron and Tibshirani 1993, section 11.2), the
+    quantile Student's. NaN where an estimate is, and of fewer than two replicates.
+    """
+    size = len(estimates)
+    if size < 2:
+        return np.full(estimates.shape[1:], np.nan)
+    error = np.sqrt((size - 1) * estimates.var(axis=0))
+    return np.asarray(scipy.stats.t.ppf(0.5 + confidence / 2, size - 1) * error)

@@ -7,13 +7,13 @@ for outputs on a grid of times; Gamboa et al. (2014), Electron. J. Stat. 8, 575 
 for functions. (Of both, no more than abstracts was read; R's sensitivity::sobolMultOut has the
 same.)
 
-The histories of all runs need not fit into memory: sums over groups of base samples are kept, which
-is all that indices and intervals need, for as many times together as a bound on memory allows.
+The histories of all runs need not fit into memory: sums over the replicates of the sample are
+kept, which is all that indices and intervals need, for as many times together as a bound on memory
+allows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,8 +21,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity.indices import MOST_IMPUTED
-from impactlab.analysis.sensitivity.method import counts
+from impactlab.analysis.sensitivity.imputation import MOST_IMPUTED
+from impactlab.analysis.sensitivity.method import half_width, leave_one_out
 from impactlab.analysis.sensitivity.sobol import FEWEST, check, step
 from impactlab.analysis.sensitivity.verdict import WIDE, SensitivityVerdict, inconsistent
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
@@ -30,9 +30,7 @@ from impactlab.types import Floats
 from impactlab.variables import attributes, status_bits
 
 SHOWN = ("contact_force", "midspan_deflection")  # the histories that get indices
-GROUPS = 512
-"""Most groups of base samples, which are what is resampled: their number leaves an interval
-uncertain by sqrt(1 / (2 groups)), 3 %."""
+ROWS = 512  # base samples that are read together
 CELLS = 4_000_000
 """Numbers of an array in memory, 32 MB: it bounds the times that are treated together."""
 _2010 = "Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2"
@@ -76,7 +74,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 
     Returns first_order_over_time and total_order_over_time (history, time, parameter),
     generalised_first_order and generalised_total_order (history, parameter), all with <name>
-    _interval, the half-width of the bootstrap interval; time_verdict (history, time) and
+    _interval, the half-width of the interval; time_verdict (history, time) and
     history_verdict (history), which say why there is none; history_mean and history_deviation
     (history, time), in the unit of each history; and base_samples_left_out (history), those with a
     failed run. `parameter` holds the varied parameters, or their groups.
@@ -112,7 +110,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 
 def _described(sample: Sample) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
     """Return dimensions and attributes of all variables but the verdicts."""
-    settings = {"confidence": sample.confidence, "resamples": sample.resamples}
+    settings = {"confidence": sample.confidence}
     found: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {}
     for order, (words, source) in _ORDERS.items():
         over = ("history", "time", "parameter"), f"{words} Sobol index at each time", source
@@ -136,40 +134,28 @@ def _described(sample: Sample) -> dict[str, tuple[tuple[str, ...], dict[str, Any
 
 @dataclass(frozen=True)
 class Sums:
-    """Sums over groups of base samples, and over those that are in none, at some times.
+    """Sums over the replicates of the sample, at some times.
 
     Values are counted from `origin` (time,), one run's, so that their squares do not cancel.
-    groups: (group, column, time); rest: (column, time). Columns: number of base samples; mean of
-    all runs of one; a, b, a^2, b^2 of the runs at A and B; then for each factor: the run ab at A
-    with the factor from B; b (ab - a); (a - ab)^2 / 2.
+    replicates: (replicate, column, time). Columns: number of base samples; mean of all runs of
+    one; a, b, a^2, b^2 of the runs at A and B; then for each factor: the run ab at A with the
+    factor from B; b (ab - a); (a - ab)^2 / 2.
     """
 
-    groups: Floats
-    rest: Floats
+    replicates: Floats
     origin: Floats
 
-    def indices(self) -> tuple[Parts, Floats, Floats, Floats]:
-        """Return the parts of the indices, and mean, deviation and base samples at each time."""
-        whole = self.groups.sum(axis=0) + self.rest
-        number = whole[0]
-        with np.errstate(invalid="ignore", divide="ignore"):  # no base sample at all: NaN
-            means = whole / number
-        centre = means[1]
-        parts = Parts.of(means, centre, self.origin)
-        mean = self.origin + (means[2] + means[3]) / 2
-        return parts, mean, np.sqrt(np.where(parts.varies, parts.variance, 0.0)), number
+    def parts(self) -> tuple[Parts, Floats, Floats]:
+        """Return the parts of the indices, mean and number of base samples (time,).
 
-    def resampled(self, sample: Sample, name: str) -> Iterator[Parts]:
-        """Yield the parts of resamples of the groups, some at a time; the same at all times."""
-        groups, columns, times = self.groups.shape
-        whole = self.groups.sum(axis=0) + self.rest
-        with np.errstate(invalid="ignore", divide="ignore"):
-            centre = whole[1] / whole[0]
-        for tally in counts(groups, sample.resamples, sample.rng(name, "over time")):
-            drawn = (tally @ self.groups.reshape(groups, -1)).reshape(-1, columns, times)
-            with np.errstate(invalid="ignore", divide="ignore"):
-                means = drawn / drawn[:, :1]
-            yield Parts.of(means, centre, self.origin)
+        The parts have an axis in front: of all base samples, then without each replicate.
+        """
+        sums = leave_one_out(self.replicates)
+        number = sums[0, 0]
+        with np.errstate(invalid="ignore", divide="ignore"):  # no base sample at all: NaN
+            means = sums / sums[:, :1]
+        parts = Parts.of(means, means[0, 1], self.origin)
+        return parts, self.origin + (means[0, 2] + means[0, 3]) / 2, number
 
 
 @dataclass(frozen=True)
@@ -215,32 +201,23 @@ def sums(sample: Sample, name: str, good: Any, times: slice, most: int | None = 
     """
     base, size, factors = len(good), step(sample), len(sample.factors)
     column = sample.runs[name].variable.transpose("run", "time")[:, times]
-    members = -(-base // GROUPS)
-    groups = base // members
-    rng = sample.rng(name, "groups")
-    # base samples are drawn into groups: neighbours in a low-discrepancy sequence are not
-    # independent draws
-    place = np.concatenate([rng.permutation(groups) for _ in range(members)])
     first = int(np.argmax(good)) * size
     origin = np.nan_to_num(np.asarray(column[first].values, float))
-    total = np.zeros((groups, 6 + 3 * factors, len(origin)))
-    rest = np.zeros(total.shape[1:])
-    for start in range(0, base, most or groups):
-        end = min(start + (most or groups), base)
+    place = np.arange(base) % sample.number("replicates")
+    total = np.zeros((place.max() + 1, 6 + 3 * factors, len(origin)))
+    for start in range(0, base, most or ROWS):
+        end = min(start + (most or ROWS), base)
         block = np.asarray(column[start * size : end * size].values, float)
         block = block.reshape(end - start, size, -1)
         rows = _statistics(block - origin, good[start:end], factors)
-        for row, at in zip(rows, range(start, end), strict=True):
-            if at < len(place):
-                total[place[at]] += row
-            else:
-                rest += row
-    return Sums(total, rest, origin)
+        for row, at in zip(rows, place[start:end], strict=True):
+            total[at] += row
+    return Sums(total[np.bincount(place, good) > 0], origin)
 
 
 def _statistics(block: Floats, good: Any, factors: int) -> Floats:
     """Return the columns of `Sums`, (base samples, column, time), 0 of those to leave out."""
-    # block: (base samples, runs of one, time), in SALib's order
+    # block: (base samples, runs of one, time), in the order of the sample
     kept = np.isfinite(block).all(axis=1) & good[:, None]
     block = np.where(kept[:, None], block, 0.0)
     a, ab, b = block[:, :1], block[:, 1 : 1 + factors], block[:, -1:]
@@ -262,25 +239,20 @@ def _of_history(sample: Sample, name: str) -> dict[str, Any]:
         "history_deviation": np.full(size, np.nan),
     }
     weights, numbers = trapezoid(times), np.zeros(size)
-    over = np.zeros(2 * factors + 1)  # integrals: of the numerators and of the variance
-    again = np.zeros((sample.resamples, 2 * factors + 1))
-    together = max(1, CELLS // (columns * max(min(GROUPS, len(good)), sample.resamples)))
+    integrals = np.zeros((1, 2 * factors + 1))  # (1 + replicates, 2 factors + 1)
+    together = max(1, CELLS // (columns * min(ROWS, len(good))))
     for start in range(0, size if good.any() else 0, together):
         part = slice(start, min(start + together, size))
-        kept = sums(sample, name, good, part)
-        whole, mean, deviation, numbers[part] = kept.indices()
-        found["at_times"][part] = whole.at_times().T
+        parts, mean, numbers[part] = sums(sample, name, good, part).parts()
+        at_times = np.moveaxis(parts.at_times(), -1, 1)
+        found["at_times"][part] = at_times[0]
+        margins = half_width(at_times[1:], sample.confidence)
+        found["at_times_interval"][part] = np.where(np.isnan(at_times[0]), np.nan, margins)
+        deviation = np.sqrt(np.where(parts.varies[0], parts.variance[0], 0.0))
         found["history_mean"][part], found["history_deviation"][part] = mean, deviation
-        over += _integrated(whole, weights[part])
-        replicates, row = [], 0
-        for drawn in kept.resampled(sample, name):
-            replicates.append(drawn.at_times())
-            again[row : row + len(drawn.variance)] += _integrated(drawn, weights[part])
-            row += len(drawn.variance)
-        margins = sample.half_width(np.concatenate(replicates)).T
-        found["at_times_interval"][part] = np.where(whole.varies[:, None], margins, np.nan)
+        integrals = integrals + _integrated(parts, weights[part])
     left_out = len(good) - int(numbers.min())
-    return _named(found, over, again, left_out, sample)
+    return _named(found, integrals, left_out, sample)
 
 
 def _integrated(parts: Parts, weights: Floats) -> Floats:
@@ -290,15 +262,14 @@ def _integrated(parts: Parts, weights: Floats) -> Floats:
 
 
 def _named(
-    found: dict[str, Any], over: Floats, again: Floats, left_out: int, sample: Sample
+    found: dict[str, Any], integrals: Floats, left_out: int, sample: Sample
 ) -> dict[str, Any]:
     """Return the variables of a history, with their verdicts."""
     base, factors = sample.number("base_samples"), len(sample.factors)
     few = base - left_out < FEWEST or left_out > MOST_IMPUTED * base
-    with np.errstate(invalid="ignore", divide="ignore"):  # where nothing varies
-        whole = np.where(over[-1] > 0, over[:-1] / over[-1], np.nan)
-        drawn = np.where(again[:, -1:] > 0, again[:, :-1] / again[:, -1:], np.nan)
-    margins = np.where(np.isfinite(whole), sample.half_width(drawn), np.nan)
+    variance = np.where(integrals[:, -1:] > 0, integrals[:, -1:], np.nan)  # NaN: nothing varies
+    indices = integrals[:, :-1] / variance
+    whole, margins = indices[0], half_width(indices[1:], sample.confidence)
     at_times, at_margins = found["at_times"], found["at_times_interval"]
     if few:
         for each in (whole, margins, at_times, at_margins, found["history_mean"]):

@@ -11,6 +11,7 @@ from impactlab.types import Floats
 
 _2008 = "Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5"
 _1979 = "Iman and Conover (1979), Technometrics 21, 499"
+_SMALLEST = 1e-12  # variance over that of all runs, up to which a resample does not vary
 _INDICES = {
     "regression": Index("standardised regression coefficient", _2008),
     "regression_r_squared": Index(
@@ -55,8 +56,8 @@ def _regression(name: str, table: Floats, sample: Sample, response: str) -> dict
         centre = means[..., :size]
         second = means[..., size:].reshape(*means.shape[:-1], size, size)
         covariance = second - centre[..., :, None] * centre[..., None, :]
-        deviation = np.sqrt(np.diagonal(covariance, axis1=-2, axis2=-1))
-        deviation = np.where(deviation > 0, deviation, np.nan)
+        variance = np.diagonal(covariance, axis1=-2, axis2=-1)
+        deviation = np.sqrt(np.where(variance > _SMALLEST, variance, np.nan))
         correlation = covariance / deviation[..., :, None] / deviation[..., None, :]
         with_dummy, _ = _coefficients(correlation)
         without = np.delete(np.delete(correlation, -2, axis=-1), -2, axis=-2)

@@ -1,29 +1,31 @@
-"""Sobol indices with bootstrap intervals, from a Saltelli sample, by SALib's estimators.
+"""Sobol indices from a Saltelli sample, with intervals from its replicates.
 
-SALib answers a NaN or a constant output with indices of zero, takes seed 0 for no seed, and needs a
-minute per output for its intervals. It gets complete and varying outputs alone, and gives the
-indices; the intervals are those of its bootstrap, from the same estimators as functions of means
-over the base samples.
+A sample consists of independent replicates (see study.sampling.samples.saltelli). The indices are
+functions of means over all base samples; their intervals are those of the jackknife over the
+replicates. The outputs at A and at B have to be uncorrelated, as independent points are: a
+correlation of theirs enters every first-order index.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
-from SALib.analyze import sobol
 
 from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity.method import BY_SAMPLES, PAIR, Index, Method, half_widths
+from impactlab.analysis.sensitivity.method import (
+    BY_SAMPLES,
+    PAIR,
+    Index,
+    Method,
+    half_width,
+    leave_one_out,
+)
 from impactlab.analysis.sensitivity.verdict import still
 from impactlab.types import Floats
 
-_ALONE = 4  # columns of the statistics that belong to no factor: a, b, a^2, b^2
-
-
-ALL = slice(None)
-MOST_ROWS = 1 << 18  # base samples that are resampled as they are; more are resampled in groups
+_ALONE = 5  # columns of the statistics that belong to no factor: a, b, a^2, b^2, a b
+_ROWS = 1 << 15  # base samples whose statistics are held at a time
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,8 @@ class Outputs:
 
     They are standardised when they are used: memory holds the outputs as they are, once.
 
-    table: (base samples, runs of one), in SALib's order. second: whether with second order.
+    table: (base samples, runs of one), in the order of the sample. second: whether with second
+    order. replicates: number of replicates; base sample k belongs to replicate k % replicates.
     """
 
     table: Floats
@@ -40,51 +43,35 @@ class Outputs:
     deviation: float
     factors: int
     second: bool
+    replicates: int
 
     @classmethod
     def of(cls, outputs: Floats, sample: Sample) -> Outputs:
         """Return outputs (runs,), which are not all equal, as a table."""
         table, second = outputs.reshape(-1, step(sample)), bool(sample.number("second_order"))
-        return cls(table, outputs.mean(), outputs.std(), len(sample.factors), second)
+        replicates = min(sample.number("replicates"), len(table))
+        factors = len(sample.factors)
+        return cls(table, outputs.mean(), outputs.std(), factors, second, replicates)
 
-    def at(self, *columns: int | slice, rows: slice = ALL) -> list[Floats]:
-        """Return columns of the table, standardised.
+    def means(self, interactions: bool = True) -> Floats:
+        """Return means of the statistics, (1 + replicates, column): of all, then without each."""
+        sums = np.zeros(())
+        for start in range(0, len(self.table), _ROWS):
+            rows = self._statistics(interactions, slice(start, start + _ROWS))
+            sums = sums + [rows[at :: self.replicates].sum(axis=0) for at in range(self.replicates)]
+        places = np.arange(len(self.table)) % self.replicates
+        sizes = np.bincount(places).astype(float)
+        return leave_one_out(sums) / leave_one_out(sizes)[:, None]
 
-        At A (the first) and B (the last); behind A at A with a factor's columns from B, then at B
-        with columns from A.
-        """
-        return [(self.table[rows, each] - self.mean) / self.deviation for each in columns]
-
-    def statistics(self, interactions: bool = True, rows: slice = ALL) -> Floats:
+    def _statistics(self, interactions: bool, rows: slice) -> Floats:
         """Return the columns whose means the estimators take, (base samples, columns)."""
-        end = 1 + self.factors
-        a, ab, b = self.at(slice(0, 1), slice(1, end), slice(-1, None), rows=rows)
-        columns = [a, b, a**2, b**2, b * (ab - a), (a - ab) ** 2 / 2]
+        table = (self.table[rows] - self.mean) / self.deviation
+        a, ab, ba, b = np.split(table, [1, 1 + self.factors, table.shape[1] - 1], axis=1)
+        columns = [a, b, a**2, b**2, a * b, b * (ab - a), (a - ab) ** 2 / 2]
         if self.second and interactions:
             first, second = np.triu_indices(self.factors, 1)
-            (ba,) = self.at(slice(end, -1), rows=rows)
-            columns.append(ba[:, first] * ab[:, second] - a * b)
+            columns.append(ba[:, first] * ab[:, second])
         return np.concatenate(columns, axis=1)
-
-    def resampled(self, interactions: bool, rng: np.random.Generator) -> Floats:
-        """Return the rows to resample, (rows, columns): the statistics, or the means of groups.
-
-        More than MOST_ROWS base samples are drawn into groups of equal size, block by block. Of the
-        mean of all, the means of groups tell the variance as the rows do: to a share of
-        sqrt(2 / groups), which is beside that of the resamples. (Drawn, for neighbours in a
-        low-discrepancy sequence are no independent draws.) The fewer base samples than one group
-        has that are left over are not resampled.
-        """
-        size = -(-len(self.table) // MOST_ROWS)
-        groups = len(self.table) // size
-        if size == 1:
-            return self.statistics(interactions)
-        starts = range(0, groups * size, groups)
-        blocks = (self.statistics(interactions, slice(at, at + groups)) for at in starts)
-        total = next(blocks)
-        for block in blocks:
-            total += block[rng.permutation(groups)]
-        return total / size
 
 
 def step(sample: Sample) -> int:
@@ -96,28 +83,32 @@ def estimates(means: Floats, factors: int) -> dict[str, Floats]:
     """Return indices from the means of the statistics, (..., columns); NaN where nothing varies.
 
     first_order, total_order (..., factor): Saltelli et al. (2010), Table 2 (b) and (f);
-    second_order (..., pair): Saltelli (2002), Theorem 2.
+    second_order (..., pair): Saltelli (2002), Theorem 2; base_correlation (...).
 
     Of a parameter that the model never sees, AB = A, and B (AB - A) and (A - AB)^2 are zero to the
     last digit, whatever the sample: there is no noise that all indices share, and the dummy of
     Khorashadi Zadeh et al. (2017), whose estimators are other ones, is no floor of these. The
     noise of an index is its own interval.
     """
-    a, b, squared_a, squared_b = np.moveaxis(means[..., :_ALONE], -1, 0)
-    centre = ((a + b) / 2) ** 2
-    variance = (squared_a + squared_b) / 2 - centre
-    variance = np.where(variance > np.finfo(float).eps, variance, np.nan)
-    shares = means[..., _ALONE:] / variance[..., None]
-    first, total, joint = np.split(shares, [factors, 2 * factors], axis=-1)
-    found = {"first_order": first, "total_order": total}
+    a, b, squared_a, squared_b, product = np.moveaxis(means[..., :_ALONE], -1, 0)
+    variance = (squared_a + squared_b) / 2 - ((a + b) / 2) ** 2
+    variance = np.where(variance > np.finfo(float).eps, variance, np.nan)[..., None]
+    first, total, joint = np.split(means[..., _ALONE:], [factors, 2 * factors], axis=-1)
+    found = {
+        "first_order": first / variance,
+        "total_order": total / variance,
+        "base_correlation": (product - a * b) / variance[..., 0],
+    }
     if joint.shape[-1]:
         one, other = np.triu_indices(factors, 1)
-        found["second_order"] = joint - first[..., one] - first[..., other]
+        joint = joint - product[..., None] - first[..., one] - first[..., other]
+        found["second_order"] = joint / variance
     return found
 
 
 HALVINGS = 5  # number of halvings of the sample that show how its indices settle: from N/32 on
 FEWEST = 8  # base samples below which halves are not shown
+CHANCE = 0.001  # of independent base samples whose correlation exceeds its noise
 _2010 = "Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2"
 _2002 = "Saltelli (2002), Comput. Phys. Commun. 145, 280, Theorem 2"
 _NESTED = "from the first base samples alone, which are a smaller sample of the same kind"
@@ -131,11 +122,30 @@ _INDICES = {
     "total_order_by_samples": Index(
         "total-order Sobol index by base samples", f"{_2010} (f)", BY_SAMPLES, comment=_NESTED
     ),
+    "base_correlation": Index(
+        "correlation of the response between the two base samples, A and B",
+        "Pearson, with the mean and the variance of both",
+        (),
+        interval=False,
+        comment="it enters every first-order index, and is 0 for independent base samples",
+    ),
+    "base_correlation_noise": Index(
+        f"magnitude that the correlation exceeds by chance in {CHANCE:.1%} of samples",
+        "jackknife over the replicates, with Student's t",
+        (),
+        interval=False,
+    ),
 }
 
 
 def check(sample: Sample) -> None:
-    """Raise ValueError when the number of runs does not fit the sample."""
+    """Raise ValueError where the sample has no replicates, or another number of runs."""
+    if "replicates" not in sample.settings:
+        raise ValueError(
+            f"{sample.study} has a sample of an earlier version of impactlab, whose first-order "
+            "indices may be wrong by more than their intervals: draw it again with `impactlab "
+            "design`, then solve it"
+        )
     base, factors = sample.number("base_samples"), len(sample.factors)
     words = f"{base} base samples of {factors} {'groups' if sample.groups else 'parameters'}"
     sample.expect(base * step(sample), words)
@@ -155,7 +165,7 @@ def varying(outputs: Floats, sample: Sample) -> list[Floats]:
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    series = [_of_first(size, outputs, sample, response) for size in base_samples(sample)]
+    series = [_of_first(size, outputs, sample) for size in base_samples(sample)]
     found, gap = dict(series[-1]), np.full(len(sample.factors), np.nan)
     for order in ("first_order", "total_order"):
         for ending in ("", "_interval"):
@@ -164,33 +174,19 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
     return found
 
 
-def _of_first(size: int, outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
+def _of_first(size: int, outputs: Floats, sample: Sample) -> dict[str, Floats]:
     """Return the indices on the first base samples; none where these do not vary."""
     start, factors = outputs[: size * step(sample)], len(sample.factors)
     if still(start, varying(start, sample)):
         return {}
-    parts = Outputs.of(start, sample)  # pairs have intervals on the whole sample alone
-    interactions = start.size == outputs.size
-    statistics = parts.resampled(interactions, sample.rng(response, "groups"))
-    spread = half_widths(statistics, lambda means: estimates(means, factors), sample, response)
-    found = points(parts) | spread
-    if "second_order_interval" in found:
-        found["second_order_interval"] = _matrix(found["second_order_interval"], factors)
-    return found
-
-
-def points(outputs: Outputs) -> dict[str, Floats]:
-    """Return SALib's indices: first_order, total_order (factor) and second_order, symmetric."""
-    factors, (a, b) = outputs.factors, outputs.at(0, -1)
-    columns = range(1, 1 + factors)
-    found = {
-        "first_order": np.array([sobol.first_order(a, *outputs.at(i), b) for i in columns]),
-        "total_order": np.array([sobol.total_order(a, *outputs.at(i), b) for i in columns]),
-    }
-    if outputs.second:
-        pairs = combinations(columns, 2)
-        joint = [sobol.second_order(a, *outputs.at(i, j, factors + i), b) for i, j in pairs]
-        found["second_order"] = _matrix(np.array(joint, float), factors)
+    interactions = start.size == outputs.size  # pairs have no indices by samples
+    replicated = estimates(Outputs.of(start, sample).means(interactions), factors)
+    found = {name: values[0] for name, values in replicated.items()}
+    for name in replicated.keys() - {"base_correlation"}:
+        found[f"{name}_interval"] = half_width(replicated[name][1:], sample.confidence)
+    found["base_correlation_noise"] = half_width(replicated["base_correlation"][1:], 1 - CHANCE)
+    for name in {"second_order", "second_order_interval"} & found.keys():
+        found[name] = _matrix(found[name], factors)
     return found
 
 

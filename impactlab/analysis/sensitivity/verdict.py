@@ -28,7 +28,12 @@ _JUDGED = ("first_order", "total_order", "delta", "pawn", "regression", "rank_re
 class SensitivityVerdict(Verdict):
     """Verdicts on the indices of a response; the worst counts. From CONSTANT on, there are none."""
 
-    USABLE = 0, True, "every run answered and the response varies"
+    USABLE = (
+        0,
+        True,
+        "every run answered, the response has one regime, and no interval is wider than 0.1 to "
+        "either side, nor the numerical error where it was estimated",
+    )
     JUMPS = 1, False, "the response takes ten values or fewer: its indices are those of jumps"
     FEW_RUNS_CARRY_IT = 2, False, "one run in a hundred carries more than half of the variance"
     WIDE_INTERVALS = (
@@ -36,31 +41,50 @@ class SensitivityVerdict(Verdict):
         False,
         "the sample is small: an interval is wider than 0.1 to either side, or cannot be given",
     )
+    NUMERICAL_ERROR = 4, False, "the numerical error of an index may be larger than 0.1"
     NOT_LINEAR = (
-        4,
+        5,
         False,
         "linear regression explains less than 70 % of the variance, on values and on ranks",
     )
     INCONSISTENT = (
-        5,
+        6,
         False,
         "the sample is too small: by more than their intervals, first-order indices add up to "
         "more than 1, are below zero, or exceed their total",
     )
-    IMPUTED = 6, False, "runs failed, and a surrogate supplied their values (see imputed_share)"
-    MOSTLY_CONSTANT = 7, False, "nine runs in ten share one value: the indices hang on the others"
+    DEPENDENT_BASES = (
+        7,
+        False,
+        "the response correlates between the two base samples by more than chance: first-order "
+        "indices are wrong (see base_correlation)",
+    )
+    IMPUTED = 8, False, "runs failed, and a surrogate supplied their values (see imputed_share)"
+    MOSTLY_CONSTANT = 9, False, "nine runs in ten share one value: the indices hang on the others"
     NO_DENSITY = (
-        8,
+        10,
         False,
         "a class of a parameter's values holds one value of the response alone: it has no density, "
         "and no delta is given (use pawn)",
     )
-    CONSTANT = 9, False, "the response does not vary: indices are undefined"
-    FAILED_RUNS = 10, False, "runs are missing: no index is given"
+    CONSTANT = 11, False, "the response does not vary: indices are undefined"
+    SEVERAL_REGIMES = (
+        12,
+        False,
+        "the response lies in separate ranges with none between: no index is given (a limit "
+        "between two of them tells which parameters decide)",
+    )
+    FAILED_RUNS = 13, False, "runs are missing: no index is given"
     TOO_FEW_RUNS = (
-        11,
+        14,
         False,
         "too many runs are missing for a surrogate to supply their values: no index is given",
+    )
+    POOR_SURROGATE = (
+        15,
+        False,
+        "runs are missing, and a surrogate of the others misses more than a tenth of the variance: "
+        "no index is given",
     )
 
 
@@ -117,6 +141,10 @@ def of_indices(found: Mapping[str, Floats]) -> list[SensitivityVerdict]:
         orders = ("first_order", "first_order_interval", "total_order", "total_order_interval")
         if inconsistent(*(found[name] for name in orders)):
             verdicts.append(SensitivityVerdict.INCONSISTENT)
+    if "base_correlation" in found:
+        noise = max(float(found["base_correlation_noise"]), ROUND_OFF)
+        if abs(float(found["base_correlation"])) > noise:
+            verdicts.append(SensitivityVerdict.DEPENDENT_BASES)
     if "delta" in found and np.isnan(found["delta"]).any():
         verdicts.append(SensitivityVerdict.NO_DENSITY)
     return verdicts
@@ -124,11 +152,11 @@ def of_indices(found: Mapping[str, Floats]) -> list[SensitivityVerdict]:
 
 def inconsistent(first: Floats, first_margin: Floats, total: Floats, total_margin: Floats) -> bool:
     """Return True where indices (parameter,) contradict each other by more than their intervals."""
-    # Below zero by twice the interval: of many that are zero, some lie outside of it once.
+    # By twice the interval: of many that are zero, or equal, some lie outside of it once.
     return bool(
         first.sum() - 1 > first_margin.sum()
         or (first < -2 * first_margin).any()
-        or (first - total > first_margin + total_margin).any()
+        or (first - total > 2 * (first_margin + total_margin)).any()
     )
 
 
@@ -142,3 +170,19 @@ def remarks(verdicts: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:
         "flag_meanings": " ".join(kind.name.lower() for kind in masks),
     }
     return xr.DataArray(np.array(codes, np.int32), dims="response", attrs=attrs)
+
+
+def with_numerical_error(analysis: xr.Dataset) -> xr.Dataset:
+    """Return an analysis whose verdicts know the numerical error of its indices."""
+    names = [f"{order}_numerical" for order in ("first_order", "total_order")]
+    errors = [analysis[name].max("parameter") for name in names if name in analysis]
+    if "sensitivity_verdict" not in analysis or not errors:
+        return analysis
+    large = np.fmax.reduce(errors) > WIDE
+    verdicts, bits = analysis["sensitivity_verdict"], analysis["sensitivity_remarks"]
+    worst = verdicts.clip(min=SensitivityVerdict.NUMERICAL_ERROR).where(large, verdicts)
+    bit = 1 << (SensitivityVerdict.NUMERICAL_ERROR - 1)
+    return analysis.assign(
+        sensitivity_verdict=worst.astype(verdicts.dtype).assign_attrs(verdicts.attrs),
+        sensitivity_remarks=xr.where(large, bits | bit, bits).assign_attrs(bits.attrs),
+    )

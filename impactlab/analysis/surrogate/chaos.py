@@ -1,4 +1,4 @@
-"""Sparse polynomial chaos: sums of products of Legendre polynomials on the unit cube.
+"""Sparse polynomial chaos: sums of products of the parameters' orthonormal polynomials.
 
 Hybrid least angle regression picks the terms, and least squares fits their coefficients: Blatman
 and Sudret (2011), J. Comput. Phys. 230, 2345, section 4.3. The Sobol indices are shares of the sum
@@ -14,10 +14,10 @@ from functools import cache
 
 import numpy as np
 import scipy  # its stats are loaded when first used
-from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from impactlab.analysis.surrogate.polynomials import HIGHEST_DEGREE, Polynomials
 from impactlab.types import Floats
 
 Degrees = NDArray[np.int64]
@@ -62,17 +62,16 @@ def hyperbolic(parameters: int, degree: int) -> Degrees:
     return np.array(rows, dtype=np.int64)
 
 
-def basis(unit: Floats, degrees: Degrees) -> Floats:
-    """Return every term at every point of the unit cube, (points, parameters) to (terms, points).
+def basis(inputs: Floats, degrees: Degrees, polynomials: Sequence[Polynomials]) -> Floats:
+    """Return every term at every point, (points, parameters) in SI units to (terms, points).
 
-    A term is a product of Legendre polynomials sqrt(2 a + 1) P_a(2 u - 1), by recurrence: of mean
-    zero and variance one, and uncorrelated with every other term, where u is uniform.
+    A term is a product of one polynomial per parameter: of mean zero and variance one, and
+    uncorrelated with every other term, where the parameters have the polynomials' distributions.
     """
     highest = int(degrees.max(initial=0))
-    scale = np.sqrt(2 * np.arange(highest + 1) + 1)[:, np.newaxis]
-    product = np.ones((len(degrees), len(unit)))
-    for values, column in zip(unit.T, degrees.T, strict=True):
-        single = scale * legvander(2 * values - 1, highest).T
+    product = np.ones((len(degrees), len(inputs)))
+    for values, column, kind in zip(inputs.T, degrees.T, polynomials, strict=True):
+        single = kind(kind.standardised(values), highest)
         active = np.flatnonzero(column)
         product[active] *= single[column[active]]
     return product
@@ -82,21 +81,22 @@ def basis(unit: Floats, degrees: Degrees) -> Floats:
 class Chaos:
     """A fitted response, which predicts when called with points.
 
-    degrees: (terms, parameters). coefficients: (terms,), in the response's unit.
+    degrees: (terms, parameters). coefficients: (terms,), in the response's unit. polynomials: of
+    each parameter.
     """
 
     degrees: Degrees
     coefficients: Floats
+    polynomials: tuple[Polynomials, ...]
 
-    def __call__(self, unit: Floats) -> Floats:
-        """Return the response at points of the unit cube, (points, parameters) to (points,)."""
-        return np.asarray(self.coefficients @ basis(unit, self.degrees))
+    def __call__(self, inputs: Floats) -> Floats:
+        """Return the response at points, (points, parameters) in SI units to (points,)."""
+        return np.asarray(self.coefficients @ basis(inputs, self.degrees, self.polynomials))
 
 
 MOST_RUNS = 20_000  # largest number of runs that a fit uses; of more, it draws as many
 _MOST_CANDIDATES = 400
 _MOST_TERMS = 200
-_HIGHEST_DEGREE = 20
 _SMALLEST = 1e-12  # least leverage left to a run, so that nothing is divided by zero
 
 
@@ -110,30 +110,32 @@ def drawn(runs: int, seed: int) -> NDArray[np.int64]:
     return np.sort(np.random.default_rng(seed).permutation(runs)[:MOST_RUNS])
 
 
-def fit(unit: Floats, values: Floats, seed: int) -> Chaos:
-    """Return a chaos that predicts `values` from points of the unit cube.
+def fit(inputs: Floats, values: Floats, seed: int, polynomials: Sequence[Polynomials]) -> Chaos:
+    """Return a chaos that predicts `values` from points.
 
-    unit: (runs, parameters), the probabilities of the parameters' values; values: (runs,), finite.
-    seed: which runs are used where there are more than MOST_RUNS. Raises ValueError when there
-    are fewer than `fewest_runs`.
+    inputs: (runs, parameters), in SI units; values: (runs,), finite. seed: which runs are used
+    where there are more than MOST_RUNS. Raises ValueError when there are fewer than `fewest_runs`.
     """
-    parameters = unit.shape[1]
+    parameters = inputs.shape[1]
     if len(values) < fewest_runs(parameters):
         raise ValueError(
             f"{len(values)} runs are too few for a surrogate in {parameters} parameters: "
             f"solve {fewest_runs(parameters)} or more"
         )
     rows = drawn(len(values), seed)
-    unit, values = unit[rows], values[rows]
-    levels = min(np.unique(np.round(column, 9)).size for column in unit.T)
-    highest = min(_HIGHEST_DEGREE, levels - 1)  # that the parameter of the fewest levels resolves
+    inputs, values = inputs[rows], values[rows]
+    levels = min(
+        np.unique(np.round(kind.standardised(column), 9)).size
+        for kind, column in zip(polynomials, inputs.T, strict=True)
+    )
+    highest = min(HIGHEST_DEGREE, levels - 1)  # that the parameter of the fewest levels resolves
     with threadpool_limits(limits=1):  # the same bits on any number of processors
         degrees = candidates(parameters, min(_MOST_CANDIDATES, len(values) // 2), highest)
-        columns, mean = basis(unit, degrees), values.mean()
+        columns, mean = basis(inputs, degrees, polynomials), values.mean()
         order = _order(columns, values - mean)
         coefficients = _least_squares(columns[order], values - mean)
     coefficients[0] += mean
-    return Chaos(degrees[order[: coefficients.size]], coefficients)
+    return Chaos(degrees[order[: coefficients.size]], coefficients, tuple(polynomials))
 
 
 def _order(columns: Floats, values: Floats) -> list[int]:
@@ -173,16 +175,16 @@ def _least_squares(columns: Floats, values: Floats) -> Floats:
 
 
 def influence(
-    chaos: Chaos, unit: Floats, values: Floats, block: NDArray[np.int64], rmse: float
+    chaos: Chaos, inputs: Floats, values: Floats, block: NDArray[np.int64], rmse: float
 ) -> Floats:
     """Return the influence of each block of runs on each coefficient, (terms, blocks).
 
-    unit (runs, parameters), values (runs,), block (runs,): the runs that the chaos was fitted to.
+    inputs (runs, parameters), values (runs,), block (runs,): the runs that the chaos was fitted to.
     Their outer product is the covariance of the coefficients that is robust to dependence within
     blocks: Liang and Zeger (1986), Biometrika 73, 13. The residuals are scaled to `rmse`, the error
     on runs held out: a fit of many terms to few blocks leaves residuals far smaller than that.
     """
-    columns = basis(unit, chaos.degrees)
+    columns = basis(inputs, chaos.degrees, chaos.polynomials)
     residual = values - chaos.coefficients @ columns
     size = float(np.sqrt(np.mean(residual**2))) or 1.0
     scores = columns * residual * (rmse / size)

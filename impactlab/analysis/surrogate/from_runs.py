@@ -1,4 +1,4 @@
-"""Surrogates of all responses of a sample: fitted, tested on held-out runs, and judged."""
+"""Surrogates of all responses of a sample: fitted, tested on runs left out, and judged."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ import xarray as xr
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from impactlab.analysis.regimes import of_sample
 from impactlab.analysis.responses import Sample, correlations, labels, listed, usable
-from impactlab.analysis.surrogate.chaos import drawn, fewest_runs, fit, indices, influence
+from impactlab.analysis.surrogate.chaos import Chaos, drawn, fewest_runs, fit, indices, influence
+from impactlab.analysis.surrogate.polynomials import Polynomials, orthonormal
+from impactlab.analysis.surrogate.validation import ErrorModel, leverage, predictivity
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, distinct, flagged
-from impactlab.model.distributions import ARGUMENTS, cumulative
+from impactlab.model.distributions import ARGUMENTS
 from impactlab.types import Floats
 
-_SHARE = 0.2  # share of the blocks of runs to test on
+_FOLDS = 5  # parts of a sample; each is predicted by a fit to the others
 _FEWEST_TESTS, _MOST_TESTS = 10, 4000
-_BLOCKS = {"sobol": "base_samples", "morris": "trajectories"}
+_BLOCKS = {"sobol": "base_samples", "morris": "trajectories", "fast": "curves"}
 """Methods whose runs come in blocks of near-copies, and the attribute with their number."""
-_LENGTHS = {"fast": "samples"}
-"""Methods whose blocks are curves through the cube, and the attribute with their length."""
 
 
 def applies(runs: xr.Dataset) -> bool:
@@ -34,25 +35,25 @@ def applies(runs: xr.Dataset) -> bool:
 
 @dataclass(frozen=True)
 class Divided:
-    """A sample, divided into runs to fit to and runs to test on, in the order of `run`.
+    """A sample, divided into parts, each to be predicted by a fit to the others, in order of `run`.
 
-    length: of a block of runs, which differ in few parameters. held_out: mask of the runs that no
-    surrogate sees, (runs,), a fifth of the blocks. tests: positions of these runs, rising; of more
-    than _MOST_TESTS, a draw of as many.
+    length: of a block of runs, which differ in few parameters. part: that of each run, (runs,), of
+    _FOLDS with the same number of blocks. tests: positions of the runs of the first parts, rising:
+    of as many parts as hold _MOST_TESTS, or all; of more runs, a draw of as many.
     """
 
     sample: Sample
     length: int
-    held_out: NDArray[np.bool_]
+    part: NDArray[np.int64]
     tests: NDArray[np.int64]
-    _units: dict[bytes, Floats] = field(default_factory=dict)
+    _inputs: dict[bytes, Floats] = field(default_factory=dict)
 
     @classmethod
     def of(cls, runs: xr.Dataset) -> Divided:
         """Divide runs. Raises ValueError where blocks do not fit."""
         sample = Sample.of(runs)
         method, count = str(runs.attrs.get("method")), runs.sizes["run"]
-        length = sample.number(_LENGTHS[method]) if method in _LENGTHS else 1
+        length = 1
         if method in _BLOCKS:
             length = count // max(sample.number(_BLOCKS[method]), 1)
         if length < 1 or count % length:
@@ -61,26 +62,46 @@ class Divided:
                 f"{method}: solve it again"
             )
         blocks = count // length
-        shuffled = sample.rng("surrogate held out").permutation(blocks)
-        held_blocks = np.zeros(blocks, dtype=bool)
-        held_blocks[shuffled[: max(1, round(_SHARE * blocks))]] = True
-        held_out = np.repeat(held_blocks, length)
-        tests = sample.rng("surrogate tests").permutation(np.flatnonzero(held_out))[:_MOST_TESTS]
-        return cls(sample, length, held_out, np.sort(tests))
+        part = np.repeat(sample.rng("surrogate held out").permutation(blocks) % _FOLDS, length)
+        tested = part < int(np.clip(np.ceil(_MOST_TESTS * _FOLDS / count), 1, _FOLDS))
+        tests = sample.rng("surrogate tests").permutation(np.flatnonzero(tested))[:_MOST_TESTS]
+        return cls(sample, length, part, np.sort(tests))
 
-    def unit(self, rows: NDArray[np.int64]) -> Floats:
-        """Return the probability of each value in these runs, (runs, parameters).
+    def inputs(self, rows: NDArray[np.int64]) -> Floats:
+        """Return the parameters of these runs in SI units, (runs, parameters).
 
-        It is kept: most responses are fitted to the same runs.
+        They are kept: most responses are fitted to the same runs.
         """
-        if (key := rows.tobytes()) not in self._units:
-            pairs = zip(self.sample.parameters, self.sample.rows(rows).T, strict=True)
-            columns = [cumulative(self.sample.runs[name].attrs, column) for name, column in pairs]
-            self._units[key] = np.column_stack(columns)
-        return self._units[key]
+        if (key := rows.tobytes()) not in self._inputs:
+            self._inputs[key] = self.sample.rows(rows)
+        return self._inputs[key]
+
+    @property
+    def polynomials(self) -> tuple[Polynomials, ...]:
+        """Those of each parameter."""
+        return tuple(orthonormal(self.sample.runs[n].attrs) for n in self.sample.parameters)
+
+    def fit(
+        self, values: Floats, training: NDArray[np.bool_], seed: int
+    ) -> tuple[Chaos, NDArray[np.int64]]:
+        """Return a chaos fitted to the runs of a mask, (runs,), and the rows that it used."""
+        rows = np.flatnonzero(training)
+        rows = rows[drawn(rows.size, seed)]  # before the numbers of all take as much memory
+        return fit(self.inputs(rows), values[rows], seed, self.polynomials), rows
+
+    def predicted(self, values: Floats, seed: int) -> Floats:
+        """Return the tested runs, (tests,), each predicted by a fit to the other parts."""
+        answered, parts = np.isfinite(values), self.part[self.tests]
+        found = np.empty(parts.size)
+        for part in np.unique(parts):
+            chaos, _ = self.fit(values, answered & (self.part != part), seed)
+            found[parts == part] = chaos(self.inputs(self.tests[parts == part]))
+        return found
 
 
-GOOD = 0.9  # predictivity on held-out runs from which on a surrogate needs no warning
+GOOD = (
+    0.9  # lower end of the predictivity on runs left out from which on a surrogate needs no warning
+)
 MOSTLY = 0.9
 FEW = 20  # distinct values up to which a response jumps between levels, where each comes ten times
 
@@ -88,9 +109,9 @@ FEW = 20  # distinct values up to which a response jumps between levels, where e
 class SurrogateVerdict(Verdict):
     """Verdicts on the surrogate of a response."""
 
-    USABLE = 0, True, "it predicts at least 90 % of the variance of runs held out"
-    POOR = 1, False, "it misses more than a tenth of the variance of runs held out"
-    JUMPS = 2, False, "the response jumps between few values, which no polynomial follows"
+    USABLE = 0, True, "it predicts at least 90 % of the variance of runs left out (lower end)"
+    POOR = 1, False, "it may miss more than a tenth of the variance of runs left out"
+    JUMPS = 2, False, "the response jumps between few values or ranges, which no polynomial follows"
     MOSTLY_CONSTANT = 3, False, "nine runs in ten share one value: it follows the others badly"
     FAILED_RUNS = 4, False, "runs are missing: it knows nothing of where they failed"
     TOO_FEW_RUNS = 5, False, "too few runs answered to fit and to test one: there is none"
@@ -101,39 +122,40 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     """Fit and test a surrogate of one response, (runs,), NaN where missing.
 
     Returns the verdict, and by name the chaos and what `analysis` tells of it; nothing where
-    constant or with too few runs. q2 is -inf where the tested values are all equal.
+    constant or with too few runs. q2 and its lower end are -inf where the tested values are all
+    equal.
     """
     sample, answered = divided.sample, np.isfinite(values)
-    training = answered & ~divided.held_out
-    number = int(np.count_nonzero(training))
     tested = answered[divided.tests]
-    few = number < fewest_runs(len(sample.parameters))
+    parts = np.bincount(divided.part[answered], minlength=_FOLDS)
+    few = parts.sum() - parts.max() < fewest_runs(len(sample.parameters))
     if few or np.count_nonzero(tested) < _FEWEST_TESTS:
         return SurrogateVerdict.TOO_FEW_RUNS, {}
     known = values if answered.all() else values[answered]
     if np.ptp(known) <= ROUND_OFF * max(known.max(), -known.min()):
         return SurrogateVerdict.CONSTANT, {}
     seed = int(sample.rng("surrogate fit").integers(2**31))
-    picked = drawn(number, seed)  # before the numbers of all take as much memory
-    rows = np.flatnonzero(training)[picked]
-    unit, block = divided.unit(rows), rows // divided.length
-    chaos = fit(unit, values[rows], seed)
-    predicted = chaos(divided.unit(divided.tests))
-    square = float(np.mean((predicted - values[divided.tests])[tested] ** 2))
-    variance = float(np.var(values[divided.tests][tested]))
-    q2, rmse = 1 - square / variance if variance > 0 else -np.inf, float(np.sqrt(square))
-    pull = influence(chaos, unit, values[rows], block, rmse)
+    predicted = divided.predicted(values, seed)
+    tests = divided.tests[tested]
+    errors = predicted[tested] - values[tests]
+    q2, low = predictivity(errors, values[tests], tests // divided.length)
+    rmse = float(np.sqrt(np.mean(errors**2)))
+    chaos, rows = divided.fit(values, answered, seed)
+    inputs, block = divided.inputs(rows), rows // divided.length
+    pull = influence(chaos, inputs, values[rows], block, rmse)
     missed = min(max(1 - q2, 0.0), 1.0)
-    found = {"chaos": chaos, "q2": q2, "rmse": rmse, "runs": rows.size, "held_out": predicted}
+    found = {"chaos": chaos, "q2": q2, "q2_low": low, "rmse": rmse, "runs": rows.size}
+    found |= ErrorModel.of(leverage(chaos, divided.inputs(tests)), errors).variables()
+    found["held_out"] = predicted
     found |= indices(chaos, sample.memberships, pull, missed, sample.confidence)
     levels, most = distinct(known)
     if known.size < values.size:
         return SurrogateVerdict.FAILED_RUNS, found
     if most >= MOSTLY * known.size:
         return SurrogateVerdict.MOSTLY_CONSTANT, found
-    if levels <= min(FEW, known.size // 10):
+    if levels <= min(FEW, known.size // 10) or of_sample(sample, values).size:
         return SurrogateVerdict.JUMPS, found
-    return SurrogateVerdict.USABLE if q2 >= GOOD else SurrogateVerdict.POOR, found
+    return SurrogateVerdict.USABLE if low >= GOOD else SurrogateVerdict.POOR, found
 
 
 def analysis(runs: xr.Dataset) -> xr.Dataset:
@@ -157,7 +179,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         found["coefficient"][at] = found["chaos"].coefficients
     coordinates = labels(runs)
     for name, entries, words in (
-        ("held_out", sample.runs["run"].values[divided.tests], "number of a run held out"),
+        ("held_out", sample.runs["run"].values[divided.tests], "number of a run left out once"),
         ("parameter", sample.factors, "varied parameter"),
         ("surrogate_input", sample.parameters, "parameter that the surrogate depends on"),
     ):
@@ -173,7 +195,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         attrs |= {"estimator": "polynomial chaos"} if dims == ("parameter",) else {}
         attrs |= {"confidence": sample.confidence} if name.endswith("_interval") else {}
         variables[f"surrogate_{name}"] = (("response", *dims), np.array(rows), attrs)
-    words = "degree of each term's Legendre polynomial in each parameter"
+    words = "degree of each term's polynomial in each parameter, orthonormal for its distribution"
     term_dims = ("surrogate_term", "surrogate_input")
     variables["surrogate_degree"] = (term_dims, degrees, {"long_name": words, "units": "1"})
     codes = xr.DataArray([int(verdict) for verdict, _ in answers], dims="response")
@@ -186,14 +208,23 @@ _FIRST, _TOTAL = (f"{order}-order Sobol index of the surrogate" for order in ("f
 _NUMBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "q2": (
         (),
-        "predictivity of the surrogate: 1 - mean squared error / variance over the runs held out",
+        "predictivity of the surrogate: 1 - mean squared error / variance over the runs left out",
         "1",
     ),
-    "rmse": ((), "root mean squared error over the runs held out, in the unit of the response", ""),
+    "q2_low": ((), "lower end of the 95 % interval of the predictivity", "1"),
+    "rmse": ((), "root mean squared error over the runs left out, in the unit of the response", ""),
+    "error": (
+        (),
+        "half-width of the 95 % interval of a prediction where the leverage is 1, in the unit of "
+        "the response",
+        "",
+    ),
+    "error_growth": ((), "power of the leverage that the squared error grows with", "1"),
+    "reach": ((), "highest leverage of a run left out", "1"),
     "runs": ((), "runs that the surrogate was fitted to", "1"),
     "held_out": (
         ("held_out",),
-        "the surrogate's value at a run held out, in the unit of the response",
+        "value at a run left out, by the surrogate of the others, in the unit of the response",
         "",
     ),
     "first_order": (("parameter",), _FIRST, "1"),
@@ -202,7 +233,7 @@ _NUMBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "total_order_interval": (("parameter",), _HALF_WIDTH + _TOTAL, "1"),
     "coefficient": (
         ("surrogate_term",),
-        "coefficient of each Legendre product, in the unit of the response",
+        "coefficient of each product of polynomials, in the unit of the response",
         "",
     ),
 }

@@ -9,19 +9,18 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.responses import in_order, usable
 from impactlab.analysis.surrogate.chaos import basis
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
+from impactlab.analysis.surrogate.polynomials import orthonormal
 from impactlab.analysis.verdicts import names
 from impactlab.files import read_netcdf
-from impactlab.model.distributions import arguments, cumulative
+from impactlab.model.distributions import arguments, cumulative, quantile
 from impactlab.types import Floats
 
 IMPRECISE = 0.1
-"""Root mean squared error, relative to a prediction, from which on that prediction is imprecise."""
-OUTER = 0.01
-"""Share of the runs at either end of a parameter's range, where an error may be far larger."""
-_FAR_LARGER = 2.0
+"""Error, relative to a prediction, from which on that prediction is imprecise."""
+FORMAT = 2
+"""Of surrogate.nc: 1 had polynomials in probabilities, which bend at the ends of ranges."""
 _AT_ONCE = 4096  # number of points whose terms about fit in the processor's cache
 
 
@@ -34,6 +33,7 @@ class Surrogate:
         self.parameters: tuple[str, ...] = tuple(map(str, dataset["parameter"].values))
         self.responses: tuple[str, ...] = tuple(map(str, dataset["response"].values))
         self._distributions = [json.loads(text) for text in dataset["distribution"].values]
+        self._polynomials = [orthonormal(each) for each in self._distributions]
         self._study = repr(dataset.attrs.get("study", "?"))
         self._takes = f"the surrogate takes {', '.join(self.parameters)}"
 
@@ -47,13 +47,14 @@ class Surrogate:
 
         values: by name, numbers, arrays of one dimension (`point`) or DataArrays, which are
         broadcast against each other. Returns the responses on the common dimensions, NaN where
-        there is no surrogate, each with units, long_name, rmse and q2 (of runs held out), error,
-        outer and verdict. error: the rmse, enlarged where a value lies at an end of the range of
-        the parameter `outer` (see `packed`), the largest over the points. verdict: that of the
-        surrogate, or, where this is "usable" but a prediction is smaller than ten times its
-        error, "imprecise". The values are its coordinates. Raises ValueError, naming
-        parameter, value and range, where one is missing, was not varied, or lies outside what the
-        surrogate knows.
+        there is no surrogate, each with units, long_name, rmse and q2 (of runs left out), error,
+        leverage and verdict. error: half-width of the 95 % interval of a prediction, and leverage:
+        how far out the point is (see `validation.leverage`), both the largest over the points.
+        verdict: that of the surrogate, or, where this is "usable": "extrapolated" where a point
+        lies farther out than every run tested on, so that no run bears out its error; "imprecise"
+        where a prediction is smaller than ten times its error. The values are its coordinates.
+        Raises ValueError, naming parameter, value and range, where one is missing, was not varied,
+        or lies outside what the surrogate knows.
         """
         for name in values:
             self._check_known(name)
@@ -61,31 +62,26 @@ class Surrogate:
             raise ValueError(f"{', '.join(absent)}: no value is given; {self._takes}")
         arrays = [self._checked(name, values[name]) for name in self.parameters]
         columns = [one.drop_vars(self.parameters, errors="ignore") for one in xr.broadcast(*arrays)]
-        pairs = zip(self._distributions, columns, strict=True)
-        places = [cumulative(drawn, column.values.ravel()) for drawn, column in pairs]
-        unit = np.column_stack(places)
-        found = self.at(unit)
-        at_end = np.abs(unit - 0.5) > 0.5 - OUTER
+        inputs = np.column_stack([column.values.ravel() for column in columns])
+        answers, leverages, errors = self._evaluated(inputs)
         variables = {}
-        for name, row in zip(self.responses, found, strict=True):
+        for at, name in enumerate(self.responses):
             entry = self.dataset.sel(response=name)
-            verdict, rmse = names(SurrogateVerdict)[int(entry["verdict"])], float(entry["rmse"])
-            ratios = np.where(at_end, entry["outer"].values, 1.0)
-            errors = rmse * ratios.max(axis=1)
-            if verdict == "usable" and (errors > IMPRECISE * np.abs(row)).any():
+            verdict = names(SurrogateVerdict)[int(entry["verdict"])]
+            if verdict == "usable" and (leverages[at] > float(entry["reach"])).any():
+                verdict = "extrapolated"
+            elif verdict == "usable" and (errors[at] > IMPRECISE * np.abs(answers[at])).any():
                 verdict = "imprecise"
-            worst = np.argmax(ratios.max(axis=0, initial=1.0))
-            enlarged = (ratios > 1.0).any()
             attrs = {
                 "long_name": str(entry["response_long_name"].item()),
                 "units": str(entry["response_units"].item()),
-                "rmse": rmse,
-                "error": float(errors.max(initial=rmse)),
-                "outer": self.parameters[worst] if enlarged else "",
+                "rmse": float(entry["rmse"]),
+                "error": float(errors[at].max(initial=0.0)),
+                "leverage": float(leverages[at].max(initial=0.0)),
                 "q2": float(entry["q2"]),
                 "verdict": verdict,
             }
-            variables[name] = (columns[0].dims, row.reshape(columns[0].shape), attrs)
+            variables[name] = (columns[0].dims, answers[at].reshape(columns[0].shape), attrs)
         return xr.Dataset(variables, dict(zip(self.parameters, columns, strict=True)))
 
     def at(self, unit: Floats) -> Floats:
@@ -93,9 +89,31 @@ class Surrogate:
 
         unit: (points, parameters); the result is (responses, points).
         """
+        return self._evaluated(self._inputs(unit))[0]
+
+    def errors(self, unit: Floats) -> Floats:
+        """Return half-widths of the 95 % intervals of what `at` gives, (responses, points)."""
+        return self._evaluated(self._inputs(unit))[2]
+
+    def _inputs(self, unit: Floats) -> Floats:
+        pairs = zip(self._distributions, unit.T, strict=True)
+        return np.column_stack([quantile(distribution, column) for distribution, column in pairs])
+
+    def _evaluated(self, inputs: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return responses, leverages and errors at points in SI units, each (responses, points).
+
+        Leverages are those of each response's terms (see `validation.leverage`).
+        """
         degrees, coefficients = self.dataset["degree"].values, self.dataset["coefficient"].values
-        batches = [unit[start : start + _AT_ONCE] for start in range(0, len(unit) or 1, _AT_ONCE)]
-        return np.hstack([coefficients @ basis(batch, degrees) for batch in batches])
+        shares = (coefficients != 0) / np.maximum((coefficients != 0).sum(axis=1), 1)[:, np.newaxis]
+        answers, leverages = [], []
+        for start in range(0, len(inputs) or 1, _AT_ONCE):
+            columns = basis(inputs[start : start + _AT_ONCE], degrees, self._polynomials)
+            answers.append(coefficients @ columns)
+            leverages.append(shares @ columns**2)
+        leverage = np.hstack(leverages)
+        scale, growth = (self.dataset[n].values[:, np.newaxis] for n in ("error", "error_growth"))
+        return np.hstack(answers), leverage, scale * leverage ** (growth / 2)
 
     def distribution(self, parameter: str) -> dict[str, Any]:
         """Return name and arguments of a parameter's distribution, in SI units."""
@@ -142,17 +160,19 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
     """Return the surrogates of a sample as a dataset; None where the analysis has none.
 
     Variables, without the prefix that they have in `analysis`: coefficient (response, term),
-    degree (term, parameter), verdict, q2, rmse and runs (response); outer (response, parameter):
-    how many times larger the rmse is at the ends of a range, that is, over the runs held out in
-    the share OUTER at either one, 1 where it is not far larger; on (parameter): distribution
+    degree (term, parameter), verdict, q2, q2_low, rmse, error, error_growth, reach and runs
+    (response); on (parameter): distribution
     (its name and arguments as JSON, in SI units), lowest and highest (between which it was
     trained: its bounds, or the extreme draws), parameter_units, parameter_long_name. Parameters
-    that were not varied are scalar coordinates, as in the runs; so are the attributes.
+    that were not varied are scalar coordinates, as in the runs; so are the attributes. Raises
+    ValueError for an analysis with the polynomials of an earlier version.
     """
     if "surrogate_coefficient" not in analysis:
         return None
-    kept = ("coefficient", "degree", "verdict", "q2", "rmse", "runs")
-    renamed = {f"surrogate_{name}": name for name in kept}
+    if "surrogate_error" not in analysis:
+        raise ValueError(_EARLIER.format("the analysis"))
+    kept = ("coefficient", "degree", "verdict", "q2", "q2_low", "rmse", "error", "error_growth")
+    renamed = {f"surrogate_{name}": name for name in (*kept, "reach", "runs")}
     dataset = analysis[list(renamed)].drop_vars("parameter", errors="ignore")
     dataset = dataset.rename(renamed | {"surrogate_term": "term", "surrogate_input": "parameter"})
     columns = [runs[str(name)] for name in dataset["parameter"].values]
@@ -168,34 +188,17 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
         "highest": (highest, {"long_name": "highest value trained on, SI"}),
     }
     held = {name: array for name, array in runs.coords.items() if array.ndim == 0}
-    words = {"long_name": "error at the ends of a range, over the rmse", "units": "1"}
-    outer = ("response", "parameter"), _outer_errors(runs, analysis), words
     return (
         dataset.assign({name: ("parameter", *entry) for name, entry in inputs.items()})
-        .assign(outer=outer)
         .assign_coords(held)
-        .assign_attrs(runs.attrs)
+        .assign_attrs(runs.attrs, surrogate_format=FORMAT)
     )
 
 
-def _outer_errors(runs: xr.Dataset, analysis: xr.Dataset) -> Floats:
-    """Return `outer` (see `packed`), (responses, parameters); 1 where no run is held out there."""
-    ordered = in_order(runs)  # no index of all runs is made, and columns are read one at a time
-    rows = np.searchsorted(ordered["run"].values, analysis["held_out"].values)
-    columns = [ordered[str(name)] for name in analysis["surrogate_input"].values]
-    places = [cumulative(column.attrs, column.values[rows]) for column in columns]
-    found = np.ones((analysis.sizes["response"], len(places)))
-    for row, name in zip(found, map(str, analysis["response"].values), strict=True):
-        entry = analysis.sel(response=name)
-        values = usable(ordered, name).values[0][rows]
-        square = (entry["surrogate_held_out"].values - values) ** 2
-        mean = float(entry["surrogate_rmse"]) ** 2
-        for at, place in enumerate(places):
-            end = square[np.abs(place - 0.5) > 0.5 - OUTER]
-            end = end[np.isfinite(end)]
-            ratio = np.sqrt(end.mean() / mean) if end.size and mean > 0 else 1.0
-            row[at] = round(float(ratio), 1) if ratio >= _FAR_LARGER else 1.0
-    return found
+_EARLIER = (
+    "{}: its surrogates are those of an earlier version, whose polynomials bend at the ends of "
+    "ranges: make it again with `impactlab analyse`"
+)
 
 
 def load_surrogate(path: str | Path) -> Surrogate:
@@ -214,4 +217,7 @@ def load_surrogate(path: str | Path) -> Surrogate:
             f"{path}: there is no such file: `impactlab analyse` writes it for a sample, unless "
             "words are drawn, over which no surrogate is fitted"
         )
-    return Surrogate(read_netcdf(Path(path), "surrogate"))
+    dataset = read_netcdf(Path(path), "surrogate")
+    if dataset.attrs.get("surrogate_format") != FORMAT:
+        raise ValueError(_EARLIER.format(path))
+    return Surrogate(dataset)

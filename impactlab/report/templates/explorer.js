@@ -1,62 +1,30 @@
 "use strict";
 const element = (id) => document.getElementById(id);
 
-// The area under the normal density above z: Marsaglia (2004), J. Stat. Softw. 11(4); far out the
-// continued fraction of Laplace, as differences of numbers close to 1 have few digits.
-function tail(z) {
-  if (z < -2) return 1 - tail(-z);
-  const density = Math.exp(-z * z / 2) / Math.sqrt(2 * Math.PI);
-  if (z > 2) {
-    let fraction = z;
-    for (let k = 100; k > 0; k--) fraction = z + k / fraction;
-    return density / fraction;
-  }
-  let sum = z, term = z;
-  for (let k = 3; k < 80; k += 2) sum += (term *= z * z / k);
-  return 0.5 - density * sum;
-}
-const between = (low, high) => (low > 0 ? tail(low) - tail(high) : tail(-high) - tail(-low));
-
-// The probability of a value below x, as in impactlab/model/distributions.py.
-const cumulative = {
-  uniform: (x, p) => (x - p.low) / (p.high - p.low),
-  log_uniform: (x, p) => Math.log(x / p.low) / Math.log(p.high / p.low),
-  normal: (x, p) => tail((p.mean - x) / p.standard_deviation),
-  lognormal: (x, p) => tail(Math.log(p.median / x) / Math.log(p.geometric_standard_deviation)),
-  truncated_normal(x, p) {
-    const [low, z, high] = [p.low, x, p.high].map((each) => (each - p.mean) / p.standard_deviation);
-    return between(low, z) / between(low, high);
-  },
-  triangular: (x, p) =>
-    x <= p.mode && p.mode > p.low
-      ? (x - p.low) ** 2 / ((p.high - p.low) * (p.mode - p.low))
-      : 1 - (p.high - x) ** 2 / ((p.high - p.low) * (p.high - p.mode)),
-};
-
 const highest = Math.max(0, ...responses.flatMap((one) => one.terms.flatMap((term) => term[1].map((f) => f[1]))));
 
-// Legendre polynomials of variance one, as `basis` of impactlab/analysis/surrogate/chaos.py.
-function legendre(parameter, value) {
-  const u = 2 * Math.min(Math.max(cumulative[parameter.distribution](value, parameter), 0), 1) - 1;
-  const plain = [1, u];
-  for (let n = 2; n <= highest; n++)
-    plain.push((plain[n - 1] * u * (2 * n - 1) - plain[n - 2] * (n - 1)) / n);
-  return plain.map((each, n) => Math.sqrt(2 * n + 1) * each);
+// Orthonormal polynomials, as `Polynomials` of impactlab/analysis/surrogate/polynomials.py.
+function polynomial(parameter, value) {
+  const { centre, scale, diagonal, beside } = parameter.polynomials;
+  const z = ((parameter.logarithmic ? Math.log(value * parameter.si) : value * parameter.si) - centre) / scale;
+  const found = [1];
+  for (let n = 0; n < highest; n++)
+    found.push(((z - diagonal[n]) * found[n] - (n ? beside[n] * found[n - 1] : 0)) / beside[n + 1]);
+  return found;
 }
 
+// Prediction, half-width of its interval, and whether the point is farther out than any run tested
+// on, as `predict` of impactlab/analysis/surrogate/stored.py.
 function predict(response, polynomials) {
-  let sum = 0;
-  for (const [coefficient, factors] of response.terms)
-    sum += factors.reduce((product, [at, degree]) => product * polynomials[at][degree], coefficient);
-  return sum;
-}
-
-// How many times larger the error is at the ends of the parameters' ranges, and of which it is so.
-function enlarged(response, polynomials) {
-  const limit = Math.sqrt(3) * (1 - 2 * outer);
-  const ratios = polynomials.map((each, at) => (Math.abs(each[1]) > limit ? response.outer[at] : 1));
-  const ratio = Math.max(...ratios);
-  return [ratio, parameters[ratios.indexOf(ratio)].label];
+  let value = 0, squares = 0;
+  for (const [coefficient, factors] of response.terms) {
+    const term = factors.reduce((product, [at, degree]) => product * polynomials[at][degree], 1);
+    value += coefficient * term;
+    squares += term * term;
+  }
+  const leverage = squares / response.terms.length;
+  const error = response.error * leverage ** (response.growth / 2), extrapolated = leverage > response.reach;
+  return { value, error, extrapolated, doubtful: extrapolated || error > imprecise * Math.abs(value) };
 }
 
 // As `engineering` of impactlab/model/quantities.py prints a quantity.
@@ -87,8 +55,7 @@ function ticks(low, high) {
 // One plot: axes, band, curve (where it is imprecise, apart), and the point of the sliders.
 function plot(response, parameter, moved, x, y) {
   const values = parameter.values, curve = moved.map((each) => predict(response, each));
-  const errors = moved.map((each) => response.rmse * enlarged(response, each)[0]);
-  const [below, above] = [-1, 1].map((sign) => curve.map((each, at) => each + sign * errors[at]));
+  const [below, above] = [-1, 1].map((sign) => curve.map((each) => each.value + sign * each.error));
   const low = Math.min(response.lowest, ...below), high = Math.max(response.highest, ...above);
   const scale = parameter.logarithmic ? Math.log : (each) => each;
   const [start, end] = [values[0], values.at(-1)].map(scale);
@@ -96,9 +63,8 @@ function plot(response, parameter, moved, x, y) {
   const up = (each) => (182 - (172 * (each - low)) / (high - low)).toFixed(2);
   const point = (each, at) => `${across(values[at])},${up(each)}`;
   const band = [...above.map(point), ...below.map(point).reverse()];
-  const doubtful = curve.map((each, at) => errors[at] > imprecise * Math.abs(each));
   const path = (wanted) =>
-    curve.map((each, at) => (doubtful[at] === wanted ? (doubtful[at - 1] === wanted ? "L" : "M") + point(each, at) : "")).join("");
+    curve.map((each, at) => (each.doubtful === wanted ? (curve[at - 1]?.doubtful === wanted ? "L" : "M") + point(each.value, at) : "")).join("");
   const p = power(Math.max(Math.abs(low), Math.abs(high)), response), size = 1000 ** p;
   const rows = ticks(low / size, high / size).map(
     (each) => `<line class="frame" x1="58" x2="388" y1="${up(each * size)}" y2="${up(each * size)}"/>` +
@@ -127,23 +93,21 @@ function read(parameter) {
 function update() {
   const values = parameters.map(read), known = !values.some(Number.isNaN);
   const at = Number(element("against").value), along = parameters[at];
-  const polynomials = known ? parameters.map((each, n) => legendre(each, values[n])) : [];
-  const moved = known ? along.values.map((each) => polynomials.with(at, legendre(along, each))) : [];
+  const polynomials = known ? parameters.map((each, n) => polynomial(each, values[n])) : [];
+  const moved = known ? along.values.map((each) => polynomials.with(at, polynomial(along, each))) : [];
   for (const response of responses) {
     const section = element(`response-${response.name}`);
     const [output, drawing] = [section.querySelector("output"), section.querySelector("svg")];
-    const ends = section.querySelector("small");
-    drawing.innerHTML = output.textContent = ends.textContent = "";
+    drawing.innerHTML = output.textContent = "";
     if (!known) {
       output.textContent = "none: a parameter is outside its range";
       continue;
     }
-    const value = predict(response, polynomials);
-    const [ratio, label] = enlarged(response, polynomials), error = ratio * response.rmse;
+    const { value, error, extrapolated, doubtful } = predict(response, polynomials);
     output.textContent = `${engineering(value, response, 4)} ± ${engineering(error, response, 2)}`;
-    if (error > imprecise * Math.abs(value))
+    if (extrapolated) output.textContent += ", extrapolated: farther out than any run tested on";
+    else if (doubtful)
       output.textContent += `, imprecise: the error is ${((100 * error) / Math.abs(value)).toFixed(0)} % of the prediction`;
-    if (ratio > 1) ends.textContent = `${ratio} times the usual error, as at the ends of “${label}”.`;
     drawing.innerHTML = plot(response, along, moved, values[at], value);
     drawing.setAttribute("aria-label", `${response.label} against ${along.label}: ${output.textContent} at ${values[at]} ${along.unit}`);
   }

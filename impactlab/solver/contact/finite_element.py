@@ -32,6 +32,26 @@ LARGEST_DEPTH = 0.0194
 LEAST_RATIO, LARGEST_RATIO = 300.0, 660.0
 """E*/S_y: those of the data, 333 and 600, by a tenth beyond them."""
 
+# Ends of what impacts of yielding contacts have in common with the data, of this law and of the
+# corrections made for it: beyond, the dent or the force of the corrected model differs from 3-D
+# finite elements by more than 2 %.
+LEAST_POISSONS_RATIO, LARGEST_POISSONS_RATIO = 0.22, 0.36
+"""Of the flat; the data have 0.3. At 0.05 the dent is off by -6 %, at 0.45 by +5 %: in
+proportion, 2 % here."""
+LARGEST_HARDENING = 0.004
+"""Hardening moduli of the flat over its Young's modulus; the data have none. At 0.0048 the dent is
+off by 2.3 %, at 0.024 by 7 to 11 %."""
+LEAST_HARDNESS = 1.7
+"""Yield stress of the sphere over that of the flat; the sphere of the data is elastic. At 1.74 all
+is within 2 %, at 1.3 the dent is off by -2.9 %, at 1 by -11 %."""
+LEAST_STIFFNESS, LARGEST_STIFFNESS = 0.7, 1.8
+"""Young's modulus of the sphere over that of the flat; the data have 1. At 1.7 all is within 2 %,
+at 3 the dent is off by -4 %, at 1/3 by +7 %: by its logarithm, 2 % here."""
+LARGEST_CIRCLE = 0.4
+"""Contact radius over half the beam's depth, at which the data of the corrections end. On the
+paper's beam all is within 2 % up to 0.57 (15 m/s), and the indentation off by 3.6 % at 0.66; on one
+of 12 mm, whose section yields below the contact, the force is off by 3 %."""
+
 
 @compiled
 def curve(delta: float, E: float, R: float, S_y: float, nu: float) -> Unloading:

@@ -6,17 +6,24 @@ K (delta - delta_r)^n in both directions (reloading retraces unloading, then loa
 The approach is what the bodies' motion gives, delta the law's indentation. They differ where the
 bodies are no half-spaces (model/contact_compliance.py): approach = delta + compliance F. That
 spring stores compliance F^2/2, below zero where it takes back what law and beam both count.
+
+Some laws' forces jump up at a delta. Under a positive compliance delta then stands still while
+the approach grows, until the spring bears the whole jump: the contact is in a mixture of its states
+below and above. Under a negative one the approach that the contact bears falls at the jump: delta
+snaps, at one approach, to where it is borne again, along the spring's line, which lies below the
+law's force: loading takes the less work.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from impactlab.solver.contact.switch import curve
-from impactlab.solver.jit import compiled, inlined
+from impactlab.solver.jit import compiled, inlined, linked
 from impactlab.solver.strain_rate import contact_rate, rate_factor
 from impactlab.solver.types import Record, record
 
@@ -55,7 +62,9 @@ shift. With prestress: stress_along, stress_across (Pa), by bending, of the beam
 peak_force (N); approach_m is the largest of all, and work what is dissipated."""
 
 PANELS = 8
-_ITERATIONS, _ROUNDING = 60, 1e-14
+_ITERATIONS, _MARCHES, _ROUNDING = 60, 1000, 1e-14
+MISSED = 1e-10
+"""Of the approach: secants that end farther off have ended at a jump."""
 # Gauss-Legendre on [0, 1], 4 points
 _GAUSS = (
     (0.06943184420297371, 0.17392742256872693),
@@ -97,26 +106,106 @@ def load(contact: Record, pair: Pair, delta: float) -> None:
 
 
 @compiled
+def _stand(contact: Record, pair: Pair, low: float, high: float, share: float) -> None:
+    """Let the contact stand at a jump of the force from `low` to `high`, with a share of it made.
+
+    The unloading curve is that far between those of the jump's two ends.
+    """
+    load(contact, pair, high)
+    F, delta_r, n = contact.F_m, contact.delta_r, contact.n
+    start = contact.K * (high - delta_r) ** n
+    load(contact, pair, low)
+    start_below = contact.K * (low - contact.delta_r) ** contact.n
+    contact.F_m += share * (F - contact.F_m)
+    contact.delta_r += share * (delta_r - contact.delta_r)
+    contact.n += share * (n - contact.n)
+    start_below += share * (start - start_below)
+    contact.K = start_below / (low - contact.delta_r) ** contact.n
+
+
+def bracketed(name: str, bears: Callable[[Record, Pair], tuple[float, float]]) -> Any:
+    """Return the search, by brackets, for where loading bears an approach.
+
+    name: of the function. bears(contact, pair): force (N) and approach (m) at the furthest point of
+    loading.
+    """
+
+    def load_between(contact: Record, pair: Pair, lowest: float, approach: float) -> float:
+        """Load from `lowest` to the first indentation that bears `approach`; return the force (N).
+
+        NaN where there is none up to the sphere's radius.
+        """
+        low = high = lowest
+        F, missed, rounding = np.nan, 1.0, _ROUNDING * approach
+        for _ in range(_MARCHES):  # by what is missed: beyond no place under a negative compliance
+            load(contact, pair, high)
+            F, borne = bears(contact, pair)
+            missed = approach - borne
+            if missed <= rounding or not high < pair.R:
+                break
+            low, high = high, high + missed
+        if abs(missed) <= rounding:
+            return F
+        if not missed < 0.0:
+            load(contact, pair, np.nan)
+            return np.nan
+        middle = 0.5 * (low + high)
+        while low < middle < high:
+            load(contact, pair, middle)
+            if bears(contact, pair)[1] < approach:
+                low = middle
+            else:
+                high = middle
+            middle = 0.5 * (low + high)
+        share = width = 0.5
+        for _ in range(_ITERATIONS):
+            _stand(contact, pair, low, high, share)
+            F, borne = bears(contact, pair)
+            width *= 0.5
+            share += width if borne < approach else -width
+        return F
+
+    # numba knows functions by their names
+    load_between.__qualname__ = load_between.__name__ = name
+    return linked(load_between)
+
+
+@compiled
+def _bears(contact: Record, pair: Pair) -> tuple[float, float]:
+    return contact.F_m, contact.delta_m + pair.compliance * contact.F_m
+
+
+_load_between = bracketed("load_between", _bears)
+
+
+@compiled
 def load_to(contact: Record, pair: Pair, approach: float) -> None:
     """Move the furthest point of loading on to where the approach is `approach`.
 
-    By secants. NaN where there is none: the spring gives way faster than the law stiffens.
+    By secants; where those fail, by brackets. NaN where there is none: the spring gives way faster
+    than the law stiffens.
     """
     if pair.compliance == 0.0:
         load(contact, pair, approach)
         return
-    before, F_before = contact.delta_m, contact.F_m
+    lowest = before = contact.delta_m
+    F_before = contact.F_m
     missed_before = before + pair.compliance * F_before - approach
-    delta, step = approach - pair.compliance * F_before, 1.0
+    delta, step, missed = approach - pair.compliance * F_before, 1.0, 1.0
     for _ in range(_ITERATIONS):
         F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
         missed = delta + pair.compliance * F - approach
+        if delta == before or missed == missed_before:
+            break
         step = missed * (delta - before) / (missed - missed_before) if missed != 0.0 else 0.0
         if abs(step) <= _ROUNDING * approach:
             break
         before, missed_before = delta, missed
-        delta = max(delta - step, contact.delta_m)
-    load(contact, pair, delta if abs(step) <= _ROUNDING * approach else np.nan)
+        delta = max(delta - step, lowest)
+    if abs(step) <= _ROUNDING * approach and abs(missed) <= MISSED * approach:
+        load(contact, pair, delta)
+    else:
+        _load_between(contact, pair, lowest, approach)
     contact.approach_m = approach
 
 
@@ -159,14 +248,20 @@ def loading_work(pair: Pair, start: float, stop: float, panels: int = PANELS) ->
 
     Gauss-Legendre with 4 points on each of so many panels of the square root of (delta - start),
     in which delta^1.5 is smooth at zero; the panels keep a regime limit of a law from costing
-    accuracy.
+    accuracy. Where delta snaps, the force is that of the spring.
     """
-    total = 0.0
+    F, _, _, _ = curve(pair.law, start, pair.E, pair.R, pair.S_y, pair.nu)
+    total, furthest = 0.0, start + pair.compliance * F
     for panel in range(panels):
         for point, weight in _GAUSS:
             root = (panel + point) / panels
             delta = start + root * root * (stop - start)
             F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+            borne = delta + pair.compliance * F
+            if borne < furthest:
+                F = (furthest - delta) / pair.compliance
+            else:
+                furthest = borne
             total += weight * F * 2.0 * root
     return total * (stop - start) / panels
 

@@ -30,9 +30,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from impactlab.solver.contact.history import Pair, load, recovered
+from impactlab.solver.contact.history import MISSED, Pair, bracketed, load, recovered
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import radius
 from impactlab.solver.jit import compiled
@@ -76,29 +74,34 @@ def _complementary(F: float, K: float, delta_r: float, n: float) -> float:
     return float(F * (delta_r + (F / K) ** (1.0 / n) * n / (n + 1.0)))
 
 
+_load_between = bracketed("load_prestressed_between", _yields)
+
+
 @compiled
 def load_to(contact: Record, pair: Pair, approach: float) -> float:
-    """Let the contact yield until it bears `approach`, by secants; return the force (N).
+    """Let the contact yield until it bears `approach`; return the force (N).
 
-    NaN where there is none: the spring gives way faster than the law stiffens.
+    By secants; where those fail, by brackets. NaN where there is none: the spring gives way faster
+    than the law stiffens.
     """
     start, bears = _yields(contact, pair)
     lowest = before = contact.delta_m
     missed_before = bears - approach
     K, delta_r, n = contact.K, contact.delta_r, contact.n
-    delta, F, step = before - missed_before, start, 1.0
+    delta, F, step, missed = before - missed_before, start, 1.0, 1.0
     for _ in range(_ITERATIONS):
         load(contact, pair, delta)
         F, bears = _yields(contact, pair)
         missed = bears - approach
+        if delta == before or missed == missed_before:
+            break
         step = missed * (delta - before) / (missed - missed_before) if missed != 0.0 else 0.0
         if abs(step) <= _ROUNDING * approach:
             break
         before, missed_before = delta, missed
         delta = max(delta - step, lowest)
-    if not abs(step) <= _ROUNDING * approach:
-        load(contact, pair, np.nan)
-        return np.nan
+    if not (abs(step) <= _ROUNDING * approach and abs(missed) <= MISSED * approach):
+        F = _load_between(contact, pair, lowest, approach)
     mean = 0.5 * (start + F)
     contact.work += _complementary(mean, contact.K, contact.delta_r, contact.n)
     contact.work -= _complementary(mean, K, delta_r, n)

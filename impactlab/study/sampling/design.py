@@ -70,9 +70,8 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
     found = xr.Dataset(coords=scalars | varied, attrs=study.attributes() | own)
     if isinstance(study, Study):
         return described(found)
-    for name in () if study.python else fixed:
-        words = f"{name} of the {FUNCTIONS[study.function].title}"
-        found[name].attrs = {"long_name": words, "units": "1"} | found[name].attrs
+    for name, attrs in study.labels.items():
+        found[name].attrs = {**attrs, **found[name].attrs}
     return found
 
 

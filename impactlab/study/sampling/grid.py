@@ -91,5 +91,8 @@ class Grid(Sampling):
         return prod(len(values) for values in self.parameters.values())
 
     def bounds(self) -> dict[str, tuple[Value, ...]]:
-        """Return the least and greatest value of each parameter."""
-        return {name: (min(each), max(each)) for name, each in self.parameters.items()}
+        """Return the least and greatest value of each parameter, or all of its words."""
+        return {
+            name: values if isinstance(values[0], str) else (min(values), max(values))
+            for name, values in self.parameters.items()
+        }

@@ -1,10 +1,13 @@
-"""The samples: sections `sampling` with a method that draws the runs, and their draws by SALib."""
+"""The samples: sections `sampling` with a method that draws the runs, and their draws."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
+import scipy  # its stats are loaded when first used
 from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, StrictStr, model_validator
 
 from impactlab.model.distributions import contradicting, correlated, correlation_matrix
@@ -14,9 +17,13 @@ from impactlab.study.schema.section import Names, Number, Section, Whole, at_key
 from impactlab.types import Floats
 
 _FEWEST_TO_GROW = 64
-"""Base samples from which on bootstrap intervals are good enough to decide on growth."""
+"""Base samples from which on intervals are good enough to decide on growth."""
+REPLICATES = 8
+"""Independent scrambles of a Sobol sample: fewer widen Student's t, more make each one poorer."""
 _FEWEST_OF_WORD = 20
 """Runs per word: bootstrap resamples then practically never hold fewer than two."""
+_CURVES = 4
+"""Curves of FAST per parameter: their differences tell the error of its indices."""
 _EVEN = "must be even: the steps would favour some levels otherwise"
 
 
@@ -39,6 +46,35 @@ def _power_of_two(value: int) -> int:
     return value
 
 
+def saltelli(groups: Sequence[str], base_samples: int, second_order: bool, seed: int) -> Floats:
+    """Draw Saltelli's sample in the unit cube, (runs, parameter), base sample by base sample.
+
+    groups: the group of each parameter. The runs of a base sample are the points A, A with the
+    columns of each group from B, with second_order B with the columns of each group from A, and B.
+
+    A and B are the halves of the points of one Sobol sequence, whose dimensions may depend on each
+    other four at a time (such as i and j of A and of B), so that the outputs at A and B correlate
+    however many points there are. Base sample k is therefore point k // REPLICATES of replicate
+    k % REPLICATES: a sequence with a scramble of its own, which makes such a correlation as often
+    positive as negative, and an order of its own of the dimensions. The spread of the replicates
+    tells the error (L'Ecuyer et al. 2023, Proc. Winter Simulation Conf.), and the first base
+    samples are the smaller sample.
+    """
+    count, dimensions = min(REPLICATES, base_samples), 2 * len(groups)
+    points = np.empty((base_samples, dimensions))
+    for place, stream in enumerate(np.random.SeedSequence(seed).spawn(count)):
+        rng = np.random.default_rng(stream)
+        order = rng.permutation(dimensions)
+        sequence = scipy.stats.qmc.Sobol(dimensions, rng=rng)
+        points[place::count] = sequence.random(base_samples // count)[:, order]
+    names = list(dict.fromkeys(groups))
+    swapped = np.array([[group == name for group in groups] for name in names])
+    whole = np.ones((1, len(groups)), bool)
+    from_b = np.concatenate([~whole, swapped, *[~swapped] * second_order, whole])
+    a, b = points[:, None, : len(groups)], points[:, None, len(groups) :]
+    return np.where(from_b, b, a).reshape(-1, len(groups))
+
+
 class Sobol(Grouped):
     """Saltelli's sample.
 
@@ -51,14 +87,19 @@ class Sobol(Grouped):
     """
 
     method: Literal["sobol"]
-    base_samples: Annotated[Whole, Field(ge=2, le=MOST_RUNS), AfterValidator(_power_of_two)]
+    base_samples: Annotated[Whole, Field(ge=4, le=MOST_RUNS), AfterValidator(_power_of_two)]
     second_order: StrictBool = True
     until: Until | None = None
 
     @property
+    def pairs(self) -> bool:
+        """True where second-order indices are drawn: a single parameter has none."""
+        return self.second_order and self.group_count > 1
+
+    @property
     def runs(self) -> int:
         """Saltelli's number of runs."""
-        return self.base_samples * ((2 if self.second_order else 1) * self.group_count + 2)
+        return self.base_samples * ((2 if self.pairs else 1) * self.group_count + 2)
 
     @model_validator(mode="after")
     def _check_until(self) -> Self:
@@ -72,19 +113,17 @@ class Sobol(Grouped):
     @property
     def settings(self) -> dict[str, Any]:
         """The attributes of a design that describe its draws."""
+        settings = super().settings | {"second_order": int(self.pairs), "replicates": REPLICATES}
         if not (until := self.until):
-            return super().settings
+            return settings
         limits = {"until_interval": until.interval, "until_runs": until.runs}
         some = {"until_responses": list(until.responses)} if until.responses else {}
-        return super().settings | limits | some
+        return settings | limits | some
 
     def draws(self) -> Floats:
-        """Draw base samples one after the other: A, A with B's columns, B with A's columns, B.
-
-        The parameters of a group take their columns together. The first runs of a larger sample
-        are the smaller sample.
-        """
-        return self.by_salib("sobol", self.base_samples, calc_second_order=self.second_order)
+        """Draw base samples one after the other, see `saltelli`."""
+        groups = list(self.group_of.values())
+        return saltelli(groups, self.base_samples, self.pairs, self.seed)
 
 
 class Morris(Grouped):
@@ -125,30 +164,70 @@ class Morris(Grouped):
 class Fast(Sample):
     """Search curves of the extended Fourier amplitude sensitivity test (FAST).
 
-    There is one per parameter, and one for a dummy parameter, whose indices are noise. samples: N,
-    runs per curve. harmonics: M, the multiples of a parameter's frequency that count as its own
-    effect. Raises ValueError unless N > 4 M^2 (Saltelli, Tarantola and Chan 1999).
+    There are four per parameter, and four for a dummy parameter, whose indices are noise. samples:
+    the most runs of a parameter's curves; whole periods need up to 8 (2 M + 1) fewer. harmonics: M,
+    the multiples of a frequency that are kept apart from other parameters. Raises ValueError where
+    the parameters cannot all have frequencies of their own.
     """
 
     method: Literal["fast"]
     samples: Annotated[Whole, Field(ge=5, le=MOST_RUNS)]
-    harmonics: Annotated[Whole, Field(ge=1, le=100)] = 4
+    harmonics: Annotated[Whole, Field(ge=4, le=100)] = 4
+
+    @property
+    def frequency(self) -> int:
+        """Frequency of a parameter on its own curves: odd, to share few factors with others."""
+        largest = self.samples // (_CURVES * (2 * self.harmonics + 1))
+        return largest - 1 + largest % 2
+
+    @property
+    def points(self) -> int:
+        """Points of a curve: so many that the harmonics beyond the last fold onto harmonics."""
+        return (2 * self.harmonics + 1) * self.frequency
+
+    @property
+    def curves(self) -> int:
+        """Number of curves: those of each parameter, and of the dummy."""
+        return _CURVES * (len(self.varied) + 1)
 
     @property
     def runs(self) -> int:
-        """Number of runs: one curve per parameter, and one for the dummy."""
-        return self.samples * (len(self.varied) + 1)
+        """Number of runs: the points of all curves."""
+        return self.curves * self.points
 
     @model_validator(mode="after")
     def _check_resolution(self) -> Self:
-        least = 4 * self.harmonics**2 + 1
+        # one frequency more than there are others: with fewer, intervals miss too often
+        width = 2 * self.harmonics
+        least = _CURVES * (width + 1) * (width * (len(self.varied) + 1) + 1)
         if self.samples < least:
-            raise at_key("samples", f"must be at least {least:,} (above 4 harmonics²)")
+            size = f"{self.harmonics} harmonics of {len(self.varied)} parameters"
+            raise at_key("samples", f"must be at least {least:,} for {size}")
         return self
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The attributes of a design that describe its draws."""
+        return super().settings | {"curves": self.curves, "frequency": self.frequency}
+
     def draws(self) -> Floats:
-        """Draw the curves one after the other, last that of the dummy, which has no column."""
-        return self.by_salib("fast_sampler", self.samples, "dummy", M=self.harmonics)[:, :-1]
+        """Draw the curves of one parameter after the other, last those of the dummy.
+
+        Along a curve, the others have distinct frequencies up to 1/(2 M) of the parameter's own;
+        frequencies and phases are drawn anew for each curve (Saltelli et al. 1999, eq. 20).
+        """
+        rng, size = np.random.default_rng(self.seed), len(self.varied)
+        angles = 2 * np.pi * np.arange(self.points)[:, None] / self.points
+        curves = np.empty((size + 1, _CURVES, self.points, size))
+        for parameter, curve in np.ndindex(curves.shape[:2]):
+            frequencies = 1 + rng.choice(
+                self.frequency // (2 * self.harmonics), size, replace=False
+            )
+            if parameter < size:
+                frequencies[parameter] = self.frequency
+            waves = np.sin(frequencies * angles + rng.uniform(0, 2 * np.pi, size))
+            curves[parameter, curve] = 0.5 + np.arcsin(waves) / np.pi
+        return curves.reshape(-1, size)
 
 
 def _check_triples(data: Any) -> Any:

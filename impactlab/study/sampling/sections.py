@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from functools import partial
 from importlib import import_module
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import (
@@ -48,8 +48,6 @@ _NEEDS_ORDER = {
 class Sampling(Section):
     """The section `sampling`: the parameters, in the order of the file."""
 
-    fewest: ClassVar[int] = 1
-
     method: str
     parameters: Mapping[str, Any]
 
@@ -86,7 +84,7 @@ class Sampling(Section):
 
     @abstractmethod
     def bounds(self) -> dict[str, tuple[Value, ...]]:
-        """Return the least and greatest value of each bounded parameter, or its words."""
+        """Return the least and greatest value of each bounded parameter, or all of its words."""
 
     @field_validator("parameters", mode="plain")
     @classmethod
@@ -99,8 +97,8 @@ class Sampling(Section):
 
     @model_validator(mode="after")
     def _check_counts(self) -> Self:
-        if len(self.varied) < self.fewest:
-            reason = f"too few: method {self.method} varies {self.fewest} or more"
+        if not self.varied:
+            reason = f"too few: method {self.method} varies 1 or more"
             raise at_key("parameters", reason + " (fixed ones do not count)" * bool(self.fixed))
         if self.runs > MOST_RUNS:
             raise ValueError(f"makes {self.runs:,} runs: reduce them to {MOST_RUNS:,} or fewer")
@@ -108,15 +106,13 @@ class Sampling(Section):
 
 
 class Sample(Sampling):
-    """Draws of two or more parameters.
+    """Draws of one parameter or more.
 
     seed: equal seeds give equal draws; 0 is a seed like any other. parameters: a distribution, a
     choice of words or one fixed value each.
 
     Raises ValueError for a choice of words where the method needs an order of the values.
     """
-
-    fewest: ClassVar[int] = 2
 
     seed: Annotated[Whole, Field(ge=0, le=2**32 - 1)] = 1
     parameters: Mapping[str, Distribution | Choice | Fixed]
@@ -176,7 +172,7 @@ class Sample(Sampling):
 
     @abstractmethod
     def draws(self) -> Floats:
-        """Draw in the unit cube, on (run, varied parameter), in the order of SALib's runs."""
+        """Draw in the unit cube, on (run, varied parameter)."""
 
     def by_salib(self, sampler: str, number: int, *others: str, **options: Any) -> Floats:
         """Draw with a module of SALib.sample; others: names of parameters that are not varied."""
@@ -256,7 +252,7 @@ class Grouped(Sample):
                     seen.add(member)
                     continue
                 raise at_key(f"groups.{group}.{at}", reason)
-        if self.group_count < self.fewest:
-            reason = f"too few: {self.group_count} group, but {self.fewest} or more are needed"
+        if self.groups and self.group_count < 2:
+            reason = "too few: 1 group, but 2 or more are needed"
             raise at_key("groups", reason)
         return self

@@ -98,19 +98,11 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
         yield "analysis", "has no effect with method: grid: take it out"
     grid = file.sampling.parameters if isinstance(file.sampling, Grid) else {}
     counts = {name: len(values) for name, values in grid.items()}
-    possible = {
-        "convergence_in_nodes": counts.get("nodes", 0) >= 3,
-        "convergence_in_time_step": counts.get("courant", 0) >= 3,
-        "convergence_in_element_size": any(counts.get(name, 0) >= 3 for name in ELEMENTS),
-        "convergence_in_points": counts.get("points", 0) >= 2,
-        "sensitivity": not grid,
-        "sensitivity_over_time": file.sampling.method == "sobol" and file.store.histories,
-        "surrogate": not grid,
-        "distribution": file.sampling.method not in NO_DISTRIBUTION,
-    }
+    plan = file.sampling.method, counts, file.store.histories
     for name in file.analyses if file.analyses != tuple(ANALYSES) else ():
-        if not possible[name]:
-            yield "analyses", f"{name} needs {ANALYSES[name]}: take it out, or change the sampling"
+        if not ANALYSES[name].possible(*plan):
+            needs = ANALYSES[name].needs
+            yield "analyses", f"{name} needs {needs}: take it out, or change the sampling"
         elif name == "surrogate" and (reason := file.sampling.no_surrogate):
             yield "analyses", f"{reason}: take out surrogate"
     imputed = file.analysis is not None and file.analysis.failed_runs == "impute"

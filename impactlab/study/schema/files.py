@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,7 +10,8 @@ from typing import Annotated, Any
 from pydantic import Field, PlainValidator, create_model
 
 from impactlab.model.impact import SOLID
-from impactlab.model.parameters import Parameter
+from impactlab.model.parameters import PARAMETERS, Parameter
+from impactlab.model.quantities import si_units
 from impactlab.study.errors import Problem, StudyError, unknown
 from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
@@ -27,7 +28,7 @@ from impactlab.study.schema.study import (
     Verification,
 )
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
-from impactlab.variables import RESPONSES
+from impactlab.variables import ANALYSES, COORDINATES, FLAGS, RESPONSES, VARIABLES, attributes
 from impactlab.verification.functions import FUNCTIONS
 
 
@@ -165,7 +166,7 @@ def _python_responses(given: Any, path: str) -> tuple[dict[str, str], dict[str, 
     if not isinstance(given, dict) or not {*map(str, given.values())} <= KNOWN.keys():
         raise StudyError(Problem(path, "python_responses", _NOT_KNOWN))
     keys = {str(name): str(key) for name, key in given.items()}
-    return keys, {name: KNOWN[key].units for name, key in keys.items()}
+    return keys, {name: KNOWN[key].unit(name) for name, key in keys.items()}
 
 
 _NOT_KNOWN = "holds a Python function, which is in no file: build the study in Python"
@@ -182,13 +183,22 @@ def _function_study(source: Source) -> FunctionStudy:
         key: Parameter(key, "1", f"{key} of the {title}", ()) for key in FUNCTIONS[name].ranges
     }
     file = validated(_FunctionFile, source.data, path, parameters, {"value": "1"})
-    return _of_function(source, file, ("value",))
+    return _of_function(source, file, parameters, ("value",))
 
 
-def _of_function(source: Source, file: _FunctionFile, responses: tuple[str, ...]) -> FunctionStudy:
+def _of_function(
+    source: Source,
+    file: _FunctionFile,
+    parameters: Mapping[str, Parameter],
+    responses: tuple[str, ...],
+) -> FunctionStudy:
     """Return the study. Raises StudyError where its limits have no meaning."""
     own: dict[str, Any] = dict(file) | {"responses": responses}
-    own["analyses"] = ("sensitivity", "distribution", "surrogate")
+    own["labels"] = {
+        name: {"long_name": each.long_name, "units": each.units}
+        for name, each in parameters.items()
+    }
+    own["analyses"] = tuple(ANALYSES)
     study = FunctionStudy(name=source.name, path=source.path, text=source.text, **own)
     if problems := [Problem(str(source.path), *reason) for reason in limit_reasons(study)]:
         raise StudyError(*problems)
@@ -203,21 +213,52 @@ def _own_function_study(source: Source, key: str) -> FunctionStudy:
         raise StudyError(Problem(path, "function", _NOT_KNOWN))
     sampling = source.data.get("sampling")
     listed = sampling.get("parameters") if isinstance(sampling, dict) else None
-    names = [str(name) for name in listed] if isinstance(listed, dict) else []
-    if wrong := [name for name in names if not name.isidentifier() or name in ("run", "status")]:
-        reason = "cannot name an argument of a function: use letters, digits and _"
-        raise StudyError(Problem(path, f"sampling.parameters.{wrong[0]}", reason))
-    parameters = {
-        name: Parameter(name, "1", name.replace("_", " "), (), any_word=True) for name in names
-    }
+    entries = (
+        {str(name): entry for name, entry in listed.items()} if isinstance(listed, dict) else {}
+    )
     given = source.data.get("responses")
     responses = [str(name) for name in given] if isinstance(given, list) else ["value"]
-    units = dict.fromkeys(responses, KNOWN[key].units)
+    places = [(name, f"sampling.parameters.{name}") for name in entries]
+    places += [(name, f"responses.{at}") for at, name in enumerate(responses)]
+    for name, where in places:
+        if reason := _name_problem(name) or (
+            name in entries and name in responses and "names a parameter and a response"
+        ):
+            raise StudyError(Problem(path, where, f"{reason}: choose another name", name))
+    parameters = {
+        name: Parameter(name, _units(entry), name.replace("_", " "), (), any_word=True)
+        for name, entry in entries.items()
+    }
+    units = {name: KNOWN[key].unit(name) for name in responses}
     file = validated(_OwnFunctionFile, source.data, path, parameters, units)
     if (reason := file.sampling.no_surrogate) and file.analysis.failed_runs == "impute":
         reason += ": set failed_runs: fail"
         raise StudyError(Problem(path, "analysis.failed_runs", reason))
-    return _of_function(source, file, file.responses)
+    return _of_function(source, file, parameters, file.responses)
+
+
+_TAKEN = {"run", "response", "parameter"}
+"""Names of dimensions of every study's datasets."""
+
+
+def _name_problem(name: str) -> str:
+    """Return why a Python function's parameter or response cannot have a name; "" if it can."""
+    if not name.isidentifier():
+        return "cannot name an argument of a function, which has letters, digits and _"
+    if name in _TAKEN or name in FLAGS:
+        return "is the name of another variable of the results"
+    of_impacts = (VARIABLES.keys() - COORDINATES.keys()) | PARAMETERS.keys()
+    if name in of_impacts:
+        meaning = attributes(name)["long_name"]
+        return f"is the name of a quantity of impacts ({meaning}), which figures would take it for"
+    return ""
+
+
+def _units(entry: Any) -> str:
+    """Return the SI units of a parameter by the first of its values that states one."""
+    values = [*entry.values()] if isinstance(entry, dict) else entry
+    stated = map(si_units, values) if isinstance(values, list) else ()
+    return next((units for units in stated if units != "1"), "1")
 
 
 class _FunctionFile(Heading):

@@ -28,6 +28,7 @@ from impactlab.study.schema.section import (
     Number,
     Section,
     Text,
+    at_key,
     by_name,
     requires,
     validated,
@@ -68,6 +69,7 @@ class _Entry(Section):
     standard_uncertainty: Annotated[Any, PlainValidator(_number)] = None
     expanded_uncertainty: Annotated[Any, PlainValidator(_number)] = None
     coverage_factor: Annotated[Number, Field(ge=1, le=10)] | None = None
+    systematic_uncertainty: Annotated[Any, PlainValidator(_number)] = 0.0
     conditions: Annotated[Conditions, PlainValidator(_conditions)] = Field(default_factory=dict)
     note: Text = ""
 
@@ -83,6 +85,13 @@ class _Entry(Section):
             raise ValueError("expanded_uncertainty and coverage_factor belong together: give both")
         if self.standard <= 0:
             raise ValueError("the uncertainty must be above zero")
+        if not 0 <= self.systematic_uncertainty < self.standard:
+            raise at_key(
+                "systematic_uncertainty",
+                "is a part of the standard uncertainty, so it must be at least 0 and below it "
+                f"({self.standard:.6g} in SI units): lower it, or add it to the standard "
+                "uncertainty (root of the sum of squares)",
+            )
         return self
 
     @property
@@ -119,7 +128,8 @@ def read_measurements(given: Given, runs: xr.Dataset | None = None) -> tuple[Mea
         for name in listed(runs, "responses"):
             responses.setdefault(name, str(runs[name].attrs.get("units", "1")))
         for name in listed(runs, "varied"):
-            parameters.setdefault(name, Parameter(name, "1", name, ()))
+            units = str(runs[name].attrs.get("units", "1"))
+            parameters.setdefault(name, Parameter(name, units, name, ()))
     if isinstance(given, Mapping):
         file, data = "measurements", plain(given)
     else:
@@ -132,5 +142,6 @@ def read_measurements(given: Given, runs: xr.Dataset | None = None) -> tuple[Mea
     for each in found.measurements:
         value = each.quantity, each.value, each.standard, responses[each.quantity]
         conditions = {**found.conditions, **each.conditions}
-        measured.append(Measurement(*value, conditions, source, found.simulated))
+        shared = float(each.systematic_uncertainty)
+        measured.append(Measurement(*value, conditions, source, found.simulated, shared))
     return tuple(measured)

@@ -143,9 +143,9 @@ class Store(Section):
 class Analysis(Section):
     """Settings of sensitivity indices, and of all intervals.
 
-    confidence: level of the intervals. resamples: number of bootstrap resamples. failed_runs: what
-    happens to a response that is missing in some runs: no index is given ("fail"), or a surrogate
-    fitted to the other runs supplies its values ("impute").
+    confidence: level of the intervals. resamples: number of bootstrap resamples, which Sobol
+    indices do without. failed_runs: what happens to a response that is missing in some runs: no
+    index is given ("fail"), or a surrogate fitted to the other runs supplies its values ("impute").
     """
 
     confidence: Annotated[Number, Field(ge=0.5, le=0.999)] = 0.95
@@ -223,7 +223,8 @@ class StudyBase(Declared):
         found = super().attributes() | {"method": sampling.method, "varied": list(sampling.varied)}
         found |= {"responses": list(self.responses), "analyses": list(self.analyses)}
         if not isinstance(sampling, Grid):
-            found |= self.analysis.model_dump() | sampling.settings
+            unused = {"resamples"} if isinstance(sampling, Sobol) else None
+            found |= self.analysis.model_dump(exclude=unused) | sampling.settings
         if self.limits:
             found |= {"limited": list(self.limits), "limits": list(self.limits.values())}
         return found
@@ -258,10 +259,12 @@ class Study(StudyBase):
 class FunctionStudy(StudyBase):
     """A study of a function in place of the solver.
 
-    function: a name out of FUNCTIONS, or the key of a Python function.
+    function: a name out of FUNCTIONS, or the key of a Python function. labels: long_name and units
+    of its parameters, by name.
     """
 
     function: str
+    labels: Mapping[str, Mapping[str, str]]
 
     @property
     def python(self) -> bool:

@@ -28,7 +28,7 @@ class _Section:
     _key: ClassVar[str]
 
     def written(self) -> dict[str, Any]:
-        """Return the section as a study file has it, defaults left out."""
+        """Return the section as a study file has it; what is None is left out."""
         snake = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(self).__name__).lower()
         given = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         last = {key: given.pop(key) for key in ("parameters",) if key in given}
@@ -194,10 +194,10 @@ class Morris(_Sample):
 
 @dataclass(frozen=True, kw_only=True)
 class Fast(_Sample):
-    """Search curves of extended FAST: samples times (D + 1) runs.
+    """Search curves of extended FAST: at most samples times (D + 1) runs.
 
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
-    >>> sample = il.Fast(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    >>> sample = il.Fast(samples=1024, parameters={"velocity": speed, "beam_depth": depth})
     """
 
     samples: int
@@ -245,9 +245,9 @@ def plain(value: Any) -> Any:
     if isinstance(value, _Section):
         return value.written()
     if isinstance(value, Impact):
-        return _changes((value, Discretisation()), "impact", base="paper")
+        return _stated(value, Discretisation(), "impact")
     if isinstance(value, Discretisation):
-        return _changes((paper_impact(), value), "discretisation")
+        return _stated(paper_impact(), value, "discretisation")
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, Mapping):
@@ -259,18 +259,17 @@ def plain(value: Any) -> Any:
     return text
 
 
-def _changes(own: tuple[Impact, Discretisation], root: str, **others: Any) -> dict[str, Any]:
-    """Return what differs from the default as a section of a study file."""
-    base = flatten(paper_impact(), Discretisation())
-    found: dict[str, Any] = {} | others
-    for name, value in flatten(*own).items():
-        path = PARAMETERS[name].path
-        if path[0] == root and base.get(name) != value:
-            node = found
-            for step in path[1:-1]:
+def _stated(impact: Impact, grid: Discretisation, root: str) -> dict[str, Any]:
+    """Return every value as a section of a study file: defaults, too, which may change."""
+    section: dict[str, Any] = {}
+    for name, value in flatten(impact, grid).items():
+        key, *path = PARAMETERS[name].path
+        if key == root:
+            node = section
+            for step in path[:-1]:
                 node = node.setdefault(step, {})
             node[path[-1]] = value
-    return found
+    return section
 
 
 def text_of(sections: Values) -> str:

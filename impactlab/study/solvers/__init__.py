@@ -14,7 +14,7 @@ from impactlab import wings
 from impactlab.analysis.responses import listed
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.store import OutputSpec
-from impactlab.variables import described, provenance
+from impactlab.variables import attributes, provenance
 
 
 def run_shape(design: xr.Dataset) -> tuple[tuple[str, ...], tuple[int, ...]]:
@@ -37,12 +37,13 @@ def flattened(design: xr.Dataset, name: str, runs: Array) -> Array:
 
 
 def on_design(
-    design: xr.Dataset, answers: Mapping[str, Any], attrs: Mapping[str, Mapping[str, str]]
+    design: xr.Dataset, answers: Mapping[str, Any], attrs: Mapping[str, Mapping[str, Any]]
 ) -> xr.Dataset:
     """Return answers of one number per run in the design's order; attrs: of each response."""
     dims, shape = run_shape(design)
+    attrs = {**attrs, "status": attributes("status")}
     values = {name: (dims, each.reshape(shape), attrs.get(name)) for name, each in answers.items()}
-    return described(design.assign(values).assign_attrs(provenance()))
+    return design.assign(values).assign_attrs(provenance())
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -38,7 +38,9 @@ class Function:
     """A Python function as a response or as a model, with the unit of what it returns.
 
     call: of the dataset of one impact (that of `il.simulate`), or of a model's parameters by name;
-    returns a number, NaN where there is none. units: SI, as "N" or "m s-1". long_name: for labels.
+    returns a number, NaN where there is none. units: SI, as "N" or "m s-1", of each response by
+    name where a model returns several; what returns an array with a unit has to state it, because
+    arithmetic with arrays does not keep track of units. long_name: for labels.
     version: by default a hash of the code and of all that it uses; stored answers of another
     version are not reused.
 
@@ -48,9 +50,24 @@ class Function:
     """
 
     call: Callable[..., Any]
-    units: str = "1"
+    units: str | Mapping[str, str] | None = None
     long_name: str = ""
     version: str | None = None
+
+    def unit(self, response: str) -> str:
+        """Return the unit of a response, "1" where none is stated."""
+        stated = self.units.get(response) if isinstance(self.units, Mapping) else self.units
+        return stated or "1"
+
+    def check_unit(self, response: str, value: Any) -> None:
+        """Raise ValueError where a value has a unit, and none is stated."""
+        units = getattr(value, "attrs", {}).get("units", "1")
+        stated = response in self.units if isinstance(self.units, Mapping) else self.units
+        if units != "1" and not stated:
+            raise ValueError(
+                f"{response}: gave an array in {units!r}, which arithmetic passes on unchanged: "
+                f"state its unit, il.Function(..., units={units!r})"
+            )
 
 
 @dataclass(frozen=True)
@@ -138,7 +155,7 @@ def solver(name: str) -> Solver:
     )
 
 
-def _number(function: Function, name: str, *args: Any, **values: Any) -> Any:
+def _number(function: Function, name: str, /, *args: Any, **values: Any) -> Any:
     """Return what a function gives. Raises ValueError where it raises."""
     try:
         return function.call(*args, **values)
@@ -172,13 +189,15 @@ def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
         row |= {name: run[name].values for name in HISTORIES if output.samples}
         row |= {name: run[name].values for name in PROFILES if output.profiles}
         for name, function in task.functions.items():
-            row[name] = _real(_number(function, f"responses.{name}", run), f"responses.{name}")
+            value = _number(function, f"responses.{name}", run)
+            row[name] = _real(value, f"responses.{name}")
+            function.check_unit(name, value)
         rows.append(row)
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 def _attributes(function: Function, name: str) -> dict[str, str]:
-    return {"long_name": function.long_name or name.replace("_", " "), "units": function.units}
+    return {"long_name": function.long_name or name.replace("_", " "), "units": function.unit(name)}
 
 
 def _labelled_responses(task: Task, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
@@ -213,6 +232,7 @@ def _model(task: Task, cases: Array, output: OutputSpec) -> Columns:
             raise ValueError(f"function: gave {given}, but `responses` of the study are {wanted}")
         for name in task.responses:
             columns[name][at] = np.float64(_real(found[name], f"function: {name}"))
+            task.functions[""].check_unit(name, found[name])
     return columns | {"status": np.zeros(cases.size, dtype=np.int32)}
 
 

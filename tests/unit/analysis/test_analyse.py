@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import sys
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 
+import impactlab as il
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.sensitivity import method, sobol
 from impactlab.analysis.surrogate import chaos
 from impactlab.files import write_netcdf
 from impactlab.study.steps import analyse_runs
+from impactlab.variables import ANALYSES, Analysis
 
 Build = Callable[..., xr.Dataset]
 IN_UNITS_OF_RESPONSES = (
@@ -69,6 +73,26 @@ def test_a_study_without_either_gets_its_responses_alone(grid_runs: Build) -> No
     found = analyse(runs)
     assert found["response"].values.tolist() == ["peak_force"]
     assert not found.data_vars
+
+
+def test_a_new_analysis_is_one_line(
+    discretisation: xr.Dataset, sample: xr.Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Studies can ask for it, are told where it is impossible, and it is made."""
+    largest = xr.Dataset({"largest": discretisation["peak_force"].max()})
+    module = SimpleNamespace(applies=lambda runs: "nodes" in runs.dims, analysis=lambda _: largest)
+    monkeypatch.setitem(sys.modules, "impactlab.analysis.largest", module)
+    entry = Analysis("impactlab.analysis.largest", "a grid", lambda method, *_: method == "grid")
+    monkeypatch.setitem(ANALYSES, "largest", entry)
+    depth = {"beam_depth": il.Uniform("26 mm", "29 mm"), "velocity": il.Uniform(1, 2)}
+    given: Any = {"title": "New", "impact": il.paper_impact(), "duration": "1 ms"}
+    given |= {"analyses": ["largest"], "responses": ["peak_force"]}
+    study = il.Study(**given, sampling=il.Grid(parameters={"velocity": [1, 2]}))
+    runs = discretisation.assign_attrs(analyses=list(study.declared.analyses))
+    assert list(analyse(runs)) == ["largest"]
+    assert "largest" not in analyse(sample)
+    with pytest.raises(il.StudyError, match="largest needs a grid: take it out"):
+        il.Study(**given, sampling=il.Pawn(samples=128, parameters=depth))
 
 
 @pytest.mark.parametrize("study", ["discretisation", "sample"])
@@ -143,7 +167,7 @@ def test_a_sample_is_analysed_one_response_at_a_time(
     sample_runs: Build, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Memory holds fewer than 6 columns; the responses and parameters of the runs are 12."""
-    monkeypatch.setattr(sobol, "MOST_ROWS", 1024)
+    monkeypatch.setattr(sobol, "_ROWS", 1024)
     monkeypatch.setattr(method, "_CELLS", 10_000)
     monkeypatch.setattr(chaos, "MOST_RUNS", 100)
     names, parameters = [f"y{at}" for at in range(6)], ["x0", "x1", "x2", "x3", "x4", "x5"]
@@ -151,8 +175,7 @@ def test_a_sample_is_analysed_one_response_at_a_time(
     def peak(base: int) -> float:
         random = np.random.default_rng(1)
         outputs = {name: random.normal(size=base * 8) for name in names}
-        attrs = {"resamples": 10}
-        runs = sample_runs(parameters, base, second_order=False, attrs=attrs, **outputs)
+        runs = sample_runs(parameters, base, second_order=False, **outputs)
         for name in parameters:
             runs[name].attrs = {"distribution": "uniform", "low": 1.0, "high": 2.0}
         write_netcdf(runs, tmp_path / "runs.nc", "runs")

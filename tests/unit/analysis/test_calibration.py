@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,7 +39,9 @@ def linear(responses, rmse=0.0, **held):
             "degree": (("term", "parameter"), np.vstack([np.zeros(3, int), np.eye(3, dtype=int)])),
             "verdict": ("response", np.zeros(size, np.int8)),
             "rmse": ("response", np.full(size, rmse)),
-            "outer": (("response", "parameter"), np.ones((size, 3))),
+            "error": ("response", np.full(size, 2 * rmse)),
+            "error_growth": ("response", np.zeros(size)),
+            "reach": ("response", np.full(size, np.inf)),
             "distribution": ("parameter", [json.dumps(each) for each in given]),
             "parameter_units": ("parameter", ["1"] * 3),
             "lowest": ("parameter", [low for low, _ in RANGE.values()]),
@@ -123,6 +126,29 @@ def test_repeated_measurements_do_not_average_the_surrogate_out():
     covariance = np.linalg.inv(A.T @ A) * each**2
     wanted = np.sqrt(np.diag(covariance))
     assert found["posterior_deviation"].values == pytest.approx(wanted, rel=0.04)
+
+
+def test_neighbouring_conditions_do_not_average_the_surrogate_out():
+    velocities = np.linspace(2.0, 2.1, 10)
+    data = [one for v in velocities for one in pair([1.0, 20.0], (0.2, 0.2), velocity=v)]
+    found = calibrated({"": linear(BOTH, rmse=0.15)}, data)
+    each = np.sqrt(0.2**2 / 10 + 0.15**2)
+    wanted = np.sqrt(np.diag(np.linalg.inv(A.T @ A))) * each
+    assert found["posterior_deviation"].values == pytest.approx(wanted, rel=0.05)
+
+
+def test_a_systematic_uncertainty_stays_however_many_measurements_share_it():
+    def shared(one, source):
+        return replace(one, systematic_uncertainty=0.15, source=source)
+
+    repeated = [one for _ in range(50) for one in pair([1.0, 20.0], (0.25, 0.25))]
+    inverse = np.sqrt(np.diag(np.linalg.inv(A.T @ A)))
+    for sources in (1, 2):
+        data = [shared(one, f"rig {at % 4 // 2 % sources}") for at, one in enumerate(repeated)]
+        found = calibrated({"": linear(BOTH)}, data)
+        # of 0.25, 0.2 is random and 0.15 common to a source
+        wanted = inverse * np.sqrt(0.2**2 / 50 + 0.15**2 / sources)
+        assert found["posterior_deviation"].values == pytest.approx(wanted, rel=0.04)
 
 
 def test_what_the_data_cannot_tell_keeps_the_spread_of_the_prior():

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import scipy.stats
 import xarray as xr
-from SALib.sample import sobol as saltelli
 
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.distribution import (
@@ -23,6 +22,7 @@ from impactlab.analysis.distribution import (
     write_csv,
 )
 from impactlab.analysis.responses import Sample
+from impactlab.study.sampling.samples import saltelli
 from impactlab.variables import NO_DISTRIBUTION
 
 
@@ -78,10 +78,9 @@ def test_intervals_of_a_normal_cover_what_they_should() -> None:
 
 
 def test_of_a_saltelli_sample_only_a_and_b_are_draws() -> None:
-    problem = {"num_vars": 3, "names": list("abc"), "bounds": [[0.0, 1.0]] * 3}
-    drawn = saltelli.sample(problem, 64, calc_second_order=True, seed=1)
+    drawn = saltelli(list("abc"), 64, True, 1)
     inputs = dict(zip("abc", drawn.T, strict=True))
-    attrs = {"method": "sobol", "base_samples": 64, "second_order": 1}
+    attrs = {"method": "sobol", "base_samples": 64, "second_order": 1, "replicates": 8}
     runs = runs_of(inputs, {"y": drawn.sum(axis=1)}, {"y": 2.0}, **attrs)
     rows = draws(Sample.of(runs))
     assert rows.size == 2 * 64
@@ -188,3 +187,21 @@ def test_the_table_has_every_number(tmp_path: Path) -> None:
     assert float(row["low"]) < float(row["value"]) == np.quantile(-x, 0.05) < float(row["high"])
     assert (row["draws"], row["missing"]) == ("200", "0")
     assert rows["y", "exceedance_direction", "x"]["value"] == "1.0"
+
+
+@pytest.mark.parametrize(("where", "share"), [("anywhere", 0.0), ("upper end", 1.0)])
+def test_draws_missing_at_some_values_of_a_parameter_carry_a_warning(
+    where: str, share: float, tmp_path: Path
+) -> None:
+    """The mean of x alone is too low where its upper end fails; a false alarm is one in twenty."""
+    random, verdicts = np.random.default_rng(4), []
+    for _ in range(40):
+        x, other = random.random((2, 200))
+        failed = x > 0.93 if where == "upper end" else random.random(200) < 0.07
+        found = analysis(runs_of({"x": x, "other": other}, {"y": np.where(failed, np.nan, x)}))
+        verdicts.append(found["distribution_verdict"].item())
+    assert np.mean(np.array(verdicts) == 2) == pytest.approx(share, abs=0.1)
+    write_csv(found, tmp_path / "distribution.csv")
+    with (tmp_path / "distribution.csv").open(encoding="utf-8") as file:
+        written = {row["verdict"] for row in csv.DictReader(file)}
+    assert written == {"selected" if where == "upper end" else "missing"}

@@ -16,7 +16,7 @@ from impactlab.analysis.measurements import Agreement, Measurement, compared
 from impactlab.figures.catalogue import applicable
 from impactlab.figures.data import drawn
 from impactlab.report.answer import LINES, answers
-from impactlab.report.measured import sections
+from impactlab.report.measured import entries, sections
 from impactlab.study.errors import StudyError
 from impactlab.study.schema.measurements import read_measurements
 
@@ -68,13 +68,16 @@ def test_a_file_is_read_in_si_with_standard_uncertainties():
     given = FILE | {
         "conditions": {"beam_depth": "27.8 mm", "velocity": 1},
         "measurements": [
-            FORCE | {"conditions": {"velocity": "2 m/s", "contact": "mjg"}},
+            FORCE
+            | {"conditions": {"velocity": "2 m/s", "contact": "mjg"}}
+            | {"systematic_uncertainty": "0.06 kN"},
             {"quantity": "restitution", "value": "50 %", "expanded_uncertainty": "6 %"}
             | {"coverage_factor": 3},
         ],
     }
     force, restitution = read_measurements(given)
     assert (force.value, force.standard_uncertainty, force.units) == (12e3, 100.0, "N")
+    assert (force.systematic_uncertainty, restitution.systematic_uncertainty) == (60.0, 0.0)
     assert force.conditions == {"beam_depth": 0.0278, "velocity": 2.0, "contact": "mjg"}
     assert (restitution.value, restitution.standard_uncertainty) == (0.5, pytest.approx(0.02))
     assert restitution.conditions == {"beam_depth": 0.0278, "velocity": 1.0}
@@ -97,6 +100,16 @@ def test_the_committed_files_are_sound_and_name_their_source():
             with_force(standard_uncertainty=None, expanded_uncertainty=1),
             "measurements.0",
             "belong together",
+        ),
+        (
+            with_force(systematic_uncertainty="0.1 kN"),
+            "measurements.0.systematic_uncertainty",
+            "below it (100",
+        ),
+        (
+            with_force(systematic_uncertainty=-1),
+            "measurements.0.systematic_uncertainty",
+            "at least 0",
         ),
         (with_force(conditions={"speed": 1}), "measurements.0.conditions.speed", "unknown"),
         (
@@ -173,6 +186,16 @@ def test_pilot_runs_of_auto_bound_the_error_of_a_grid(study, value, verdict):
     other = found.assign_attrs(grid_nodes=101)
     with pytest.raises(ValueError, match="found for nodes = 101"):
         il.analyse(runs, other)
+
+
+def test_a_measured_zero_shows_the_difference_in_its_unit(study):
+    zero = Measurement("peak_force", 0.0, 100.0, "N", {"velocity": 2.0, "contact": "hertz"}, "x")
+    found = compared(*study, [zero])
+    ((_, line),) = entries(found)
+    assert "peak force +22 kN (± " in line
+    ((row,),) = (table.rows for table in sections(found)[0].tables)
+    assert row[-2].text == "+22 kN"
+    assert "inf" not in line
 
 
 def test_report_and_figures_show_them(study):

@@ -70,7 +70,7 @@ def test_status_overrules_a_number(velocity_study: Study) -> None:
 
 def test_a_history_is_missing_only_when_all_of_it_is() -> None:
     history = xr.DataArray([[np.nan, 1.0], [np.nan, np.nan]], dims=("velocity", "time"))
-    assert access.absent(history).values.tolist() == [False, True]
+    assert access.absent(xr.Dataset({"force": history}), "force").values.tolist() == [False, True]
 
 
 def test_flag_soundness_and_meaning(discretisation_study: Study) -> None:

@@ -12,7 +12,17 @@ import pytest
 
 from impactlab.model import quantities
 from impactlab.model.parameters import PARAMETERS
-from impactlab.model.quantities import KINDS, UNITS, amount, duration, engineering, si, time, whole
+from impactlab.model.quantities import (
+    KINDS,
+    UNITS,
+    amount,
+    duration,
+    engineering,
+    si,
+    si_units,
+    time,
+    whole,
+)
 from impactlab.variables import VARIABLES
 
 
@@ -197,3 +207,23 @@ def test_a_long_duration_states_its_unit(value):
 
 def test_few_digits_need_no_power_of_ten():
     assert engineering(154.0, "N", digits=2) == "150 N"
+
+
+@pytest.mark.parametrize(
+    ("given", "units"),
+    [
+        ("1 mm", "m"),
+        ("3 kN", "N"),
+        ("2 s-1", "s-1"),
+        ("20 degC", "K"),
+        ("3 V", "kg m2 s-3 A-1"),
+        ("10 %", "1"),
+        ("hertz", "1"),
+        ("1 foo", "1"),
+        (3.0, "1"),
+    ],
+)
+def test_the_si_units_of_a_quantity_are_told(given, units):
+    assert si_units(given) == units
+    if units != "1":
+        assert math.isfinite(si(given, units))

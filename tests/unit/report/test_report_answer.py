@@ -10,7 +10,9 @@ import xarray as xr
 
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.axes import NODES
+from impactlab.figures.convergence import _NODES as NODES_FIGURE
 from impactlab.report.answer import LINES, answers
+from impactlab.report.convergence import convergence
 
 
 def test_of_a_sample_names_what_matters_with_share_interval_and_verdict() -> None:
@@ -58,3 +60,11 @@ def test_of_a_convergence_study_gives_the_least_grid_however_bad_others_are() ->
     assert first.startswith("Within 1 % from 101 nodes and 5 points: peak force (± 0.")
     assert first.endswith("observed order 2 in the nodes).")
     assert second == "On no grid of this study: remote plastic strain (divergent)."
+    # the caption of the figure and the table of the report name the same grids
+    caption = NODES_FIGURE.sentences(runs, analysis)[0]
+    assert caption.endswith(
+        ": peak force from 101 nodes and 5 points; remote plastic strain on no grid of this study."
+    )
+    rows = convergence(runs, analysis)[0].tables[0].rows
+    assert rows[0][1] == "101 nodes and 5 points"
+    assert "none of this study" in str(rows[1][1])

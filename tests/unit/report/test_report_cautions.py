@@ -10,6 +10,7 @@ import xarray as xr
 
 from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
+from impactlab.variables import WARNINGS
 
 Study = Any
 
@@ -72,6 +73,17 @@ def test_runs_whose_contact_law_created_energy_are_counted(material_study: Study
     assert not _said(cautions(runs), words)
     runs["remarks"][0, :, 0] = 1
     assert _said(cautions(runs), f"In 3 of 24 runs {words}")
+
+
+def test_inputs_outside_the_data_of_the_contact_law_stand_beside_its_responses(
+    material_study: Study,
+) -> None:
+    runs, analysis = material_study
+    assert beside(runs, analysis, "peak_force") == ""
+    runs["remarks"] = xr.zeros_like(runs["status"])
+    runs["remarks"][0, :, 0] = WARNINGS["hardening_outside_data"][0]
+    assert "outside the contact law's data in 3 runs" in beside(runs, analysis, "peak_force")
+    assert _said(cautions(runs), "In 3 of 24 runs the beam's hardening modulus is above")
 
 
 def test_a_study_without_trouble_has_no_caution(material_study: Study) -> None:

@@ -15,6 +15,7 @@ from scipy.stats import spearmanr
 from impactlab.analysis import distribution
 from impactlab.analysis.numerical import NumericalFrom
 from impactlab.analysis.verdicts import flagged
+from impactlab.figures.catalogue import applicable
 from impactlab.figures.draw import draw_all
 from impactlab.report import sensitivity
 from impactlab.report.answer import answers
@@ -218,16 +219,43 @@ def test_other_families_answer_in_their_own_measure(study: Study) -> None:
     assert answers(runs, fits)[0].endswith("(R² of the fit: 0.45).")
 
 
+@pytest.mark.parametrize("surrogate", [True, False])
+def test_first_orders_alone_make_a_whole_report(report: Any, study: Study, surrogate: bool) -> None:
+    """As those of a method that gives no total order."""
+    runs, analysis = study
+    own = ["first_order", "first_order_interval", "first_order_numerical", "sensitivity_verdict"]
+    own += [name for name in analysis if surrogate and str(name).startswith("surrogate")]
+    analysis = analysis[own]
+    analysis["first_order"].loc[PEAK] = [0.6, 0.3, 0.0, 0.0]
+    first, *_ = answers(runs, analysis)
+    assert first.startswith(
+        "Peak force (usable): impact velocity 60 % (± 3) of the variance, yield"
+    )
+    page = report(runs, analysis)
+    assert "alone" not in page.text.split("of the variance")[0]
+    assert _titles(page)[:3] == ["answer", "ranking", "sensitivity"]
+    assert _table(page, "Ranks of the parameters by Sobol indices, first order")[1][1:3] == [
+        "1",
+        "2",
+    ]
+    assert ("surrogate" in _titles(page)) == surrogate
+    figures = applicable(runs, analysis)
+    for name in ("sobol_indices", "surrogate_indices")[: 1 + surrogate]:
+        figures[name].plot(runs, analysis)
+
+
 def test_a_surrogate_that_disagrees_or_is_poor_is_named(study: Study) -> None:
     runs, analysis = study
     analysis["surrogate_total_order"].loc[PEAK] = [0.5, 0.13, 0.0, 0.0]
-    analysis["surrogate_q2"].loc[PEAK] = 0.6
+    analysis["surrogate_q2"].loc[PEAK] = 0.93
+    analysis["surrogate_q2_low"].loc[PEAK] = 0.81
     found = sensitivity.surrogate(runs, analysis)
     assert found.sentences == [
         "Peak force: the total-order indices of the runs and of the surrogate differ by more than "
         "their intervals for impact velocity."
     ]
-    assert (found.tables[0].rows[0][1].text, found.tables[0].rows[0][1].detail) == ("0.6", "poor")
+    cell = found.tables[0].rows[0][1]
+    assert (cell.text, cell.detail) == ("0.93", "poor: at least 0.81")
 
 
 def test_imputed_values_are_told(report: Any, study: Study) -> None:

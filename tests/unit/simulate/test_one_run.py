@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten
+from impactlab.model.plausibility import TooShortWarning
 from impactlab.solver import RULES
 from impactlab.variables import (
     COORDINATES,
@@ -175,3 +178,43 @@ def test_the_corrected_impact_is_within_2_percent_of_3d(velocity, solid):
     assert np.abs(apart).max() < 0.02
     papers = [plain[name].item() / at - 1.0 for name, at in zip(COMPARED, expected, strict=True)]
     assert np.abs(papers).max() > 0.07
+
+
+@pytest.mark.parametrize(
+    ("velocity", "model", "duration", "missing"),
+    [
+        (0.99, "euler_bernoulli", "50 us", "peak_force, time_of_peak_force, contact_duration"),
+        (0.99, "timoshenko", "1 ms", "rebound_velocity, restitution"),
+        (15.0, "euler_bernoulli", "1 ms", "maximum_deflection"),
+        (15.0, "rigid", "0.1 ms", "contact_duration"),
+        (60.0, "euler_bernoulli", "3 ms", "maximum_deflection"),
+    ],
+)
+def test_a_short_duration_names_what_is_missing_and_lasts_as_it_says(
+    velocity: float, model: str, duration: str, missing: str
+) -> None:
+    impact = replace(il.paper_impact(velocity), beam_model=model)
+    grid = il.Discretisation(nodes=31)
+    with pytest.warns(TooShortWarning, match=f"too short for .*{missing}") as caught:
+        il.simulate(impact, grid, duration=duration, samples=2)
+    lasting = str(caught[0].message).partition("take about ")[2]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert il.simulate(impact, grid, duration=lasting, samples=2).status == 0
+
+
+@pytest.mark.parametrize("duration", [2, 0.5, "2", "2."])
+def test_seconds_without_a_unit_are_refused_as_in_studies(duration: Any) -> None:
+    sampling = il.Grid(parameters={"velocity": [1, 2]})
+    reason = "is in seconds without a unit, and impacts last milliseconds"
+    with pytest.raises(ValueError, match=reason):
+        il.simulate(il.paper_impact(), duration=duration)
+    with pytest.raises(ValueError, match=reason):
+        il.simulate_many(il.paper_impact(), duration=duration, varied={"velocity": [1.0]})
+    with pytest.raises(ValueError, match=reason):
+        il.Study(title="Seconds", duration=duration, sampling=sampling)
+
+
+def test_an_impossible_value_is_refused_as_in_studies() -> None:
+    with pytest.raises(ValueError, match="velocity: "):
+        il.simulate(il.paper_impact(1e-10), il.Discretisation(nodes=11), duration="1 ms")

@@ -9,7 +9,16 @@ import pytest
 
 import impactlab as il
 from impactlab.model.parameters import with_values
-from impactlab.variables import FAILURES, FLAGS, RESPONSES, STATUS_FLAGS, WARNINGS, reasons
+from impactlab.solver.contact import finite_element
+from impactlab.variables import (
+    FAILURES,
+    FLAGS,
+    OUTSIDE_DATA,
+    RESPONSES,
+    STATUS_FLAGS,
+    WARNINGS,
+    reasons,
+)
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
@@ -26,6 +35,71 @@ def test_a_run_in_which_the_contact_law_creates_energy_says_so():
     assert "created energy" in reasons(run.remarks.item(), WARNINGS)[0]
     assert il.simulate(il.paper_impact(0.99), GRID, duration=4e-3).remarks == 0
     assert reasons(0, WARNINGS) == []
+
+
+DEFAULT_LAW = replace(il.paper_impact(contact="finite_element"), beam_model="timoshenko")
+
+
+@pytest.mark.parametrize(
+    ("cause", "inside", "outside"),
+    [
+        ("yield_ratio", {"beam_yield_stress": 375e6}, {"beam_yield_stress": 1.2e9}),
+        ("poissons_ratio", {"beam_poissons_ratio": 0.35}, {"beam_poissons_ratio": 0.05}),
+        ("poissons_ratio", {"beam_poissons_ratio": 0.23}, {"beam_poissons_ratio": 0.45}),
+        (
+            "hardening",
+            {"beam_isotropic_hardening_modulus": 0.8e9},
+            {"beam_isotropic_hardening_modulus": 1e9},
+        ),
+        (
+            "hardening",
+            {"beam_kinematic_hardening_modulus": 0.8e9},
+            {"beam_kinematic_hardening_modulus": 5e9},
+        ),
+        ("sphere_yield", {"sphere_yield_stress": 600e6}, {"sphere_yield_stress": 1.3 * 345e6}),
+        ("sphere_yield", {"sphere_yield_stress": 600e6}, {"sphere_yield_stress": 330e6}),
+        (
+            "stiffness_ratio",
+            {"beam_youngs_modulus": 122e9, "beam_yield_stress": 230e6},
+            {"sphere_youngs_modulus": 630e9},
+        ),
+        (
+            "stiffness_ratio",
+            {"sphere_youngs_modulus": 160e9, "beam_yield_stress": 300e6},
+            {"sphere_youngs_modulus": 70e9, "beam_yield_stress": 150e6},
+        ),
+        ("contact_circle", {"velocity": 5.0}, {"velocity": 10.0}),
+    ],
+)
+def test_an_input_outside_the_data_of_the_contact_law_is_named(cause, inside, outside):
+    """Whichever it is, and it alone; not of another law, nor of a contact that stays elastic."""
+    bit = WARNINGS[f"{cause}_outside_data"][0]
+
+    def remarks(values, **change):
+        impact, grid = with_values(DEFAULT_LAW, GRID, {"contact_compliance": "beam"} | values)
+        return il.simulate(replace(impact, **change), grid, duration=0.3e-3).remarks.item()
+
+    assert remarks(inside) == 0
+    assert remarks(outside) & OUTSIDE_DATA == bit
+    if cause == "contact_circle":
+        assert remarks(outside | {"contact_compliance": "half_space"}) == 0
+        return
+    assert remarks(outside, contact="stronge") & OUTSIDE_DATA == 0
+    assert remarks(outside, velocity=1e-4) & OUTSIDE_DATA == 0
+
+
+def test_words_of_remarks_have_the_limits_of_the_law():
+    for names, cause in (
+        ("LEAST_RATIO LARGEST_RATIO", "yield_ratio"),
+        ("LEAST_POISSONS_RATIO LARGEST_POISSONS_RATIO", "poissons_ratio"),
+        ("LARGEST_HARDENING", "hardening"),
+        ("LEAST_HARDNESS", "sphere_yield"),
+        ("LEAST_STIFFNESS LARGEST_STIFFNESS", "stiffness_ratio"),
+        ("LARGEST_CIRCLE", "contact_circle"),
+    ):
+        words = WARNINGS[f"{cause}_outside_data"][1]
+        for name in names.split():
+            assert f" {getattr(finite_element, name):g}" in words, name
 
 
 WHOLE_RUN = {"diverged", "energy_out_of_balance", "stopped"}

@@ -64,10 +64,15 @@ def test_known_parameters_are_recovered_and_confirmed_by_runs(study, monkeypatch
     wanted = 0.05 * np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
     ours = found["posterior_deviation"].sel(parameter=["rate", "start"]).values
     assert ours == pytest.approx(wanted, rel=0.1)
-    first, second, silent, predictions, rest = sentences(found)
+    first, second, silent, joint, predictions, rest = sentences(found)
     assert first.startswith("Rate: 0.")
     assert second.startswith("Start: 5.")
     assert silent == "The data cannot tell idle (spread 1.00 of the prior's)."
+    correlation = found["posterior_correlation"].sel(parameter="rate", other_parameter="start")
+    inverse = np.linalg.inv(slopes.T @ slopes)
+    exact = inverse[0, 1] / np.sqrt(inverse[0, 0] * inverse[1, 1])
+    assert correlation.item() == pytest.approx(exact, abs=0.03)
+    assert joint.startswith(f"Correlated given the data: rate and start ({correlation:+.2f})")
     assert predictions.startswith("Predictions: 3 of 3 measured values within the 95 %")
     assert rest.startswith("Confirmed by 48 runs")
     assert found.attrs["answer"].splitlines() == sentences(found)
@@ -95,6 +100,72 @@ def test_known_parameters_are_recovered_and_confirmed_by_runs(study, monkeypatch
         il.calibrate(study, values(), workers=1)
 
 
+def square(start, time):
+    return (start - 5.5) ** 2 + 0.1 * time
+
+
+def measured_square(**keys):
+    """Zero or one, at two times; the uncertainty is partly systematic."""
+    entry = {"quantity": "value", "standard_uncertainty": 0.05, "conditions": {"time": 0}} | keys
+    return {"title": "Square", "source": "made by the model", "measurements": [entry]}
+
+
+@pytest.mark.parametrize(("low", "high", "count"), [(4, 7, 2), (5.5, 7, 1)])
+def test_two_roots_are_told_as_two_ranges(tmp_path, low, high, count):
+    ranges = {"start": il.Uniform(low, high), "time": il.Uniform(0, 3)}
+    sampling = il.Pawn(samples=200, parameters=ranges)
+    study = il.Study(title="Square", function=square, sampling=sampling, results=tmp_path)
+    found = il.calibrate(study, measured_square(value=1), workers=1)
+    assert np.isfinite(found["mode_weight"]).sum() == count
+    if count == 1:
+        assert sentences(found)[0].startswith("Start: 6.499 ± 0.025 ")
+        return
+    first, *rest = sentences(found)
+    assert first.startswith("Start: the data allow 2 separate ranges, 4.4")
+    assert not any("cannot tell" in sentence for sentence in rest)
+    assert found["mode_weight"].values == pytest.approx(np.array([[0.5, 0.5]]), abs=0.02)
+    wanted = np.array([4.5, 6.5])[:, None] + 1.96 * 0.05 / 2 * np.array([-1, 1])  # slope 2
+    ours = np.stack([found["mode_low"].values[0], found["mode_high"].values[0]]).T
+    assert ours == pytest.approx(wanted, abs=0.005)
+    labels = {text.get_text() for ax in calibration(found).axes for text in ax.texts}
+    assert "the data cannot tell" not in labels
+
+
+@pytest.mark.parametrize("method", [il.Pawn, il.Fast, il.Sobol])
+def test_a_single_parameter_is_sampled_reported_and_calibrated(tmp_path, method):
+    size = {"base_samples": 64} if method is il.Sobol else {"samples": 130}
+    sampling = method(**size, parameters={"start": il.Uniform(5.4, 7)})
+    study = il.Study(
+        title="Single", function=lambda start: square(start, 0), sampling=sampling, results=tmp_path
+    )
+    study.run(workers=1)
+    analysis = study.analyse()
+    if method in (il.Fast, il.Sobol):  # alone, it explains all of the variance
+        for name in ("first_order", "total_order"):
+            off = abs(analysis[name].item() - 1)
+            assert off <= max(analysis[f"{name}_interval"].item(), 0.005)
+        assert "second_order" not in analysis
+    if method is il.Sobol:  # the most figures
+        assert study.report().exists()
+    data = measured_square(value=1, conditions={})
+    found = il.calibrate(study, data, workers=1)
+    assert found["posterior_mean"].item() == pytest.approx(6.5, abs=0.005)
+    assert found["posterior_deviation"].item() == pytest.approx(0.025, rel=0.05)
+
+
+def test_a_measured_zero_has_finite_differences(tmp_path):
+    sampling = il.Pawn(samples=200, parameters={"start": il.Uniform(5, 7)})
+    study = il.Study(
+        title="Zero", function=lambda start: start - 6, sampling=sampling, results=tmp_path
+    )
+    found = il.calibrate(study, measured_square(value=0, conditions={}), workers=1)
+    assert "inf" not in found.attrs["answer"]
+    points = [curve for curve in drawn(calibration(found)) if curve.curve in CURVES]
+    assert points
+    assert all(np.isfinite(curve.x).all() for curve in points)
+
+
+CURVES = {"measured", "predicted"}
 RANGE = "{distribution: uniform, low: 250 MPa, high: 450 MPa}"
 STUDY = """
 title: Steel

@@ -7,7 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from impactlab.analysis.convergence.judgement import How, numerical_uncertainty
+from impactlab.analysis.convergence.judgement import (
+    AxisVerdict,
+    How,
+    judge,
+    numerical_uncertainty,
+)
 
 H = 2.0 ** np.arange(5)
 
@@ -25,7 +30,8 @@ def test_every_grid_of_a_converging_sequence_holds_the_limit(
     if grids > 2 or order >= 1:  # of two grids the first order is assumed, with a factor of 3
         assert (amounts >= errors).all()
     if order <= 2 and grids > 2:
-        assert (amounts <= 1.5 * errors).all()
+        # an order of 1.5 may be that of orders 1 and 2 together
+        assert (amounts <= (1.7 if order == 1.5 else 1.5) * errors).all()
 
 
 @pytest.mark.parametrize(
@@ -58,9 +64,12 @@ def test_two_and_three_grids_by_hand() -> None:
 
 
 def test_nasa_table() -> None:
-    """GCI of the finest 0.1031 %; the next lies further off by its distance."""
-    amounts, _ = numerical_uncertainty([0.97050, 0.96854, 0.96178], [1.0, 2.0, 4.0])
-    assert amounts[0] / 0.97050 == pytest.approx(0.001031, abs=5e-7)
+    """GCI of the finest 0.1031 %; a parabola through the three grids meets zero further off."""
+    values = [0.97050, 0.96854, 0.96178]
+    amounts, _ = numerical_uncertainty(values, [1.0, 2.0, 4.0])
+    parabola = np.polyval(np.polyfit([1.0, 2.0, 4.0], values, 2), 0.0)
+    assert amounts[0] == pytest.approx(1.25 * (parabola - 0.97050), rel=1e-9)
+    assert 0.001031 < amounts[0] / 0.97050 < 0.00131
     assert amounts[1] == pytest.approx(amounts[0] + 0.00196)
 
 
@@ -87,6 +96,54 @@ def test_scatter_that_passes_for_an_order_is_covered() -> None:
         amounts, _ = numerical_uncertainty(values, H)
         held += bool((abs(values - 1.0) <= amounts).all())
     assert held >= 0.95 * 200
+
+
+FAMILIES = {
+    "orders 1 and 2 of one sign": lambda h, u, noise: u * h + (1 - u) * h**2,
+    "turning": lambda h, u, noise: h - h**2 / (2 * h[-1] ** u),
+    "order 1": lambda h, u, noise: h,
+    "order 3": lambda h, u, noise: h**3,
+    "order 2 under noise": lambda h, u, noise: h**2 + u * noise,
+}
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize(
+    ("ratio", "grids"), [(1.1, 4), (1.2, 3), (1.2, 6), (2**0.5, 3), (2**0.5, 5), (2.0, 3), (2.0, 4)]
+)
+def test_what_is_sound_holds_the_limit(family: str, ratio: float, grids: int) -> None:
+    """Of errors of 0.01 to 3 %; of noise of up to the finest error."""
+    random, h, held = np.random.default_rng(3), ratio ** np.arange(grids), []
+    for _ in range(60):
+        errors = FAMILIES[family](h, random.uniform(), random.normal(size=grids))
+        errors = errors * 10 ** random.uniform(-4, -1.5) / abs(errors[:2]).mean()
+        found = judge(1 + errors, h)
+        if found.verdict.sound:
+            held.append(found.uncertainty * (1 + 1e-9) >= abs(errors[0] / (1 + errors[0])))
+    assert sum(held) >= (0.9 if "noise" in family else 1.0) * len(held)
+    if ratio == 2 and family == "order 2 under noise":
+        assert len(held) > 40
+
+
+@pytest.mark.parametrize(
+    ("ratio", "grids", "verdict"),
+    [
+        (1.2, 3, AxisVerdict.TOO_NARROW),
+        (1.1, 6, AxisVerdict.TOO_NARROW),
+        (1.2, 5, AxisVerdict.NOT_YET_CONVERGED),
+        (2.0, 3, AxisVerdict.CONVERGED_SECOND_ORDER),
+    ],
+)
+def test_grids_close_to_each_other_show_no_order(
+    ratio: float, grids: int, verdict: AxisVerdict
+) -> None:
+    """A second order of 0.7 % at the finest; and an error that turns on the same grids."""
+    h = ratio ** np.arange(grids)
+    size = 0.02 if verdict is AxisVerdict.NOT_YET_CONVERGED else 0.007
+    assert judge(1 + size * h**2, h).verdict is verdict
+    turning = judge(1 + 0.045 * (h - h**2 / (1 + h[-1])), h)
+    assert not turning.verdict.sound
+    assert turning.uncertainty >= 0.045 * h[-1] / (1 + h[-1])
 
 
 @pytest.mark.parametrize("spacings", [[2.0, 1.0, 4.0], [0.0, 1.0, 2.0], [1.0, 1.0, 2.0]])

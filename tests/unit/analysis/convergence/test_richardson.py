@@ -15,6 +15,7 @@ from impactlab.analysis.convergence.richardson import (
     estimate,
     grid_convergence_index,
     observed_order,
+    safety,
 )
 
 CELIK = [18000, 8000, 4500]
@@ -132,6 +133,8 @@ def test_an_order_above_the_formal_one_does_not_narrow_the_gci() -> None:
     found = estimate([1 + h**3 for h in (0.1, 0.2, 0.4)], [0.1, 0.2, 0.4])
     assert found.order == pytest.approx(3.0)
     assert found.gci(1.25) == pytest.approx(1.25 * 0.007 / 1.001 / 3.0)
+    assert safety([found]) == 3.0
+    assert safety([estimate([1 + h**2 for h in (0.1, 0.2, 0.4)], [0.1, 0.2, 0.4])]) == 1.25
 
 
 def test_gci_relative_to_zero_is_infinite() -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from impactlab.study.sampling.samples import REPLICATES
 from impactlab.variables import described
 
 A = np.array([0.0, 0.5, 3.0, 9.0, 99.0])
@@ -77,9 +78,11 @@ def drawn() -> Callable[..., xr.Dataset]:
         names: Sequence[str] = [f"x{i}" for i in range(inputs.shape[1])]
         arrays = {name: xr.DataArray(np.array(v, float), run) for name, v in named.items()}
         status = xr.DataArray(np.zeros(len(inputs), np.int32), run)
-        columns = {name: ("run", inputs[:, i]) for i, name in enumerate(names)}
+        ends = {"distribution": "uniform", "low": inputs.min(), "high": inputs.max()}
+        columns = {name: ("run", inputs[:, i], ends) for i, name in enumerate(names)}
         given = {"study": "synthetic", "method": method, "varied": names, "seed": 1}
-        given |= {"responses": list(named), "resamples": 100} | attrs
-        return described(xr.Dataset({**arrays, "status": status}, run | columns, given))
+        given |= {"responses": list(named), "resamples": 100, "analyses": "sensitivity"}
+        given |= {"replicates": REPLICATES} if method == "sobol" else {}
+        return described(xr.Dataset({**arrays, "status": status}, run | columns, given | attrs))
 
     return build

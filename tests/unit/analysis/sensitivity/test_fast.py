@@ -2,95 +2,103 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
-from SALib.analyze import fast
-from SALib.sample import fast_sampler
+from SALib.analyze.fast import compute_orders
 
+import impactlab as il
 from impactlab.analysis import sensitivity
 
 Build = Callable[..., xr.Dataset]
-Z95 = 1.959964
+SETTINGS = {"curves": 16, "frequency": 33, "harmonics": 4}
 
 
-def _unit(size: int, points: int = 1025) -> Any:
-    names = [f"x{i}" for i in range(size)]
-    problem = {"num_vars": size, "names": names, "bounds": [[0, 1]] * size}
-    return fast_sampler.sample(problem, points, seed=3)
+def _unit(seed: int, size: int = 3, samples: int = 1188) -> Any:
+    parameters = {f"x{at + 1}": il.Uniform(0, 1) for at in range(size)}
+    sampling = il.Fast(samples=samples, seed=seed, parameters=parameters)
+    runs = il.Study(title="-", function="g", sampling=sampling).design()
+    return np.column_stack([runs[name] for name in parameters])
 
 
-def _runs(drawn: Build, known: Any, **attrs: Any) -> xr.Dataset:
-    """With the dummy's curve last, and the dummy itself left out."""
-    unit = _unit(known.size + 1)[:, :-1]
-    return drawn("fast", unit, known.of_unit(unit), **({"harmonics": 4} | attrs))
+def _runs(drawn: Build, function: Callable[[Any], Any], seed: int = 0, **attrs: Any) -> xr.Dataset:
+    unit = _unit(seed)
+    return drawn("fast", unit, function(unit), **(SETTINGS | attrs))
 
 
-@pytest.mark.parametrize("name", ["ishigami", "sobol_g"])
-def test_analytic_indices(drawn: Build, name: str, request: pytest.FixtureRequest) -> None:
-    known = request.getfixturevalue(name)
-    found = sensitivity.analysis(_runs(drawn, known)).isel(response=0)
-    for order, exact in (("first_order", known.first), ("total_order", known.total)):
-        standard = found[f"{order}_interval"] / Z95
-        assert (abs(found[order] - exact) <= 3 * standard).all()
-        assert (abs(found[order] - exact) < 0.03).all()
-        assert found[order].attrs["estimator"].startswith("extended FAST")
-    assert found["dummy_first_order"] < 1e-3
-    assert 0 < found["dummy_total_order"] < 0.1
+def _g(unit: Any) -> Any:
+    """Sobol's G function of three parameters, the last of which hardly matters."""
+    a = np.array([0.0, 1.0, 99.0])
+    return np.prod((np.abs(4 * unit - 2) + a) / (1 + a), axis=1)
 
 
-def test_indices_are_those_of_salib(drawn: Build, ishigami: Any) -> None:
-    runs = _runs(drawn, ishigami)
-    found = sensitivity.analysis(runs).isel(response=0)
-    problem = {"num_vars": 4, "names": list("abcd")}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        theirs = fast.analyze(problem, runs["peak_force"].values, num_resamples=2, seed=1)
-    for order, key in (("first_order", "S1"), ("total_order", "ST")):
-        np.testing.assert_allclose(found[order], theirs[key][:-1], rtol=1e-12)
-        np.testing.assert_allclose(found[f"dummy_{order}"], theirs[key][-1], rtol=1e-12)
+PARTS = 1 / (3 * np.array([1.0, 2.0, 100.0]) ** 2)
+LINEAR = np.array([0.8, 0.2, 0.0])
+EXACT = {
+    "g": (PARTS / (np.prod(1 + PARTS) - 1), PARTS / (1 + PARTS) / (1 - 1 / np.prod(1 + PARTS))),
+    "linear": (LINEAR, LINEAR),
+}
 
 
-def test_half_curves_are_those_of_salib(drawn: Build, ishigami: Any) -> None:
-    """The same distribution: both draw the start of a half evenly."""
-    runs = _runs(drawn, ishigami, resamples=1500)
-    found = sensitivity.analysis(runs).isel(response=0)
-    curve = runs["peak_force"].values[:1025]
-    np.random.seed(1)  # noqa: NPY002 - SALib draws from the global stream
-    first, total = fast.bootstrap(curve, 4, 1500, 0.95)
-    expected = np.hypot([first, total], [found["dummy_first_order"], found["dummy_total_order"]])
-    ours = [found["first_order_interval"][0], found["total_order_interval"][0]]
-    np.testing.assert_allclose(ours, expected, rtol=0.06)
+@pytest.mark.parametrize("name", ["ishigami", "g", "linear"])
+def test_intervals_hold_the_exact_indices_at_the_smallest_sample(
+    drawn: Build, verdicts_of: Callable[..., Any], name: str, ishigami: Any
+) -> None:
+    """The third parameter of each is inert or nearly so; 200 seeds: 90 to 100 % of each index."""
+    known = {"ishigami": (ishigami.first, ishigami.total)} | EXACT
+    function = {"ishigami": ishigami.of_unit, "g": _g, "linear": lambda x: x @ [2.0, 1.0, 0.0]}
+    held = []
+    for seed in range(10):
+        indices = sensitivity.analysis(_runs(drawn, function[name], seed)).isel(response=0)
+        for order, exact in zip(("first_order", "total_order"), known[name], strict=True):
+            held.append(
+                np.abs(indices[order] - exact).values <= indices[f"{order}_interval"].values
+            )
+        if name != "ishigami":  # x2 has its harmonics at 4, 8, ... and needs more samples
+            assert (indices["first_order_interval"] < 0.05).all()
+            assert indices["sensitivity_verdict"] == 0
+    assert np.mean(held, axis=0).min() >= 0.8
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_seed(drawn: Build, ishigami: Any, seed: int) -> None:
-    def interval(seed: int) -> Any:
-        found = sensitivity.analysis(_runs(drawn, ishigami, resamples=10, seed=seed))
-        return found["first_order_interval"].values.tolist()
+def test_indices_are_those_of_salib_over_all_curves(drawn: Build, ishigami: Any) -> None:
+    runs = _runs(drawn, ishigami.of_unit)
+    indices = sensitivity.analysis(runs).isel(response=0)
+    curves = runs["peak_force"].values.reshape(4, 4, -1)
+    weights = curves.var(axis=2) / curves.var(axis=2).sum(axis=1, keepdims=True)
+    orders = np.array([[compute_orders(curve, 297, 4, 33) for curve in four] for four in curves])
+    first, total = (orders * weights[..., None]).sum(axis=1).T
+    for order, theirs in (("first_order", first), ("total_order", total)):
+        np.testing.assert_allclose(indices[order], theirs[:-1], rtol=1e-9)
+        np.testing.assert_allclose(indices[f"dummy_{order}"], theirs[-1], rtol=1e-9)
+        assert indices[order].attrs["estimator"].startswith("extended FAST")
 
-    assert interval(seed) == interval(seed) != interval(seed + 1)
+
+def test_harmonics_beyond_the_last_are_not_lost(drawn: Build) -> None:
+    """A jump has a tenth of its variance beyond the fourth harmonic."""
+    indices = sensitivity.analysis(_runs(drawn, lambda x: np.sign(x[:, 0] - 0.4) + x[:, 1]))
+    exact = 0.96 / (0.96 + 1 / 12)
+    assert abs(indices["first_order"][0, 0] - exact) < 0.02
 
 
-def test_a_curve_that_does_not_vary_has_no_indices(
+def test_curves_that_do_not_vary_have_no_indices(
     drawn: Build, ishigami: Any, verdicts_of: Callable[..., Any]
 ) -> None:
-    runs = _runs(drawn, ishigami)
-    runs["peak_force"][1025:2050] = 2.0
+    runs = _runs(drawn, ishigami.of_unit)
+    runs["peak_force"][1188:2376] = 2.0
     found = sensitivity.analysis(runs)
     assert verdicts_of(found["sensitivity_verdict"]) == ["constant"]
     assert np.isnan(found["total_order"]).all()
 
 
 def test_refuses_what_is_not_its_sample(drawn: Build, ishigami: Any) -> None:
-    runs = _runs(drawn, ishigami)
-    with pytest.raises(ValueError, match="has 4099 runs, but 4 curves of 1024 points make 4096"):
+    runs = _runs(drawn, ishigami.of_unit)
+    with pytest.raises(ValueError, match="has 4751 runs, but 16 curves of 297 points make 4752"):
         sensitivity.analysis(runs.isel(run=slice(None, -1)))
-    with pytest.raises(ValueError, match="too few for 16 harmonics: take more than 1024"):
-        sensitivity.analysis(runs.isel(run=slice(None, 4096)).assign_attrs(harmonics=16))
     with pytest.raises(ValueError, match="'fast' has no groups"):
         sensitivity.analysis(runs.assign_attrs(groups=["a", "a", "b"]))
+    del runs.attrs["curves"]  # a sample of before there were several
+    with pytest.raises(ValueError, match="have no attribute curves: solve the study again"):
+        sensitivity.analysis(runs)

@@ -45,26 +45,51 @@ def exact_delta(share: float) -> float:
 
 def test_delta_of_a_linear_model(drawn: Build, normal: Any) -> None:
     found = sensitivity.analysis(drawn("delta", normal, normal @ WEIGHTS)).isel(response=0)
-    exact = [exact_delta(0.8), exact_delta(0.2)]
-    assert (abs(found["delta"][:2] - exact) <= found["delta_interval"][:2]).all()
+    exact = [exact_delta(0.8), exact_delta(0.2), 0.0]
+    assert (abs(found["delta"] - exact) <= found["delta_interval"]).all()
     assert (found["delta_interval"] < 0.15).all()
-    # of five classes, the part of the variance of a normal variable that lies between them
-    heights = norm.pdf(norm.ppf(np.linspace(0, 1, 6)))
-    between = 5 * (np.diff(heights) ** 2).sum()
-    np.testing.assert_allclose(found["delta_first_order"], between * SHARES, atol=0.03)
-    assert abs(found["dummy_delta"] - found["delta"][2]) < found["dummy_delta_interval"] < 0.1
-    assert found["dummy_delta_first_order"] < 0.04
+    assert (abs(found["delta_first_order"] - SHARES) <= found["delta_first_order_interval"]).all()
+    assert (found["delta_first_order_interval"] < 0.12).all()
+    assert abs(found["dummy_delta"] - found["delta"][2]) < 0.06
+    assert abs(found["dummy_delta_first_order"]) < found["dummy_delta_first_order_interval"]
+
+
+def _ishigami(x: Any) -> Any:
+    return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+
+
+@pytest.mark.parametrize("runs", [200, 1000])
+def test_first_orders_of_few_runs_are_not_too_small(runs: int) -> None:
+    """Of Ishigami's function and an inert parameter, whose indices are 0.314, 0.442, 0 and 0."""
+    exact, held, values = [0.3139, 0.4424, 0.0, 0.0], [], []
+    for seed in range(200):
+        x = np.random.default_rng(seed).uniform(-np.pi, np.pi, (runs, 4))
+        value, error = first_orders(x, _ishigami(x))
+        values.append(value)
+        held.append(np.abs(value - exact) <= 1.96 * error)
+    np.testing.assert_allclose(np.mean(values, axis=0), exact, atol=3 / runs + 0.005)
+    assert np.mean(held, axis=0).min() >= {200: 0.83, 1000: 0.9}[runs]
+
+
+def test_delta_of_an_inert_parameter_is_within_its_interval(drawn: Build) -> None:
+    """It is about 0.06 by noise alone, however many the runs."""
+    held = []
+    for seed in range(6):
+        x = np.random.default_rng(seed).random((500, 3))
+        outputs = np.exp(x @ [3.0, 1.5, 0.0])
+        found = sensitivity.analysis(drawn("delta", x, outputs, resamples=15)).isel(response=0)
+        held.append((found["delta"] <= found["delta_interval"]).values)
+    np.testing.assert_array_equal(np.mean(held, axis=0) > 0.8, [False, False, True])
 
 
 @pytest.mark.parametrize("runs", [500, 2000])
 def test_intervals_of_delta_hold_the_exact_ones_of_ishigami(drawn: Build, runs: int) -> None:
     """By quadrature; its densities have sharp modes, which smoothing brings closer together."""
     x = np.random.default_rng(runs).uniform(-np.pi, np.pi, (runs, 3))
-    outputs = np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
-    found = sensitivity.analysis(drawn("delta", x, outputs, resamples=30)).isel(response=0)
+    found = sensitivity.analysis(drawn("delta", x, _ishigami(x), resamples=30)).isel(response=0)
     off = np.abs(found["delta"] - [0.264, 0.425, 0.209])
     assert (off < found["delta_interval"]).all()
-    assert (found["delta_interval"] < {500: 0.3, 2000: 0.12}[runs]).all()
+    assert (found["delta_interval"] < {500: 0.3, 2000: 0.14}[runs]).all()
     assert found["delta"].values.argmax() == 1
 
 
@@ -74,13 +99,10 @@ def test_delta_is_that_of_salib_at_its_width(normal: Any) -> None:
     inputs, outputs = normal[rows], normal[rows] @ WEIGHTS
     edges, places = np.linspace(0, 499, 8), np.linspace(-4, 4, 100)
     words = np.zeros(3, bool)
-    ours = deltas(inputs, outputs, 7, places, 1.0, words), first_orders(inputs, outputs, 7, words)
-    for column, delta, first in zip(inputs.T, *ours, strict=True):
+    ours = deltas(inputs, outputs, 7, places, 1.0, words)
+    for column, delta in zip(inputs.T, ours, strict=True):
         theirs = salib_delta.calc_delta(outputs, places, column, edges)
         np.testing.assert_allclose(delta, theirs, rtol=1e-10)
-        np.testing.assert_allclose(
-            first, salib_delta.sobol_first(outputs, column, edges), rtol=1e-10
-        )
 
 
 def test_delta_is_not_given_without_density(
@@ -98,11 +120,10 @@ def test_pawn_is_that_of_salib(drawn: Build, normal: Any) -> None:
     outputs = normal @ WEIGHTS
     found = sensitivity.analysis(drawn("pawn", normal, outputs)).isel(response=0)
     theirs = salib_pawn.analyze({"num_vars": 3, "names": list("abc")}, normal, outputs, S=10)
-    np.testing.assert_array_equal(found["pawn"], theirs["median"])
-    np.testing.assert_array_equal(found["pawn_maximum"], theirs["maximum"])
-    assert found["pawn"][0] > found["pawn"][1] > 2 * found["dummy_pawn"]
+    np.testing.assert_allclose(found["pawn"], theirs["median"], rtol=1e-12)
+    np.testing.assert_allclose(found["pawn_maximum"], theirs["maximum"], rtol=1e-12)
+    assert found["pawn"][0] > found["pawn"][1] > 1.5 * found["dummy_pawn"]
     assert abs(found["pawn"][2] - found["dummy_pawn"]) < 0.1
-    assert "pawn_maximum_interval" not in found
 
 
 def test_pawn_of_a_linear_model(drawn: Build) -> None:
@@ -120,32 +141,53 @@ def test_pawn_of_a_linear_model(drawn: Build) -> None:
 
 
 def test_distances_are_those_of_kolmogorov_and_smirnov() -> None:
-    """With ties, and with runs drawn more than once, which is what a resample has."""
+    """With ties, in unequal slides."""
     rng = np.random.default_rng(1)
-    outputs, column = np.sort(rng.integers(20, size=200)).astype(float), rng.random(200)
-    weights = np.bincount(rng.integers(200, size=200), minlength=200).astype(float)
+    outputs, column = np.sort(rng.integers(20, size=207)).astype(float), rng.random(207)
     last = np.flatnonzero(np.diff(outputs, append=np.inf))
     members = slides(column)
-    assert members.sum() == 199  # but for the largest value
-    ours = distances(weights, members, last)
-    drawn_anew = np.repeat(np.arange(200), weights.astype(int))
-    for slide in range(10):
-        inside = drawn_anew[members[drawn_anew, slide]]
-        theirs = ks_2samp(outputs[inside], outputs[drawn_anew], method="asymp").statistic
+    assert members.sum() == 206  # but for the largest value
+    ours = distances(members, last)
+    for slide, inside in enumerate(members.T):
+        theirs = ks_2samp(outputs[inside], outputs, method="asymp").statistic
         np.testing.assert_allclose(ours[slide], theirs, atol=1e-12)
 
 
-def test_pawn_interval_tells_how_samples_differ(drawn: Build) -> None:
-    """Half-widths against the spread over samples drawn anew."""
-    values, widths = [], []
-    for seed in range(25):
-        inputs = np.random.default_rng(seed).normal(size=(300, 2))
-        outputs = inputs @ WEIGHTS[:2]
-        found = sensitivity.analysis(drawn("pawn", inputs, outputs, resamples=30))
-        values.append(found["pawn"][0].values)
-        widths.append(found["pawn_interval"][0].values)
-    spread = 1.96 * np.std(values, axis=0)
-    np.testing.assert_allclose(np.mean(widths, axis=0), spread, rtol=0.5)
+def test_intervals_of_pawn_hold_the_index_of_endless_runs(drawn: Build) -> None:
+    """Of a sum of uniform numbers, 3 x1 + x2, and an inert one; by the distributions themselves.
+
+    With x1 in the slide about c, the sum is 3 c, plus a uniform number of the slide's width 0.3,
+    plus x2.
+    """
+    y = np.linspace(0, 4, 4001)
+
+    def trapezium(low: float, wide: float, narrow: float) -> Any:
+        """Return the distribution of low + wide u + narrow v, u and v uniform in (0, 1)."""
+
+        def integral(t: Any) -> Any:
+            return np.clip(t, 0, None) ** 2 / 2
+
+        ends = (0, wide, narrow, wide + narrow)
+        parts = (
+            sign * integral(y - low - end) for sign, end in zip((1, -1, -1, 1), ends, strict=True)
+        )
+        return sum(parts) / (wide * narrow)
+
+    whole, starts = trapezium(0, 3, 1), np.arange(10) / 10
+    apart = [
+        [np.abs(trapezium(3 * start, 0.3, 1) - whole).max() for start in starts],
+        [np.abs(trapezium(start, 3, 0.1) - whole).max() for start in starts],
+        np.zeros(10),
+    ]
+    held = []
+    for seed in range(12):
+        x = np.random.default_rng(seed).random((300, 3))
+        found = sensitivity.analysis(drawn("pawn", x, x @ [3.0, 1.0, 0.0])).isel(response=0)
+        for name, exact in (("pawn", np.median(apart, axis=1)), ("pawn_maximum", np.max(apart, 1))):
+            held.append((np.abs(found[name] - exact) <= found[f"{name}_interval"]).values)
+        assert found["sensitivity_verdict"] != 0  # the noise alone moves it by more than 0.1
+    assert np.mean(held, axis=0).min() >= 0.8
+    assert np.mean(held) > 0.9
 
 
 def test_regression_of_a_linear_model(drawn: Build, normal: Any) -> None:

@@ -115,11 +115,10 @@ def test_the_order_of_the_words_changes_nothing(indices: Any) -> None:
     inputs = np.column_stack([place, np.array([5.0, 2.0, 9.0])[place.astype(int)]])
     outputs = np.array([1.0, -1.0, 0.5])[place.astype(int)] + np.random.default_rng(2).random(1200)
     t, words = np.linspace(-1, 2, 200), np.ones(2, bool)
-    for one, other in (
-        deltas(inputs, outputs, 8, t, 0.5, words),
-        first_orders(inputs, outputs, 8, words),
-    ):
-        np.testing.assert_allclose(one, other, rtol=1e-12)
+    one, other = deltas(inputs, outputs, 8, t, 0.5, words)
+    np.testing.assert_allclose(one, other, rtol=1e-12)
+    (one, other), _ = first_orders(inputs, outputs)
+    np.testing.assert_allclose(one, other, atol=5e-3)  # but for the pairs where words meet
 
 
 @pytest.mark.parametrize("method", ["morris", "fast", "regression"])

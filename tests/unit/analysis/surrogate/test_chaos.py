@@ -19,6 +19,8 @@ from impactlab.analysis.surrogate.chaos import (
     influence,
 )
 
+from .conftest import UNIT
+
 
 def _norm(row: tuple[int, ...]) -> float:
     return sum(part**0.7 for part in row) ** (1 / 0.7)
@@ -44,7 +46,7 @@ def test_candidates_are_the_largest_set_that_is_allowed() -> None:
 def test_terms_are_products_of_scipys_polynomials() -> None:
     unit = np.random.default_rng(0).random((50, 3))
     degrees = np.array([[0, 0, 0], [4, 0, 1], [0, 12, 0], [1, 2, 3]])
-    for row, values in zip(degrees, basis(unit, degrees), strict=True):
+    for row, values in zip(degrees, basis(unit, degrees, [UNIT] * unit.shape[1]), strict=True):
         factors = [
             np.sqrt(2 * a + 1) * eval_legendre(a, 2 * u - 1)
             for a, u in zip(row, unit.T, strict=True)
@@ -56,13 +58,13 @@ def test_the_basis_is_orthonormal() -> None:
     nodes, weights = np.polynomial.legendre.leggauss(8)  # exact up to degree 15
     unit = np.array(list(product((nodes + 1) / 2, repeat=2)))
     weight = np.array([a * b for a, b in product(weights / 2, repeat=2)])
-    columns = basis(unit, hyperbolic(2, 7))
+    columns = basis(unit, hyperbolic(2, 7), [UNIT] * unit.shape[1])
     np.testing.assert_allclose(columns * weight @ columns.T, np.eye(len(columns)), atol=1e-12)
 
 
 def test_a_chaos_is_the_sum_of_its_terms() -> None:
     unit = np.array([[0.0, 0.5], [0.25, 1.0]])
-    chaos = Chaos(np.array([[0, 0], [1, 0], [0, 2]]), np.array([2.0, 3.0, 5.0]))
+    chaos = Chaos(np.array([[0, 0], [1, 0], [0, 2]]), np.array([2.0, 3.0, 5.0]), (UNIT, UNIT))
     linear, quadratic = 2 * unit[:, 0] - 1, 1.5 * (2 * unit[:, 1] - 1) ** 2 - 0.5
     expected = 2 + 3 * np.sqrt(3) * linear + 5 * np.sqrt(5) * quadratic
     np.testing.assert_allclose(chaos(unit), expected, rtol=1e-14)
@@ -74,7 +76,7 @@ Z95 = 1.959964
 def _indices(
     unit: Any, values: Any, groups: str, rmse: float = 0.0, missed: float = 0.0
 ) -> dict[str, Any]:
-    chaos = fit(unit, values, 0)
+    chaos = fit(unit, values, 0, [UNIT] * unit.shape[1])
     pull = influence(chaos, unit, values, np.arange(len(unit)), rmse)
     return indices(chaos, list(groups), pull, missed, 0.95)
 
@@ -115,7 +117,11 @@ def test_intervals_tell_the_scatter_of_repeated_fits(copies: int) -> None:
         values = np.repeat(unit[:, 0] + 0.5 * unit[:, 1] + noise, copies)
         unit, block = np.repeat(unit, copies, axis=0), np.repeat(np.arange(300), copies)
         degrees = np.array([[0, 0], [1, 0], [0, 1]])
-        chaos = Chaos(degrees, np.linalg.lstsq(basis(unit, degrees).T, values)[0])
+        chaos = Chaos(
+            degrees,
+            np.linalg.lstsq(basis(unit, degrees, [UNIT] * unit.shape[1]).T, values)[0],
+            (UNIT, UNIT),
+        )
         pull = influence(chaos, unit, values, block, 0.3)
         one = indices(chaos, ["x", "y"], pull, 0.0, 0.95)
         found.append([one["first_order"][0], one["first_order_interval"][0] / Z95])
@@ -134,7 +140,7 @@ def test_the_error_on_runs_held_out_is_what_scatters() -> None:
 
 def test_a_constant_has_no_indices() -> None:
     unit = np.random.default_rng(0).random((50, 2))
-    chaos = Chaos(np.zeros((1, 2), dtype=int), np.array([3.0]))
+    chaos = Chaos(np.zeros((1, 2), dtype=int), np.array([3.0]), (UNIT, UNIT))
     pull = influence(chaos, unit, unit[:, 0], np.arange(50), 0.0)
     found = indices(chaos, ["x", "y"], pull, 0.0, 0.95)
     assert np.isnan(found["first_order"]).all()

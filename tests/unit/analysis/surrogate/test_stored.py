@@ -12,11 +12,13 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.surrogate import analysis, load_surrogate, packed
+from impactlab.analysis.surrogate.chaos import Chaos
+from impactlab.analysis.surrogate.polynomials import orthonormal
 from impactlab.analysis.surrogate.stored import Surrogate
 from impactlab.files import write_netcdf
 from impactlab.report.console import print_predictions
 
-from .conftest import ishigami
+from .conftest import RANGES, ishigami
 
 Build = Callable[..., xr.Dataset]
 
@@ -53,12 +55,15 @@ POINT = {"velocity": 9.0, "beam_depth": 0.0271, "beam_yield_stress": 350e6}
 def test_predictions_of_the_file_are_those_of_the_fit(
     runs: xr.Dataset, found: xr.Dataset, loaded: Surrogate
 ) -> None:
-    tested = runs.sel(run=found["held_out"].values)
-    predicted = loaded.predict(**{name: tested[name].values for name in POINT})
+    rows = slice(0, 50)
+    predicted = loaded.predict(**{name: runs[name].values[rows] for name in POINT})
+    inputs = np.column_stack([runs[name].values[rows] for name in POINT])
+    kinds = tuple(orthonormal(runs[name].attrs) for name in POINT)
     for name in ("peak_force", "impulse"):
-        expected = found["surrogate_held_out"].sel(response=name).values
-        np.testing.assert_allclose(predicted[name], expected, rtol=1e-10)
-    error = np.abs(predicted["peak_force"].values / tested["peak_force"].values - 1)
+        coefficients = found["surrogate_coefficient"].sel(response=name).values
+        chaos = Chaos(found["surrogate_degree"].values, coefficients, kinds)
+        np.testing.assert_allclose(predicted[name], chaos(inputs), rtol=1e-10)
+    error = np.abs(predicted["peak_force"].values / runs["peak_force"].values[rows] - 1)
     assert error.max() < 1e-4
 
 
@@ -79,41 +84,39 @@ def test_a_prediction_smaller_than_its_error_is_not_usable(
     monkeypatch.setenv("COLUMNS", "140")
     at = int(np.flatnonzero(loaded.dataset["response"] == "peak_force")[0])
     whole = loaded.predict(**POINT)["peak_force"].item()
-    loaded.dataset["rmse"][at] = 1.4 * whole
+    loaded.dataset["error"][at] *= 1.4 * whole / loaded.predict(**POINT)["peak_force"].error
     found = loaded.predict(**POINT)
     assert found["peak_force"].attrs["verdict"] == "imprecise"
     print_predictions(found)
     assert "imprecise: the error is 140 % of the prediction" in capsys.readouterr().out
-    loaded.dataset["rmse"][at] = 0.09 * whole
+    loaded.dataset["error"][at] *= 0.09 / 1.4
     assert loaded.predict(**POINT)["peak_force"].attrs["verdict"] == "usable"
 
 
-def test_the_error_at_the_ends_of_a_range_is_that_of_the_runs_there(
-    runs: xr.Dataset,
-    found: xr.Dataset,
-    loaded: Surrogate,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
+def test_the_error_grows_outwards_and_beyond_the_runs_it_is_extrapolated(
+    loaded: Surrogate, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It counts from twice the usual one on; the ends of a uniform velocity are counted by hand."""
-    tested = runs.sel(run=found["held_out"].values)
-    speed, place = tested["velocity"].values, POINT | {"velocity": 14.99}
-    missed = found["surrogate_held_out"].sel(response="impulse").values - tested["impulse"].values
-    ends = (speed < 5.1) | (speed > 14.9)  # a hundredth of 5 to 15 m/s at either end
-    expected = np.sqrt(np.mean(missed[ends] ** 2) / np.mean(missed**2))
-    at = dict(response="impulse", parameter="velocity")
-    assert loaded.dataset["outer"].sel(at).item() == (
-        round(expected, 1) if expected >= 2 else pytest.approx(1.0)
-    )
-    loaded.dataset["outer"].loc[at] = 4.0
-    inside, outer = (loaded.predict(**each)["impulse"].attrs for each in (POINT, place))
-    assert (inside["error"], inside["outer"]) == (inside["rmse"], "")
-    assert (outer["error"], outer["outer"]) == (4 * outer["rmse"], "velocity")
     monkeypatch.setenv("COLUMNS", "200")
-    many = loaded.predict(**POINT | {"velocity": [9.0, 14.99]})["impulse"]
-    assert many.attrs["error"] == outer["error"]
-    print_predictions(loaded.predict(**place))
-    assert "4 times the usual error" in capsys.readouterr().out
+    low, high = (loaded.dataset[name].to_series() for name in ("lowest", "highest"))
+    places = [POINT, POINT | {"velocity": 15.0}, dict(high)]
+    middle, end, corner = (loaded.predict(**place)["impulse"].attrs for place in places)
+    assert middle["error"] < end["error"] < corner["error"]
+    assert end["verdict"] != "extrapolated" == corner["verdict"]
+    many = loaded.predict(**POINT | {"velocity": [9.0, 15.0]})["impulse"]
+    assert many.attrs["error"] == pytest.approx(end["error"], rel=1e-12)
+    print_predictions(loaded.predict(**dict(low)))
+    assert "extrapolated: farther out than any run tested on" in capsys.readouterr().out
+
+
+def test_a_file_with_the_polynomials_of_an_earlier_version_is_refused(
+    runs: xr.Dataset, found: xr.Dataset, loaded: Surrogate, tmp_path: Path
+) -> None:
+    old = loaded.dataset.drop_attrs(deep=False).assign_attrs(study="synthetic")
+    write_netcdf(old, tmp_path / "old.nc", "surrogate")
+    with pytest.raises(ValueError, match=r"old.nc: its surrogates .* earlier version.*analyse"):
+        load_surrogate(tmp_path / "old.nc")
+    with pytest.raises(ValueError, match=r"the analysis: its surrogates .* earlier version"):
+        packed(runs, found.drop_vars("surrogate_error"))
 
 
 def test_no_surrogate_no_number(loaded: Surrogate) -> None:
@@ -165,13 +168,17 @@ def test_a_missing_parameter_is_named(loaded: Surrogate) -> None:
         loaded.predict(velocity=9.0)
 
 
-def test_ranges_are_bounds_or_extreme_draws(runs: xr.Dataset, loaded: Surrogate) -> None:
+def test_ranges_are_bounds_or_extreme_draws(drawn_runs: Build) -> None:
     """A normal has no bounds: beyond its draws nothing is known."""
-    ends = loaded.dataset[["lowest", "highest"]].sel(parameter="beam_yield_stress")
+    normal = {"distribution": "normal", "mean": 345e6, "standard_deviation": 25e6}
+    runs = drawn_runs(ranges=RANGES | {"beam_yield_stress": normal}, peak_force=force)
+    dataset = packed(runs, analysis(runs))
+    assert dataset is not None
+    ends = dataset[["lowest", "highest"]].sel(parameter="beam_yield_stress")
     drawn = runs["beam_yield_stress"]
     assert ends["lowest"].item() == drawn.min().item()
     assert ends["highest"].item() == drawn.max().item()
-    assert loaded.dataset["lowest"].sel(parameter="velocity").item() == 5.0
+    assert dataset["lowest"].sel(parameter="velocity").item() == 5.0
 
 
 def test_units_of_parameters(loaded: Surrogate) -> None:

@@ -10,8 +10,10 @@ from scipy.optimize import brentq
 
 import impactlab as il
 from impactlab.model.contact_compliance import contact_compliance, width_inertia
-from impactlab.solver.contact import LAWS
+from impactlab.solver import outputs
+from impactlab.solver.contact import LAWS, kogut_etsion, prestress
 from impactlab.solver.contact.history import CONTACT, Pair, energies, force, load_to
+from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.verification.solutions.beam_modes import strip_odd_modes, timoshenko_odd_modes
 
 E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
@@ -67,6 +69,90 @@ def test_a_spring_that_gives_way_faster_than_the_law_stiffens_leaves_no_number()
     contact = untouched()
     load_to(contact, Pair(0, E, R, S_y, nu, -1e-8), DEEP)
     assert np.isnan(contact.F_m)
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.0278], ids=["ignored", "bending"])
+@pytest.mark.parametrize("compliance", [-4e-10, 2e-9])
+def test_loading_fails_at_no_jump_of_any_law(compliance, depth):
+    """Whatever the steps, up to 150 indentations of first yield."""
+    random, top = np.random.default_rng(0), 150.0 * yield_indentation(E, R, S_y)
+    for law in LAWS:
+        bodies = Pair(LAWS.index(law), E, R, S_y, nu, compliance, 0.0, (depth, 500.0, -300.0))
+        for steps in (100, 400):
+            path = np.cumsum(random.uniform(0.2, 1.0, (6, steps)), axis=1)
+            for approaches in top * path / path[:, -1:]:
+                contact, ask = untouched(), prestress.force if depth else force
+                forces = [ask(contact, bodies, approach) for approach in approaches]
+                assert np.all(np.diff(forces) > 0.0), law
+                if depth == 0.0:
+                    borne = contact.delta_m + compliance * contact.F_m
+                    assert borne == pytest.approx(approaches[-1], rel=1e-12)
+
+
+JUMP, ABOVE = 6.0 - 1e-9, 6.0 + 1e-9
+"""Of Kogut and Etsion's force, in their indentations of first yield."""
+
+
+def at_the_jump(compliance):
+    """Return a contact loaded to where the force jumps, its bodies, and the force above."""
+    bodies = Pair(LAWS.index("kogut_etsion"), E, R, S_y, nu, compliance)
+    delta = kogut_etsion.limit(E, R, S_y, nu) / kogut_etsion.FULLY_PLASTIC
+    F_above = kogut_etsion.curve(ABOVE * delta, E, R, S_y, nu)[0]
+    contact = untouched()
+    load_to(contact, bodies, JUMP * delta + compliance * contact_force(bodies, JUMP * delta))
+    return contact, bodies, F_above
+
+
+def contact_force(bodies, delta):
+    return kogut_etsion.curve(delta, *bodies[1:5])[0]
+
+
+def test_at_a_jump_the_indentation_waits_for_the_spring():
+    contact, bodies, F_above = at_the_jump(5e-10)
+    delta, F, approach = contact.delta_m, contact.F_m, contact.approach_m
+    before = sum(energies(contact, bodies, approach))
+    for share in (0.3, 0.6):
+        grown = share * bodies.compliance * (F_above - F)
+        load_to(contact, bodies, approach + grown)
+        assert contact.delta_m == pytest.approx(delta, rel=1e-8)
+        assert contact.F_m == pytest.approx(F + grown / bodies.compliance, rel=1e-6)
+        assert force(contact, bodies, contact.approach_m) == pytest.approx(contact.F_m, rel=1e-9)
+        work = grown * 0.5 * (F + contact.F_m)
+        assert sum(energies(contact, bodies, contact.approach_m)) - before == pytest.approx(
+            work, rel=1e-3
+        )
+
+
+def test_at_a_jump_a_negative_spring_snaps_and_creates_no_energy():
+    """To where the law meets the spring's line; work on a snap at one approach is none."""
+    contact, bodies, F_above = at_the_jump(-4e-10)
+    delta, F, approach = contact.delta_m, contact.F_m, contact.approach_m
+    assert contact.F_m < F_above  # below it, the first of the places that bear the approach
+    before, grown = sum(energies(contact, bodies, approach)), 1e-4 * approach
+    load_to(contact, bodies, approach + grown)
+    snapped = brentq(
+        lambda x: x + bodies.compliance * contact_force(bodies, x) - approach - grown,
+        delta * (1.0 + 1e-6),
+        2.0 * delta,
+    )
+    assert contact.delta_m == pytest.approx(snapped, rel=1e-9)
+    work = sum(energies(contact, bodies, contact.approach_m)) - before
+    corner = -bodies.compliance * (F_above - F) * (contact.F_m - F)
+    assert work == pytest.approx(grown * contact.F_m, abs=0.05 * corner)
+
+
+@pytest.mark.parametrize(("law", "velocity"), [("kogut_etsion", 0.02166925), ("mjg", 0.1582083)])
+def test_runs_that_met_a_jump_in_one_step_succeed(law, velocity):
+    beam = replace(TIMOSHENKO.beam, depth=0.014)
+    velocities = (velocity * (1.0 + 1e-8 * np.arange(20))).tolist()
+    runs = il.simulate_many(
+        replace(TIMOSHENKO, beam=beam, contact=law),
+        il.Discretisation(nodes=101),
+        duration="0.6 ms",
+        varied={"velocity": velocities},
+    )
+    assert not (runs.status & outputs.DIVERGED).any()
+    assert np.ptp(runs.peak_force.values) < 1e-5 * runs.peak_force[0]
 
 
 def test_without_poissons_effect_bending_adds_nothing():

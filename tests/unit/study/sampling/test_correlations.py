@@ -33,7 +33,7 @@ RANKS = {
 }
 GIVEN = [[*pair, rank] for pair, rank in RANKS.items()]
 PAWN = {"method": "pawn", "samples": 100, "correlations": GIVEN, "parameters": NUMBERS}
-OWN = {"sobol": {"base_samples": 8}, "morris": {"trajectories": 4}, "fast": {"samples": 65}}
+OWN = {"sobol": {"base_samples": 8}, "morris": {"trajectories": 4}, "fast": {"samples": 1188}}
 
 
 @pytest.fixture

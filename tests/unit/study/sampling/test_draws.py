@@ -20,6 +20,16 @@ def test_parameters_of_a_group_are_exchanged_together(sampled, cube):
         np.testing.assert_array_equal(mixed_b, np.where(swap, a, b))
 
 
+def test_every_replicate_of_a_sample_is_even_and_independent(sampled, cube):
+    """Of eight points, each is in one eighth of every dimension of A and of B."""
+    points = cube(sampled("sobol", base_samples=64)).reshape(64, -1, 3)[:, [0, -1]]
+    replicates = [points[place::8].reshape(8, 6) for place in range(8)]
+    for points in replicates:
+        np.testing.assert_array_equal(np.sort(np.floor(8 * points), axis=0).T, [range(8)] * 6)
+    orders = {tuple(np.floor(8 * points[:, 0])) for points in replicates}
+    assert len(orders) == 8
+
+
 def test_a_larger_grouped_sample_begins_with_the_smaller_one(sampled, cube):
     small, large = (cube(sampled("sobol", base_samples=n, groups=GROUPS)) for n in (16, 32))
     np.testing.assert_array_equal(large[: len(small)], small)
@@ -58,35 +68,32 @@ def spectra(draws):
     return np.abs(np.fft.rfft(draws - draws.mean(axis=0), axis=0))
 
 
-@pytest.mark.parametrize(("samples", "harmonics"), [(257, 4), (513, 6)])
-def test_each_parameter_has_the_high_frequency_in_its_curve_alone(
-    sampled, cube, samples, harmonics
+@pytest.mark.parametrize(("samples", "harmonics", "own"), [(1188, 4, 33), (2600, 6, 49)])
+def test_each_parameter_has_the_high_frequency_in_its_curves_alone(
+    sampled, cube, samples, harmonics, own
 ):
-    """Saltelli, Tarantola and Chan (1999): the others keep below 1/(2 M) of it."""
-    draws = cube(sampled("fast", samples=samples, harmonics=harmonics))
-    high = (samples - 1) // (2 * harmonics)
-    curves = np.split(draws, 4)
-    for at, curve in enumerate(curves):
-        loudest = spectra(curve).argmax(axis=0)
-        for parameter, frequency in enumerate(loudest):
-            if parameter == at:
-                assert frequency == high
-            else:
-                assert frequency <= high // (2 * harmonics)
+    """Saltelli, Tarantola and Chan (1999): the others keep below 1/(2 M) of it, each at its own.
+
+    The last curves are those of a dummy: what is found at the high frequency there is noise.
+    """
+    curves = cube(sampled("fast", samples=samples, harmonics=harmonics)).reshape(4, 4, -1, 3)
+    assert curves.shape[2] == (2 * harmonics + 1) * own
+    frequencies = np.array([[spectra(curve).argmax(axis=0) for curve in four] for four in curves])
+    high = frequencies == own
+    np.testing.assert_array_equal(
+        high, np.eye(4, 3, dtype=bool)[:, None] & np.ones((4, 4, 3), bool)
+    )
+    assert frequencies[~high].max() <= own // (2 * harmonics)
+    for curve in frequencies.reshape(-1, 3):
+        assert len(set(curve.tolist())) == 3
+    assert len({tuple(curve) for curve in frequencies[3].tolist()}) > 1  # drawn anew for each
 
 
-def test_the_last_curve_is_that_of_a_dummy(sampled, cube):
-    """In it no parameter has the high frequency, so that what is found there is noise."""
-    curves = np.split(cube(sampled("fast", samples=257)), 4)
-    assert (spectra(curves[3]).argmax(axis=0) <= 4).all()
-    assert [spectra(curve).argmax(axis=0).max() for curve in curves[:3]] == [32] * 3
-
-
-def test_each_curve_fills_the_ranges_evenly(sampled, cube):
-    for curve in np.split(cube(sampled("fast", samples=1025)), 4):
-        for column in curve.T:
-            counts, _ = np.histogram(column, bins=8, range=(0, 1))
-            assert counts.min() > 0.8 * 1025 / 8
+def test_curves_fill_the_ranges_evenly(sampled, cube):
+    draws = cube(sampled("fast", samples=1188))
+    for column in draws.T:
+        counts, _ = np.histogram(column, bins=8, range=(0, 1))
+        assert counts.min() > 0.8 * len(draws) / 8
 
 
 def test_every_stratum_of_every_parameter_is_met_once(sampled, cube):

@@ -14,7 +14,7 @@ from impactlab.study.sampling import METHODS
 SETTINGS = {
     "sobol": {"base_samples": 16, "second_order": False},
     "morris": {"trajectories": 12, "levels": 6},
-    "fast": {"samples": 65, "harmonics": 4},
+    "fast": {"samples": 1188, "harmonics": 4},
     "delta": {"samples": 64},
     "pawn": {"samples": 100},
     "regression": {"samples": 64},
@@ -52,7 +52,8 @@ def test_the_design_says_how_it_was_drawn(sampled, method):
     said = {key: sample.attrs[key] for key in ("method", "varied", "seed", *SETTINGS[method])}
     varied = ["velocity", "beam_depth", "gravity"]
     assert said == {"method": method, "varied": varied, "seed": 3} | SETTINGS[method]
-    assert {"confidence", "resamples", "failed_runs"} <= sample.attrs.keys()
+    spread = "replicates" if method == "sobol" else "resamples"
+    assert {"confidence", spread, "failed_runs"} <= sample.attrs.keys()
     assert not {"groups", "until", "until_interval", "parameters"} & sample.attrs.keys()
     assert sample["run"].values.tolist() == list(range(sample.sizes["run"]))
     assert sample["gravity"].attrs["distribution"] == "uniform"

@@ -83,7 +83,7 @@ def test_a_mistake_in_a_choice_is_one_problem_at_its_key(problems, text, given, 
 
 @pytest.mark.parametrize(
     ("method", "own"),
-    [("morris", {"trajectories": 4}), ("fast", {"samples": 65}), ("regression", {"samples": 64})],
+    [("morris", {"trajectories": 4}), ("fast", {"samples": 1188}), ("regression", {"samples": 64})],
 )
 def test_methods_that_need_an_order_refuse_words(problems, text, method, own):
     ((where, said),) = problems(text(method, **own))

@@ -15,12 +15,6 @@ from impactlab.variables import ANALYSES, NO_DISTRIBUTION
 UNIFORM = {"distribution": "uniform", "low": 1, "high": 2}
 
 
-def test_a_sample_of_one_parameter_is_refused(problems, sample):
-    ((where, said),) = problems(sample({"sampling.parameters": {"velocity": UNIFORM}}))
-    assert where == "sampling.parameters"
-    assert "varies 2 or more" in said
-
-
 def test_more_runs_than_possible_are_refused(problems, grid, sample):
     many = {"start": 1, "stop": 2, "number": 10_000}
     ((where, said),) = problems(grid({"sampling.parameters": {"velocity": many, "gravity": many}}))
@@ -123,7 +117,7 @@ def test_indices_over_time_need_stored_histories(problems, read, sample):
 
 @pytest.mark.parametrize("method", NO_DISTRIBUTION)
 def test_limits_need_runs_that_are_draws(problems, sampled, grid, method):
-    number = {"morris": {"trajectories": 8}, "fast": {"samples": 128}}
+    number = {"morris": {"trajectories": 8}, "fast": {"samples": 1188}}
     limits = {"limits": {"peak_force": "9 kN"}}
     study = json.loads(grid(limits) if method == "grid" else sampled(method, **number[method]))
     ((key, said),) = problems(json.dumps(study | limits))
@@ -225,3 +219,11 @@ def test_a_sample_has_no_solid(problems, sample):
     ((key, said),) = problems(sample(changes))
     assert key == "sampling.method"
     assert "method: grid" in said
+
+
+def test_corners_are_those_of_every_word(read, grid):
+    """The middle one, too, of which neither the alphabet nor the list has it first or last."""
+    laws = ["abbott_firestone", "jackson_green", "thornton"]
+    varied = {"contact": laws, "velocity": [2, 1, 3]}
+    bounds = read(grid({"sampling.parameters": varied})).sampling.bounds()
+    assert bounds == {"contact": tuple(laws), "velocity": (1, 3)}

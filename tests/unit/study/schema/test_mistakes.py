@@ -78,7 +78,7 @@ WRONG_IN_AXIS = [
 ]
 WRONG_IN_SAMPLE = [
     ("base_samples", 1000, "must be a power of two, such as 512 or 1024"),
-    ("base_samples", 1, "must be at least 2"),
+    ("base_samples", 2, "must be at least 4"),
     ("seed", -1, "must be at least 0"),
     ("seed", True, "expected a whole number"),
     ("second_order", 1, "expected true or false"),

@@ -14,8 +14,9 @@ RUNS = [
     ("sobol", {"base_samples": 16, "second_order": False}, 16 * (3 + 2)),
     ("morris", {"trajectories": 10}, 10 * (3 + 1)),
     ("morris", {"trajectories": 4, "levels": 6}, 4 * (3 + 1)),
-    ("fast", {"samples": 65}, 65 * (3 + 1)),
-    ("fast", {"samples": 145, "harmonics": 6}, 145 * (3 + 1)),
+    ("fast", {"samples": 1188}, 1188 * (3 + 1)),
+    ("fast", {"samples": 1259}, 1188 * (3 + 1)),  # whole periods, at an odd frequency
+    ("fast", {"samples": 2548, "harmonics": 6}, 2548 * (3 + 1)),
     ("delta", {"samples": 100}, 100),
     ("pawn", {"samples": 100}, 100),
     ("regression", {"samples": 100}, 100),
@@ -23,8 +24,9 @@ RUNS = [
 WRONG = [
     ("morris", {"trajectories": 1}, "trajectories", "must be at least 2"),
     ("morris", {"trajectories": 4, "levels": 5}, "levels", "must be even"),
-    ("fast", {"samples": 64}, "samples", "must be at least 65 (above 4 harmonics²)"),
-    ("fast", {"samples": 144, "harmonics": 6}, "samples", "must be at least 145"),
+    ("fast", {"samples": 65}, "samples", "must be at least 1,188 for 4 harmonics of 3 parameters"),
+    ("fast", {"samples": 2547, "harmonics": 6}, "samples", "must be at least 2,548"),
+    ("fast", {"samples": 9999, "harmonics": 3}, "harmonics", "must be at least 4"),
     ("delta", {"samples": 63}, "samples", "must be at least 64"),
     ("pawn", {"samples": 99}, "samples", "must be at least 100"),
     ("pawn", {"samples": 100, "base_samples": 8}, "base_samples", "unknown key; did you mean"),
@@ -36,7 +38,7 @@ WRONG = [
 def test_number_of_runs(read, sampled, method, given, runs):
     study = read(sampled(method, **given))
     assert (study.sampling.method, study.sampling.runs) == (method, runs)
-    assert study.size == f"{runs} runs"
+    assert study.size == f"{runs:,} runs"
     assert study.sampling.seed == 1
 
 
@@ -64,7 +66,7 @@ def test_morris_takes_no_distribution_without_ends(problems, read, sampled, give
     assert key == "sampling.parameters.sphere_mass.distribution"
     assert "has no ends" in said
     assert "truncated_normal" in said
-    assert read(sampled("fast", {"sphere_mass": given}, samples=65)).sampling.runs == 65 * 5
+    assert read(sampled("fast", {"sphere_mass": given}, samples=1476)).sampling.runs == 1476 * 5
 
 
 @pytest.mark.parametrize("method", sorted(METHODS.keys() - {"grid"}))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.figures import access, labels
 from impactlab.study import steps
 from impactlab.study.solvers.fingerprint import fingerprint
 from impactlab.study.solvers.own import TASKS
@@ -19,6 +20,9 @@ TABLE = object()
 
 def momentum(run):
     return SCALE * run.impulse
+
+
+MOMENTUM = il.Function(momentum, units="N s")
 
 
 def work(run):
@@ -79,10 +83,13 @@ def peak(run):
     return SCALE * run.peak_force
 
 
+PEAK = il.Function(peak, units="N")
+
+
 def test_the_discretisation_is_found_for_own_responses_as_for_ours():
     """One that returns the peak force has its values, uncertainty and recommendation."""
     found = {}
-    for name, given in {"own": {"peak": peak}, "ours": ["peak_force"]}.items():
+    for name, given in {"own": {"peak": PEAK}, "ours": ["peak_force"]}.items():
         auto = {"tolerance": "5 %", "responses": list(given)}
         study = impacts(
             title=name,
@@ -101,7 +108,7 @@ def test_the_discretisation_is_found_for_own_responses_as_for_ours():
 
 
 def test_own_responses_are_refined_as_ours():
-    given = {"own": {"peak": peak}, "ours": ["peak_force"]}
+    given = {"own": {"peak": PEAK}, "ours": ["peak_force"]}
     studies = [
         impacts(title=name, responses=each, duration="0.3 ms") for name, each in given.items()
     ]
@@ -122,7 +129,7 @@ def test_only_runs_of_a_beam_are_refined_and_only_responses_of_the_study_limited
         model.refine(workers=1)
     auto = {"auto": {"responses": ["peak_force"]}}
     with pytest.raises(il.StudyError, match=r"auto.responses: names peak_force, which `responses`"):
-        impacts(responses={"peak": peak}, discretisation=auto)
+        impacts(responses={"peak": PEAK}, discretisation=auto)
     with pytest.raises(il.StudyError, match="python_responses: are given beam runs, which"):
         impacts(
             responses={"peak": peak, "impulse": "impulse"},
@@ -146,6 +153,64 @@ def test_a_model_may_give_several_responses():
     assert runs.difference.values == pytest.approx(runs.a.values - runs.b.values)
 
 
+def units(x, load_2, time):
+    return {"energy": load_2 * x, "plastic_strain_of_it": time}
+
+
+@pytest.mark.parametrize("method", ["grid", "pawn"])
+def test_a_model_has_labels_and_units_of_its_own(method):
+    """Whatever its parameters are called; the function is given SI numbers."""
+    ends = {"x": ("1 mm", "2 mm"), "load_2": ("1 kN", "2 kN"), "time": ("1 ms", "2 ms")}
+    given = {"parameters": {name: il.Uniform(*each) for name, each in ends.items()}}
+    sampling = il.Pawn(samples=128, **given) if method == "pawn" else il.Grid(parameters=ends)
+    of = il.Function(units, units={"energy": "J", "plastic_strain_of_it": "s"})
+    responses = ["energy", "plastic_strain_of_it"]
+    study = il.Study(title="Units", function=of, responses=responses, sampling=sampling)
+    runs = study.run(workers=1)
+    assert [runs[name].attrs["units"] for name in (*ends, *responses)] == ["m", "N", "s", "J", "s"]
+    assert [runs[name].attrs["long_name"] for name in ends] == ["x", "load 2", "time"]
+    assert runs.x.min() >= 0.001
+    assert runs.x.max() <= 0.002
+    assert labels.display(runs.plastic_strain_of_it).symbol == "ms"
+    assert not access.failed(runs).any()
+    assert access.count(runs) == (128 if method == "pawn" else 8)
+    assert "comment" not in runs.x.attrs
+    shown, curves = (runs.isel(time=0), "load_2") if method == "grid" else (runs, None)
+    ax = il.plot.response(shown, "energy", x="x", hue=curves)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("X (mm)", "Energy (J)")
+
+
+@pytest.mark.parametrize(
+    ("name", "meaning"),
+    [
+        ("load", "place of the contact force"),
+        ("contact", "contact law"),
+        ("velocity", "impact velocity"),
+        ("nodes", "nodes along the span"),
+        ("run", "another variable"),
+        ("response", "another variable"),
+        ("status", "another variable"),
+    ],
+)
+def test_names_of_impacts_are_refused_before_anything_is_solved(name, meaning):
+    sampling = il.Grid(parameters={name: [1, 2], "b": [1, 2]})
+    with pytest.raises(il.StudyError, match=rf"^Study: sampling.parameters.{name} = .*{meaning}"):
+        il.Study(title="Taken", function=product, sampling=sampling)
+    with pytest.raises(il.StudyError, match=rf"^Study: responses.0 = .*{meaning}"):
+        il.Study(title="Taken", function=product, responses=[name], sampling=PLANE)
+
+
+@pytest.mark.parametrize("name", ["x", "b", "time", "duration", "name", "value", "model"])
+def test_other_names_are_as_good_as_any(name):
+    sampling = il.Grid(parameters={name: [1, 2], "a": [1, 2]})
+    call = eval(f"lambda a, {name}: a * {name}")
+    study = il.Study(title="Names", function=call, responses=["out"], sampling=sampling)
+    runs = study.run(workers=1)
+    assert (runs.out == runs.a * runs[name]).all()
+    assert runs[name].attrs == {"long_name": name, "units": "1"}
+    assert il.answers(runs, study.analyse())[0].endswith("out 1 to 4.")
+
+
 def test_grids_take_functions_too():
     sampling = il.Grid(parameters={"a": [1, 2, 3], "b": [0.5, 1.5]})
     runs = il.Study(title="Grid", function=product, sampling=sampling).run(workers=1)
@@ -166,21 +231,23 @@ def test_growing_samples_take_functions_too():
 
 def test_stored_answers_are_those_of_the_very_function(monkeypatch):
     """A changed global is noticed, an unchanged one solves nothing again."""
-    first = impacts(responses={"momentum": momentum}).run(workers=1)
+    first = impacts(responses={"momentum": MOMENTUM}).run(workers=1)
     with monkeypatch.context() as patch:
         patch.setattr("impactlab.study.execute.solved", None)  # which solves
-        again = impacts(responses={"momentum": momentum}).run(workers=1)
+        again = impacts(responses={"momentum": MOMENTUM}).run(workers=1)
     assert again.momentum.values.tobytes() == first.momentum.values.tobytes()
-    study = impacts(responses={"momentum": momentum})
+    study = impacts(responses={"momentum": MOMENTUM})
     monkeypatch.setitem(globals(), "SCALE", 2.0)
     with pytest.raises(ValueError, match=r"momentum@\w+: has changed since the study was built"):
         study.run(workers=1)
-    doubled = impacts(responses={"momentum": momentum}).run(workers=1)
+    with pytest.raises(ValueError, match="holds the results of another study"):
+        impacts(responses={"momentum": MOMENTUM}).run(workers=1)
+    doubled = impacts(responses={"momentum": MOMENTUM}).run(workers=1, replace=True)
     assert doubled.momentum.values == pytest.approx(2 * first.momentum.values, nan_ok=True)
 
 
 def test_tidying_up_leaves_runs_of_functions_alone(folder):
-    impacts(responses={"momentum": momentum}).run(workers=1)
+    impacts(responses={"momentum": MOMENTUM}).run(workers=1)
     (folder / "studies").mkdir()
     impacts().to_yaml("studies/other.yaml")
     with steps.removable(folder / "studies", folder / "results") as found:
@@ -233,6 +300,7 @@ def test_a_changed_helper_changes_the_fingerprint(monkeypatch):
         ({"own": inner(object())}, "responses.own: its variable factor is of type object, which"),
         ({"own": 3}, "responses.own: is of type int: expected a function"),
         ({"velocity": work}, "responses.velocity: cannot name a response: another variable"),
+        ({"peak_force": work}, "responses.peak_force: cannot name a response: another variable"),
         ({"two words": work}, "responses.two words: cannot name a response: use letters"),
     ],
 )
@@ -252,6 +320,7 @@ def test_a_version_of_ones_own_takes_the_place_of_the_fingerprint():
         (lambda run: run.force, "responses.own: raised AttributeError: .* no attribute 'force'"),
         (lambda run: run.contact_force, "responses.own: gave .*, not one real number"),
         (lambda run: "much", "responses.own: gave 'much', not one real number"),
+        (lambda run: run.peak_force**2, "own: gave an array in 'N', .* il.Function.*units='N'"),
     ],
 )
 def test_functions_that_fail_say_which_and_why(call, said):
@@ -260,7 +329,7 @@ def test_functions_that_fail_say_which_and_why(call, said):
 
 
 def test_a_study_of_functions_is_in_no_file():
-    study = impacts(responses={"momentum": momentum})
+    study = impacts(responses={"momentum": MOMENTUM})
     with pytest.raises(il.StudyError, match="cannot be written to a file"):
         study.to_yaml("own.yaml")
     (folder := study.folder).mkdir(parents=True)

@@ -1,0 +1,122 @@
+"""Regimes: ranges of a response with an empty range between them, and jumps along a grid.
+
+A response that jumps has no typical value: its mean may be a value that no run takes, and shares of
+its variance mostly tell how often it jumps.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from impactlab.analysis.distribution import draws
+from impactlab.analysis.responses import Sample, usable
+from impactlab.types import Floats
+
+FEWEST, SHARE = 5, 0.01
+"""Smallest number and share of the draws of a regime; fewer are outliers."""
+_GAP, _BESIDE = 0.5, 3.0
+"""Smallest gap: in standard deviations, and in widths of FEWEST draws on either side of it."""
+_CHANCE = 0.05
+"""Bound on the probability that a distribution with one mode shows such a gap."""
+_JUMP, _STEEP = 0.2, 5.0
+"""Smallest jump along a grid: in ranges of the values, and in slopes on either side of it."""
+
+
+def of_runs(runs: xr.Dataset, response: str) -> Floats:
+    """Return the middles of the gaps between the regimes of a response, in SI units, rising.
+
+    There are none where the runs are not a study's sample.
+    """
+    needed = {"method", "varied"} | (
+        {"base_samples"} if runs.attrs.get("method") == "sobol" else set()
+    )
+    if "run" not in runs.dims or not needed <= runs.attrs.keys():
+        return np.array([])
+    sample = Sample.of(runs.assign_attrs(responses=response))  # whatever else they lack
+    return of_sample(sample, usable(sample.runs, response).values[0])
+
+
+def of_sample(sample: Sample, outputs: Floats) -> Floats:
+    """Return the middles of the gaps between the regimes of a response of a sample.
+
+    outputs: (runs,), in the order of `run`. There are none in a Morris sample, whose levels leave
+    gaps of their own, nor where it is words that lead from one regime to the other.
+    """
+    if sample.settings["method"] == "morris":
+        return np.array([])
+    rows = draws(sample)
+    values = outputs[rows]
+    middles = cuts(values)
+    if not middles.size or not sample.words:
+        return middles
+    columns = np.stack([sample.column(name)[rows] for name in sample.words], axis=1)
+    _, groups = np.unique(columns, axis=0, return_inverse=True)
+    parts = [values[groups.ravel() == group] for group in range(groups.max() + 1)]
+    mixed = [
+        any(min((part < middle).sum(), (part > middle).sum()) >= FEWEST for part in parts)
+        for middle in middles
+    ]
+    return middles[mixed]
+
+
+def cuts(values: Floats) -> Floats:
+    """Return the middles of the gaps between the regimes of draws; empty for one regime.
+
+    values: (draws,), independent, in any unit, NaN where missing. Values that repeat, as whole
+    numbers do, have no regimes: their number is judged instead (SensitivityVerdict.JUMPS).
+
+    A density with one mode is in a gap no lower than it is on one of the two sides. There, m gaps
+    of draws are together narrower than the gap over c/m with a probability of at most
+    (1 + c/m)^-m, as of exponential variables; each of the gaps is allowed its part of _CHANCE.
+    """
+    ordered = np.sort(values[np.isfinite(values)])
+    fewest = max(FEWEST, int(np.ceil(SHARE * ordered.size)))
+    if ordered.size < 2 * fewest or _repeat(ordered):
+        return np.array([])
+    spread = np.clip(ordered, ordered[fewest - 1], ordered[-fewest]).std()
+    middles, parts = [], [ordered]
+    while parts:
+        part = parts.pop()
+        gaps = np.diff(part)[fewest - 1 : part.size - fewest]
+        for at in np.argsort(-gaps, kind="stable")[: np.count_nonzero(gaps > _GAP * spread)]:
+            size = fewest + int(at)  # of the lower regime
+            most = min(size, part.size - size) - 1
+            near, far = (
+                max(part[size - 1] - part[size - 1 - m], part[size + m] - part[size])
+                for m in (FEWEST - 1, most)
+            )
+            chance = (ordered.size / _CHANCE) ** (1 / most) - 1
+            if gaps[at] > max(_BESIDE * near, chance * far):
+                middles.append(part[size - 1] + gaps[at] / 2)
+                parts += [part[:size], part[size:]]
+                break
+    return np.sort(middles)
+
+
+def _repeat(values: Floats) -> bool:
+    """Return True if most values repeat, beside one value, such as zero, that many may share.
+
+    So do they where nine in ten share it (SensitivityVerdict.MOSTLY_CONSTANT).
+    """
+    counts = np.unique(values, return_counts=True)[1]
+    others = values.size - counts.max()
+    return bool(others <= 0.1 * values.size or 2 * (counts.size - 1) < others)
+
+
+def jumps(places: Floats, values: Floats) -> NDArray[np.int64]:
+    """Return the positions after which values jump along an axis.
+
+    places: (points,), rising; values: (points,), NaN where missing. A convex or concave curve is
+    nowhere steeper than on both sides, and never jumps.
+    """
+    finite = np.isfinite(values)
+    if np.count_nonzero(finite) < 4 or _repeat(values[finite]):
+        return np.array([], int)
+    steps = np.abs(np.diff(values))
+    slopes = steps / np.diff(places)
+    large = np.flatnonzero(steps[1:-1] > _JUMP * np.ptp(values[finite])) + 1
+    sides = ((slopes[max(at - 2, 0) : at], slopes[at + 1 : at + 3]) for at in large)
+    beside = np.array([np.concatenate(pair).max() for pair in sides])
+    return large[slopes[large] > _STEEP * beside]

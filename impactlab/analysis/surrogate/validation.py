@@ -1,0 +1,87 @@
+"""Errors of a surrogate: how much of the variance it predicts, and how its error grows outwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy  # its stats are loaded when first used
+from numpy.typing import NDArray
+
+from impactlab.analysis.surrogate.chaos import Chaos, basis
+from impactlab.types import Floats
+
+LEVEL = 0.95
+"""Confidence level of the errors and of Q²."""
+_GROWTHS = np.linspace(1.0, 4.0, 31)
+
+
+def predictivity(errors: Floats, values: Floats, block: NDArray[np.int64]) -> tuple[float, float]:
+    """Return Q² of runs that were left out, and the lower end of its interval.
+
+    errors, values, block: (runs,); runs of one block are near-copies. Q² is 1 less the mean squared
+    error over the variance. The interval takes the logarithm of their ratio as normal, with the
+    scatter of a jackknife over blocks: Efron and Tibshirani (1993), An Introduction to the
+    Bootstrap, section 11.5 (recalled, not read). One block more, off by the whole variance, is
+    added: few blocks do not show a rare regime. -inf where the values are all equal.
+    """
+    starts = np.flatnonzero(np.diff(block, prepend=-1))
+    square = np.add.reduceat(errors**2, starts)
+    spread = np.add.reduceat((values - values.mean()) ** 2, starts)
+    count = square.size
+    if spread.sum() <= 0 or count < 2:
+        return -np.inf, -np.inf
+    ratio = float(square.sum() / spread.sum())
+    with np.errstate(divide="ignore", invalid="ignore"):
+        without = np.log((square.sum() - square) / (spread.sum() - spread))
+        scatter = np.sqrt((count - 1) * np.var(without)) if ratio > 0 else 0.0
+    if not np.isfinite(scatter):  # all of the error, or of the variance, is in one block
+        return 1 - ratio, -np.inf
+    student = float(scipy.stats.t.ppf((1 + LEVEL) / 2, count - 1))
+    return 1 - ratio, float(1 - ratio * np.exp(student * scatter) - 1 / count)
+
+
+@dataclass(frozen=True)
+class ErrorModel:
+    """The error of a surrogate, which grows with the leverage of a point (see `leverage`).
+
+    error: half-width of the interval of a prediction where the leverage is 1, in the response's
+    unit. growth: power of the leverage that the squared error grows with. reach: highest leverage
+    of a run that was left out.
+    """
+
+    error: float
+    growth: float
+    reach: float
+
+    @classmethod
+    def of(cls, leverages: Floats, errors: Floats) -> ErrorModel:
+        """Return the model of errors at runs that were left out, both (runs,).
+
+        The growth is the largest that the likelihood of normal errors does not exclude, and 1 at
+        least, as of a least-squares fit; the error is the quantile of the errors, each over its
+        leverage to that power, that holds the share LEVEL of further ones: Lei et al. (2018), J.
+        Am. Stat. Assoc. 113, 1094, section 5.2 (recalled, not read).
+        """
+        scaled = errors**2 / leverages ** _GROWTHS[:, np.newaxis]
+        mean = np.maximum(scaled.mean(axis=1), np.finfo(float).tiny)
+        likelihood = -(_GROWTHS * np.log(leverages).sum() + errors.size * np.log(mean)) / 2
+        threshold = likelihood.max() - scipy.stats.chi2.ppf(LEVEL, 1) / 2
+        at = int(np.flatnonzero(likelihood >= threshold)[-1])
+        ranked = np.sort(np.sqrt(scaled[at]))
+        rank = min(int(np.ceil(LEVEL * (errors.size + 1))), errors.size)
+        return cls(float(ranked[rank - 1]), float(_GROWTHS[at]), float(leverages.max()))
+
+    def variables(self) -> dict[str, Any]:
+        """Return the fields by their names in an analysis."""
+        return {"error": self.error, "error_growth": self.growth, "reach": self.reach}
+
+
+def leverage(chaos: Chaos, inputs: Floats) -> Floats:
+    """Return the mean square of the terms at points, (points, parameters) to (points,).
+
+    It is 1 on average over the distributions, and large at the ends of ranges and in corners: the
+    terms that a fit lacks, and the errors of those that it has, grow as its terms do.
+    """
+    return np.asarray((basis(inputs, chaos.degrees, chaos.polynomials) ** 2).mean(axis=0))
