@@ -92,7 +92,7 @@ bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
 	$(IN_VENV) python tests/benchmarks/schemes.py
-	$(IN_VENV) python tests/benchmarks/coverage.py
+	$(IN_VENV) python tests/benchmarks/sobol_coverage.py
 
 scaling: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/scaling.py $(SCALING_ARGS)

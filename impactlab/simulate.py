@@ -80,16 +80,29 @@ def simulate(
     >>> f"{run.peak_force.item() / 1e3:.0f} kN, {run.contact_force.sizes['time']} times"
     '24 kN, 2001 times'
     """
-    import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
-
-    duration = _seconds(duration)
-    grid = (discretisation or Discretisation()).resolved([impact.beam_model])
+    seconds = _seconds(duration)
+    grid = discretisation or Discretisation()
     samples = integer("simulate", "samples", samples, 2)
     _warn(numbers(impact, grid))
-    cases = case_table(impact, grid, duration=duration)
-    answers = solve(cases, samples=samples, profiles=True)
-    if message := too_short(cases[0], int(answers["status"][0])):
-        warnings.warn(message, TooShortWarning, stacklevel=2)
+    run = run_dataset(impact, grid, duration=seconds, samples=samples)
+    if int(run["status"]):
+        case = case_table(impact, grid, duration=seconds)[0]
+        if message := too_short(case, int(run["status"])):
+            warnings.warn(message, TooShortWarning, stacklevel=2)
+    return run
+
+
+def run_dataset(
+    impact: Impact, discretisation: Discretisation, *, duration: float, samples: int = 2001
+) -> xr.Dataset:
+    """Return what `simulate` returns, whatever the values and the duration (in s) may be.
+
+    For checks, which scale units, and for runs that end early on purpose.
+    """
+    import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
+
+    grid = discretisation.resolved([impact.beam_model])
+    answers = solve(case_table(impact, grid, duration=duration), samples=samples, profiles=True)
     times = {"time": np.linspace(0.0, duration, samples)}
     dataset = xr.Dataset(
         answer_variables(answers, tuple(RESPONSES), ()),

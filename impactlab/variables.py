@@ -82,31 +82,31 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "the contact law left a bulge: the permanent indentation is below zero",
     ),
     "yield_ratio_outside_data": (
-        outputs.OUTSIDE_YIELD_RATIO,
+        outputs.YIELD_RATIO_OUTSIDE_DATA,
         "E*/S_y is outside 300 to 660, the data of the contact law: dents may be off by 3 to 6 %",
     ),
     "poissons_ratio_outside_data": (
-        outputs.OUTSIDE_POISSONS_RATIO,
+        outputs.POISSONS_RATIO_OUTSIDE_DATA,
         "the beam's Poisson's ratio is outside 0.22 to 0.36, where the data of the contact law "
         "hold: dents may be off by 5 to 6 %",
     ),
     "hardening_outside_data": (
-        outputs.OUTSIDE_HARDENING,
+        outputs.HARDENING_OUTSIDE_DATA,
         "the beam's hardening modulus is above 0.004 of its Young's modulus, and the contact law "
         "has none: dents may be off by 11 %, forces by 5 %",
     ),
     "sphere_yield_outside_data": (
-        outputs.OUTSIDE_SPHERE_YIELD,
+        outputs.SPHERE_YIELD_OUTSIDE_DATA,
         "the sphere's yield stress is below 1.7 times the beam's, and the sphere of the contact "
         "law does not yield: dents may be off by 11 %, forces by 4 %",
     ),
     "stiffness_ratio_outside_data": (
-        outputs.OUTSIDE_STIFFNESS_RATIO,
+        outputs.STIFFNESS_RATIO_OUTSIDE_DATA,
         "the sphere's Young's modulus is outside 0.7 to 1.8 times the beam's, where the data of "
         "the contact law hold: dents may be off by 4 to 7 %",
     ),
     "contact_circle_outside_data": (
-        outputs.OUTSIDE_CONTACT_CIRCLE,
+        outputs.CONTACT_CIRCLE_OUTSIDE_DATA,
         "the contact radius is above 0.4 of half the beam's depth, where the data of compliance "
         "and prestress end: forces and indentations may be off by 3 to 4 % from 0.6 on, or where "
         "the beam itself yields",

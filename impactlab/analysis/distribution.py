@@ -35,10 +35,9 @@ PROBABILITIES = (0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99)
 class DistributionVerdict(Verdict):
     """Verdicts on mean, standard deviation and quantiles of a response."""
 
-    USABLE = 0, True, "every draw has an answer"
-    MISSING = 1, True, "draws are missing, no more often at one value of a parameter than another"
+    USABLE = True, "every draw has an answer"
+    MISSING = True, "draws are missing, no more often at one value of a parameter than another"
     SELECTED = (
-        2,
         False,
         "draws are missing more often at some values of a parameter: mean, standard deviation and "
         "quantiles are those of the others, and biased",

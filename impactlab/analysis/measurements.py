@@ -55,10 +55,10 @@ class Measurement:
 class Agreement(Verdict):
     """Verdicts on a measurement beside the model."""
 
-    COMPATIBLE = 0, True, "the difference is within the combined uncertainty"
-    INCOMPATIBLE = 1, False, "the difference exceeds the combined uncertainty"
-    NOT_JUDGED = 2, False, "there is no run, no answer, or no bound of its numerical error"
-    OTHER_IMPACT = 3, False, "the measurement is of another impact than the study's"
+    COMPATIBLE = True, "the difference is within the combined uncertainty"
+    INCOMPATIBLE = False, "the difference exceeds the combined uncertainty"
+    NOT_JUDGED = False, "there is no run, no answer, or no bound of its numerical error"
+    OTHER_IMPACT = False, "the measurement is of another impact than the study's"
 
 
 @dataclass(frozen=True)

@@ -35,9 +35,9 @@ _BOUND = "2 e sqrt(S) + e^2 of an index S, with e^2 the numerical_share"
 class NumericalFrom(Verdict):
     """The basis of the numerical uncertainty of a response's indices."""
 
-    MEASURED = 0, True, "the change of the indices themselves on finer grids"
-    BOUND = 1, True, "a cautious bound from the error of the response in corner cases"
-    NOTHING = 2, False, "nothing tells what the discretisation does to the indices"
+    MEASURED = True, "the change of the indices themselves on finer grids"
+    BOUND = True, "a cautious bound from the error of the response in corner cases"
+    NOTHING = False, "nothing tells what the discretisation does to the indices"
 
 
 def numerical(

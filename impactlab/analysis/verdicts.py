@@ -16,7 +16,7 @@ ROUND_OFF = 1e-9
 
 
 class Verdict(IntEnum):
-    """A flag with its meaning; values rise from best to worst, so that the worst is the maximum.
+    """A flag with its meaning, numbered from 0: from best to worst, so the worst is the maximum.
 
     sound: whether numbers under this verdict need no warning beside them.
     """
@@ -24,10 +24,10 @@ class Verdict(IntEnum):
     sound: bool
     meaning: str
 
-    def __new__(cls, value: int, sound: bool, meaning: str) -> Self:
-        """Make a member from its flag value, soundness and meaning."""
-        member = int.__new__(cls, value)
-        member._value_ = value
+    def __new__(cls, sound: bool, meaning: str) -> Self:
+        """Make a member from its soundness and meaning."""
+        member = int.__new__(cls, len(cls.__members__))
+        member._value_ = len(cls.__members__)
         member.sound = sound
         member.meaning = meaning
         return member

@@ -25,7 +25,7 @@ from impactlab.figures.labels import display
 from impactlab.files import opened, replaced, write_netcdf
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import SOLID, Impact
-from impactlab.simulate import simulate
+from impactlab.simulate import run_dataset
 from impactlab.variables import RESPONSES, UNLIKE, attributes, reasons, status_bits
 
 _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")
@@ -83,7 +83,7 @@ def simulate_beams(impact: Impact, discretisation: Discretisation, duration: flo
     """
     grid = replace(discretisation, scheme="leapfrog")
     runs = [
-        simulate(replace(impact, beam_model=model), grid, duration=duration) for model in MODELS
+        run_dataset(replace(impact, beam_model=model), grid, duration=duration) for model in MODELS
     ]
     return xr.concat(runs, "beam_model", combine_attrs="override")
 

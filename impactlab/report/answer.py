@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from math import isfinite
 
 import numpy as np
 import xarray as xr
@@ -120,7 +121,12 @@ def _verification(findings: xr.Dataset) -> list[Entry]:
     for outcome in (bad or closest)[: LINES - 1]:
         worst, text = outcome.worst, outcome.reason or "it compared nothing"
         if worst and not outcome.reason:
-            text = f"largest error {labels.percent(worst.ratio)} of its tolerance"
+            many = (
+                f"{labels.percent(worst.ratio)} of"
+                if isfinite(worst.ratio)
+                else "infinitely many times"
+            )
+            text = f"largest error {many} its tolerance"
             text += f", {worst.quantity}, {worst.where}"
         found.append((outcome.title, text))
     return found

@@ -26,20 +26,20 @@ from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import limit, radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.outputs import (
+    CONTACT_CIRCLE_OUTSIDE_DATA,
     CONTACT_CREATED_ENERGY,
     CONTACT_LEFT_A_BULGE,
     DEFLECTION_STILL_GROWING,
     FIRST_CONTACT_UNFINISHED,
+    HARDENING_OUTSIDE_DATA,
     IN_CONTACT_AT_END,
     INDENTATION_STILL_GROWING,
-    OUTSIDE_CONTACT_CIRCLE,
     OUTSIDE_CONTACT_LAW,
-    OUTSIDE_HARDENING,
-    OUTSIDE_POISSONS_RATIO,
-    OUTSIDE_SPHERE_YIELD,
-    OUTSIDE_STIFFNESS_RATIO,
-    OUTSIDE_YIELD_RATIO,
+    POISSONS_RATIO_OUTSIDE_DATA,
     SPHERE_NOT_LEAVING,
+    SPHERE_YIELD_OUTSIDE_DATA,
+    STIFFNESS_RATIO_OUTSIDE_DATA,
+    YIELD_RATIO_OUTSIDE_DATA,
 )
 from impactlab.solver.types import Array, Record
 
@@ -97,22 +97,22 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     if corrected or pair.compliance != 0.0:
         a = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
         if a > LARGEST_CIRCLE * 0.5 * case.beam_depth:
-            answer.remarks |= OUTSIDE_CONTACT_CIRCLE
+            answer.remarks |= CONTACT_CIRCLE_OUTSIDE_DATA
     yields = contact.delta_m > yield_indentation(pair.E, pair.R, pair.S_y)
     if not (yields and (corrected or pair.law == _FINITE_ELEMENT)):
         return
     if not LEAST_RATIO <= pair.E / pair.S_y <= LARGEST_RATIO:
-        answer.remarks |= OUTSIDE_YIELD_RATIO
+        answer.remarks |= YIELD_RATIO_OUTSIDE_DATA
     if not LEAST_POISSONS_RATIO <= case.beam_poissons_ratio <= LARGEST_POISSONS_RATIO:
-        answer.remarks |= OUTSIDE_POISSONS_RATIO
+        answer.remarks |= POISSONS_RATIO_OUTSIDE_DATA
     hardening = case.beam_isotropic_hardening_modulus + case.beam_kinematic_hardening_modulus
     if hardening > LARGEST_HARDENING * case.beam_youngs_modulus:
-        answer.remarks |= OUTSIDE_HARDENING
+        answer.remarks |= HARDENING_OUTSIDE_DATA
     if case.sphere_yield_stress < LEAST_HARDNESS * pair.S_y:
-        answer.remarks |= OUTSIDE_SPHERE_YIELD
+        answer.remarks |= SPHERE_YIELD_OUTSIDE_DATA
     stiffness = case.sphere_youngs_modulus / case.beam_youngs_modulus
     if not LEAST_STIFFNESS <= stiffness <= LARGEST_STIFFNESS:
-        answer.remarks |= OUTSIDE_STIFFNESS_RATIO
+        answer.remarks |= STIFFNESS_RATIO_OUTSIDE_DATA
 
 
 @compiled

@@ -9,7 +9,7 @@ import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, paper_impact
-from impactlab.simulate import simulate
+from impactlab.simulate import run_dataset
 from impactlab.verification.cases import elastic, slimmer
 from impactlab.verification.comparisons import Comparisons, rms_error
 from impactlab.verification.finding import Curve, Finding, Panel, check
@@ -43,7 +43,7 @@ def infinite_beam() -> Finding:
     sphere = replace(impact.sphere, radius=0.005)
     impact = replace(impact, sphere=sphere, beam=beam, gravity=0.0)
     grids = [Discretisation(nodes=nodes, points=3) for nodes in LONG_NODES]
-    runs = [simulate(impact, grid, duration=IMPULSE_DURATION) for grid in grids]
+    runs = [run_dataset(impact, grid, duration=IMPULSE_DURATION) for grid in grids]
     errors = []
     for run in runs:
         expected = closed.deflection_under_force(beam, run.time.values, run.contact_force.values)
@@ -130,7 +130,7 @@ def slender_limit() -> Finding:
     duration, slenderness = 0.4e-3, (1, 2, 4, 8, 16)  # over that of the paper's beam
     family = [replace(slimmer(impact, times), beam_model="timoshenko") for times in slenderness]
     bare, *runs = (
-        simulate(each, grid, duration=duration, samples=401)
+        run_dataset(each, grid, duration=duration, samples=401)
         for each in (replace(impact, beam_model="elastic"), *family)
     )
     one, other = modal.solve_timoshenko(impact, duration), modal.solve(impact, duration)

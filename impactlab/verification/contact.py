@@ -12,7 +12,7 @@ import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.simulate import simulate
+from impactlab.simulate import run_dataset
 from impactlab.verification.cases import Case, elastic, rigid_backed
 from impactlab.verification.comparisons import Comparisons
 from impactlab.verification.finding import Curve, Finding, Panel, check
@@ -32,7 +32,7 @@ _VELOCITY, _RESTITUTION = ("velocity", "m s-1"), ("coefficient of restitution", 
 def half_space() -> Finding:
     """Compare peak force, largest indentation, contact duration and restitution."""
     impact = rigid_backed(0.99, "hertz")
-    run = simulate(impact, _GRID, duration=0.4e-3)
+    run = run_dataset(impact, _GRID, duration=0.4e-3)
     found = Comparisons("the paper's sphere at 0.99 m/s")
     return Finding(found.responses(run, _hertzian(impact), 2e-5))
 
@@ -96,7 +96,7 @@ def contact_laws() -> Finding:
             # Until the sphere has left: at most Hertz's contact time and that of full plasticity.
             duration = 0.5e-3 * (DRAWN / velocity) ** 0.2 + 0.2e-3
             impact = rigid_backed(velocity, name)
-            run = runs[velocity] = simulate(impact, _GRID, duration=duration, samples=401)
+            run = runs[velocity] = run_dataset(impact, _GRID, duration=duration, samples=401)
             where = f"{name}, {velocity:.3g} m/s"
             table.append(_compare_law(where, velocity, run, law, mass))
         found.worst(table)
@@ -183,7 +183,7 @@ def spring_mass() -> Finding:
 def _run_spring_mass(impact: Impact, duration: float, courant: float = 0.5) -> xr.Dataset:
     grid = Discretisation(nodes=_NODES, points=3, courant=courant)
     model = replace(impact, beam_model="spring_mass")
-    return simulate(model, grid, duration=duration, samples=_SAMPLES)
+    return run_dataset(model, grid, duration=duration, samples=_SAMPLES)
 
 
 def _compare_spring_mass(where: str, impact: Impact, duration: float) -> Comparisons:
@@ -254,4 +254,4 @@ def _run_rigid_beam(impact: Impact, samples: int = 2) -> xr.Dataset:
     """Solve on a rigid beam until the sphere has left."""
     model, grid = replace(impact, beam_model="rigid"), Discretisation(nodes=11, points=3)
     duration = 2.0 * hertz.contact_duration(*hertz.arguments(impact))
-    return simulate(model, grid, duration=duration, samples=samples)
+    return run_dataset(model, grid, duration=duration, samples=samples)

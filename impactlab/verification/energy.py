@@ -12,7 +12,7 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import Value, with_values
-from impactlab.simulate import simulate
+from impactlab.simulate import run_dataset
 from impactlab.solver import RULES
 from impactlab.types import Floats
 from impactlab.variables import WARNINGS
@@ -62,7 +62,7 @@ def audit(impact: Impact, grid: Discretisation, duration: float) -> Audit:
     dt = float(np.nextafter(single, np.float32(0.0)))
     steps = round(duration / dt)
     duration = dt * steps
-    run = simulate(impact, grid, duration=duration, samples=steps + 1)
+    run = run_dataset(impact, grid, duration=duration, samples=steps + 1)
     mass, gravity = impact.sphere.total_mass, impact.gravity
     force, time = run.contact_force.values, run.time.values
     impulse = float(np.trapezoid(force, time))
@@ -71,7 +71,7 @@ def audit(impact: Impact, grid: Discretisation, duration: float) -> Audit:
     fallen, last = run.sphere_displacement.values, float(time[-1] - time[-2])
     earlier = float((fallen[-1] - fallen[-2]) / last)
     later = earlier + last * (gravity - float(force[-1]) / mass)
-    ends = [simulate(impact, grid, duration=duration + s, samples=2) for s in (-dt, dt)]
+    ends = [run_dataset(impact, grid, duration=duration + s, samples=2) for s in (-dt, dt)]
     before, here, after = (each.deflection.values for each in (ends[0], run, ends[1]))
     bend = _bend_modes if grid.scheme == "modal" else _bend_differences
     curvature, momentum = bend(impact, grid, dt, here, (here - before) / dt)

@@ -15,7 +15,7 @@ from impactlab.model.contact_compliance import axis_compliance, contact_stress, 
 from impactlab.model.contact_compliance import contact_compliance as local
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.simulate import simulate
+from impactlab.simulate import run_dataset
 from impactlab.types import Floats
 from impactlab.verification.cases import elastic
 from impactlab.verification.comparisons import Comparison, Comparisons
@@ -74,7 +74,7 @@ def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> 
             contact_compliance=option,
         )
         grid = Discretisation(nodes=nodes, points=3)
-        run = simulate(ours, grid, duration=LONGER, samples=SAMPLES)
+        run = run_dataset(ours, grid, duration=LONGER, samples=SAMPLES)
         exact, beside = (_series(replace(ours, contact_compliance=o)) for o in (option, other[0]))
         table, time = Comparisons(f"{velocity:g} m/s, {nodes} nodes"), run.time.values
         force = exact.at("contact_force", time)
@@ -143,7 +143,7 @@ def contact_prestress() -> Finding:
     impact = replace(impact, beam_model="timoshenko", contact_prestress="bending")
     grid, found = Discretisation(nodes=201), Comparisons("5 m/s, 201 nodes")
     run, plain = (
-        simulate(each, grid, duration=0.2e-3, samples=2001)
+        run_dataset(each, grid, duration=0.2e-3, samples=2001)
         for each in (impact, replace(impact, contact_prestress="ignored"))
     )
     expected = _prestressed(impact, run)
@@ -215,7 +215,7 @@ def contact_patch() -> Finding:
         impact = replace(elastic(paper_impact(VELOCITY)), beam_model=model, load="contact_patch")
         impact = replace(impact, contact_compliance=compliance)
         grid = Discretisation(nodes=nodes, points=3, scheme=scheme)
-        run = simulate(impact, grid, duration=DURATION, samples=STEPS + 1)
+        run = run_dataset(impact, grid, duration=DURATION, samples=STEPS + 1)
         theory = beam_modes.timoshenko_odd_modes if model == "timoshenko" else beam_modes.odd_modes
         modes = theory(impact.beam, MODES)
         deflection, bent, ahead = _under_pressure(modes, impact, run)
@@ -231,7 +231,7 @@ def contact_patch() -> Finding:
         table.curve("the law's own indentation", "m", law.values, hertzian, 2e-3)
         found += table.absolute("energy error", "1", run.energy_error.item(), 0.0, 2e-5)
         if not panels:
-            point = simulate(
+            point = run_dataset(
                 replace(impact, load="point"), grid, duration=DURATION, samples=STEPS + 1
             )
             time = run.time.values

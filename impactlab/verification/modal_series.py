@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.simulate import simulate
+from impactlab.simulate import run_dataset
 from impactlab.types import Floats
 from impactlab.verification.cases import Case, aluminium_impact, elastic, timoshenko_impact
 from impactlab.verification.comparisons import Comparison, Comparisons, rms_error
@@ -97,7 +97,7 @@ def _run(impact: Impact, key: GridKey, duration: float) -> xr.Dataset:
     scheme, nodes = key
     # 3 points are exact while elastic
     grid = Discretisation(nodes=nodes, points=3, scheme=scheme)
-    return simulate(impact, grid, duration=duration, samples=401)
+    return run_dataset(impact, grid, duration=duration, samples=401)
 
 
 def _compare(
@@ -239,7 +239,7 @@ def sub_impacts() -> Finding:
     ):
         series = solve(impact, duration)
         grid = Discretisation(nodes=801, points=3)
-        run = simulate(impact, grid, duration=duration, samples=4001)
+        run = run_dataset(impact, grid, duration=duration, samples=4001)
         found += _compare_contacts(where, run, series)
         time = run.time.values
         curves = [

@@ -10,7 +10,7 @@ import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
-from impactlab.simulate import case_table, simulate
+from impactlab.simulate import case_table, run_dataset
 from impactlab.solver import RULES, section
 from impactlab.types import Floats
 from impactlab.variables import HISTORIES
@@ -105,7 +105,7 @@ def static_deflection() -> Finding:
     found: list[Comparison] = []
     panels: list[Panel] = []
     for rule, points in (("lobatto", 9), ("lobatto", 2), ("layers", 5)):
-        run = simulate(impact, Discretisation(nodes=101, points=points, rule=rule), duration=1.2)
+        run = run_dataset(impact, Discretisation(nodes=101, points=points, rule=rule), duration=1.2)
         positions, weights = quadrature.rule(rule, points)
         # The rule's second moment of area over the exact one.
         force = run.contact_force.values / float(1.5 * np.sum(weights * positions**2))
@@ -121,7 +121,7 @@ def static_deflection() -> Finding:
     beam = replace(beam, span=0.25 * beam.span)
     impact = _slow_impact(beam, mass=8e4, velocity=0.24, softness=50e-3)
     grid = Discretisation(nodes=101, points=3)
-    run = simulate(replace(impact, beam_model="timoshenko"), grid, duration=0.1)
+    run = run_dataset(replace(impact, beam_model="timoshenko"), grid, duration=0.1)
     force = run.contact_force.values
     softness = bending.static_deflection(beam, 1.0) + beam_modes.shear_deflection(beam, 1.0)
     expected = force * softness
@@ -203,7 +203,7 @@ def _run_collapse(beam: Beam, rule: str, points: int) -> xr.Dataset:
     """Solve over 1 s, 107 periods: the striker stops, and has left after 0.86 s."""
     impact = _slow_impact(beam, mass=4e4, velocity=0.2, softness=20e-3)
     grid = Discretisation(nodes=101, points=points, rule=rule)
-    return simulate(impact, grid, duration=1.0, samples=4001)
+    return run_dataset(impact, grid, duration=1.0, samples=4001)
 
 
 def _on_loading(run: xr.Dataset) -> tuple[Floats, Floats]:
@@ -274,7 +274,7 @@ def _struck(mass_ratio: float, energy_ratio: float) -> tuple[Impact, xr.Dataset]
     slow = replace(paper, sphere=replace(paper.sphere, mass=mass), gravity=0.0)
     impact = replace(slow, velocity=math.sqrt(energy_ratio / collapse.energy_ratio(slow)))
     duration = 1.3 * collapse.mode_duration(impact) + 5e-3
-    return impact, simulate(impact, _MODE_GRID, duration=duration, samples=4001)
+    return impact, run_dataset(impact, _MODE_GRID, duration=duration, samples=4001)
 
 
 def _permanent_deflection(run: xr.Dataset) -> float:
@@ -318,7 +318,7 @@ def fibre_elements() -> Finding:
         for scheme, nodes in (("leapfrog", 401), ("modal", 201)):
             table = Comparisons(f"{scheme}: {name}")
             grid = Discretisation(nodes=nodes, scheme=scheme)
-            run = simulate(impact, grid, duration=STRUCK_DURATION, samples=STEPS + 1)
+            run = run_dataset(impact, grid, duration=STRUCK_DURATION, samples=STEPS + 1)
             for variable, tolerance in FIBRE_TOLERANCES.items():
                 theirs = getattr(exact, variable)
                 if variable in HISTORIES:

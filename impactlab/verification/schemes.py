@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.simulate import simulate, simulate_many
+from impactlab.simulate import run_dataset, simulate_many
 from impactlab.solver import RULES, SCHEMES
 from impactlab.types import Floats
 from impactlab.verification.cases import discretised, elastic, with_beam_material
@@ -63,7 +63,7 @@ class Case:
         # Half a step of margin, because the kernels round up.
         courant = self.duration / ((steps - 0.5) * self.critical_step(grid))
         chosen = replace(grid, courant=courant)
-        return simulate(self.impact, chosen, duration=self.duration, samples=samples)
+        return run_dataset(self.impact, chosen, duration=self.duration, samples=samples)
 
     def critical_step(self, grid: Discretisation) -> float:
         """Return the scheme's largest time step in s."""
@@ -212,7 +212,7 @@ def schemes() -> Finding:
 
 def _run(impact: Impact, scheme: str, nodes: int) -> xr.Dataset:
     grid = Discretisation(nodes=nodes, scheme=scheme)
-    return simulate(impact, grid, duration=DURATION, samples=401)
+    return run_dataset(impact, grid, duration=DURATION, samples=401)
 
 
 def _yielding(impact: Impact, fine: xr.Dataset) -> list[Comparison]:

@@ -9,7 +9,7 @@ import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.simulate import case_table, simulate
+from impactlab.simulate import case_table, run_dataset
 from impactlab.solver.section import bend_at_rate, make_section
 from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.types import Floats
@@ -90,4 +90,4 @@ def _contacts(impact: Impact) -> list[Comparison]:
 
 def _run(impact: Impact, scheme: str) -> xr.Dataset:
     grid = Discretisation(nodes=201, points=9, scheme=scheme)
-    return simulate(replace(impact, load="contact_patch"), grid, duration=1e-3, samples=2)
+    return run_dataset(replace(impact, load="contact_patch"), grid, duration=1e-3, samples=2)

@@ -13,7 +13,7 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
-from impactlab.simulate import case_table, simulate
+from impactlab.simulate import case_table, run_dataset
 from impactlab.solver.beam import make_beam, move_virgin, strike
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, force, make_pair
@@ -66,7 +66,7 @@ class Scale:
             if PARAMETERS[name].units != "1" and not isinstance(value, str)
         }
         scaled, _ = with_values(impact, grid, values)
-        return simulate(scaled, grid, duration=2e-3 * self.factor("s"))
+        return run_dataset(scaled, grid, duration=2e-3 * self.factor("s"))
 
 
 UNSCALED = Scale(1.0, 1.0, 1.0)
@@ -245,7 +245,7 @@ def time_reversal() -> Finding:
         march.turn()
         back = np.array([march.step() for _ in range(steps)])[::-1]
         march.turn()
-        solver = simulate(impact, grid, duration=duration, samples=steps + 1)
+        solver = run_dataset(impact, grid, duration=duration, samples=steps + 1)
         time, newtons = solver.time.values, solver.contact_force.values
         where = f"{grid.scheme}: the paper's case, elastic, {steps} steps there and back"
         table = Comparisons(where)

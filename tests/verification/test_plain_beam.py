@@ -18,7 +18,7 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.model.parameters import with_values
-from impactlab.simulate import case_table
+from impactlab.simulate import case_table, run_dataset
 from impactlab.solver import RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import make_pair
@@ -94,7 +94,7 @@ class Case(NamedTuple):
 
     def kernels(self) -> xr.Dataset:
         """Solve with the kernels, one sample per step."""
-        return il.simulate(self.impact, self.grid, duration=self.duration, samples=self.steps + 1)
+        return run_dataset(self.impact, self.grid, duration=self.duration, samples=self.steps + 1)
 
 
 def make_case(values: dict[str, Any], steps: int) -> Case:

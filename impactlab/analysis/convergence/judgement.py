@@ -35,39 +35,34 @@ from impactlab.types import Floats
 class How(Verdict):
     """The basis of an uncertainty, the best first; sound where it is more than a precaution."""
 
-    ROUND_OFF = 0, True, "all grids agree to 1e-9"
+    ROUND_OFF = True, "all grids agree to 1e-9"
     GCI = (
-        1,
         True,
         "grid convergence index, three grids of credible order; between 1 and 2 the error of both "
         "orders together, if that is larger",
     )
     GCI_AND_FIT = (
-        2,
         True,
         "the larger of the grid convergence index and the least-squares fit over all grids",
     )
     FIT = (
-        3,
         True,
         "least-squares fit over all grids, at least three times the range of the three finest, "
         "which show no credible order",
     )
     RANGE = (
-        4,
         True,
         "the range of three grids that show no order and no drift: three times it, more where the "
         "coarsest spacing is less than about three times the finest",
     )
     NARROW = (
-        5,
         True,
         "the coarsest spacing is less than twice the finest: the largest error of first and second "
         "order that can turn within the range of the values",
     )
-    TWO_GRIDS = 6, False, "two grids: first order is assumed, factor 3"
-    SLOW_DRIFT = 7, False, "all values move one way, at an order below 0.5: factor 3 on that order"
-    NOTHING = 8, False, "one grid, or a drift that does not slow down: nothing bounds the error"
+    TWO_GRIDS = False, "two grids: first order is assumed, factor 3"
+    SLOW_DRIFT = False, "all values move one way, at an order below 0.5: factor 3 on that order"
+    NOTHING = False, "one grid, or a drift that does not slow down: nothing bounds the error"
 
 
 NARROW = 2.0 * (1.0 - ROUND_OFF)
@@ -144,32 +139,29 @@ VANISHING = 0.1
 class AxisVerdict(Verdict):
     """The effect of refinement on one response at one point of the rest of the grid."""
 
-    AT_ROUND_OFF = 0, True, "the three finest grids agree to 1e-9: nothing left to converge"
+    AT_ROUND_OFF = True, "the three finest grids agree to 1e-9: nothing left to converge"
     CONVERGED_SECOND_ORDER = (
-        1,
         True,
         "monotone, order 2 within 0.5, credible on every three successive grids, uncertainty "
         "within 1 %",
     )
-    CONVERGED = 2, True, "monotone, credible order (0.5 to 3), uncertainty within 1 %"
+    CONVERGED = True, "monotone, credible order (0.5 to 3), uncertainty within 1 %"
     SETTLED = (
-        3,
         True,
         "no credible order, but no drift either: the range of the three finest grids, and the "
         "least-squares fit over all of four or more, bound the error by 1 %",
     )
-    TENDS_TO_ZERO = 4, False, "converges to zero: a relative error has no meaning"
-    NOT_YET_CONVERGED = 5, False, "convergence too slow or too far off to bound the error by 1 %"
+    TENDS_TO_ZERO = False, "converges to zero: a relative error has no meaning"
+    NOT_YET_CONVERGED = False, "convergence too slow or too far off to bound the error by 1 %"
     TOO_NARROW = (
-        6,
         False,
         "the coarsest spacing is less than twice the finest, and the error may turn in between: "
         "add finer or coarser grids",
     )
-    OSCILLATORY = 7, False, "the differences shrink but change sign: no Richardson value"
-    UNDETERMINED = 8, False, "a run on the three finest grids is missing: no number is given"
-    DIVERGENT = 9, False, "the differences do not shrink as the grid is refined"
-    NOT_CONVERGENT_BY_DESIGN = 10, False, "the model has no limit here: no grid is fine enough"
+    OSCILLATORY = False, "the differences shrink but change sign: no Richardson value"
+    UNDETERMINED = False, "a run on the three finest grids is missing: no number is given"
+    DIVERGENT = False, "the differences do not shrink as the grid is refined"
+    NOT_CONVERGENT_BY_DESIGN = False, "the model has no limit here: no grid is fine enough"
 
 
 class Judgement(NamedTuple):

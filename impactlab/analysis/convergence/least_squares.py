@@ -32,11 +32,11 @@ _SEARCHED = np.linspace(-4.0, 8.0, 97)
 class Expansion(Verdict):
     """The form of the error that describes the data best."""
 
-    FREE = 0, True, "a h^p, with the order p fitted (0.5 to 2)"
-    FIRST = 1, False, "a h: the fitted order is no credible one, the first is assumed"
-    SECOND = 2, False, "a h^2: the fitted order is no credible one, the second is assumed"
-    BOTH = 3, False, "a h + b h^2: the fitted order is below 0.5, or the values turn"
-    NONE = 4, False, "no fit: it needs four grids that differ"
+    FREE = True, "a h^p, with the order p fitted (0.5 to 2)"
+    FIRST = False, "a h: the fitted order is no credible one, the first is assumed"
+    SECOND = False, "a h^2: the fitted order is no credible one, the second is assumed"
+    BOTH = False, "a h + b h^2: the fitted order is below 0.5, or the values turn"
+    NONE = False, "no fit: it needs four grids that differ"
 
 
 @dataclass(frozen=True)

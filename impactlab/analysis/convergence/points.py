@@ -27,10 +27,10 @@ _LONG_NAMES = {
 class PointsVerdict(Verdict):
     """The effect of more integration points on one response at one point of the grid."""
 
-    AT_ROUND_OFF = 0, True, "no number of points changes the value by more than 1e-9"
-    CONVERGED = 1, True, "the most points and the next fewer agree within 1 %"
-    UNDETERMINED = 2, False, "a run with the most points or the next fewer is missing"
-    NOT_CONVERGED = 3, False, "the most points and the next fewer differ by more than 1 %"
+    AT_ROUND_OFF = True, "no number of points changes the value by more than 1e-9"
+    CONVERGED = True, "the most points and the next fewer agree within 1 %"
+    UNDETERMINED = False, "a run with the most points or the next fewer is missing"
+    NOT_CONVERGED = False, "the most points and the next fewer differ by more than 1 %"
 
 
 def applies(runs: xr.Dataset) -> bool:

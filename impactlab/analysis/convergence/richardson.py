@@ -34,14 +34,14 @@ SAFETY_CREDIBLE, SAFETY_DOUBTFUL = 1.25, 3.0
 class Behaviour(Verdict):
     """The change of three values as the grid is refined."""
 
-    MONOTONE = 0, True, "the differences shrink and keep their sign: a positive order"
-    OSCILLATORY = 1, True, "the differences shrink and change their sign"
-    AT_ROUND_OFF = 2, True, "the three finest grids agree to 1e-9"
-    STALLED = 3, False, "the two finest grids agree to 1e-9, the third does not: no order shows"
-    MONOTONE_DIVERGENT = 4, False, "the differences keep their sign and do not shrink"
-    OSCILLATORY_DIVERGENT = 5, False, "the differences change their sign and do not shrink"
-    NOT_CONVERGENT_BY_DESIGN = 6, False, "the model has no limit here: see the reason"
-    UNDETERMINED = 7, False, "a run on the three finest grids is missing"
+    MONOTONE = True, "the differences shrink and keep their sign: a positive order"
+    OSCILLATORY = True, "the differences shrink and change their sign"
+    AT_ROUND_OFF = True, "the three finest grids agree to 1e-9"
+    STALLED = False, "the two finest grids agree to 1e-9, the third does not: no order shows"
+    MONOTONE_DIVERGENT = False, "the differences keep their sign and do not shrink"
+    OSCILLATORY_DIVERGENT = False, "the differences change their sign and do not shrink"
+    NOT_CONVERGENT_BY_DESIGN = False, "the model has no limit here: see the reason"
+    UNDETERMINED = False, "a run on the three finest grids is missing"
 
 
 @dataclass(frozen=True)

@@ -41,21 +41,21 @@ _ORDERS = {"first_order": ("first-order", f"{_2010} (b)"), "total_order": ("tota
 class HistoryVerdict(Verdict):
     """Verdicts on the generalised indices of a history; the worst counts."""
 
-    USABLE = 0, True, "every run has its history, and the history varies"
-    WIDE_INTERVALS = 1, False, SensitivityVerdict.WIDE_INTERVALS.meaning
-    INCONSISTENT = 2, False, SensitivityVerdict.INCONSISTENT.meaning
-    RUNS_LEFT_OUT = 3, False, "runs failed: their base samples are left out"
-    CONSTANT = 4, False, "the history is the same in all runs: indices are undefined"
-    TOO_FEW_RUNS = 5, False, "too many runs failed: no index is given"
+    USABLE = True, "every run has its history, and the history varies"
+    WIDE_INTERVALS = False, SensitivityVerdict.WIDE_INTERVALS.meaning
+    INCONSISTENT = False, SensitivityVerdict.INCONSISTENT.meaning
+    RUNS_LEFT_OUT = False, "runs failed: their base samples are left out"
+    CONSTANT = False, "the history is the same in all runs: indices are undefined"
+    TOO_FEW_RUNS = False, "too many runs failed: no index is given"
 
 
 class TimeVerdict(Verdict):
     """Verdicts on the indices at one time."""
 
-    GIVEN = 0, True, "the runs differ at this time"
-    NO_INTERVAL = 1, False, "so few runs differ at this time that no interval can be given"
-    CONSTANT = 2, False, "all runs have the same value at this time: indices are undefined"
-    TOO_FEW_RUNS = 3, False, "too many runs failed: no index is given"
+    GIVEN = True, "the runs differ at this time"
+    NO_INTERVAL = False, "so few runs differ at this time that no interval can be given"
+    CONSTANT = False, "all runs have the same value at this time: indices are undefined"
+    TOO_FEW_RUNS = False, "too many runs failed: no index is given"
 
 
 def histories(runs: xr.Dataset) -> list[str]:

@@ -29,59 +29,50 @@ class SensitivityVerdict(Verdict):
     """Verdicts on the indices of a response; the worst counts. From CONSTANT on, there are none."""
 
     USABLE = (
-        0,
         True,
         "every run answered, the response has one regime, and no interval is wider than 0.1 to "
         "either side, nor the numerical error where it was estimated",
     )
-    JUMPS = 1, False, "the response takes ten values or fewer: its indices are those of jumps"
-    FEW_RUNS_CARRY_IT = 2, False, "one run in a hundred carries more than half of the variance"
+    JUMPS = False, "the response takes ten values or fewer: its indices are those of jumps"
+    FEW_RUNS_CARRY_IT = False, "one run in a hundred carries more than half of the variance"
     WIDE_INTERVALS = (
-        3,
         False,
         "the sample is small: an interval is wider than 0.1 to either side, or cannot be given",
     )
-    NUMERICAL_ERROR = 4, False, "the numerical error of an index may be larger than 0.1"
+    NUMERICAL_ERROR = False, "the numerical error of an index may be larger than 0.1"
     NOT_LINEAR = (
-        5,
         False,
         "linear regression explains less than 70 % of the variance, on values and on ranks",
     )
     INCONSISTENT = (
-        6,
         False,
         "the sample is too small: by more than their intervals, first-order indices add up to "
         "more than 1, are below zero, or exceed their total",
     )
     DEPENDENT_BASES = (
-        7,
         False,
         "the response correlates between the two base samples by more than chance: first-order "
         "indices are wrong (see base_correlation)",
     )
-    IMPUTED = 8, False, "runs failed, and a surrogate supplied their values (see imputed_share)"
-    MOSTLY_CONSTANT = 9, False, "nine runs in ten share one value: the indices hang on the others"
+    IMPUTED = False, "runs failed, and a surrogate supplied their values (see imputed_share)"
+    MOSTLY_CONSTANT = False, "nine runs in ten share one value: the indices hang on the others"
     NO_DENSITY = (
-        10,
         False,
         "a class of a parameter's values holds one value of the response alone: it has no density, "
         "and no delta is given (use pawn)",
     )
-    CONSTANT = 11, False, "the response does not vary: indices are undefined"
+    CONSTANT = False, "the response does not vary: indices are undefined"
     SEVERAL_REGIMES = (
-        12,
         False,
         "the response lies in separate ranges with none between: no index is given (a limit "
         "between two of them tells which parameters decide)",
     )
-    FAILED_RUNS = 13, False, "runs are missing: no index is given"
+    FAILED_RUNS = False, "runs are missing: no index is given"
     TOO_FEW_RUNS = (
-        14,
         False,
         "too many runs are missing for a surrogate to supply their values: no index is given",
     )
     POOR_SURROGATE = (
-        15,
         False,
         "runs are missing, and a surrogate of the others misses more than a tenth of the variance: "
         "no index is given",

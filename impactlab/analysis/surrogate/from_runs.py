@@ -37,13 +37,15 @@ def applies(runs: xr.Dataset) -> bool:
 class Divided:
     """A sample, divided into parts, each to be predicted by a fit to the others, in order of `run`.
 
-    length: of a block of runs, which differ in few parameters. part: that of each run, (runs,), of
+    length: of a block of runs, which differ in few parameters. near: how many runs in a row are
+    near-copies, as along a period of FAST's highest frequency. part: that of each run, (runs,), of
     _FOLDS with the same number of blocks. tests: positions of the runs of the first parts, rising:
     of as many parts as hold _MOST_TESTS, or all; of more runs, a draw of as many.
     """
 
     sample: Sample
     length: int
+    near: int
     part: NDArray[np.int64]
     tests: NDArray[np.int64]
     _inputs: dict[bytes, Floats] = field(default_factory=dict)
@@ -65,7 +67,8 @@ class Divided:
         part = np.repeat(sample.rng("surrogate held out").permutation(blocks) % _FOLDS, length)
         tested = part < int(np.clip(np.ceil(_MOST_TESTS * _FOLDS / count), 1, _FOLDS))
         tests = sample.rng("surrogate tests").permutation(np.flatnonzero(tested))[:_MOST_TESTS]
-        return cls(sample, length, part, np.sort(tests))
+        near = 2 * sample.number("harmonics") + 1 if method == "fast" else length
+        return cls(sample, length, near, part, np.sort(tests))
 
     def inputs(self, rows: NDArray[np.int64]) -> Floats:
         """Return the parameters of these runs in SI units, (runs, parameters).
@@ -109,13 +112,13 @@ FEW = 20  # distinct values up to which a response jumps between levels, where e
 class SurrogateVerdict(Verdict):
     """Verdicts on the surrogate of a response."""
 
-    USABLE = 0, True, "it predicts at least 90 % of the variance of runs left out (lower end)"
-    POOR = 1, False, "it may miss more than a tenth of the variance of runs left out"
-    JUMPS = 2, False, "the response jumps between few values or ranges, which no polynomial follows"
-    MOSTLY_CONSTANT = 3, False, "nine runs in ten share one value: it follows the others badly"
-    FAILED_RUNS = 4, False, "runs are missing: it knows nothing of where they failed"
-    TOO_FEW_RUNS = 5, False, "too few runs answered to fit and to test one: there is none"
-    CONSTANT = 6, False, "the response does not vary: there is none"
+    USABLE = True, "it predicts at least 90 % of the variance of runs left out (lower end)"
+    POOR = False, "it may miss more than a tenth of the variance of runs left out"
+    JUMPS = False, "the response jumps between few values or ranges, which no polynomial follows"
+    MOSTLY_CONSTANT = False, "nine runs in ten share one value: it follows the others badly"
+    FAILED_RUNS = False, "runs are missing: it knows nothing of where they failed"
+    TOO_FEW_RUNS = False, "too few runs answered to fit and to test one: there is none"
+    CONSTANT = False, "the response does not vary: there is none"
 
 
 def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[str, Any]]:
@@ -138,7 +141,8 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     predicted = divided.predicted(values, seed)
     tests = divided.tests[tested]
     errors = predicted[tested] - values[tests]
-    q2, low = predictivity(errors, values[tests], tests // divided.length)
+    places = np.unique(tests // divided.near).size
+    q2, low = predictivity(errors, values[tests], tests // divided.length, places)
     rmse = float(np.sqrt(np.mean(errors**2)))
     chaos, rows = divided.fit(values, answered, seed)
     inputs, block = divided.inputs(rows), rows // divided.length

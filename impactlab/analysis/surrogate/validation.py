@@ -17,14 +17,17 @@ LEVEL = 0.95
 _GROWTHS = np.linspace(1.0, 4.0, 31)
 
 
-def predictivity(errors: Floats, values: Floats, block: NDArray[np.int64]) -> tuple[float, float]:
+def predictivity(
+    errors: Floats, values: Floats, block: NDArray[np.int64], places: int
+) -> tuple[float, float]:
     """Return Q² of runs that were left out, and the lower end of its interval.
 
-    errors, values, block: (runs,); runs of one block are near-copies. Q² is 1 less the mean squared
+    errors, values, block: (runs,); errors within a block depend on each other. places: how many
+    of the runs are no near-copies of others. Q² is 1 less the mean squared
     error over the variance. The interval takes the logarithm of their ratio as normal, with the
     scatter of a jackknife over blocks: Efron and Tibshirani (1993), An Introduction to the
-    Bootstrap, section 11.5 (recalled, not read). One block more, off by the whole variance, is
-    added: few blocks do not show a rare regime. -inf where the values are all equal.
+    Bootstrap, section 11.5 (recalled, not read). One place more, off by the whole variance, is
+    added: few places do not show a rare regime. -inf where the values are all equal.
     """
     starts = np.flatnonzero(np.diff(block, prepend=-1))
     square = np.add.reduceat(errors**2, starts)
@@ -39,7 +42,7 @@ def predictivity(errors: Floats, values: Floats, block: NDArray[np.int64]) -> tu
     if not np.isfinite(scatter):  # all of the error, or of the variance, is in one block
         return 1 - ratio, -np.inf
     student = float(scipy.stats.t.ppf((1 + LEVEL) / 2, count - 1))
-    return 1 - ratio, float(1 - ratio * np.exp(student * scatter) - 1 / count)
+    return 1 - ratio, float(1 - ratio * np.exp(student * scatter) - 1 / places)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
-from impactlab.simulate import simulate
+from impactlab.simulate import run_dataset
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.schema.study import FunctionStudy, Study
 from impactlab.study.solvers import Solver, flattened, on_design
@@ -184,7 +184,7 @@ def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
         impact, grid = with_values(paper_impact(), Discretisation(), values)
         with warnings.catch_warnings():  # told before
             warnings.simplefilter("ignore")
-            run = simulate(impact, grid, duration=case["duration"].item(), samples=task.samples)
+            run = run_dataset(impact, grid, duration=case["duration"].item(), samples=task.samples)
         row: dict[str, Any] = {name: run[name].values for name in (*RESPONSES, *FLAGS)}
         row |= {name: run[name].values for name in HISTORIES if output.samples}
         row |= {name: run[name].values for name in PROFILES if output.profiles}

@@ -133,7 +133,7 @@ def test_two_roots_are_told_as_two_ranges(tmp_path, low, high, count):
 
 @pytest.mark.parametrize("method", [il.Pawn, il.Fast, il.Sobol])
 def test_a_single_parameter_is_sampled_reported_and_calibrated(tmp_path, method):
-    size = {"base_samples": 64} if method is il.Sobol else {"samples": 130}
+    size = {"base_samples": 64} if method is il.Sobol else {"samples": 612}
     sampling = method(**size, parameters={"start": il.Uniform(5.4, 7)})
     study = il.Study(
         title="Single", function=lambda start: square(start, 0), sampling=sampling, results=tmp_path

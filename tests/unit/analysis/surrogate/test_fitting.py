@@ -37,7 +37,7 @@ def test_whole_blocks_of_saltelli_are_held_out(drawn_runs: Build) -> None:
     ("attrs", "length"),
     [
         ({"method": "morris", "trajectories": 32}, 16),
-        ({"method": "fast", "curves": 4}, 128),
+        ({"method": "fast", "curves": 4, "harmonics": 4}, 128),
         ({"method": "delta", "samples": 512}, 1),
         ({"method": "pawn", "samples": 512}, 1),
     ],

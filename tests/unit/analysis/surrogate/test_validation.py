@@ -60,7 +60,7 @@ def test_the_lower_end_of_the_predictivity_covers(blocks: int) -> None:
     block = np.repeat(np.arange(blocks), 4)
     for _ in range(300):
         values, errors = rng.normal(size=(2, blocks)).repeat(4, axis=1)
-        q2, low = predictivity(errors * np.sqrt(0.1), values, block)
+        q2, low = predictivity(errors * np.sqrt(0.1), values, block, len(np.unique(block)))
         assert low < q2
         below.append(low <= 0.9)
     assert np.mean(below) > 0.95
@@ -68,5 +68,5 @@ def test_the_lower_end_of_the_predictivity_covers(blocks: int) -> None:
 
 def test_few_blocks_that_show_no_error_prove_little() -> None:
     values = np.random.default_rng(0).normal(size=20)
-    assert predictivity(np.zeros(20), values, np.arange(20)) == (1.0, 0.95)
-    assert predictivity(np.zeros(20), np.ones(20), np.arange(20)) == (-np.inf, -np.inf)
+    assert predictivity(np.zeros(20), values, np.arange(20), 20) == (1.0, 0.95)
+    assert predictivity(np.zeros(20), np.ones(20), np.arange(20), 20) == (-np.inf, -np.inf)
