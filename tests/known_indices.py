@@ -7,7 +7,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Indices:
-    """Of d parameters that are independent and uniform over the function's ranges.
+    """Indices of d parameters, independent and uniform over the function's ranges.
 
     first_order and total_order (d,); second_order (d, d), symmetric, NaN on the diagonal.
     """

@@ -103,7 +103,7 @@ def test_notebooks_show_their_figures(page: str, figures: int) -> None:
 
 
 def test_every_study_has_a_page_with_answer_and_figures() -> None:
-    """Of large studies, those that `make stored` keeps."""
+    """Answers and figures of large studies are those that `make stored` keeps."""
     bare = set()
     for path in (ROOT / "studies").glob("*.yaml"):
         if path.stem != "verification":

@@ -149,7 +149,7 @@ def test_an_impact_is_the_same_to_the_last_bit_in_the_file(impact):
 
 @pytest.mark.parametrize("value", [GRID, FAR, il.Discretisation(nodes=201, scheme="leapfrog")])
 def test_every_value_of_an_object_is_in_the_file(value):
-    """Those that equal a default, too: in another version it may be another one."""
+    """Defaults are stated, too: another version may have others."""
     section = plain(value)
     own, other = (value, il.Discretisation()) if value is FAR else (FAR, value)
     for name, held in flatten(own, other).items():

@@ -72,7 +72,7 @@ def of_another_kind(path):
 
 
 def edited(change):
-    """What xarray saves after `change` of a dataset."""
+    """Save a dataset after `change` with xarray."""
 
     def damage(path):
         change(xr.load_dataset(path)).to_netcdf(path)
@@ -156,7 +156,7 @@ def test_no_command_takes_them(results, command, name, damage):
 
 @pytest.mark.parametrize("step", ["figures", "report"])
 def test_analyses_of_other_runs_are_refused(results, step):
-    """Also of runs that were solved again since, with another answer."""
+    """Runs that were solved again since are other runs, too."""
     ended = called(step, "small/runs.nc", "other/analysis.nc", cwd=results)
     assert ended.returncode
     assert "other/analysis.nc: was not made from small/runs.nc" in ended.stderr

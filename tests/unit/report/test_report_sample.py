@@ -221,7 +221,7 @@ def test_other_families_answer_in_their_own_measure(study: Study) -> None:
 
 @pytest.mark.parametrize("surrogate", [True, False])
 def test_first_orders_alone_make_a_whole_report(report: Any, study: Study, surrogate: bool) -> None:
-    """As those of a method that gives no total order."""
+    """Some methods give no total order."""
     runs, analysis = study
     own = ["first_order", "first_order_interval", "first_order_numerical", "sensitivity_verdict"]
     own += [name for name in analysis if surrogate and str(name).startswith("surrogate")]

@@ -112,7 +112,7 @@ FAMILIES = {
     ("ratio", "grids"), [(1.1, 4), (1.2, 3), (1.2, 6), (2**0.5, 3), (2**0.5, 5), (2.0, 3), (2.0, 4)]
 )
 def test_what_is_sound_holds_the_limit(family: str, ratio: float, grids: int) -> None:
-    """Of errors of 0.01 to 3 %; of noise of up to the finest error."""
+    """The errors are 0.01 to 3 %; the noise is at most the finest error."""
     random, h, held = np.random.default_rng(3), ratio ** np.arange(grids), []
     for _ in range(60):
         errors = FAMILIES[family](h, random.uniform(), random.normal(size=grids))

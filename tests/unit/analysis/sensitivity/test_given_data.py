@@ -60,7 +60,7 @@ def _ishigami(x: Any) -> Any:
 
 @pytest.mark.parametrize("runs", [200, 1000])
 def test_first_orders_of_few_runs_are_not_too_small(runs: int) -> None:
-    """Of Ishigami's function and an inert parameter, whose indices are 0.314, 0.442, 0 and 0."""
+    """The indices of Ishigami's function and an inert parameter are 0.314, 0.442, 0 and 0."""
     exact, held, values = [0.3139, 0.4424, 0.0, 0.0], [], []
     for seed in range(200):
         x = np.random.default_rng(seed).uniform(-np.pi, np.pi, (runs, 4))
@@ -154,7 +154,7 @@ def test_distances_are_those_of_kolmogorov_and_smirnov() -> None:
 
 
 def test_intervals_of_pawn_hold_the_index_of_endless_runs(drawn: Build) -> None:
-    """Of a sum of uniform numbers, 3 x1 + x2, and an inert one; by the distributions themselves.
+    """The exact index of 3 x1 + x2 follows from the distributions; x3 is inert.
 
     With x1 in the slide about c, the sum is 3 c, plus a uniform number of the slide's width 0.3,
     plus x2.

@@ -80,7 +80,7 @@ def test_a_power_law_is_straight_at_the_bounds_of_a_truncated_normal() -> None:
 
 
 def test_indices_are_exact_under_the_distributions() -> None:
-    """Of a sum: the variances of its parts, by quadrature."""
+    """The variances of the parts of a sum are known by quadrature."""
     _, inputs, polynomials, response = _stress(YIELD, 1)
     chaos = fit(inputs, response(inputs), 0, polynomials)
     pull = influence(chaos, inputs, response(inputs), np.arange(len(inputs)), 0.0)

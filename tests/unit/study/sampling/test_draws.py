@@ -21,7 +21,7 @@ def test_parameters_of_a_group_are_exchanged_together(sampled, cube):
 
 
 def test_every_replicate_of_a_sample_is_even_and_independent(sampled, cube):
-    """Of eight points, each is in one eighth of every dimension of A and of B."""
+    """Eight points lie in the eight eighths of every dimension of A and of B."""
     points = cube(sampled("sobol", base_samples=64)).reshape(64, -1, 3)[:, [0, -1]]
     replicates = [points[place::8].reshape(8, 6) for place in range(8)]
     for points in replicates:
