@@ -67,10 +67,12 @@ class Outputs:
         """Return the columns whose means the estimators take, (base samples, columns)."""
         table = (self.table[rows] - self.mean) / self.deviation
         a, ab, ba, b = np.split(table, [1, 1 + self.factors, table.shape[1] - 1], axis=1)
-        columns = [a, b, a**2, b**2, a * b, b * (ab - a), (a - ab) ** 2 / 2]
+        columns = [a, b, a**2, b**2, a * b, ab, ab**2, b * ab, (a - ab) ** 2 / 2]
+        if self.second:
+            columns += [ba, ba**2, a * ba, (b - ba) ** 2 / 2]
         if self.second and interactions:
             first, second = np.triu_indices(self.factors, 1)
-            columns.append(ba[:, first] * ab[:, second])
+            columns.append((ba[:, first] * ab[:, second] + ba[:, second] * ab[:, first]) / 2)
         return np.concatenate(columns, axis=1)
 
 
@@ -82,45 +84,67 @@ def step(sample: Sample) -> int:
 def estimates(means: Floats, factors: int) -> dict[str, Floats]:
     """Return indices from the means of the statistics, (..., columns); NaN where nothing varies.
 
-    first_order, total_order (..., factor): Saltelli et al. (2010), Table 2 (b) and (f);
-    second_order (..., pair): Saltelli (2002), Theorem 2; base_correlation (...).
+    first_order, total_order (..., factor); second_order (..., pair); base_correlation (...).
 
-    Of a parameter that the model never sees, AB = A, and B (AB - A) and (A - AB)^2 are zero to the
-    last digit, whatever the sample: there is no noise that all indices share, and the dummy of
-    Khorashadi Zadeh et al. (2017), whose estimators are other ones, is no floor of these. The
-    noise of an index is its own interval.
+    AB and B share the factor alone: their covariance, over the mean of their variances, is the
+    first-order index; likewise that of A and AB is the total order of the other factors (Janon et
+    al. 2014, eq. 6), and with second order BA and A, and B and BA, give a second estimate each.
+    The covariance of A and B, 0 for an endless sample, is a control variate: the errors of the
+    covariance of AB and B follow it as far as AB follows A, by 1 less the total order. So is it
+    for BA and AB, which share two factors, by 1 less the total orders of both. Of a parameter that
+    the model never sees, AB = A, and all indices are zero to the last digit.
     """
     a, b, squared_a, squared_b, product = np.moveaxis(means[..., :_ALONE], -1, 0)
-    variance = (squared_a + squared_b) / 2 - ((a + b) / 2) ** 2
-    variance = np.where(variance > np.finfo(float).eps, variance, np.nan)[..., None]
-    first, total, joint = np.split(means[..., _ALONE:], [factors, 2 * factors], axis=-1)
+    base, variances = product - a * b, np.stack([squared_b - b**2, squared_a - a**2], axis=-1)
+    count = 1 if means.shape[-1] == _ALONE + 4 * factors else 2
+    halves, pairs = np.split(means[..., _ALONE:], [4 * count * factors], axis=-1)
+    halves = halves.reshape(*means.shape[:-1], count, 4, factors)
+    mean, square, shared, apart = np.moveaxis(halves, -2, 0)  # (..., half, factor) each
+    scatter = square - mean**2
+    with_same = (variances[..., :count, None] + scatter).sum(axis=-2) / 2
+    with_others = (variances[..., ::-1][..., :count, None] + scatter).sum(axis=-2) / 2
+    total = apart.sum(axis=-2) / _positive(with_others)
+    covariance = (shared - np.stack([b, a], axis=-1)[..., :count, None] * mean).sum(axis=-2)
+    control = count * base[..., None]
+    first = (covariance - np.clip(1 - total, 0, 1) * control) / _positive(with_same)
     found = {
-        "first_order": first / variance,
-        "total_order": total / variance,
-        "base_correlation": (product - a * b) / variance[..., 0],
+        "first_order": first,
+        "total_order": total,
+        "base_correlation": base / _positive(variances.mean(axis=-1)),
     }
-    if joint.shape[-1]:
-        one, other = np.triu_indices(factors, 1)
-        joint = joint - product[..., None] - first[..., one] - first[..., other]
-        found["second_order"] = joint / variance
+    if pairs.shape[-1]:
+        i, j = np.triu_indices(factors, 1)
+        means_of_pairs = (mean[..., 0, i] * mean[..., 1, j] + mean[..., 0, j] * mean[..., 1, i]) / 2
+        weight = np.clip(1 - total[..., i] - total[..., j], 0, 1)
+        closed = pairs - means_of_pairs - weight * base[..., None]
+        scatters = scatter.sum(axis=-2)
+        closed = closed / _positive((scatters[..., i] + scatters[..., j]) / 4)
+        found["second_order"] = closed - first[..., i] - first[..., j]
     return found
+
+
+def _positive(variance: Floats) -> Floats:
+    return np.where(variance > np.finfo(float).eps, variance, np.nan)
 
 
 HALVINGS = 5  # number of halvings of the sample that show how its indices settle: from N/32 on
 FEWEST = 8  # base samples below which halves are not shown
 CHANCE = 0.001  # of independent base samples whose correlation exceeds its noise
-_2010 = "Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2"
-_2002 = "Saltelli (2002), Comput. Phys. Commun. 145, 280, Theorem 2"
+_2014 = (
+    "Janon et al. (2014), ESAIM Probab. Stat. 18, 342, eq. 6, with the covariance of both base "
+    "samples as control variate"
+)
+_1999 = "Jansen (1999), Comput. Phys. Commun. 117, 35, with the variance of the same runs"
 _NESTED = "from the first base samples alone, which are a smaller sample of the same kind"
 _INDICES = {
-    "first_order": Index("first-order Sobol index", f"{_2010} (b)"),
-    "total_order": Index("total-order Sobol index", f"{_2010} (f)"),
-    "second_order": Index("second-order Sobol index", _2002, PAIR),
+    "first_order": Index("first-order Sobol index", _2014),
+    "total_order": Index("total-order Sobol index", _1999),
+    "second_order": Index("second-order Sobol index", _2014, PAIR),
     "first_order_by_samples": Index(
-        "first-order Sobol index by base samples", f"{_2010} (b)", BY_SAMPLES, comment=_NESTED
+        "first-order Sobol index by base samples", _2014, BY_SAMPLES, comment=_NESTED
     ),
     "total_order_by_samples": Index(
-        "total-order Sobol index by base samples", f"{_2010} (f)", BY_SAMPLES, comment=_NESTED
+        "total-order Sobol index by base samples", _1999, BY_SAMPLES, comment=_NESTED
     ),
     "base_correlation": Index(
         "correlation of the response between the two base samples, A and B",
