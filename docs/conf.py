@@ -1,6 +1,7 @@
 """Sphinx configuration of the site: `make docs` builds it into site/."""
 
 import os
+import re
 import sys
 from hashlib import sha256
 from importlib import metadata
@@ -17,10 +18,10 @@ author = "impactlab developers"
 copyright = "impactlab developers, BSD-3-Clause"
 version = release = metadata.version("impactlab")
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx_design"]
-exclude_patterns = ["gallery/_checks.md"]  # a part of verification.md
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_design"]
+exclude_patterns = ["gallery/_*.md"]  # parts of other pages
 suppress_warnings = ["mystnb.unknown_mime_type"]  # of widgets, which have a plain form, too
-default_role = "code"
+default_role = "py:obj"  # names of docstrings become links, all else is set as code
 highlight_language = "python"
 
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
@@ -38,8 +39,23 @@ os.environ["IMPACTLAB_DOCS"] = str(Path(__file__).parent)  # where notebooks fin
 os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")
 
 autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True  # the number of cores is that of each machine
 autodoc_typehints = "none"
 autodoc_class_signature = "mixed"
+napoleon_google_docstring = False
+napoleon_preprocess_types = True
+napoleon_use_ivar = True
+napoleon_use_rtype = False
+napoleon_type_aliases = {
+    name: f":py:obj:`{name} <impactlab.{module}.{name}>`"
+    for name, module in {
+        "Estimate": "study.estimate",
+        "Problem": "study.errors",
+        "Quantity": "model.quantities",
+        "Status": "study.runs",
+        "Surrogate": "analysis.surrogate.stored",
+    }.items()
+}
 
 html_theme = "furo"
 html_title = f"impactlab {release}"
@@ -59,6 +75,11 @@ def _mathml(visitor, node, display: bool) -> None:
     raise SkipNode
 
 
+def _link(app: Sphinx, what: str, name: str, thing, options, lines: list[str]) -> None:
+    """Let names such as `il.simulate` lead to their entries."""
+    lines[:] = [re.sub(r"`il\.([\w.]+)`", r"`il.\1 <impactlab.\1>`", line) for line in lines]
+
+
 def setup(app: Sphinx) -> None:
     """Write pages from results first; equations become MathML, which needs no script."""
     app.add_html_math_renderer(
@@ -66,4 +87,5 @@ def setup(app: Sphinx) -> None:
         inline_renderers=(lambda visitor, node: _mathml(visitor, node, False), None),
         block_renderers=(lambda visitor, node: _mathml(visitor, node, True), None),
     )
+    app.connect("autodoc-process-docstring", _link)
     app.connect("builder-inited", lambda app: made.make())

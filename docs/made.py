@@ -14,6 +14,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
+import datasets
 from PIL import Image
 
 import impactlab as il
@@ -57,14 +58,15 @@ GROUPS = {
 
 
 def make() -> None:
-    """Write docs/gallery, the table of docs/verification.md."""
+    """Write docs/gallery, the tables of docs/verification.md and docs/datasets.md."""
     GALLERY.mkdir(exist_ok=True)
     paths = sorted((ROOT / "studies").glob("*.yaml"))
     with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
-        checked = pool.submit(_verification)
+        pages = pool.submit(_verification), pool.submit(_datasets)
         cards = pool.map(_study, [each for each in paths if each.stem != "verification"])
         _index(dict(cards))
-        checked.result()
+        for page in pages:
+            page.result()
 
 
 def _current(made: Path, *files: Path) -> bool:
@@ -194,6 +196,12 @@ def _index(cards: dict[str, tuple[str, str]]) -> None:
         lines.append("::::\n")
     lines += ["```{toctree}", ":hidden:\n", *order, "```"]
     (GALLERY / "index.md").write_text("\n".join(lines), encoding="utf-8")
+
+
+def _datasets() -> None:
+    page = GALLERY / "_datasets.md"
+    if not _current(page, DOCS / "datasets.py"):
+        datasets.make(page)
 
 
 def _verification() -> None:

@@ -42,25 +42,59 @@ class Study:
 
     The arguments are the keys of a study file (docs/studies.md), and are read by the same reader:
     `Study(...)`, `Study.from_yaml(...)` and the command line run the same code on the same text.
-    Quantities are numbers in SI units, strings with a unit or quantities of pint.
+    Runs, analysis, figures and report go to `folder`, and are found there again by whoever runs the
+    same study: Python or the command line.
 
-    title: one line. impact: the one that all runs start from. sampling: which parameters vary, and
-    how (Grid, Sobol, ...). duration: simulated time. discretisation: a Discretisation, or "auto",
-    which pilot runs find. responses, analyses: names; by default all. Responses of your own are
-    functions of the dataset of one impact (see `simulate`) that return a number, or il.Function
-    with a unit: `{"momentum": function, "peak_force": "peak_force"}`. store, analysis: mappings as
-    in a file. measurements: files that the report compares with the runs (see `compare`). limits:
-    `{"permanent_indentation": "50 um"}`, of which `analyse` gives the probability that a run
-    exceeds them. function: in place of the solver, the name of a test function, or a function of
-    your own, called with a run's parameters by name, that returns a number, or a mapping of
-    `responses` to numbers. name: of the folder of results; by default the title in small letters
-    and digits. results: the folder of all results.
+    Parameters
+    ----------
+    title : str
+        Title, one line.
+    sampling : Grid, Sobol, Fast, Morris, Delta, Pawn, Regression or mapping
+        Varied parameters and their values or distributions.
+    impact : Impact or mapping, optional
+        Impact that all runs start from.
+    duration : Quantity, optional
+        Simulated time, in s.
+    discretisation : Discretisation, mapping or "auto", optional
+        Nodes, points and time step; "auto" finds them by pilot runs.
+    responses : sequence of str, str or mapping, optional
+        Names; by default all. A mapping adds functions of the dataset of one impact (see
+        `simulate`) that return a number, or a `Function` with a unit: `{"momentum": function,
+        "peak_force": "peak_force"}`. Of a model `function`, the names of its results.
+    analyses : sequence of str or str, optional
+        Names (impactlab.variables.ANALYSES); by default all.
+    limits : mapping of str to Quantity, optional
+        Limits by name of the response: `analyse` gives the probability that a run exceeds them.
+    store : mapping, optional
+        Stored histories and profiles, as in a file.
+    analysis : mapping, optional
+        Settings of the analysis, as in a file.
+    measurements : sequence of str, optional
+        Files that the report compares with the runs (see `compare`).
+    description : str, optional
+        Text for the report.
+    function : str, callable or Function, optional
+        Model in place of the solver: the name of a test function, or a function that is called with
+        a run's parameters by name and returns a number, or a mapping of `responses` to numbers.
+    name : str, optional
+        Name of the folder of results; by default the title in small letters and digits.
+    results : str or pathlib.Path, default "results"
+        Folder of all results, seen from the working folder.
 
-    Runs, analysis, figures and report go to `folder`, by default results/NAME of the working
-    folder, and are found there again by whoever runs the same study: Python or the command line.
+    Attributes
+    ----------
+    folder : pathlib.Path
+        Folder of the results: `results`/`name`.
+    declared : object
+        The study as read: impact, discretisation, sampling and the others in SI units.
 
-    Raises StudyError, a ValueError, with every problem by key and value.
+    Raises
+    ------
+    StudyError
+        If an argument is wrong: a ValueError with every problem by key and value.
 
+    Examples
+    --------
     >>> study = il.Study(
     ...     title="Depth", impact={"base": "paper", "velocity": "2 m/s"}, duration="1 ms",
     ...     discretisation=il.Discretisation(nodes=41), responses=["peak_force"],
@@ -145,7 +179,25 @@ class Study:
 
     @classmethod
     def from_yaml(cls, path: str | Path, *, results: str | Path = "results") -> Study:
-        """Read a study file. Raises StudyError with every problem: file, key, value, what to do."""
+        """Read a study file.
+
+        Parameters
+        ----------
+        path : str or pathlib.Path
+            Study file (docs/studies.md), whose name ends in .yaml.
+        results : str or pathlib.Path, default "results"
+            Folder of all results.
+
+        Returns
+        -------
+        Study
+            The study of the file.
+
+        Raises
+        ------
+        StudyError
+            If the file is wrong, with every problem: file, key, value and remedy.
+        """
         return cls._of(files.read_study(path), results)
 
     @classmethod
@@ -157,7 +209,15 @@ class Study:
     def to_yaml(self, path: str | Path) -> None:
         """Write the study file, which `from_yaml` and every command read.
 
-        Its name becomes that of the study.
+        Parameters
+        ----------
+        path : str or pathlib.Path
+            File to write, ending in .yaml; its name becomes that of the study.
+
+        Raises
+        ------
+        StudyError
+            If the name is not that of a study file, or the study has Python functions.
         """
         path = Path(path)
         yaml_file.check_path(path)
@@ -169,37 +229,96 @@ class Study:
 
     @property
     def name(self) -> str:
-        """Name of the study, and of its folder."""
+        """Name of the study, and of its folder.
+
+        Returns
+        -------
+        str
+            Letters, digits, _ and -.
+        """
         return self.declared.name
 
     @property
     def title(self) -> str:
-        """Title, which heads the report."""
+        """Title, which heads the report.
+
+        Returns
+        -------
+        str
+            One line.
+        """
         return self.declared.title
 
     def design(self) -> xr.Dataset:
-        """Return the coordinates of all runs, in SI units.
+        """Return the coordinates of all runs.
 
-        Raises StudyError where the discretisation is still to be found.
+        Returns
+        -------
+        xarray.Dataset
+            Coordinates alone, in SI units: a dimension per parameter of a grid, ``run`` for a
+            sample.
+
+        Raises
+        ------
+        StudyError
+            If the discretisation is still to be found.
         """
         from impactlab.study.sampling.design import design
 
         return design(steps.resolved(self.declared, self.folder) or self.declared)
 
     def estimate(self, *, workers: int = _CORES) -> Estimate:
-        """Return what the runs cost: seconds, memory and disk, within a factor of about 3."""
+        """Return the cost of the runs, within a factor of about 3.
+
+        Parameters
+        ----------
+        workers : int, optional
+            Number of threads; by default that of the machine's cores.
+
+        Returns
+        -------
+        Estimate
+            Time, memory and disk.
+
+        Raises
+        ------
+        StudyError
+            If a sampled run is impossible, or pilot runs found no discretisation within the
+            tolerance.
+        """
         from impactlab.study.estimate import estimate
 
         return estimate(self.declared, self.folder, workers)
 
     def status(self) -> Status | None:
-        """Return the progress: runs solved, failed and left; None before `auto` is resolved."""
+        """Return the progress of the runs.
+
+        Returns
+        -------
+        Status or None
+            Runs solved and failed; None before the discretisation "auto" is resolved.
+        """
         return steps.status(self.declared, self.folder)
 
     def recommend(self, *, workers: int = _CORES) -> xr.Dataset:
-        """Find the cheapest discretisation that meets the tolerance; return the evidence.
+        """Find the cheapest discretisation that meets the tolerance.
 
-        Raises StudyError for a study of a function.
+        Parameters
+        ----------
+        workers : int, optional
+            Number of threads; by default that of the machine's cores.
+
+        Returns
+        -------
+        xarray.Dataset
+            Evidence from the pilot runs, as in resolution.nc.
+
+        Raises
+        ------
+        StudyError
+            If the study is one of a function.
+        ValueError
+            If another study has results of this name.
         """
         declared = files.of_impacts(self.declared)
         check_unclaimed(declared, self.folder / "runs.nc")
@@ -219,15 +338,38 @@ class Study:
         They are kept in `folder`: shards/ while they are solved, so that an interrupted study
         resumes where it stopped, then runs.nc.
 
-        workers: threads, or processes of this machine (which begin with the script itself: they
-        need its `if __name__ == "__main__":`). client: a dask client of your own in their
-        place; it is not closed. force: also what takes a month of one core, or all memory.
-        replace: also where another study has results of this name; a study of the same runs, or an
-        earlier text of the same file, is the same study.
+        Parameters
+        ----------
+        workers : int, optional
+            Number of threads or processes; by default that of the machine's cores.
+        processes : bool, default False
+            True for processes of this machine, which begin with the script itself: it needs
+            `if __name__ == "__main__":`.
+        client : distributed.Client, optional
+            Dask client to use in their place; it is not closed.
+        force : bool, default False
+            True to run even if time or memory limits are exceeded.
+        replace : bool, default False
+            True to run even if another study has results of this name. A study of the same runs, or
+            an earlier text of the same file, is the same study.
 
-        Raises StudyError where that is exceeded, ValueError where another study has results there
-        or the model refuses a run, OSError
-        where a disk is full or workers fail, BlockingIOError where another process is at work here.
+        Returns
+        -------
+        xarray.Dataset
+            Responses, ``status`` and ``remarks``, in SI units, on a dimension per parameter of a
+            grid, on ``run`` of a sample; with stored histories on `time`, and profiles on `x` and
+            `z`.
+
+        Raises
+        ------
+        StudyError
+            If a limit is exceeded.
+        ValueError
+            If another study has results there, or the model refuses a run.
+        OSError
+            If a disk is full or workers fail.
+        BlockingIOError
+            If another process works in `folder`.
         """
         path = self.folder / "runs.nc"
         engine = _engine(workers, processes, client)
@@ -235,9 +377,26 @@ class Study:
         return read_netcdf(path, "runs")
 
     def refine(self, *, workers: int = _CORES, base_samples: int | None = None) -> xr.Dataset:
-        """Solve the first runs of a Sobol sample again on finer grids; return them.
+        """Solve the first runs of a Sobol sample again on finer grids.
 
-        `report` then tells noise from numerical error. base_samples: how many; see the command.
+        `report` then tells noise from numerical error.
+
+        Parameters
+        ----------
+        workers : int, optional
+            Number of threads; by default that of the machine's cores.
+        base_samples : int, optional
+            Number of base samples to solve again; by default a part of the sample.
+
+        Returns
+        -------
+        xarray.Dataset
+            Responses on (run, grid), as in refinement.nc.
+
+        Raises
+        ------
+        ValueError
+            If there are no runs of this study yet, or they are no Sobol sample of a beam model.
         """
         path = self.folder / f"{REFINEMENT}.nc"
         if self.declared.python:
@@ -246,16 +405,37 @@ class Study:
         return read_netcdf(path, "refinement")
 
     def analyse(self) -> xr.Dataset:
-        """Return convergence and sensitivity as `il.analyse`, and keep them in `folder`.
+        """Return convergence and sensitivity as `analyse`, and keep them in `folder`.
 
-        With the numerical uncertainty that pilot runs of `auto`, or `refine`, have found.
+        They include the numerical uncertainty from pilot runs of `auto`, or from `refine`.
+
+        Returns
+        -------
+        xarray.Dataset
+            Variables of the analyses that apply, as in analysis.nc.
+
+        Raises
+        ------
+        ValueError
+            If there are no runs of this study yet.
         """
         runs, path = self._runs(), self.folder / "analysis.nc"
         steps.analyse_runs(runs, path, **steps.evidence(self.declared, runs))
         return read_netcdf(path, "analysis")  # by which figures know what they were drawn from
 
     def figures(self) -> list[Path]:
-        """Draw the figures of the report into folder/figures; return their files."""
+        """Draw the figures of the report into folder/figures.
+
+        Returns
+        -------
+        list of pathlib.Path
+            Files of the figures.
+
+        Raises
+        ------
+        ValueError
+            If there are no runs of this study yet.
+        """
         from impactlab.report.results import RUNS
 
         found = self.analyse()
@@ -263,11 +443,24 @@ class Study:
             return RUNS.draw(solved, found, self.folder / "figures")
 
     def report(self, path: str | Path | None = None) -> Path:
-        """Analyse, draw, and write the report, one file; return it (default: folder/report.html).
+        """Analyse, draw, and write the report, one file.
 
-        Writes folder/ro-crate-metadata.json, too: what the folder holds, and what made it.
+        Writes folder/ro-crate-metadata.json, too: content and origin of the folder.
 
-        Raises ValueError where nothing is solved yet, or the file's name does not end in .html.
+        Parameters
+        ----------
+        path : str or pathlib.Path, optional
+            File to write, ending in .html; by default folder/report.html.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If there are no runs of this study yet, or the file's name does not end in .html.
         """
         from impactlab.report.crate import write_crate
         from impactlab.report.results import RUNS
@@ -312,11 +505,34 @@ def compare(
 ) -> xr.Dataset:
     """Compare the runs of a grid with measurements: values, uncertainties and verdicts.
 
-    measurements: a file (docs/measurements.md), or a mapping of its keys. analysis: of the runs, by
-    default made here; it knows their numerical uncertainty. Returns a row per measurement and model
-    on `comparison` (see analysis.measurements.compared), in SI units. Raises StudyError for
-    measurements that are wrong, ValueError for runs of no study.
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Runs of a grid study.
+    measurements : str, pathlib.Path or mapping
+        File (docs/measurements.md), or a mapping of its keys.
+    analysis : xarray.Dataset, optional
+        Analysis of the runs, for their numerical uncertainty; by default `analyse(runs)`.
 
+    Returns
+    -------
+    xarray.Dataset
+        A row per measurement and model on `comparison`, in SI units, with expanded uncertainties
+        (k = 2).
+
+    Raises
+    ------
+    StudyError
+        If measurements are wrong.
+    ValueError
+        If the runs are not a study's.
+
+    References
+    ----------
+    ASME V&V 20-2009; JCGM 100:2008 (both recalled, not read).
+
+    Examples
+    --------
     >>> study = il.Study(
     ...     title="Ours", impact=il.paper_impact("2 m/s"), duration="0.3 ms",
     ...     responses=["peak_force"], sampling=il.Grid(parameters={"nodes": [21, 41, 81]}))
@@ -341,14 +557,44 @@ def calibrate(
     """Infer the parameters that a sample varies from measurements, and the weights of contact laws.
 
     The distributions of the sample are the prior; a parameter that all measurements state is not
-    inferred. measurements: as for `compare`. contact: laws to weigh, under each of which the sample
-    is solved. model_error: relative standard error of the model itself.
+    inferred. The dataset is kept as calibration.nc in the study's folder, with the figure
+    calibration.svg.
 
-    Returns the dataset of study.calibration.calibrate, kept as calibration.nc in the study's
-    folder, with the figure calibration.svg; its attribute `answer` holds the finding in sentences.
-    Raises StudyError where study or measurements are wrong, ValueError with every reason for which
-    there is no posterior (docs/measurements.md).
+    Parameters
+    ----------
+    study : Study
+        Sample whose distributions are the prior.
+    measurements : str, pathlib.Path or mapping
+        File (docs/measurements.md), or a mapping of its keys.
+    contact : sequence of str, optional
+        Contact laws to weigh, under each of which the sample is solved; by default those that the
+        sample draws.
+    model_error : float, default 0
+        Relative standard error of the model itself.
+    workers : int, optional
+        Number of threads; by default that of the machine's cores.
 
+    Returns
+    -------
+    xarray.Dataset
+        Posterior on `parameter`, weights on `model`, predictions on `measurement`, and equally
+        weighted draws on `draw`, in SI units; the attribute `answer` holds the findings in
+        sentences.
+
+    Raises
+    ------
+    StudyError
+        If study or measurements are wrong.
+    ValueError
+        If there is no posterior, with every reason (docs/measurements.md).
+
+    References
+    ----------
+    Kennedy and O'Hagan (2001), J. R. Stat. Soc. B 63, 425 (recalled, not read), with a discrepancy
+    of given size in place of a fitted one.
+
+    Examples
+    --------
     >>> study = il.Study(
     ...     title="Decay", function=lambda rate, start: start - 2 * rate, sampling=il.Pawn(
     ...         samples=128, parameters={"rate": il.Uniform(0, 1), "start": il.Uniform(5, 6)}))

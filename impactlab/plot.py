@@ -56,12 +56,36 @@ def response(
     """Draw a response against a parameter.
 
     Of a grid: over dimension `x`, with a curve for every value of dimension `hue`; jumps are not
-    joined. Of a sample: the runs as points, with the mean of those of about the same `x`. x: by
-    default the only dimension of numbers beside `hue`. measurements: of a study's grid, what
-    `il.compare` takes; those of the response are drawn with their expanded uncertainties.
+    joined. Of a sample: the runs as points, with the mean of those of about the same `x`.
 
-    Raises ValueError for unknown names, and for further dimensions: select a value of each first.
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Runs of `il.simulate_many` or of a study.
+    name : str
+        Name of the response.
+    x : str, optional
+        Parameter of the axis; by default the only dimension of numbers beside `hue`.
+    hue : str, optional
+        Dimension of a grid with a curve per value.
+    measurements : str, pathlib.Path or mapping, optional
+        Measurements of the response, drawn with their expanded uncertainties over a study's grid
+        (see `il.compare`).
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; by default the current ones.
 
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown, or the runs have further dimensions: select a value of each first.
+
+    Examples
+    --------
     >>> runs = il.simulate_many(
     ...     il.paper_impact(), il.Discretisation(nodes=21), duration="1 ms", combine="product",
     ...     varied={"velocity": [1, 2, 3], "contact": ["hertz", "stronge"]})
@@ -109,8 +133,23 @@ def response(
 def run(one: xr.Dataset) -> Any:
     """Draw a run of `il.simulate`: force, motion, the loop of the contact and the beam at the end.
 
-    Returns an array of four axes. Raises ValueError for runs without histories and fields.
+    Parameters
+    ----------
+    one : xarray.Dataset
+        Dataset of one impact.
 
+    Returns
+    -------
+    numpy.ndarray of matplotlib.axes.Axes
+        The axes, shape (4,).
+
+    Raises
+    ------
+    ValueError
+        If the dataset has no histories and fields of one impact.
+
+    Examples
+    --------
     >>> one = il.simulate(il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms")
     >>> [ax.get_ylabel() for ax in il.plot.run(one)][:2]
     ['Contact force (kN)', 'Displacement down (µm)']
@@ -124,9 +163,23 @@ def run(one: xr.Dataset) -> Any:
 def sobol_over_time(analysis: xr.Dataset) -> Any:
     """Draw Sobol indices of contact force and deflection against time, above their means.
 
-    Returns an array of axes, a column per history. Raises ValueError where the analysis has none:
-    they need a Sobol sample with stored histories.
+    Parameters
+    ----------
+    analysis : xarray.Dataset
+        Result of `il.analyse` for a Sobol sample with stored histories.
 
+    Returns
+    -------
+    numpy.ndarray of matplotlib.axes.Axes
+        The axes, a column per history.
+
+    Raises
+    ------
+    ValueError
+        If the analysis has no indices over time.
+
+    Examples
+    --------
     >>> study = il.Study(
     ...     title="Over time", impact=il.paper_impact(), discretisation=il.Discretisation(nodes=21),
     ...     duration="0.3 ms", responses=["peak_force"], store={"histories": True, "samples": 30},
@@ -146,11 +199,29 @@ def sobol_over_time(analysis: xr.Dataset) -> Any:
 
 
 def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> Any:
-    """Draw a figure of the report by the name of its file, such as "parameter_effects".
+    """Draw a figure of the report.
 
-    runs, analysis: of a study. Returns an array of its axes. Raises ValueError, with the figures
-    that these datasets allow, for any other.
+    Parameters
+    ----------
+    name : str
+        Name of the figure's file, such as "parameter_effects".
+    runs : xarray.Dataset
+        Runs of a study.
+    analysis : xarray.Dataset, optional
+        Result of `il.analyse` for these runs.
 
+    Returns
+    -------
+    numpy.ndarray of matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If these datasets allow no such figure; the message lists those that they do.
+
+    Examples
+    --------
     >>> study = il.Study(
     ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=64, parameters={
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
@@ -204,10 +275,29 @@ def _indices(name: str, family: measures.Family, size: str) -> _Draw:
     draw.__name__ = draw.__qualname__ = name
     draw.__doc__ = f"""Draw "{family.title}" of `il.analyse`, with their intervals if they have any.
 
-    Returns the axes of one response, or an array of axes, a panel per response. Pale bars are
-    within the noise; a verdict stands above indices that should not be trusted. Raises ValueError
-    where the analysis has none, or does not know the response.
+    Pale bars are within the noise; a verdict stands above indices that should not be trusted.
 
+    Parameters
+    ----------
+    analysis : xarray.Dataset
+        Result of `il.analyse`.
+    response : str, optional
+        Name of the response; by default all, a panel each.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw one response on; by default the current ones.
+
+    Returns
+    -------
+    matplotlib.axes.Axes or numpy.ndarray of matplotlib.axes.Axes
+        The axes of one response, or of all.
+
+    Raises
+    ------
+    ValueError
+        If the analysis has no such indices, or does not know the response.
+
+    Examples
+    --------
     >>> study = il.Study(
     ...     title="Ishigami", function="ishigami", sampling=il.{name.title()}({size}, parameters={{
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}}))

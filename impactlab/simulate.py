@@ -65,16 +65,38 @@ def simulate(
 ) -> xr.Dataset:
     """Solve one impact.
 
-    duration: simulated time, in s or with a unit. samples: length of `time`, equally
-    spaced from 0 to the duration. Returns a Dataset with the histories on `time`, the strains on
-    `x` and `z`, every response of impactlab.variables.RESPONSES as a scalar, `status` and
-    `remarks`; a response that the run could not give is NaN, and `status` says why. `remarks` says
-    what to know of the others.
+    Parameters
+    ----------
+    impact : Impact
+        Sphere, beam and velocity.
+    discretisation : Discretisation, optional
+        Nodes, points and time step; by default `Discretisation()`.
+    duration : Quantity
+        Simulated time, in s.
+    samples : int, default 2001
+        Length of `time`, equally spaced from 0 to the duration.
 
-    Raises ValueError when duration or samples is not valid, or a value is impossible; warns of
-    implausible values, and of a duration that ends before some responses can be given, with one
-    that lasts (TooShortWarning).
+    Returns
+    -------
+    xarray.Dataset
+        Histories on `time`, strains on `x` and `z`, every response as a scalar, `status` and
+        `remarks`, in SI units. A response that the run could not give is NaN, and `status` says
+        why; `remarks` qualifies the others.
 
+    Raises
+    ------
+    ValueError
+        If duration or samples is not valid, or a value is impossible.
+
+    Warns
+    -----
+    ImplausibleWarning
+        If a value is implausible.
+    TooShortWarning
+        If the run ends before some responses can be given; the message names a sufficient duration.
+
+    Examples
+    --------
     >>> grid = il.Discretisation(nodes=41)
     >>> run = il.simulate(il.paper_impact("2 m/s"), grid, duration="0.5 ms")
     >>> f"{run.peak_force.item() / 1e3:.0f} kN, {run.contact_force.sizes['time']} times"
@@ -123,15 +145,39 @@ def simulate_many(
 ) -> xr.Dataset:
     """Solve many impacts for their responses, on one thread.
 
-    varied: parameter name (see impactlab.model.parameters.PARAMETERS) -> its values. combine:
-    "paired" takes the first value of every list for the first run, and so on, so all lists are of
-    one length; "product" solves every combination. Returns a Dataset of every response, `status`
-    and `remarks`, on `run` for pairs and on a dimension per parameter for a product; parameters
-    and the duration, varied or fixed, are coordinates.
+    Parameters
+    ----------
+    impact : Impact
+        Values of the parameters that are not varied.
+    discretisation : Discretisation, optional
+        Nodes, points and time step; by default `Discretisation()`.
+    duration : Quantity
+        Simulated time, in s.
+    varied : mapping of str to sequence of Quantity
+        Values by name of the parameter (impactlab.model.parameters.PARAMETERS), shape (runs,) each.
+    combine : {"paired", "product"}, default "paired"
+        "paired" takes the first value of every list for the first run, and so on, so all lists have
+        one length; "product" solves every combination.
 
-    Raises ValueError for an unknown parameter, one that is no list, unequal lengths, or a value
-    that the model refuses, naming the run. Warns of implausible values.
+    Returns
+    -------
+    xarray.Dataset
+        Every response, `status` and `remarks`, in SI units, on `run` for pairs and on a dimension
+        per parameter for a product. Parameters and the duration, varied or fixed, are coordinates.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is unknown or not a list, lengths differ, or the model refuses a value; the
+        message names the run.
+
+    Warns
+    -----
+    ImplausibleWarning
+        If a value is implausible.
+
+    Examples
+    --------
     >>> many = il.simulate_many(
     ...     il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms",
     ...     varied={"velocity": ["1 m/s", "2 m/s"], "contact": ["hertz", "stronge", "mjg"]},

@@ -18,15 +18,29 @@ def analyse(
 ) -> xr.Dataset:
     """Return convergence, sensitivity and distributions of a study, whichever apply.
 
-    runs: a solved study as in runs.nc, in SI units; of the analyses named in ANALYSES, its
-    attribute `analyses` lists the wanted ones (without it: all). resolution, refinement: results of
-    adaptive.recommendation and adaptive.sobol for this study, which add the numerical
-    uncertainty of sensitivity indices (see `numerical`). Returns the variables that the applying
-    analyses document, on `response` and the dimensions that they leave, with the attributes of the
-    runs; without any, the coordinates of the responses alone.
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Solved study as in runs.nc, in SI units. Its attribute `analyses` lists the requested
+        analyses (impactlab.variables.ANALYSES); without it, all are.
+    resolution : xarray.Dataset, optional
+        Result of `Study.recommend` for this study: adds the numerical uncertainty of the responses.
+    refinement : xarray.Dataset, optional
+        Result of `Study.refine` for this study: adds the measured change of the indices.
 
-    Raises ValueError when the runs are not a study's, or contradict their attributes.
+    Returns
+    -------
+    xarray.Dataset
+        Variables of the analyses that apply, on `response` and the dimensions that they leave, with
+        the attributes of the runs; without any, the coordinates of the responses alone.
 
+    Raises
+    ------
+    ValueError
+        If the runs are not a study's, or contradict their attributes.
+
+    Examples
+    --------
     >>> study = il.Study(
     ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=256, parameters={
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))

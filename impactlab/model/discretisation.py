@@ -16,22 +16,39 @@ from impactlab.solver import BENDING_MODELS, RULES, SCHEMES
 class Discretisation:
     """Nodes along the span, integration points over the whole depth, and the time step.
 
-    nodes: odd, at least 5, so that mid-span is a node. points: at least 2, counted over the
-    whole depth. rule: "lobatto" (the paper), "legendre" or "layers" (midpoints of equal layers,
-    Zhang et al.). scheme: "leapfrog" (the paper: explicit, cost growing with nodes^3), "modal"
-    (sine modes, the same answers from far fewer nodes; see solver/modal.py), or "auto": modal where
-    every beam model in question has it, else leapfrog. courant: time step over the scheme's
-    largest, in (0, 1]: over the critical one of leapfrog; over the time in which a bar wave crosses
-    a spacing, unless the contact allows less, of modal.
-    element_size, elements_per_radius: of the "solid" model alone, which needs one of them and
-    nothing else of these: the size of its elements about the contact, in m; or how many lie over
-    the contact radius to expect (fem3d.solver.estimates), so that it follows the velocity.
-
     The schemes tend to the same answers, but for what does not converge anyway: the peak
     plastic strain of a perfectly plastic beam depends on the time step, too.
 
-    Raises ValueError naming the field otherwise.
+    Parameters
+    ----------
+    nodes : int, default 201
+        Number of nodes along the span: odd, so that mid-span is a node, at least 5.
+    points : int, default 9
+        Number of integration points over the whole depth, at least 2.
+    rule : {"lobatto", "legendre", "layers"}, default "lobatto"
+        Integration rule: the paper's, Gauss and Legendre's, or the midpoints of equal layers (Zhang
+        et al.).
+    scheme : {"leapfrog", "modal", "auto"}, default "leapfrog"
+        Scheme in time: "leapfrog" (the paper's: explicit, cost growing with nodes^3), "modal" (sine
+        modes, the same answers from far fewer nodes; solver/modal.py), or "auto": modal where every
+        beam model of the runs has it, else leapfrog.
+    courant : Quantity, default 0.9
+        Time step over the scheme's largest, in (0, 1]: of leapfrog, the critical one; of modal, the
+        time in which a bar wave crosses a spacing, unless the contact allows less.
+    element_size : Quantity, optional
+        Size of the elements about the contact, in m; of the model "solid" alone, which needs this
+        or `elements_per_radius` and none of the others.
+    elements_per_radius : Quantity, optional
+        Number of elements over the expected contact radius (fem3d.solver.estimates), so that their
+        size follows the velocity; of the model "solid" alone.
 
+    Raises
+    ------
+    ValueError
+        If a value is not valid; the message names the field.
+
+    Examples
+    --------
     >>> il.Discretisation(nodes=601, points=9).rule
     'lobatto'
     """
@@ -66,7 +83,18 @@ class Discretisation:
         require(courant <= 1, "Discretisation", "courant", self.courant, words)
 
     def resolved(self, beam_models: Iterable[str]) -> Discretisation:
-        """Return a copy with the scheme that `auto` stands for, for runs of these beam models."""
+        """Return a copy with the scheme that `auto` stands for.
+
+        Parameters
+        ----------
+        beam_models : iterable of str
+            Beam models of the runs.
+
+        Returns
+        -------
+        Discretisation
+            The same one where its scheme is not "auto".
+        """
         if np.any(np.not_equal(self.scheme, "auto")):
             return self
         bending = set(beam_models) <= set(BENDING_MODELS)

@@ -22,18 +22,45 @@ MODELS = (*BEAM_MODELS, SOLID)
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """An isotropic metal with linear isotropic and kinematic hardening, in SI units.
+    """An isotropic metal with linear isotropic and kinematic hardening.
 
-    density in kg/m3; youngs_modulus, yield_stress and the two hardening moduli in Pa
-    (slope of the uniaxial yield stress, or of the back stress, against plastic strain);
-    poissons_ratio without unit, 0 <= nu < 0.5. Hardening acts in the beam's fibres only: the
-    contact laws know the initial yield stress alone. rate_coefficient D (1/s) and rate_exponent q
-    (at least 1): at the plastic strain rate p' the yield stress is 1 + (p'/D)^(1/q) times the
-    static one, after Cowper and Symonds, in the beam's fibres and its contact
-    (solver/strain_rate.py); D = 0, the default, leaves it static.
+    Hardening acts in the beam's fibres only: the contact laws know the initial yield stress alone.
 
-    Raises ValueError naming the field when a value is not physical.
+    Parameters
+    ----------
+    density : Quantity
+        Density, in kg/m3.
+    youngs_modulus : Quantity
+        Young's modulus, in Pa.
+    poissons_ratio : Quantity
+        Poisson's ratio nu, 0 <= nu < 0.5.
+    yield_stress : Quantity
+        Initial yield stress, in Pa.
+    isotropic_hardening_modulus : Quantity, default 0
+        Slope of the uniaxial yield stress against plastic strain, in Pa.
+    kinematic_hardening_modulus : Quantity, default 0
+        Slope of the back stress against plastic strain, in Pa.
+    rate_coefficient : Quantity, default 0
+        Coefficient D, in 1/s; 0 stands for a yield stress that does not depend on the strain rate.
+    rate_exponent : Quantity, default 5
+        Exponent q, at least 1.
 
+    Raises
+    ------
+    ValueError
+        If a value is not physical; the message names the field.
+
+    Notes
+    -----
+    At the plastic strain rate p' the yield stress is 1 + (p'/D)^(1/q) times the static one, in the
+    beam's fibres and its contact (solver/strain_rate.py).
+
+    References
+    ----------
+    Cowper and Symonds (1957), Brown University, Applied Mathematics Report 28 (as remembered).
+
+    Examples
+    --------
     >>> steel = il.Material(
     ...     density="7.8 g/cm3", youngs_modulus="210 GPa", poissons_ratio=0.3, yield_stress=345e6)
     >>> steel.density, steel.yield_stress
@@ -75,11 +102,24 @@ class Material:
 
 @dataclass(frozen=True, kw_only=True)
 class Sphere:
-    """A solid sphere: radius in m, mass in kg (None: density times volume).
+    """A solid sphere.
 
-    Raises ValueError naming the field when radius or mass is not finite and positive, or the
-    material is none.
+    Parameters
+    ----------
+    radius : Quantity
+        Radius, in m.
+    material : Material
+        Metal of the sphere.
+    mass : Quantity, optional
+        Mass, in kg; by default density times volume.
 
+    Raises
+    ------
+    ValueError
+        If radius or mass is not finite and positive, or the material is not a `Material`.
+
+    Examples
+    --------
     >>> from dataclasses import replace
     >>> replace(il.paper_impact().sphere, radius="3 cm").total_mass
     0.8821592171280138
@@ -97,7 +137,13 @@ class Sphere:
 
     @property
     def total_mass(self) -> float:
-        """Mass in kg: the stated one, else density times volume."""
+        """Mass in kg: the stated one, else density times volume.
+
+        Returns
+        -------
+        float
+            Mass, in kg.
+        """
         if self.mass is not None:
             return self.mass
         # not **3: numpy's power of a column is not Python's to the last bit
@@ -108,13 +154,27 @@ class Sphere:
 
 @dataclass(frozen=True, kw_only=True)
 class Beam:
-    """A simply supported beam of rectangular section: span, width and depth in m.
+    """A simply supported beam of rectangular section.
 
-    shear_coefficient: k in Q = k G A times the shear angle, of the Timoshenko beam alone.
+    Parameters
+    ----------
+    span : Quantity
+        Distance of the supports, in m.
+    width, depth : Quantity
+        Side of the section, across and along the velocity, in m.
+    material : Material
+        Metal of the beam.
+    shear_coefficient : Quantity, default 5/6
+        Shear force over G A times the shear angle, of Timoshenko's beam alone.
 
-    Raises ValueError naming the field when a length is not finite and positive, or when the
-    depth is not below the span, the shear coefficient not in (0, 1], or the material is none.
+    Raises
+    ------
+    ValueError
+        If a length is not finite and positive, the depth not below the span, the shear coefficient
+        not in (0, 1], or the material is not a `Material`.
 
+    Examples
+    --------
     >>> steel = il.paper_impact().beam.material
     >>> il.Beam(span="78 cm", width="6 cm", depth="28 mm", material=steel).depth
     0.028
@@ -138,35 +198,67 @@ class Beam:
 
     @property
     def mass_per_length(self) -> float:
-        """rho A in kg/m."""
+        """Density times area of the section.
+
+        Returns
+        -------
+        float
+            rho A, in kg/m.
+        """
         return self.material.density * self.width * self.depth
 
     @property
     def bending_stiffness(self) -> float:
-        """EI in N m2 (exact section, not that of an integration rule)."""
+        """Bending stiffness of the exact section, not that of an integration rule.
+
+        Returns
+        -------
+        float
+            EI, in N m2.
+        """
         return self.material.youngs_modulus * self.width * self.depth**3 / 12.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Impact:
-    """A sphere hits the middle of a beam at rest.
+    """A sphere that hits the middle of a beam at rest.
 
-    velocity: the sphere's, downwards at first touch, in m/s. contact: the name of a contact law
-    (impactlab.solver.contact.LAWS); by default the one that agrees best with 3-D finite elements
-    (docs/agreement.md), in paper_impact the paper's. gravity: acts on the sphere alone, in m/s2.
-    beam_model: "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre
-    yields), "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.:
-    one degree of freedom), "rigid" (the beam does not move) or "solid" (3-D finite elements of both
-    bodies, in which `contact` and `load` play no part). load: "point" (the contact force acts at
-    mid-span) or "contact_patch" (over the contact circle, see solver/contact_patch.py; not on
-    lumped beams). contact_compliance: of the contact law's "half_space", of this "beam" and sphere,
-    or of a "strip", a beam that bends across its width, too (see model/contact_compliance.py).
-    contact_prestress: whether the stress from the beam's "bending" changes the force at which the
-    contact yields, or is "ignored" (see solver/contact/prestress.py). Both but for their defaults
-    are for Timoshenko's beam alone.
+    Parameters
+    ----------
+    sphere : Sphere
+        Striking body.
+    beam : Beam
+        Struck body.
+    velocity : Quantity
+        Velocity of the sphere, downwards at first touch, in m/s.
+    contact : str, default "finite_element"
+        Contact law (impactlab.solver.contact.LAWS); the default agrees best with 3-D finite
+        elements (docs/agreement.md).
+    gravity : Quantity, default 9.81
+        Acceleration of the sphere alone, in m/s2.
+    beam_model : str, default "euler_bernoulli"
+        "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
+        "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one
+        degree of freedom), "rigid" (the beam does not move), or "solid" (3-D finite elements of
+        both bodies, in which `contact` and `load` play no part).
+    load : {"point", "contact_patch"}, default "point"
+        Place of the contact force: mid-span, or the contact circle (solver/contact_patch.py; not on
+        lumped beams).
+    contact_compliance : {"half_space", "beam", "strip"}, default "half_space"
+        Local compliance: that of the contact law, of this beam and sphere, or of a beam that bends
+        across its width, too (model/contact_compliance.py). Others than the default need
+        `beam_model="timoshenko"`.
+    contact_prestress : {"ignored", "bending"}, default "ignored"
+        Stress from the beam's bending that changes the force at which the contact yields
+        (solver/contact/prestress.py). "bending" needs `beam_model="timoshenko"`.
 
-    Raises ValueError naming the field when a value is not physical or a name is unknown.
+    Raises
+    ------
+    ValueError
+        If a value is not physical or a name is unknown; the message names the field.
 
+    Examples
+    --------
     >>> paper = il.paper_impact()
     >>> impact = il.Impact(sphere=paper.sphere, beam=paper.beam, velocity="7.2 km/h")
     >>> impact.velocity
@@ -213,13 +305,32 @@ class Impact:
 
 
 def paper_impact(velocity: Quantity = 0.99, contact: str = "stronge") -> Impact:
-    """Return the impact of the paper's Tables 2 and 3: Gr 15 sphere, Q345 beam; velocity in m/s.
+    """Return the impact of the paper's Tables 2 and 3: Gr 15 sphere, Q345 beam.
 
+    Parameters
+    ----------
+    velocity : Quantity, default 0.99
+        Velocity of the sphere, in m/s.
+    contact : str, default "stronge"
+        Contact law; the default is the paper's.
+
+    Returns
+    -------
+    Impact
+        Sphere, beam and velocity.
+
+    Raises
+    ------
+    ValueError
+        If velocity or contact is not valid (see `Impact`).
+
+    Notes
+    -----
     Masses follow from density and volume: the sphere's 1.4009 kg agrees with the printed 1.4 kg,
     the beam's 10.148 kg does not with the printed 10.929 kg (that would be 840 mm of beam).
 
-    Raises ValueError when velocity or contact is not valid (see Impact).
-
+    Examples
+    --------
     >>> il.paper_impact("2 m/s").beam.depth
     0.0278
     """
@@ -234,14 +345,29 @@ def paper_impact(velocity: Quantity = 0.99, contact: str = "stronge") -> Impact:
 
 
 def corrected_impact(velocity: Quantity = 0.99) -> Impact:
-    """Return the paper's sphere and beam in the beam model that is nearest to 3-D; velocity in m/s.
+    """Return the paper's sphere and beam in the beam model that is nearest to 3-D.
 
     Timoshenko's beam, a contact law from finite elements, the local compliance of sphere and beam
     with bending across the width, the stress of bending where the contact yields, and the force
-    over the circle of contact: docs/agreement.md has what each of them brings.
+    over the circle of contact: docs/agreement.md measures the effect of each.
 
-    Raises ValueError when velocity is not valid.
+    Parameters
+    ----------
+    velocity : Quantity, default 0.99
+        Velocity of the sphere, in m/s.
 
+    Returns
+    -------
+    Impact
+        Sphere, beam and velocity.
+
+    Raises
+    ------
+    ValueError
+        If velocity is not valid.
+
+    Examples
+    --------
     >>> il.corrected_impact("2 m/s").contact
     'finite_element'
     """

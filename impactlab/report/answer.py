@@ -52,11 +52,22 @@ Entry = tuple[str, str]
 
 
 def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
-    """Return what a study found, in at most five lines: the main finding first.
+    """Return the findings of a study in at most five lines, the main finding first.
 
-    runs, analysis: the stored runs.nc and analysis.nc; or findings.nc alone. Runs without their
-    analysis are analysed.
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Runs of a study as in runs.nc, or the findings of a verification as in findings.nc.
+    analysis : xarray.Dataset, optional
+        Analysis of the runs as in analysis.nc; by default `analyse(runs)`.
 
+    Returns
+    -------
+    list of str
+        Sentences, with units and intervals.
+
+    Examples
+    --------
     >>> study = il.Study(
     ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=256, parameters={
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))

@@ -15,8 +15,15 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
 
 class StudyError(ValueError):
-    """Everything that is wrong with a study, one argument per problem.
+    """All mistakes of a study, one argument per problem.
 
+    Parameters
+    ----------
+    *args : Problem
+        The mistakes.
+
+    Examples
+    --------
     >>> il.Study.from_yaml("nowhere.yaml")
     Traceback (most recent call last):
     impactlab.study.errors.StudyError: nowhere.yaml: there is no such file
@@ -29,7 +36,19 @@ class StudyError(ValueError):
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake: file, dotted key, reason and value."""
+    """A mistake in a study; as text, `file: key = value: reason`.
+
+    Attributes
+    ----------
+    file : str
+        File, or the function that was called.
+    key : str
+        Dotted key; "" for the file as a whole.
+    reason : str
+        Mistake and remedy.
+    value : object
+        Value of the key, if it has one.
+    """
 
     file: str
     key: str

@@ -47,12 +47,34 @@ _TAIL = 1e-3  # probability of either tail of a distribution that a cost sample 
 
 @dataclass(frozen=True)
 class Estimate:
-    """The cost of a study: core-seconds, bytes of memory and of disk.
+    """The cost of a study (`il.Study.estimate`), within a factor of about 3.
 
-    runs: all, or the most that a growing sample may reach. free: bytes of disk that it may take.
-    largest: seconds of the largest run; largest_run: its varied parameters. slow and large: the
-    keys that drive time and space. implausible: values that are possible but improbable. auto: True
-    while the discretisation is still to be found, and the default is used instead.
+    Attributes
+    ----------
+    file : str
+        Name of the study file.
+    runs : int
+        Number of runs, or the most that a growing sample may reach.
+    seconds : float
+        Time of all runs on one core, in s.
+    memory : float
+        Size in memory, in bytes.
+    disk : float
+        Size on disk, in bytes.
+    free : float
+        Size that the results may take on disk, in bytes.
+    largest : float
+        Time of the largest run, in s.
+    largest_run : mapping of str to float, int or str
+        Varied parameters of the largest run, in SI units.
+    slow : str
+        Key of the study that drives time.
+    large : str
+        Key of the study that drives memory and disk.
+    implausible : tuple of Problem
+        Values that are possible but improbable.
+    auto : bool
+        True while the discretisation is still to be found, and the default is used instead.
     """
 
     file: str
@@ -69,11 +91,28 @@ class Estimate:
     auto: bool = False
 
     def wall(self, workers: int) -> float:
-        """Return the seconds on so many cores: at least those of the largest run."""
+        """Return the time on several cores: at least that of the largest run.
+
+        Parameters
+        ----------
+        workers : int
+            Number of cores.
+
+        Returns
+        -------
+        float
+            Time, in s.
+        """
         return max(self.seconds / workers, self.largest)
 
     def exceeded(self) -> list[Problem]:
-        """Return one problem per limit that the study exceeds, at the key that drives it."""
+        """Return one problem per limit that the study exceeds, at the key that drives it.
+
+        Returns
+        -------
+        list of Problem
+            Problems; empty where the study is within all limits.
+        """
         exceeded = []
         if self.seconds > MOST_TIME:
             needed = f"needs about {time(self.seconds)} of one core for {self.runs:,} runs"

@@ -138,10 +138,24 @@ def _open_shard(path: Path, kept: dict[Path, Shard], stack: ExitStack) -> Iterat
 
 @dataclass(frozen=True)
 class Status:
-    """The progress of a study: all runs, those on disk, and those that lack a requested response.
+    """The progress of a study (`il.Study.status`).
 
-    age: of the latest shard in s, None without one; size: of all shards in bytes, also of other
-    solvers and outputs; holder: who works on it now, or "". written: what runs.nc holds.
+    Attributes
+    ----------
+    runs : int
+        Number of all runs.
+    done : int
+        Number of runs on disk.
+    failed : int
+        Number of these that lack a requested response.
+    age : float or None
+        Time since the latest file of runs was written, in s; None without one.
+    size : int
+        Size of all files of runs, in bytes, also of other solvers and outputs.
+    holder : str
+        Process that works on the study now, or "".
+    written : str
+        Content of runs.nc.
     """
 
     runs: int

@@ -25,7 +25,20 @@ _AT_ONCE = 4096  # number of points whose terms about fit in the processor's cac
 
 
 class Surrogate:
-    """The surrogates of all responses of one study."""
+    """The surrogates of all responses of one study (see `il.load_surrogate`).
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Dataset of surrogate.nc.
+
+    Attributes
+    ----------
+    parameters : tuple of str
+        Names of the varied parameters.
+    responses : tuple of str
+        Names of the responses.
+    """
 
     def __init__(self, dataset: xr.Dataset) -> None:
         """Take the dataset of surrogate.nc (see `packed`)."""
@@ -38,23 +51,51 @@ class Surrogate:
         self._takes = f"the surrogate takes {', '.join(self.parameters)}"
 
     def units(self, parameter: str) -> str:
-        """Return the SI unit of a parameter. Raises ValueError where it was not varied."""
+        """Return the SI unit of a parameter.
+
+        Parameters
+        ----------
+        parameter : str
+            Name of the parameter.
+
+        Returns
+        -------
+        str
+            Unit in UDUNITS spelling.
+
+        Raises
+        ------
+        ValueError
+            If the parameter was not varied.
+        """
         self._check_known(parameter)
         return str(self.dataset["parameter_units"].sel(parameter=parameter).item())
 
     def predict(self, **values: Any) -> xr.Dataset:
-        """Predict every response at values of all varied parameters, in SI units.
+        """Predict every response at values of all varied parameters.
 
-        values: by name, numbers, arrays of one dimension (`point`) or DataArrays, which are
-        broadcast against each other. Returns the responses on the common dimensions, NaN where
-        there is no surrogate, each with units, long_name, rmse and q2 (of runs left out), error,
-        leverage and verdict. error: half-width of the 95 % interval of a prediction, and leverage:
-        how far out the point is (see `validation.leverage`), both the largest over the points.
-        verdict: that of the surrogate, or, where this is "usable": "extrapolated" where a point
-        lies farther out than every run tested on, so that no run bears out its error; "imprecise"
-        where a prediction is smaller than ten times its error. The values are its coordinates.
-        Raises ValueError, naming parameter, value and range, where one is missing, was not varied,
-        or lies outside what the surrogate knows.
+        Parameters
+        ----------
+        **values : float, array_like or xarray.DataArray
+            Value of each varied parameter by name, in SI units: numbers, arrays of shape (point,),
+            or DataArrays, which are broadcast against each other.
+
+        Returns
+        -------
+        xarray.Dataset
+            Responses on the common dimensions, NaN where there is no surrogate, with the values as
+            coordinates. Attributes of each response: units, long_name; rmse and q2, of runs left
+            out; error, the half-width of the 95 % interval of a prediction, and leverage, how far
+            out the point is, both the largest over the points; and verdict, that of the surrogate,
+            or, where this is "usable": "extrapolated" where a point lies farther out than every run
+            tested on, so that no run bears out its error; "imprecise" where a prediction is smaller
+            than ten times its error.
+
+        Raises
+        ------
+        ValueError
+            If a value is missing, was not varied, or lies outside the range of the surrogate; the
+            message names parameter, value and range.
         """
         for name in values:
             self._check_known(name)
@@ -87,12 +128,31 @@ class Surrogate:
     def at(self, unit: Floats) -> Floats:
         """Return all responses where the parameters have these probabilities.
 
-        unit: (points, parameters); the result is (responses, points).
+        Parameters
+        ----------
+        unit : numpy.ndarray
+            Probabilities in [0, 1], shape (points, parameters).
+
+        Returns
+        -------
+        numpy.ndarray
+            Responses in SI units, shape (responses, points).
         """
         return self._evaluated(self._inputs(unit))[0]
 
     def errors(self, unit: Floats) -> Floats:
-        """Return half-widths of the 95 % intervals of what `at` gives, (responses, points)."""
+        """Return half-widths of the 95 % intervals of `at`.
+
+        Parameters
+        ----------
+        unit : numpy.ndarray
+            Probabilities in [0, 1], shape (points, parameters).
+
+        Returns
+        -------
+        numpy.ndarray
+            Half-widths in SI units, shape (responses, points).
+        """
         return self._evaluated(self._inputs(unit))[2]
 
     def _inputs(self, unit: Floats) -> Floats:
@@ -116,12 +176,41 @@ class Surrogate:
         return np.hstack(answers), leverage, scale * leverage ** (growth / 2)
 
     def distribution(self, parameter: str) -> dict[str, Any]:
-        """Return name and arguments of a parameter's distribution, in SI units."""
+        """Return the distribution of a parameter.
+
+        Parameters
+        ----------
+        parameter : str
+            Name of a varied parameter.
+
+        Returns
+        -------
+        dict
+            Name and arguments of the distribution, in SI units.
+        """
         found: dict[str, Any] = self._distributions[self.parameters.index(parameter)]
         return found
 
     def probability(self, parameter: str, value: float) -> float:
-        """Return the probability of smaller values. Raises ValueError outside the sampled range."""
+        """Return the probability of smaller values.
+
+        Parameters
+        ----------
+        parameter : str
+            Name of a varied parameter.
+        value : float
+            Value of the parameter, in SI units.
+
+        Returns
+        -------
+        float
+            Cumulative probability, in [0, 1].
+
+        Raises
+        ------
+        ValueError
+            If the value lies outside the sampled range.
+        """
         self._checked(parameter, value)
         return float(cumulative(self.distribution(parameter), value))
 
@@ -202,8 +291,32 @@ _EARLIER = (
 
 
 def load_surrogate(path: str | Path) -> Surrogate:
-    """Load a study's surrogate.nc. Raises OSError or ValueError naming a file that holds none.
+    """Load the surrogates of a study.
 
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        File surrogate.nc of the study's folder, which `il.Study.analyse` writes for a sample.
+
+    Returns
+    -------
+    Surrogate
+        Predictions of every response.
+
+    Raises
+    ------
+    OSError
+        If there is no such file, or it cannot be read.
+    ValueError
+        If the file holds no surrogate, or one of an earlier version.
+
+    References
+    ----------
+    Blatman and Sudret (2011), J. Comput. Phys. 230, 2345, section 4.3; Sudret (2008), Reliab. Eng.
+    Syst. Saf. 93, 964, eqs. 36 to 39.
+
+    Examples
+    --------
     >>> study = il.Study(
     ...     title="Ishigami", function="ishigami", sampling=il.Sobol(base_samples=256, parameters={
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))

@@ -28,7 +28,13 @@ class _Section:
     _key: ClassVar[str]
 
     def written(self) -> dict[str, Any]:
-        """Return the section as a study file has it; what is None is left out."""
+        """Return the section as a study file has it; what is None is left out.
+
+        Returns
+        -------
+        dict
+            Keys and values of the section.
+        """
         snake = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(self).__name__).lower()
         given = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         last = {key: given.pop(key) for key in ("parameters",) if key in given}
@@ -44,6 +50,13 @@ class _Distribution(_Section):
 class Uniform(_Distribution):
     """Equal probability from `low` to `high`.
 
+    Parameters
+    ----------
+    low, high : Quantity
+        Ends of the range, in the parameter's unit.
+
+    Examples
+    --------
     >>> il.Uniform("26 mm", "29 mm")
     Uniform(low='26 mm', high='29 mm')
     """
@@ -54,8 +67,15 @@ class Uniform(_Distribution):
 
 @dataclass(frozen=True)
 class LogUniform(_Distribution):
-    """Equal probability of the logarithm, from `low` above zero to `high`.
+    """Equal probability of the logarithm, from `low` to `high`.
 
+    Parameters
+    ----------
+    low, high : Quantity
+        Ends of the range, above zero, in the parameter's unit.
+
+    Examples
+    --------
     >>> speed = il.LogUniform("0.1 m/s", "10 m/s")
     """
 
@@ -65,8 +85,17 @@ class LogUniform(_Distribution):
 
 @dataclass(frozen=True)
 class Normal(_Distribution):
-    """A normal distribution; for bounded parameters TruncatedNormal is safer.
+    """A normal distribution; for bounded parameters `TruncatedNormal` is safer.
 
+    Parameters
+    ----------
+    mean : Quantity
+        Mean, in the parameter's unit.
+    standard_deviation : Quantity
+        Standard deviation, in the parameter's unit.
+
+    Examples
+    --------
     >>> stress = il.Normal("345 MPa", "20 MPa")
     """
 
@@ -76,8 +105,19 @@ class Normal(_Distribution):
 
 @dataclass(frozen=True)
 class TruncatedNormal(_Distribution):
-    """A normal distribution, of this mean and deviation, that is cut at `low` and `high`.
+    """A normal distribution that is cut at `low` and `high`.
 
+    Parameters
+    ----------
+    mean : Quantity
+        Mean before the cut, in the parameter's unit.
+    standard_deviation : Quantity
+        Standard deviation before the cut, in the parameter's unit.
+    low, high : Quantity
+        Ends of the range, in the parameter's unit.
+
+    Examples
+    --------
     >>> stress = il.TruncatedNormal("345 MPa", "25 MPa", low="270 MPa", high="420 MPa")
     """
 
@@ -89,8 +129,17 @@ class TruncatedNormal(_Distribution):
 
 @dataclass(frozen=True)
 class Lognormal(_Distribution):
-    """A normal distribution of the logarithm; with a geometric deviation of 1.1, about ± 10 %.
+    """A normal distribution of the logarithm.
 
+    Parameters
+    ----------
+    median : Quantity
+        Median, in the parameter's unit.
+    geometric_standard_deviation : float
+        Factor above 1, within which of the median 68 % of draws lie: 1.1 is about ± 10 %.
+
+    Examples
+    --------
     >>> stress = il.Lognormal("345 MPa", 1.1)
     """
 
@@ -102,6 +151,17 @@ class Lognormal(_Distribution):
 class Triangular(_Distribution):
     """A density that rises from `low` to `mode` and falls to `high`.
 
+    Parameters
+    ----------
+    low : Quantity
+        Lower end, in the parameter's unit.
+    mode : Quantity
+        Most probable value, in the parameter's unit.
+    high : Quantity
+        Upper end, in the parameter's unit.
+
+    Examples
+    --------
     >>> stiffness = il.Triangular("190 GPa", "210 GPa", "230 GPa")
     """
 
@@ -112,10 +172,19 @@ class Triangular(_Distribution):
 
 @dataclass(frozen=True)
 class Choice(_Distribution):
-    """One of several words, such as contact laws; weights: relative, by default equal.
+    """One of several words, such as contact laws.
 
-    For Sobol, Delta and Pawn, which need no order of the values.
+    For `Sobol`, `Delta` and `Pawn`, which need no order of the values.
 
+    Parameters
+    ----------
+    values : sequence of str
+        Two words or more.
+    weights : sequence of float, optional
+        Relative probability of each word, above zero; equal by default.
+
+    Examples
+    --------
     >>> law = il.Choice(["stronge", "mjg", "thornton"], weights=[2, 1, 1])
     """
 
@@ -131,8 +200,13 @@ class _Sampling(_Section):
 class Grid(_Sampling):
     """A grid: all combinations of the listed values are runs.
 
-    parameters: name (docs/studies.md lists them) -> its values.
+    Parameters
+    ----------
+    parameters : mapping of str to sequence of Quantity
+        Values by name of the parameter (docs/studies.md lists the names).
 
+    Examples
+    --------
     >>> speeds = il.Grid(parameters={"velocity": ["50 cm/s", 1, 2], "contact": ["hertz", "mjg"]})
     """
 
@@ -145,7 +219,13 @@ class _Sample(_Sampling):
     seed: int | None = None
 
     def written(self) -> dict[str, Any]:
-        """Return the section, with single values as fixed parameters."""
+        """Return the section as a study file has it, with single values as fixed parameters.
+
+        Returns
+        -------
+        dict
+            Keys and values of the section.
+        """
         found = super().written()
         if isinstance(self.parameters, Mapping):
             found["parameters"] = {
@@ -159,12 +239,32 @@ class _Sample(_Sampling):
 class Sobol(_Sample):
     """Saltelli's sample for Sobol indices of first, second and total order.
 
-    base_samples: N, a power of two; N (D + 2) runs of D parameters, N (2 D + 2) with indices of
-    second order (the default). parameters: name -> its distribution, or one fixed value. seed:
-    equal seeds give equal runs. groups: name -> parameters that get one index together. until:
-    `{"interval": 0.05, "runs": 100_000}` doubles the sample until the intervals of its indices are
-    as narrow.
+    D parameters take `base_samples` (2 D + 2) runs, without indices of second order
+    `base_samples` (D + 2).
 
+    Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    base_samples : int
+        Number of base samples, a power of two, at least 4.
+    second_order : bool, default True
+        True to estimate indices of second order.
+    groups : mapping of str to sequence of str, optional
+        Parameters that get one index together, by name of the group.
+    until : mapping, optional
+        `{"interval": 0.05, "runs": 100_000}` doubles the sample until no interval is wider than
+        ± `interval`, or the next sample would exceed `runs`.
+
+    References
+    ----------
+    Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2 (b) and (f); Saltelli (2002),
+    Comput. Phys. Commun. 145, 280, Theorem 2.
+
+    Examples
+    --------
     >>> depth, stress = il.Uniform("26 mm", "29 mm"), il.Normal("345 MPa", "20 MPa")
     >>> sample = il.Sobol(
     ...     base_samples=1024, seed=1,
@@ -179,10 +279,27 @@ class Sobol(_Sample):
 
 @dataclass(frozen=True, kw_only=True)
 class Morris(_Sample):
-    """Trajectories for elementary effects: trajectories times (D + 1) runs.
+    """Trajectories for elementary effects: `trajectories` (D + 1) runs of D parameters.
 
-    levels: of the grid, even.
+    Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    trajectories : int
+        Number of trajectories, at least 2.
+    levels : int, default 4
+        Number of levels of each parameter, even.
+    groups : mapping of str to sequence of str, optional
+        Parameters that get one index together, by name of the group.
 
+    References
+    ----------
+    Morris (1991), Technometrics 33, 161.
+
+    Examples
+    --------
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.Morris(trajectories=20, parameters={"velocity": speed, "beam_depth": depth})
     """
@@ -194,8 +311,25 @@ class Morris(_Sample):
 
 @dataclass(frozen=True, kw_only=True)
 class Fast(_Sample):
-    """Search curves of extended FAST: at most samples times (D + 1) runs.
+    """Search curves of extended FAST: at most `samples` (D + 1) runs of D parameters.
 
+    Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    samples : int
+        Number of runs per parameter; docs/studies.md has the least.
+    harmonics : int, default 4
+        Multiples of a parameter's frequency that are kept apart from other parameters.
+
+    References
+    ----------
+    Saltelli et al. (1999), Technometrics 41, 39, eqs. 11 and 20.
+
+    Examples
+    --------
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.Fast(samples=1024, parameters={"velocity": speed, "beam_depth": depth})
     """
@@ -212,11 +346,26 @@ class _Latin(_Sample):
 
 @dataclass(frozen=True, kw_only=True)
 class Delta(_Latin):
-    """A Latin hypercube for Borgonovo's delta; `samples` runs.
+    """A Latin hypercube for Borgonovo's delta.
 
-    correlations: two parameters and their rank correlation each, `[("beam_depth", "velocity",
-    0.5)]`; by default all vary independently.
+    Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    samples : int
+        Number of runs, at least 64.
+    correlations : sequence of (str, str, float), optional
+        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
+        pairs are independent.
 
+    References
+    ----------
+    Plischke et al. (2013), Eur. J. Oper. Res. 226, 536, eqs. 26 and 30.
+
+    Examples
+    --------
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.Delta(samples=128, parameters={"velocity": speed, "beam_depth": depth})
     """
@@ -224,8 +373,26 @@ class Delta(_Latin):
 
 @dataclass(frozen=True, kw_only=True)
 class Pawn(_Latin):
-    """A Latin hypercube for PAWN indices; `samples` runs. correlations: as for Delta.
+    """A Latin hypercube for PAWN indices.
 
+    Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    samples : int
+        Number of runs, at least 100.
+    correlations : sequence of (str, str, float), optional
+        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
+        pairs are independent.
+
+    References
+    ----------
+    Pianosi and Wagener (2018), Environ. Model. Softw. 108, 197, eqs. 2 and 3.
+
+    Examples
+    --------
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.Pawn(samples=128, parameters={"velocity": speed, "beam_depth": depth})
     """
@@ -233,8 +400,26 @@ class Pawn(_Latin):
 
 @dataclass(frozen=True, kw_only=True)
 class Regression(_Latin):
-    """A Latin hypercube for regression coefficients; `samples` runs. correlations: as for Delta.
+    """A Latin hypercube for regression coefficients.
 
+    Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    samples : int
+        Number of runs, at least 64.
+    correlations : sequence of (str, str, float), optional
+        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
+        pairs are independent.
+
+    References
+    ----------
+    Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5.
+
+    Examples
+    --------
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.Regression(samples=128, parameters={"velocity": speed, "beam_depth": depth})
     """

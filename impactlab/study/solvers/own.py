@@ -35,15 +35,25 @@ _COST = 3e6  # cost of calling functions once, about 10 ms
 
 @dataclass(frozen=True)
 class Function:
-    """A Python function as a response or as a model, with the unit of what it returns.
+    """A Python function as a response or as a model, with the unit of its result.
 
-    call: of the dataset of one impact (that of `il.simulate`), or of a model's parameters by name;
-    returns a number, NaN where there is none. units: SI, as "N" or "m s-1", of each response by
-    name where a model returns several; what returns an array with a unit has to state it, because
-    arithmetic with arrays does not keep track of units. long_name: for labels.
-    version: by default a hash of the code and of all that it uses; stored answers of another
-    version are not reused.
+    Parameters
+    ----------
+    call : callable
+        Function of the dataset of one impact (see `simulate`), or of a model's parameters by name;
+        returns a number, NaN where there is none.
+    units : str or mapping of str to str, optional
+        SI unit of the result, as "N" or "m s-1", or of each response by name where a model returns
+        several; "1" by default. A result that is an array with a unit needs it, because arithmetic
+        with arrays does not keep track of units.
+    long_name : str, optional
+        Name for labels.
+    version : str, optional
+        Stored answers of another version are not reused; by default a hash of the code and of all
+        that it uses.
 
+    Examples
+    --------
     >>> def mean_force(run):
     ...     return run.impulse / run.total_contact_time
     >>> force = il.Function(mean_force, units="N", long_name="mean contact force")
@@ -55,12 +65,36 @@ class Function:
     version: str | None = None
 
     def unit(self, response: str) -> str:
-        """Return the unit of a response, "1" where none is stated."""
+        """Return the unit of a response.
+
+        Parameters
+        ----------
+        response : str
+            Name of the response.
+
+        Returns
+        -------
+        str
+            The stated SI unit, else "1".
+        """
         stated = self.units.get(response) if isinstance(self.units, Mapping) else self.units
         return stated or "1"
 
     def check_unit(self, response: str, value: Any) -> None:
-        """Raise ValueError where a value has a unit, and none is stated."""
+        """Raise an error where a value has a unit, and none is stated.
+
+        Parameters
+        ----------
+        response : str
+            Name of the response.
+        value : float or xarray.DataArray
+            Result of the function.
+
+        Raises
+        ------
+        ValueError
+            If the attribute `units` of the value is not stated in `units`.
+        """
         units = getattr(value, "attrs", {}).get("units", "1")
         stated = response in self.units if isinstance(self.units, Mapping) else self.units
         if units != "1" and not stated:
