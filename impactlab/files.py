@@ -41,7 +41,7 @@ def check_suffix(name: str, path: Path, suffixes: Sequence[str]) -> None:
     """
     suffix = path.suffix.lower()
     if suffixes and suffix not in suffixes:
-        kinds, ends = (" or ".join(each) for each in ([KINDS[one] for one in suffixes], suffixes))
+        kinds, ends = (" or ".join(names) for names in ([KINDS[s] for s in suffixes], suffixes))
         raise ValueError(
             f"{name} = {str(path)!r}: is written as {kinds}: its name must end in {ends}"
         )
@@ -75,8 +75,8 @@ def replaced(path: Path, size: int = 0) -> Iterator[Path]:
 
 def unfinished_files(folder: Path) -> list[Path]:
     """Return the temporary files that `replaced` left in a folder when its process was killed."""
-    found = folder.glob(".*." + "[0-9a-f]" * 32)
-    return [path for path in found if path.is_file()]
+    paths = folder.glob(".*." + "[0-9a-f]" * 32)
+    return [path for path in paths if path.is_file()]
 
 
 CONTENTS = {
@@ -115,8 +115,8 @@ def write_netcdf(
     content: one of CONTENTS. sources: datasets read from files that it was made from. dated:
     whether its history has the time, without which equal datasets give the same bytes.
     """
-    made = f"{datetime.now(UTC).isoformat(timespec='seconds')}: " * dated + CONTENTS[content]
-    history = "\n".join(filter(None, (dataset.attrs.get("history"), made)))
+    time = f"{datetime.now(UTC).isoformat(timespec='seconds')}: " if dated else ""
+    history = "\n".join(filter(None, (dataset.attrs.get("history"), time + CONTENTS[content])))
     dataset = dataset.assign_attrs(
         title=dataset.attrs.get("title") or content,
         Conventions="CF-1.11",
@@ -169,8 +169,8 @@ def _noted(values: Any, hashed: blake2b) -> Any:
     blocks = values.rechunk({axis: -1 for axis in range(1, values.ndim)})
     shapes = [(rows, *values.shape[1:]) for rows in blocks.chunks[0]] if values.ndim else [()]
     parts, before = [], None
-    for shape, one in zip(shapes, blocks.to_delayed().ravel(), strict=True):
-        noted = delayed(note)(one, before)  # after the block before it
+    for shape, lazy in zip(shapes, blocks.to_delayed().ravel(), strict=True):
+        noted = delayed(note)(lazy, before)  # after the block before it
         before = delayed(lambda block: None)(noted)  # no block is kept for the next one
         parts.append(da.from_delayed(noted, shape, values.dtype))  # type: ignore[no-untyped-call]
     return da.concatenate(parts) if len(parts) > 1 else parts[0]  # type: ignore[no-untyped-call]
@@ -201,7 +201,7 @@ def opened(path: Path, *contents: str, indexed: bool = True) -> Iterator[xr.Data
         elif dataset.attrs["content"] not in contents:
             wrong = f"holds {dataset.attrs['content']}, not {' or '.join(contents)}"
         if contents and wrong:
-            command = " or ".join(f"`{CONTENTS[each]}`" for each in contents)
+            command = " or ".join(f"`{CONTENTS[content]}`" for content in contents)
             raise ValueError(f"{path}: {wrong}: make one with {command}")
         yield dataset
 
@@ -230,7 +230,7 @@ def checked(path: Path, *contents: str, blocks: bool = False) -> Iterator[xr.Dat
         for dim in map(str, lazy.dims):
             if dim in lazy.coords and dim != "run":
                 lazy = lazy.set_xindex(dim)
-        large = [each for each in lazy.values() if each.ndim > 1 and each.size > _BLOCK]
+        large = [v for v in lazy.values() if v.ndim > 1 and v.size > _BLOCK]
         if not (blocks and large):
             yield lazy
             return
@@ -238,18 +238,18 @@ def checked(path: Path, *contents: str, blocks: bool = False) -> Iterator[xr.Dat
 
         memory = {"array.chunk-size": 8 * _BLOCK, "scheduler": "synchronous"}  # as HDF5 is
         with dask.config.set(memory):
-            for each in large:
-                *others, last = each.dims
-                lazy[each.name] = each.chunk(dict.fromkeys(others, "auto") | {last: -1})
+            for variable in large:
+                *leading, last = variable.dims
+                lazy[variable.name] = variable.chunk(dict.fromkeys(leading, "auto") | {last: -1})
             yield lazy
 
 
 def _check(dataset: xr.Dataset, path: Path) -> None:
     with _readable(path):
-        found = {str(name): _digest(each.attrs, each) for name, each in dataset.variables.items()}
-    found[_ATTRIBUTES] = _digest(dataset.attrs)
-    kept: dict[str, str] = json.loads(dataset.attrs["checksums"])
-    if changed := sorted(name for name in kept.keys() | found if kept.get(name) != found.get(name)):
+        digests = {str(name): _digest(v.attrs, v) for name, v in dataset.variables.items()}
+    digests[_ATTRIBUTES] = _digest(dataset.attrs)
+    stored: dict[str, str] = json.loads(dataset.attrs["checksums"])
+    if changed := sorted(k for k in stored.keys() | digests if stored.get(k) != digests.get(k)):
         command = CONTENTS[dataset.attrs["content"]]
         raise ValueError(
             f"{path}: was changed after it was written ({', '.join(changed)}): make it again with "
@@ -263,12 +263,12 @@ def identity(dataset: xr.Dataset | None) -> str:
     return _digest({"all": checksums}) if checksums else ""
 
 
-def check_source(made: xr.Dataset, path: Path, source: xr.Dataset, source_path: Path) -> None:
+def check_source(derived: xr.Dataset, path: Path, source: xr.Dataset, source_path: Path) -> None:
     """Raise ValueError where a dataset was not made from another; both were read from files."""
-    if identity(source) not in made.attrs["made_from"].split():
+    if identity(source) not in derived.attrs["made_from"].split():
         raise ValueError(
             f"{path}: was not made from {source_path} as it is now: make it again with "
-            f"`{CONTENTS[made.attrs['content']]} {source_path}`"
+            f"`{CONTENTS[derived.attrs['content']]} {source_path}`"
         )
 
 
@@ -294,12 +294,12 @@ def _hash(attrs: Mapping[Any, Any], variable: xr.Variable | None) -> blake2b:
     if variable is not None:
         kind = "text" if variable.dtype.kind in "OUS" else variable.dtype.name
         attrs = {**attrs, " dims": variable.dims, " shape": variable.shape, " kind": kind}
-    plain = {key: np.ravel(each).tolist() for key, each in attrs.items() if key not in _UNCHECKED}
+    plain = {key: np.ravel(value).tolist() for key, value in attrs.items() if key not in _UNCHECKED}
     return blake2b(json.dumps(plain, sort_keys=True, default=str).encode(), digest_size=16)
 
 
 def _update(hashed: blake2b, values: Any) -> None:
     rows = block_rows(values.shape[1:])
     starts = range(0, len(values), rows) if values.ndim else ()
-    for block in (values[at : at + rows] for at in starts) if values.ndim else (values,):
+    for block in (values[start : start + rows] for start in starts) if values.ndim else (values,):
         hashed.update(np.ascontiguousarray(block).data)

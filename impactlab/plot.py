@@ -100,16 +100,16 @@ def response(
     x = x if x or sample or len(numbers) != 1 else numbers[0]
     coordinates = [
         str(key)
-        for key, each in runs.coords.items()
-        if each.dims == (("run",) if sample else (key,))
-        and (each.dtype.kind in "if" or labels.words(each))
+        for key, coordinate in runs.coords.items()
+        if coordinate.dims == (("run",) if sample else (key,))
+        and (coordinate.dtype.kind in "if" or labels.words(coordinate))
     ]
     _require("x", x, coordinates)
     if hue is not None:
         _require("hue", hue, [] if sample else dims)
-    if others := [dim for dim in dims if dim not in (x, hue, "run")]:
-        first = f"{others[0]}={runs[others[0]].values[0].item()!r}"
-        raise ValueError(f"runs also differ in {', '.join(others)}: first runs.sel({first})")
+    if further := [dim for dim in dims if dim not in (x, hue, "run")]:
+        first = f"{further[0]}={runs[further[0]].values[0].item()!r}"
+        raise ValueError(f"runs also differ in {', '.join(further)}: first runs.sel({first})")
     ax = _current(ax)
     along = runs[str(x)]
     if sample:
@@ -130,12 +130,12 @@ def response(
     return ax
 
 
-def run(one: xr.Dataset) -> Any:
+def run(data: xr.Dataset) -> Any:
     """Draw a run of `il.simulate`: force, motion, the loop of the contact and the beam at the end.
 
     Parameters
     ----------
-    one : xarray.Dataset
+    data : xarray.Dataset
         Dataset of one impact.
 
     Returns
@@ -150,14 +150,14 @@ def run(one: xr.Dataset) -> Any:
 
     Examples
     --------
-    >>> one = il.simulate(il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms")
-    >>> [ax.get_ylabel() for ax in il.plot.run(one)][:2]
+    >>> run = il.simulate(il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms")
+    >>> [ax.get_ylabel() for ax in il.plot.run(run)][:2]
     ['Contact force (kN)', 'Displacement down (µm)']
     """
-    if one.get("contact_force", xr.DataArray()).dims != ("time",) or "deflection" not in one:
+    if data.get("contact_force", xr.DataArray()).dims != ("time",) or "deflection" not in data:
         raise ValueError("run: expected the dataset of one impact, from il.simulate")
     with style.interactive():
-        return np.array(single_runs.picture(one).axes)
+        return np.array(single_runs.picture(data).axes)
 
 
 def sobol_over_time(analysis: xr.Dataset) -> Any:
@@ -230,10 +230,10 @@ def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> A
     3
     """
     analysis = xr.Dataset() if analysis is None else analysis
-    found = catalogue.applicable(runs, analysis)
-    _require("figure", name, found)
+    figures = catalogue.applicable(runs, analysis)
+    _require("figure", name, figures)
     with style.interactive():
-        return np.array(found[name].plot(runs, analysis).axes)
+        return np.array(figures[name].plot(runs, analysis).axes)
 
 
 class _Draw(Protocol):
@@ -247,14 +247,14 @@ def _indices(name: str, family: measures.Family, size: str) -> _Draw:
 
     def draw(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
         if not family.given(analysis):
-            missing = ", ".join(one.name for one in family.measures if not one.optional)
+            missing = ", ".join(measure.name for measure in family.measures if not measure.optional)
             raise ValueError(
                 f"the analysis holds no {missing}: it is not of runs for {family.title}"
             )
-        listed = [str(each) for each in analysis["response"].values]
+        listed = [str(label) for label in analysis["response"].values]
         stand_ins = {
-            each: ((), np.nan, {"units": str(unit)})
-            for each, unit in zip(listed, analysis["response_units"].values, strict=True)
+            label: ((), np.nan, {"units": str(unit)})
+            for label, unit in zip(listed, analysis["response_units"].values, strict=True)
         }
         runs = xr.Dataset(stand_ins, attrs={"responses": listed})  # their names and units are used
         if response is None and ax is None:
@@ -319,6 +319,6 @@ def _current(ax: Axes | None) -> Axes:
     return pyplot.gca() if ax is None else ax
 
 
-def _require(what: str, name: str | None, names: Any) -> None:
+def _require(kind: str, name: str | None, names: Any) -> None:
     if name not in names:
-        raise ValueError(f"{what} = {name!r}: {unknown(what, name, map(str, names))}")
+        raise ValueError(f"{kind} = {name!r}: {unknown(kind, name, map(str, names))}")

@@ -61,7 +61,7 @@ MARKS: dict[str, tuple[int, str]] = {
     "outside_contact_law": (
         outputs.OUTSIDE_CONTACT_LAW,
         "the largest indentation is beyond the range of the contact law (which `contact` states): "
-        "the responses are there, but extrapolated",
+        "the responses are extrapolated",
     )
 }
 """Further flags of `status`, by name: bits that leave every response as it is."""
@@ -70,7 +70,7 @@ STATUS_FLAGS = FAILURES | MARKS
 FAILED = sum(bit for bit, _ in FAILURES.values())
 """The bits of a run that failed."""
 MARKED = sum(bit for bit, _ in MARKS.values())
-"""The bits of a run whose responses are to be taken with care."""
+"""The bits of a run whose responses are doubtful."""
 
 WARNINGS: dict[str, tuple[int, str]] = {
     "contact_created_energy": (
@@ -112,13 +112,13 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "the beam itself yields",
     ),
 }
-"""Warnings on responses that are there, by name: (bit in `remarks`, in words)."""
+"""Warnings on available responses, by name: (bit in `remarks`, in words)."""
 OUTSIDE_DATA = sum(bit for name, (bit, _) in WARNINGS.items() if name.endswith("outside_data"))
 """The bits of runs with an input outside the data of the contact law or of the corrections."""
 
 FLAGS: dict[str, tuple[str, dict[str, tuple[int, str]]]] = {
-    "status": ("why responses are missing or to be taken with care (0: none is)", STATUS_FLAGS),
-    "remarks": ("what to know of the responses that are there (0: nothing)", WARNINGS),
+    "status": ("why responses are missing or doubtful (0: none is)", STATUS_FLAGS),
+    "remarks": ("warnings on available responses (0: none)", WARNINGS),
 }
 """The variables made of bits: (long_name, flags)."""
 
@@ -128,7 +128,7 @@ class Variable:
     """One dataset variable: where it lives, its unit (UDUNITS) and its meaning.
 
     missing: the status flag that explains why a response is NaN (besides those of the whole run).
-    comment: what a reader of the number has to know.
+    comment: a caveat for readers of the number.
     """
 
     name: str
@@ -157,8 +157,8 @@ NO_DISTRIBUTION: dict[str, str] = {
 class Analysis:
     """An analysis of the runs of a study.
 
-    place: of a module or object in impactlab.analysis with `applies(runs)`, True where the runs are
-    what it is about, and `analysis(runs)`, its variables with `response` or `history` among their
+    place: path of an object in impactlab.analysis with `applies(runs)`, True where it can analyse
+    the runs, and `analysis(runs)`, its variables with `response` or `history` among their
     coordinates. needs: the runs that it needs, in words. possible: whether a study has them, by its
     method of sampling, the number of values on each axis of its grid, and whether it stores
     histories.
@@ -171,8 +171,8 @@ class Analysis:
 
 def _grid(least: int, *axes: str) -> tuple[str, Callable[[str, Mapping[str, int], bool], bool]]:
     """Return needs and condition of an analysis along an axis of a grid."""
-    words = f"a grid that varies {' or '.join(f'`{axis}`' for axis in axes)} over at least {least} "
-    return words + "values", lambda _, sizes, __: any(sizes.get(axis, 0) >= least for axis in axes)
+    needs = f"a grid that varies {' or '.join(f'`{axis}`' for axis in axes)} over at least {least} "
+    return needs + "values", lambda _, sizes, __: any(sizes.get(axis, 0) >= least for axis in axes)
 
 
 _AXES = "impactlab.analysis.convergence.axes:"
@@ -240,7 +240,7 @@ WITNESS = _table(
         comment="of the 3-D model alone: NaN for models of the beam; differs from run to run",
     ),
 )
-"""What comes with the runs of the 3-D model beside the responses, by name."""
+"""Variables of runs of the 3-D model other than the responses, by name."""
 HISTORIES = _table(
     Variable("contact_force", ("time",), "N", "contact force"),
     Variable("midspan_deflection", ("time",), "m", "deflection of the beam at mid-span"),
@@ -294,9 +294,9 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
 
     Those of `contact` are source, range, flaws and doubts, one line per law.
     """
-    known = VARIABLES | PARAMETERS | FLAGS
+    entries = VARIABLES | PARAMETERS | FLAGS
     for name, variable in dataset.variables.items():
-        if name in known:
+        if name in entries:
             variable.attrs = attributes(str(name)) | variable.attrs
     if "contact" in dataset.variables:
         laws = [CONTACT_LAWS[name] for name in np.unique(dataset["contact"].values)]
@@ -307,9 +307,9 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def status_bits(responses: Iterable[str]) -> int:
-    """Return the status bits that take these responses away: the whole run's and each one's own.
+    """Return the status bits under which these responses are missing.
 
-    What the table does not know, such as the output of a test function, has none of its own.
+    Names that the table lacks, such as the output of a test function, add none.
     """
     bits = outputs.DIVERGED | outputs.ENERGY_OUT_OF_BALANCE | _STOPPED
     for name in responses:
@@ -319,8 +319,8 @@ def status_bits(responses: Iterable[str]) -> int:
 
 
 def reasons(bits: int, flags: Mapping[str, tuple[int, str]] = FAILURES) -> list[str]:
-    """Return the flags of a status, or of `remarks`, in words: its failures, or those given."""
-    return [words for bit, words in flags.values() if bits & bit]
+    """Return the flags set in a status, or in `remarks`, in words; flags: by default failures."""
+    return [text for bit, text in flags.values() if bits & bit]
 
 
 _PACKAGES = "impactlab numpy numba xarray netCDF4 dask SALib scikit-learn scipy"
@@ -336,18 +336,18 @@ def provenance() -> dict[str, str]:
 
 
 @cache  # what a process has loaded stays as it is
-def _of_this_process(here: Path) -> dict[str, str]:
-    """Return what provenance tells of versions, processor and the source tree `here` is in.
+def _of_this_process(source: Path) -> dict[str, str]:
+    """Return versions, processor and revision of the source tree that holds `source`.
 
-    Of the tree its commit, marked if it has changes; "release" outside a checkout.
+    The revision is a commit, marked if the tree has changes; "release" outside a checkout.
     """
     packages = ", ".join(f"{name} {version(name)}" for name in _PACKAGES.split())
     info = Path("/proc/cpuinfo")
-    told = re.search("^model name.*?: *(.*?) *$", info.read_text() if info.exists() else "", re.M)
-    processor = told[1] if told else platform.processor() or platform.machine()
-    command = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
+    model = re.search("^model name.*?: *(.*?) *$", info.read_text() if info.exists() else "", re.M)
+    processor = model[1] if model else platform.processor() or platform.machine()
+    command = ["git", "-C", str(source), "describe", "--always", "--dirty", "--abbrev=12"]
     revision = f"release {version('impactlab')}"
-    if (here.parent / ".git").exists():
+    if (source.parent / ".git").exists():
         try:
             done = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
             revision = done.stdout.strip()

@@ -66,8 +66,8 @@ app = typer.Typer(
 )
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _version(requested: bool) -> None:
+    if requested:
         from importlib.metadata import version
 
         print(f"impactlab {version('impactlab')}")
@@ -80,9 +80,7 @@ def configure(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
     log: Annotated[Path | None, typer.Option(help="Write messages to this file as well.")] = None,
-    debug: Annotated[
-        bool, typer.Option(help="Log details, the place of an error included.")
-    ] = False,
+    debug: Annotated[bool, typer.Option(help="Log details, including where errors occur.")] = False,
 ) -> None:
     """Set up logging, warnings and Ctrl-C for every command."""
     stop_quietly()

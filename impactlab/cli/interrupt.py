@@ -43,26 +43,26 @@ def stop_solving() -> None:
     # a process of multiprocessing's cleans up behind us: it need not tell what
     quiet = "ignore::UserWarning:multiprocessing.resource_tracker"
     os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (os.getenv("PYTHONWARNINGS"), quiet)))
-    show_cursor = b"\x1b[?25h\n" * sys.stderr.isatty()
+    show_cursor = b"\x1b[?25h\n" if sys.stderr.isatty() else b""
     stop_at_once(show_cursor + b"impactlab: interrupted; the same command goes on from here\n")
 
 
 @contextmanager
 def stop_kept() -> Iterator[Callable[[], bool]]:
-    """Take a first Ctrl-C as a request to stop; the function given tells whether one was made.
+    """Take a first Ctrl-C as a request to stop; yields a function that tells whether it came.
 
     A second one ends the command in one line.
     """
-    asked = False
+    is_stopping = False
 
     def ask(number: int, frame: object) -> None:
-        nonlocal asked
-        asked = True
+        nonlocal is_stopping
+        is_stopping = True
         os.write(sys.stderr.fileno(), _STOPPING)
         stop_quietly()
 
     signal.signal(signal.SIGINT, ask)
     try:
-        yield lambda: asked
+        yield lambda: is_stopping
     finally:
         stop_quietly()

@@ -42,11 +42,11 @@ def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
     """Return the names of a list "a,b", none of "". Raises ValueError naming the option."""
     from impactlab.study.errors import unknown
 
-    found = tuple(filter(None, text.replace(",", " ").split()))
-    for name in found:
+    selected = tuple(filter(None, text.replace(",", " ").split()))
+    for name in selected:
         if name not in names:
             raise ValueError(f"{option} = {text!r}: {unknown('response', name, names)}")
-    return found
+    return selected
 
 
 def given(option: str, text: str, units: str) -> float:
@@ -60,13 +60,13 @@ def given(option: str, text: str, units: str) -> float:
 
 
 def assigned(arguments: list[str]) -> dict[str, str]:
-    """Arguments NAME=VALUE by name; raises ValueError for any other, and for a name given twice."""
-    found: dict[str, str] = {}
+    """Return arguments NAME=VALUE by name. Raises ValueError for any other, or a repeated name."""
+    values: dict[str, str] = {}
     for argument in arguments:
         name, sign, text = argument.partition("=")
         if not sign or not text:
             raise ValueError(f"{argument!r}: expected NAME=VALUE, such as velocity=2")
-        if name in found:
-            raise ValueError(f"{name}: is given twice, as {found[name]!r} and as {text!r}")
-        found[name] = text
-    return found
+        if name in values:
+            raise ValueError(f"{name}: appears twice, as {values[name]!r} and as {text!r}")
+        values[name] = text
+    return values

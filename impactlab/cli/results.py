@@ -9,7 +9,7 @@ import typer
 
 from impactlab.cli.options import RESULTS, RunsFile, assigned, given, new_file, new_folder
 
-_STORED = "Of a study: runs.nc and analysis.nc. Of a verification: findings.nc."
+_STORED = "A study's runs.nc and analysis.nc, or a verification's findings.nc."
 StoredFiles = Annotated[list[Path], typer.Argument(metavar="STORED...", help=_STORED)]
 Pictures = Annotated[Path | None, new_folder(help="Default: figures/ beside the first of them.")]
 
@@ -17,27 +17,29 @@ Pictures = Annotated[Path | None, new_folder(help="Default: figures/ beside the 
 def analyse(
     runs: RunsFile,
     resolution: Annotated[
-        Path | None, typer.Option(help="What `recommend` found: numerical uncertainty.")
+        Path | None, typer.Option(help="Output of `recommend`: numerical uncertainty.")
     ] = None,
     refinement: Annotated[
-        Path | None, typer.Option(help="What `refine` solved: the same of Sobol indices, measured.")
+        Path | None,
+        typer.Option(help="Output of `refine`: measured numerical error of Sobol indices."),
     ] = None,
     output: Annotated[Path | None, new_file(".nc", help="Default: beside the runs.")] = None,
 ) -> None:
-    """Convergence and sensitivity from solved runs.
+    """Compute convergence and sensitivity from solved runs.
 
-    Of a sample also, beside the output: every index with its interval (indices.csv, indices.nc),
-    the distribution of each response (distribution.csv), and surrogate.nc for `impactlab predict`.
+    For a sample, also write, beside the output: every index with its interval (indices.csv,
+    indices.nc), the distribution of each response (distribution.csv), and surrogate.nc for
+    `impactlab predict`.
     """
     from impactlab.files import opened
     from impactlab.report.answer import answers
     from impactlab.study.steps import analyse_runs
 
     path = output or runs.with_name("analysis.nc")
-    found = analyse_runs(runs, path, resolution, refinement)
+    analysis = analyse_runs(runs, path, resolution, refinement)
     with opened(runs, "runs") as solved:
-        lines = answers(solved, found)
-        print(f"{path}: {lines[0]}", *lines[1:] if "limits" in found.attrs else (), sep="\n")
+        lines = answers(solved, analysis)
+        print(f"{path}: {lines[0]}", *lines[1:] if "limits" in analysis.attrs else (), sep="\n")
 
 
 def predict(
@@ -51,9 +53,9 @@ def predict(
 ) -> None:
     """Predict the responses of one run without solving it.
 
-    All parameters that the study varied have to be given. Beside each response stands the
-    half-width of its 95 % interval, from the errors on runs that a fit had not seen, which grow
-    towards the ends of the ranges.
+    Give all parameters that the study varied. Each response is printed with the half-width of its
+    95 % interval, from the errors on runs left out of the fit, which grow towards the ends of the
+    ranges.
     """
     from impactlab.analysis.surrogate import load_surrogate
     from impactlab.report.console import print_predictions
@@ -65,15 +67,15 @@ def predict(
 
 
 def figures(stored: StoredFiles, output: Pictures = None) -> None:
-    """Draw every figure that a study's answers, or findings, allow."""
+    """Draw all figures that apply to a study's results or findings."""
     from impactlab.figures.labels import counted
     from impactlab.report.answer import answers
     from impactlab.report.results import open_stored
 
     folder = output or stored[0].with_name("figures")
     with open_stored(stored) as (kind, datasets):
-        drawn = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder))
-        print(f"{folder}: {counted(drawn, 'figure')}. {answers(*datasets)[0]}")
+        count = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder))
+        print(f"{folder}: {counted(count, 'figure')}. {answers(*datasets)[0]}")
 
 
 def report(
@@ -83,16 +85,19 @@ def report(
         Path | None, new_file(".html", help="Default: report.html beside the first of them.")
     ] = None,
 ) -> None:
-    """Write a study's report, and, beside the runs, ro-crate-metadata.json: what made each file."""
+    """Write a study's report, and the provenance of its files.
+
+    The provenance is ro-crate-metadata.json, beside the runs.
+    """
     from impactlab.report.answer import answers
     from impactlab.report.crate import write_crate
     from impactlab.report.results import open_stored
 
     path = output or stored[0].with_name("report.html")
-    drawn = figures or stored[0].with_name("figures")
+    pictures = figures or stored[0].with_name("figures")
     with open_stored(stored) as (kind, datasets):
-        kind.write(*datasets, drawn, path)
-        write_crate(datasets[0], stored[0].parent, drawn, path)
+        kind.write(*datasets, pictures, path)
+        write_crate(datasets[0], stored[0].parent, pictures, path)
         print(f"{path}: {answers(*datasets)[0]}")
 
 

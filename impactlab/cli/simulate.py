@@ -24,7 +24,7 @@ def simulate(
         str, typer.Option(help="Impact velocity, such as 0.99 or '99 cm/s'.")
     ] = "0.99",
     base: Annotated[
-        str, typer.Option(help="paper, or corrected: the beam model that is nearest to 3-D.")
+        str, typer.Option(help="paper, or corrected: the beam model nearest to 3-D results.")
     ] = "paper",
     contact: Annotated[str | None, typer.Option(help="Contact law, if not the base's.")] = None,
     beam_model: Annotated[
@@ -41,7 +41,7 @@ def simulate(
     ] = "leapfrog",
     duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "6 ms",
     output: Annotated[
-        Path | None, new_file(".nc", help="Keep histories and fields as netCDF.")
+        Path | None, new_file(".nc", help="Write histories and fields to this netCDF file.")
     ] = None,
     plot: Annotated[
         Path | None,
@@ -98,21 +98,23 @@ def _checked(base: str, values: dict[str, Value]) -> tuple[Impact, Discretisatio
     from impactlab.study.validity import refusal
 
     if base not in BASES:
-        raise ValueError(f"--base = {base!r}: is none of {', '.join(BASES)}")
+        raise ValueError(f"--base = {base!r}: must be one of {', '.join(BASES)}")
     start = BASES[base](), Discretisation()
-    if found := refusal(start, values):
-        option = f"--{found.name.replace('_', '-')} = {values[found.name]!r}"
-        raise ValueError(f"{option}: {found.reason}")
+    if refused := refusal(start, values):
+        option = f"--{refused.name.replace('_', '-')} = {values[refused.name]!r}"
+        raise ValueError(f"{option}: {refused.reason}")
     case = with_values(*start, values)
-    for each in implausibilities(numbers(*case)):
-        if each.impossible:
-            raise ValueError(f"--{each.name}: {each.reason}")
-        logging.getLogger("impactlab").warning("--%s: %s", each.name, each.reason)
+    for doubt in implausibilities(numbers(*case)):
+        if doubt.impossible:
+            raise ValueError(f"--{doubt.name}: {doubt.reason}")
+        logging.getLogger("impactlab").warning("--%s: %s", doubt.name, doubt.reason)
     return case
 
 
 def compile_kernels(
-    fem3d: Annotated[bool, typer.Option("--fem3d", help="Those of the 3-D model, too.")] = False,
+    fem3d: Annotated[
+        bool, typer.Option("--fem3d", help="Compile those of the 3-D model, too.")
+    ] = False,
 ) -> None:
     """Compile the kernels of the beam models into their cache.
 

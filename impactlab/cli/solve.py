@@ -14,10 +14,10 @@ from impactlab.cli.options import RunsFile, StudyFile, chosen, given, new_file
 
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
 Force = Annotated[
-    bool, typer.Option("--force", help="Also what takes a month of one core, or all memory.")
+    bool, typer.Option("--force", help="Run even if time or memory limits are exceeded.")
 ]
 Replace = Annotated[
-    bool, typer.Option("--replace", help="Even where another study has results of this name.")
+    bool, typer.Option("--replace", help="Overwrite the results of another study of this name.")
 ]
 _ALL = os.cpu_count() or 1
 
@@ -34,7 +34,7 @@ def recommend(
     responses: Annotated[
         str,
         typer.Option(
-            help="Which it is asked of, such as peak_force,impulse. Default: those of the study."
+            help="Responses it applies to, such as peak_force,impulse. Default: the study's."
         ),
     ] = "",
     output: Annotated[
@@ -64,8 +64,8 @@ def recommend(
         if not 0 < limit < 1:
             raise ValueError(f"--tolerance = {tolerance!r}: must lie between 0 and 100 %")
         wishes = wishes.model_copy(update={"tolerance": limit})
-    if asked := chosen("--responses", responses, declared.responses):
-        wishes = wishes.model_copy(update={"responses": asked})
+    if names := chosen("--responses", responses, declared.responses):
+        wishes = wishes.model_copy(update={"responses": names})
     print_recommendation(steps.recommend(declared, path, Engine("threads", workers), wishes))
 
 
@@ -75,7 +75,7 @@ def design(
 ) -> None:
     """Sample a study into its runs.
 
-    A discretisation that is `auto` is found first, as by `impactlab recommend`.
+    An `auto` discretisation is determined first, as by `impactlab recommend`.
     """
     from impactlab.files import write_netcdf
     from impactlab.report.console import print_recommendation
@@ -90,10 +90,10 @@ def design(
     stop_solving()
     check_unclaimed(declared, path.with_name("runs.nc"))
     engine = Engine(workers=_ALL)
-    found = steps.resolved(declared, path.parent, engine, print_recommendation)
-    drawn = design_of(found or declared)
+    resolved = steps.resolved(declared, path.parent, engine, print_recommendation)
+    dataset = design_of(resolved or declared)
     file = study_file(declared, path.parent)
-    write_netcdf(drawn.assign_attrs(study_file=file), path, "design")
+    write_netcdf(dataset.assign_attrs(study_file=file), path, "design")
 
 
 def run(
@@ -105,13 +105,14 @@ def run(
     processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
     scheduler: Annotated[str, typer.Option(help="Address of a running dask scheduler.")] = "",
     cluster: Annotated[
-        Path | None, typer.Option(help="Slurm jobs as in this file; see profiles/slurm.")
+        Path | None, typer.Option(help="Profile of Slurm jobs to start; see profiles/slurm.")
     ] = None,
     batch_seconds: Annotated[
-        float, typer.Option(min=0.001, help="Of a task, about; more for hundreds of threads.")
+        float,
+        typer.Option(min=0.001, help="Target task duration; increase for hundreds of threads."),
     ] = 2.0,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Tell runs, time, memory and disk, and solve nothing.")
+        bool, typer.Option("--dry-run", help="Print the cost estimate and exit.")
     ] = False,
     force: Force = False,
     replace: Replace = False,
@@ -154,7 +155,7 @@ def refine(
     ] = None,
     base_samples: Annotated[
         int | None,
-        typer.Option(min=16, help="How many are solved again. Default: N/8, from 16 to 64."),
+        typer.Option(min=16, help="Base samples to solve again. Default: N/8, from 16 to 64."),
     ] = None,
     workers: Threads = _ALL,
 ) -> None:
@@ -184,7 +185,7 @@ def calibrate(
     ] = "0",
     workers: Threads = _ALL,
 ) -> None:
-    """Infer what a sample varies, and the weights of contact laws, from measurements.
+    """Infer parameters and weights of contact laws from measurements.
 
     Solves the sample where it is not solved, calibrates its surrogate, and solves runs at the
     posterior to confirm it. Writes calibration.nc and calibration.svg to results/NAME.
@@ -200,8 +201,8 @@ def calibrate(
     folder = steps.results_folder(declared.name)
     laws = contact.replace(",", " ").split()
     error = given("--model-error", model_error, "1")
-    found = calibration(declared, folder, measurements, Engine("threads", workers), laws, error)
-    for line in draw_and_tell(found, folder):
+    posterior = calibration(declared, folder, measurements, Engine("threads", workers), laws, error)
+    for line in draw_and_tell(posterior, folder):
         print(line)
 
 
@@ -219,8 +220,8 @@ def verify(
 ) -> None:
     """Compare the solver with independent solutions.
 
-    The exit code is 1 if a check fails; the findings are written either way. Given a findings.nc,
-    the command prints its verdict again.
+    The exit code is 1 where any check fails; the findings are written either way. For a
+    findings.nc, the command prints its verdict again.
     """
     from impactlab.files import read_netcdf, write_netcdf
     from impactlab.report.console import print_outcomes
@@ -241,8 +242,8 @@ def verify(
         write_netcdf(findings, path, "findings")
     outcomes = unpacked(findings)
     print_outcomes(outcomes)
-    if said := steps.failure(outcomes):
-        logging.getLogger("impactlab").error("%s", said)
+    if failure := steps.failure(outcomes):
+        logging.getLogger("impactlab").error("%s", failure)
         raise typer.Exit(code=0 if exit_zero else 1)
 
 
@@ -251,7 +252,7 @@ def go(
 ) -> None:
     """Do everything for one study: run, analyse, figures and report.
 
-    Of a verification: verify, figures and report. Runs that are solved are not solved again.
+    For a verification: verify, figures and report. Solved runs are not solved again.
     """
     from impactlab.cli import results
     from impactlab.study import steps

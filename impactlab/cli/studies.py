@@ -9,8 +9,8 @@ import typer
 
 from impactlab.cli.options import RESULTS, StudyFile
 
-Folder = Annotated[Path, typer.Argument(help="Where the study files lie.")]
-Results = Annotated[Path, typer.Option(help="Where results land.")]
+Folder = Annotated[Path, typer.Argument(help="Folder of study files.")]
+Results = Annotated[Path, typer.Option(help="Folder of results.")]
 FILES = {
     "Snakefile": "Snakefile",
     "workflow": "workflow",
@@ -39,9 +39,7 @@ commands. For clusters: `profiles/slurm/`.
 
 def studies(
     folder: Folder = Path("studies"),
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON, with what a workflow needs to know.")
-    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for workflows.")] = False,
 ) -> None:
     """List a folder's studies with their number of runs or checks."""
     files = sorted(folder.glob("*.yaml"))
@@ -70,11 +68,11 @@ def status(study: StudyFile, results: Results = RESULTS) -> None:
     from impactlab.study import steps
     from impactlab.study.schema.files import read_study
 
-    found = steps.status(read_study(study), results / study.stem)
-    if found is None:
-        print(f"{study.stem}: its discretisation is auto and was not found yet: nothing is solved")
+    progress = steps.status(read_study(study), results / study.stem)
+    if progress is None:
+        print(f"{study.stem}: its discretisation is auto and not yet determined: no run is solved")
     else:
-        print_status(study.stem, found)
+        print_status(study.stem, progress)
 
 
 def clean(
@@ -82,25 +80,25 @@ def clean(
     results: Results = RESULTS,
     yes: Annotated[bool, typer.Option("--yes", help="Remove without asking.")] = False,
 ) -> None:
-    """Remove solved runs that no study of a folder asks for any more.
+    """Remove solved runs that no study of a folder needs any more.
 
-    Asks first. Runs that a changed study still needs stay, and so do runs.nc, the reports, and all
-    of studies that have no file there.
+    Asks first. Runs that a changed study still needs stay, and so do runs.nc, the reports, and the
+    runs of studies that have no file there.
     """
     from impactlab.report.console import print_files
     from impactlab.study.steps import removable
 
-    with removable(folder, results) as found:
-        if not found:
-            print("Nothing to remove: every shard of a study there is asked for.")
+    with removable(folder, results) as files:
+        if not files:
+            print("Nothing to remove: the studies there need every shard.")
             return
-        print_files(found)
+        print_files(files)
         if yes or typer.confirm("Remove these files?"):
-            for path in found:
+            for path in files:
                 path.unlink()
 
 
-def new(folder: Annotated[Path, typer.Argument(help="Made by this command, or empty.")]) -> None:
+def new(folder: Annotated[Path, typer.Argument(help="New or empty folder.")]) -> None:
     """Make a project: workflow, profiles and two studies."""
     from importlib.metadata import version
     from shutil import copy, copytree, which

@@ -1,7 +1,7 @@
-"""Checks that the frozen model classes make of their own fields: a number each, or a column.
+"""Checks of the fields of the frozen model classes.
 
 A column of values, for many runs at once, takes the place of a number, so that the rules are
-written once. What is refused as a column may still be right: then the runs are checked one by one.
+written once. A refused column may still hold valid runs: then the runs are checked one by one.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class Column(np.ndarray[Any, Any]):
 
 
 def column(values: Iterable[Any]) -> Column:
-    """Return the values as a column. Raises ValueError unless all are numbers, or all are words."""
+    """Return these values as one. Raises ValueError unless all are numbers, or all are words."""
     if not isinstance(values, np.ndarray) or values.dtype.kind == "O":
         values = list(values)
         if any(isinstance(value, bool | np.bool_) for value in values):
@@ -32,27 +32,27 @@ def column(values: Iterable[Any]) -> Column:
     return (array if array.dtype.kind == "U" else array.astype(np.float64)).view(Column)
 
 
-def require(holds: Any, owner: str, field: str, value: Any, words: str) -> None:
+def require(holds: Any, owner: str, field: str, value: Any, message: str) -> None:
     """Raise ValueError naming the field and what it must be, unless `holds`: all of a column."""
     if not np.all(holds):
         # Python refuses to write out numbers of thousands of digits
         huge = isinstance(value, int) and value.bit_length() > 1024
         shown = f"a number of {value.bit_length()} bits" if huge else repr(value)
-        raise ValueError(f"{owner}.{field} = {shown}: {words}")
+        raise ValueError(f"{owner}.{field} = {shown}: {message}")
 
 
 def number(owner: str, field: str, value: Any) -> float:
     """Return `value` as a finite float. Raises ValueError naming `owner.field` otherwise."""
-    words = "must be a finite number"
+    message = "must be a finite number"
     if isinstance(value, Column):
-        require(value.dtype.kind == "f" and np.isfinite(value), owner, field, value, words)
+        require(value.dtype.kind == "f" and np.isfinite(value), owner, field, value, message)
         return value  # type: ignore[return-value]
     real = isinstance(value, Real) and not isinstance(value, bool)
     try:
         sound = real and math.isfinite(value)
     except OverflowError:  # a whole number beyond what a float holds
         sound = False
-    require(sound, owner, field, value, words)
+    require(sound, owner, field, value, message)
     return float(value)
 
 
@@ -66,11 +66,11 @@ def positive(owner: str, field: str, value: Any) -> float:
 def integer(owner: str, field: str, value: Any, least: int) -> int:
     """Return `value` as an int of at least `least`, or raise ValueError naming the field."""
     if isinstance(value, Column):
-        whole = value.dtype.kind == "f" and (value == np.floor(value)) & (value >= least)
+        holds = value.dtype.kind == "f" and (value == np.floor(value)) & (value >= least)
     else:
-        whole = isinstance(value, Integral) or (isinstance(value, float) and value.is_integer())
-        whole = whole and not isinstance(value, bool) and int(value) >= least
-    require(whole, owner, field, value, f"must be a whole number of at least {least}")
+        holds = isinstance(value, Integral) or (isinstance(value, float) and value.is_integer())
+        holds = holds and not isinstance(value, bool) and int(value) >= least
+    require(holds, owner, field, value, f"must be a whole number of at least {least}")
     require(value <= _MOST, owner, field, value, f"must be at most {_MOST}")
     return value.astype(np.int64) if isinstance(value, Column) else int(value)  # type: ignore[return-value]
 

@@ -7,7 +7,7 @@ the moment at mid-span the approach of sphere and Timoshenko beam is
     delta + c F + gamma M/(EI),   c = c_b/(E_b H) + c_s/(E_s R),   gamma = g H^2
 
 c_b and g, of H/B and Poisson's ratio, are what 3-D elastic statics of a beam under a point force
-have beyond the half-space and Timoshenko's deflection (k = 5/6): two spans tell the part that
+add to the half-space and Timoshenko's deflection (k = 5/6): two spans separate the part that
 grows with the moment from the rest. c_s, of Poisson's ratio, is that of a free sphere whose even
 deceleration balances the force. tests/benchmarks/contact_compliance.py makes the table; on the
 paper's beam finer elements change it by 0.2 %. In statics M = F L/4, and gamma M/(EI) is most of
@@ -79,7 +79,7 @@ AXIS_FORCE = np.array(
         [-0.0535, -0.0347, -0.0324],
     ]
 )
-"""As FORCE of the beam's axis, not its surface, for the first five depths."""
+"""FORCE for the beam's axis instead of its surface, for the first five depths."""
 AXIS_MOMENT = np.array(
     [
         [-0.0064, -0.6773, -1.356],
@@ -89,9 +89,9 @@ AXIS_MOMENT = np.array(
         [-0.0002, -0.041, -0.0747],
     ]
 )
-"""As MOMENT of the axis."""
+"""MOMENT for the axis."""
 AT = 0.1
-"""Where the stresses of the next two tables are: so many depths below the force."""
+"""Depths below the force at which the next two tables give stresses."""
 STRESS_ALONG = np.array(
     [
         [0.0672, 0.0245, -0.004],
@@ -117,24 +117,24 @@ STRESS_ACROSS = np.array(
         [1.4004, 3.8179, 6.3569],
     ]
 )
-"""Stress across it."""
+"""Stress across the beam, likewise."""
 SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
 FREE_STRIP = 720.0 / 4.730041**4
 """Inertia of the shape y^2 - B^2/12 that swings as fast as a strip of plate with free edges."""
 TIMOSHENKO_OPTIONS = {"contact_compliance": "half_space", "contact_prestress": "ignored"}
-"""Options of Timoshenko's beam alone, and their values without it."""
+"""Options that only the Timoshenko beam has, with their values for other beams."""
 TIMOSHENKO_ALONE = "is for Timoshenko's beam: set beam_model: timoshenko"
 LEAST_SPAN = 3.0
-"""Of the beam, over the larger of depth and width: the table's shortest."""
+"""Shortest span in the table, over the larger of depth and width."""
 
 
 def _at_ratio(nu: Floats, values: Floats) -> Floats:
     """Return the parabola through `values` (..., ratios), at nu (...)."""
     total = np.zeros(np.shape(nu))
-    for i, here in enumerate(RATIOS):
-        others = [there for there in RATIOS if there != here]
-        share = np.prod([(nu - there) / (here - there) for there in others], axis=0)
+    for i, ratio in enumerate(RATIOS):
+        rest = [other for other in RATIOS if other != ratio]
+        share = np.prod([(nu - other) / (ratio - other) for other in rest], axis=0)
         total = total + share * values[..., i]
     return total
 
@@ -158,16 +158,16 @@ def case_fields(impact: Impact) -> dict[str, Floats]:
 def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     """Return c (m/N) and gamma (m2) of an impact, or of many; zero for half-spaces.
 
-    Of a strip: without what its bending across the width does.
+    A strip's do not include its bending across the width.
 
-    Raises ValueError where the beam is none of Timoshenko's, outside the table, or a strip that is
-    deeper than wide.
+    Raises ValueError where `beam_model` is not "timoshenko", the beam is outside the table, or a
+    strip is deeper than wide.
     """
-    asked = np.not_equal(impact.contact_compliance, "half_space")
+    applies = np.not_equal(impact.contact_compliance, "half_space")
     beam, sphere = impact.beam, impact.sphere
     strip = np.equal(impact.contact_compliance, "strip")
     refused = f"Impact.contact_compliance = {'strip' if np.any(strip) else 'beam'!r}: "
-    _within_table(impact, asked, refused)
+    _within_table(impact, applies, refused)
     if np.any(strip & (beam.depth > beam.width)):
         raise ValueError(f"{refused}needs a beam as wide as deep at least: set 'beam'")
     c, gamma = _of_beam(impact, FORCE, MOMENT)
@@ -175,20 +175,20 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     c = c + ball / (sphere.material.youngs_modulus * sphere.radius)
     across = _across_width(impact)
     c, gamma = (
-        np.where(strip, whole - part, whole) for whole, part in zip((c, gamma), across, strict=True)
+        np.where(strip, value - part, value) for value, part in zip((c, gamma), across, strict=True)
     )
-    return np.where(asked, c, 0.0), np.where(asked, gamma, 0.0)
+    return np.where(applies, c, 0.0), np.where(applies, gamma, 0.0)
 
 
 def axis_compliance(impact: Impact) -> tuple[Floats, Floats]:
-    """Return how far a strip's axis lies below the middle of its section, of one impact or of many.
+    """Return the distance of a strip's axis below mid-section, of one impact or of many.
 
-    Per force (m/N) and per M/(EI) (m2), beyond the bending across the width; zero for others, whose
-    indentation is the approach of the sphere and the mean of the section.
+    Per force (m/N) and per M/(EI) (m2), without the bending across the width; zero for other beams,
+    whose indentation is the approach of the sphere and the mean of the section.
     """
     strip = np.equal(impact.contact_compliance, "strip")
-    found = zip(_of_beam(impact, AXIS_FORCE, AXIS_MOMENT), _across_width(impact), strict=True)
-    c, gamma = (np.where(strip, whole - part, 0.0) for whole, part in found)
+    pairs = zip(_of_beam(impact, AXIS_FORCE, AXIS_MOMENT), _across_width(impact), strict=True)
+    c, gamma = (np.where(strip, value - part, 0.0) for value, part in pairs)
     return c, gamma
 
 
@@ -198,29 +198,29 @@ def contact_stress(impact: Impact) -> tuple[Floats, Floats]:
     Beyond those of the half-space, of the moment and of a strip's own bending, of one impact or of
     many; zero where `contact_prestress` is ignored.
 
-    Raises ValueError where the beam is none of Timoshenko's, or outside the table.
+    Raises ValueError where `beam_model` is not "timoshenko", or the beam is outside the table.
     """
-    asked = np.not_equal(impact.contact_prestress, "ignored")
-    _within_table(impact, asked, "Impact.contact_prestress = 'bending': ")
+    applies = np.not_equal(impact.contact_prestress, "ignored")
+    _within_table(impact, applies, "Impact.contact_prestress = 'bending': ")
     square = impact.beam.depth * impact.beam.depth
-    along, across = (_from_table(impact, each) for each in (STRESS_ALONG, STRESS_ACROSS))
+    along, across = (_from_table(impact, table) for table in (STRESS_ALONG, STRESS_ACROSS))
     nu = np.asarray(impact.beam.material.poissons_ratio)
     strip = (1.0 - 2.0 * AT) * 0.75 * (1.0 + 5.0 * nu) / np.sqrt(6.0 * (1.0 + nu))
     across = across + np.where(np.equal(impact.contact_compliance, "strip"), strip, 0.0)
-    return np.where(asked, along / square, 0.0), np.where(asked, across / square, 0.0)
+    return np.where(applies, along / square, 0.0), np.where(applies, across / square, 0.0)
 
 
-def _within_table(impact: Impact, asked: np.ndarray[Any, Any], refused: str) -> None:
-    """Raise ValueError, its text begun, where one asked for is no beam of the tables."""
+def _within_table(impact: Impact, applies: np.ndarray[Any, Any], refused: str) -> None:
+    """Raise ValueError, its text begun, where a beam that `applies` marks is not in the tables."""
     beam = impact.beam
-    if np.any(asked & np.not_equal(impact.beam_model, "timoshenko")):
+    if np.any(applies & np.not_equal(impact.beam_model, "timoshenko")):
         raise ValueError(f"{refused}{TIMOSHENKO_ALONE}")
     shape = np.asarray(beam.depth / beam.width)
-    if np.any(asked & ((shape < DEPTHS[0]) | (shape > DEPTHS[-1]))):
+    if np.any(applies & ((shape < DEPTHS[0]) | (shape > DEPTHS[-1]))):
         raise ValueError(
             f"{refused}needs a beam of depth over width from {DEPTHS[0]} to {DEPTHS[-1]}"
         )
-    if np.any(asked & (beam.span < LEAST_SPAN * np.maximum(beam.depth, beam.width))):
+    if np.any(applies & (beam.span < LEAST_SPAN * np.maximum(beam.depth, beam.width))):
         raise ValueError(f"{refused}needs a span of {LEAST_SPAN:g} depths and widths at least")
 
 
@@ -236,7 +236,7 @@ def _from_table(impact: Impact, table: Floats) -> Floats:
 def _of_beam(impact: Impact, force: Floats, moment: Floats) -> tuple[Floats, Floats]:
     """Return c (m/N) and gamma (m2) of the beam from two tables."""
     beam, nu = impact.beam, np.asarray(impact.beam.material.poissons_ratio)
-    c, g = (_from_table(impact, each) for each in (force, moment))
+    c, g = (_from_table(impact, table) for table in (force, moment))
     shear = (1.0 / beam.shear_coefficient - 6.0 / 5.0) * (1.0 + nu) / 6.0
     c = c / (beam.material.youngs_modulus * beam.depth)
     return c, (g - shear) * beam.depth * beam.depth

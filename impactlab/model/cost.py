@@ -13,7 +13,7 @@ A_SECOND = 3e8
 
 
 def node_steps(cases: Any) -> Any:
-    """Return the estimated cost of a run, or of each: half the nodes times the time steps.
+    """Return the estimated cost per run: half the nodes times the time steps.
 
     cases: a record of solver.types.CASE, or an array of them. Their largest step is that of bending
     for the paper's beam by leapfrog, a bar wave's over a spacing for the modal scheme, and half of
@@ -40,11 +40,11 @@ _LUMPED = 1000.0  # steps of a lumped model in the largest one
 
 
 def work(cases: Any) -> Any:
-    """Return the estimated time of a run, or of each, in node-steps of the paper's beam.
+    """Return the estimated time per run, in node-steps of the paper's beam.
 
-    As `node_steps`, with what a light sphere or a stiff contact asks of the time step (Hertz's
-    stiffness at the indentation that takes all of the sphere's energy) and what models of the beam
-    and schemes take a step. Fibres that yield may cost several times as much in leapfrog.
+    Beyond `node_steps`, this counts the time step that a light sphere or a stiff contact needs
+    (Hertz's stiffness at the indentation that takes all of the sphere's energy) and the cost per
+    step of each beam model and scheme. Yielding fibres may cost leapfrog several times as much.
     """
     nodes, model = cases["nodes"], cases["beam_model"]
     lumped = model >= BEAM_MODELS.index("spring_mass")
@@ -108,6 +108,6 @@ def _hertz(cases: Any) -> tuple[Any, Any]:
 
 
 def memory(cases: Any) -> Any:
-    """Return the estimated bytes that the march of a run, or of each, takes."""
+    """Return the estimated memory of the march per run, in bytes."""
     modes = np.where(cases["scheme"] == SCHEMES.index("modal"), 2.0 * cases["nodes"], 0.0)
     return cases["nodes"] * (80.0 + 4.0 * cases["points"] + modes)

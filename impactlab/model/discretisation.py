@@ -66,8 +66,8 @@ class Discretisation:
             value = integer("Discretisation", field, getattr(self, field), least)
             object.__setattr__(self, field, value)
         nodes = self.nodes
-        odd, words = np.equal(nodes % 2, 1), "must be odd, so that mid-span is a node"
-        require(odd, "Discretisation", "nodes", nodes, words)
+        odd, message = np.equal(nodes % 2, 1), "must be odd, so that mid-span is a node"
+        require(odd, "Discretisation", "nodes", nodes, message)
         one_of("Discretisation", "rule", self.rule, RULES)
         schemes = SCHEMES if np.ndim(self.scheme) else (*SCHEMES, "auto")
         one_of("Discretisation", "scheme", self.scheme, schemes)
@@ -75,12 +75,12 @@ class Discretisation:
             if getattr(self, field) is not None:
                 positive("Discretisation", field, getattr(self, field))
         twice = self.element_size is not None and self.elements_per_radius is not None
-        words = "element_size says it already: take one of them out"
+        message = "element_size says it already: take one of them out"
         size = self.elements_per_radius
-        require(not twice, "Discretisation", "elements_per_radius", size, words)
+        require(not twice, "Discretisation", "elements_per_radius", size, message)
         courant = positive("Discretisation", "courant", self.courant)
-        words = "must be in (0, 1]; above 1 the scheme is unstable or inaccurate"
-        require(courant <= 1, "Discretisation", "courant", self.courant, words)
+        message = "must be in (0, 1]; above 1 the scheme is unstable or inaccurate"
+        require(courant <= 1, "Discretisation", "courant", self.courant, message)
 
     def resolved(self, beam_models: Iterable[str]) -> Discretisation:
         """Return a copy with the scheme that `auto` stands for.

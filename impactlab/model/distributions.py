@@ -67,9 +67,9 @@ def quantile(attributes: Arguments, probability: ArrayLike) -> Floats:
     Never beyond `low` and `high`, which rounding may pass by a digit. Raises ValueError as
     `arguments`.
     """
-    given = arguments(attributes)
+    bounds = arguments(attributes)
     values = _frozen(attributes).ppf(probability)
-    return np.asarray(np.clip(values, given.get("low", -np.inf), given.get("high", np.inf)))
+    return np.asarray(np.clip(values, bounds.get("low", -np.inf), bounds.get("high", np.inf)))
 
 
 def cumulative(attributes: Arguments, values: ArrayLike) -> Floats:
@@ -109,8 +109,8 @@ def quadrature(attributes: Arguments) -> tuple[bool, Floats, Floats]:
 
 
 def _frozen(attributes: Arguments) -> Any:
-    given = arguments(attributes)
-    return _FORMS[given.pop("distribution")](**given)
+    parameters = arguments(attributes)
+    return _FORMS[parameters.pop("distribution")](**parameters)
 
 
 def correlation_matrix(names: Sequence[str], correlations: Correlations) -> Floats:
@@ -119,26 +119,26 @@ def correlation_matrix(names: Sequence[str], correlations: Correlations) -> Floa
     They are 2 sin(π ρ / 6) of the rank correlations ρ: Pearson (1907), as in Kruskal (1958), J. Am.
     Stat. Assoc. 53, 814 (recalled, not read). Pairs with other names are left out.
     """
-    found, place = np.eye(len(names)), {name: at for at, name in enumerate(names)}
-    for one, other, rank in correlations:
-        if one in place and other in place:
+    matrix, place = np.eye(len(names)), {name: i for i, name in enumerate(names)}
+    for first, second, rank in correlations:
+        if first in place and second in place:
             linear = 2 * np.sin(np.pi * rank / 6)
-            found[place[one], place[other]] = found[place[other], place[one]] = linear
-    return found
+            matrix[place[first], place[second]] = matrix[place[second], place[first]] = linear
+    return matrix
 
 
 def contradicting(names: Sequence[str], correlations: Correlations) -> list[str]:
     """Return the fewest of the names whose correlations exclude each other; none if all can be."""
 
-    def possible(some: Sequence[str]) -> bool:
-        smallest = np.linalg.eigvalsh(correlation_matrix(some, correlations)).min(initial=1)
+    def possible(subset: Sequence[str]) -> bool:
+        smallest = np.linalg.eigvalsh(correlation_matrix(subset, correlations)).min(initial=1)
         return bool(smallest > _LEAST)
 
-    kept = [] if possible(names) else list(names)
-    for name in kept.copy():
-        rest = [each for each in kept if each != name]
-        kept = kept if possible(rest) else rest
-    return kept
+    clashing = [] if possible(names) else list(names)
+    for name in clashing.copy():
+        rest = [member for member in clashing if member != name]
+        clashing = clashing if possible(rest) else rest
+    return clashing
 
 
 def correlated(unit: Floats, linear: Floats) -> Floats:

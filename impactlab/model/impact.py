@@ -83,11 +83,11 @@ class Material:
             modulus = number("Material", field, getattr(self, field))
             require(modulus >= 0, "Material", field, modulus, "must not be negative")
         rate = number("Material", "rate_coefficient", self.rate_coefficient)
-        words = "must be above zero, or 0 for no dependence on the strain rate"
-        require(rate >= 0, "Material", "rate_coefficient", self.rate_coefficient, words)
+        message = "must be above zero, or 0 for no dependence on the strain rate"
+        require(rate >= 0, "Material", "rate_coefficient", self.rate_coefficient, message)
         exponent = number("Material", "rate_exponent", self.rate_exponent)
-        words = "must be at least 1"
-        require(exponent >= 1, "Material", "rate_exponent", self.rate_exponent, words)
+        message = "must be at least 1"
+        require(exponent >= 1, "Material", "rate_exponent", self.rate_exponent, message)
         ratio = number("Material", "poissons_ratio", self.poissons_ratio)
         sound = (ratio >= 0) & (ratio < 0.5)
         require(sound, "Material", "poissons_ratio", ratio, "must be from 0 to below 0.5")
@@ -193,8 +193,8 @@ class Beam:
         below = f"must be below the span ({self.span!r} m)"
         require(self.depth < self.span, "Beam", "depth", self.depth, below)
         k = positive("Beam", "shear_coefficient", self.shear_coefficient)
-        words = "must be in (0, 1]; 5/6 holds for a rectangle"
-        require(k <= 1, "Beam", "shear_coefficient", self.shear_coefficient, words)
+        message = "must be in (0, 1]; 5/6 holds for a rectangle"
+        require(k <= 1, "Beam", "shear_coefficient", self.shear_coefficient, message)
 
     @property
     def mass_per_length(self) -> float:

@@ -59,16 +59,16 @@ _ROWS = (
     ("sphere_radius", "m", "radius of the sphere", "impact.sphere.radius"),
     ("sphere_mass", "kg", "mass of the sphere", "impact.sphere.mass"),
     *(
-        (f"sphere_{field}", units, f"{words} of the sphere", f"impact.sphere.material.{field}")
-        for field, units, words in _MATERIAL[:4]  # a sphere does not harden, nor by rate
+        (f"sphere_{field}", units, f"{text} of the sphere", f"impact.sphere.material.{field}")
+        for field, units, text in _MATERIAL[:4]  # a sphere does not harden, nor by rate
     ),
     ("beam_span", "m", "span of the beam", "impact.beam.span"),
     ("beam_width", "m", "width of the beam", "impact.beam.width"),
     ("beam_depth", "m", "depth of the beam", "impact.beam.depth"),
     ("shear_coefficient", "1", "shear coefficient of the beam", "impact.beam.shear_coefficient"),
     *(
-        (f"beam_{field}", units, f"{words} of the beam", f"impact.beam.material.{field}")
-        for field, units, words in _MATERIAL
+        (f"beam_{field}", units, f"{text} of the beam", f"impact.beam.material.{field}")
+        for field, units, text in _MATERIAL
     ),
     ("nodes", "1", "nodes along the span", "discretisation.nodes"),
     ("points", "1", "integration points over the depth", "discretisation.points"),
@@ -100,9 +100,9 @@ _CHOICES = {
 _WHOLE = ("nodes", "points")
 PARAMETERS: dict[str, Parameter] = {
     name: Parameter(
-        name, units, words, tuple(path.split(".")), _CHOICES.get(name, ()), name in _WHOLE
+        name, units, text, tuple(path.split(".")), _CHOICES.get(name, ()), name in _WHOLE
     )
-    for name, units, words, path in _ROWS
+    for name, units, text, path in _ROWS
 }
 ELEMENTS = ("element_size", "elements_per_radius")
 """The parameters of the 3-D model's elements, which takes one of them."""

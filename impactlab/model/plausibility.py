@@ -75,23 +75,23 @@ def numbers(impact: Impact, discretisation: Discretisation) -> dict[str, tuple[f
 
 def implausibilities(ends: Extremes) -> list[Implausibility]:
     """Return the impossible and implausible values, one per parameter."""
-    found = []
-    for name, (least, low, high, most, units, words) in _LIMITS.items():
+    entries = []
+    for name, (least, low, high, most, units, basis) in _LIMITS.items():
         first, last = ends.get(name, (low, high))
         for value, impossible, doubted in (
             (first, first < least, first < low),
             (last, last > most, last > high),
         ):
             if impossible or doubted:
-                what = "is impossible" if impossible else "is implausible"
-                reason = f"{value:g} {units} {what}: {words}"
-                found.append(Implausibility(name, reason, impossible))
-    found = sorted([*found, *_together(ends)], key=attrgetter("impossible"))
-    return list({each.name: each for each in found}.values())
+                verdict = "is impossible" if impossible else "is implausible"
+                reason = f"{value:g} {units} {verdict}: {basis}"
+                entries.append(Implausibility(name, reason, impossible))
+    entries = sorted([*entries, *_together(ends)], key=attrgetter("impossible"))
+    return list({entry.name: entry for entry in entries}.values())
 
 
 def _together(ends: Extremes) -> Iterator[Implausibility]:
-    """Yield what is implausible of values beside others, at the worst ends."""
+    """Yield values that are implausible together, at the worst ends."""
     velocity = ends["velocity"][1]
     for body in ("beam", "sphere"):
         lightest, heaviest = ends[f"{body}_density"]

@@ -70,19 +70,19 @@ def si(value: object, units: str) -> float:
 
 def si_units(value: Any) -> str:
     """Return the SI units of a quantity given as text or by pint; "1" of anything else."""
-    given = as_text(value)
-    if not isinstance(given, str) or len(given) > _LONGEST:
+    text = as_text(value)
+    if not isinstance(text, str) or len(text) > _LONGEST:
         return "1"
-    match = _QUANTITY.fullmatch(given.strip().translate(_SUPERSCRIPTS))
+    match = _QUANTITY.fullmatch(text.strip().translate(_SUPERSCRIPTS))
     if match is None or match[2] in (None, "%"):
         return "1"
     try:
         unit = _unit(match[2])
     except ValueError:
         return "1"
-    for known in (*KINDS, *PREFIXED):
-        if known not in ("1", "B") and _unit(known).dimensionality == unit.dimensionality:
-            return known
+    for units in (*KINDS, *PREFIXED):
+        if units not in ("1", "B") and _unit(units).dimensionality == unit.dimensionality:
+            return units
     base = _registry().Quantity(1, unit).to_base_units().units
     powers = {
         _registry().get_symbol(name): int(float(str(power))) for name, power in base._units.items()
@@ -95,7 +95,7 @@ def as_text(value: Any) -> Any:
     if not (hasattr(value, "m") and hasattr(value, "u")):
         return value
     if hasattr(value.m, "__len__"):
-        return [as_text(each) for each in value]
+        return [as_text(item) for item in value]
     unit = f"{value.u:~C}"
     return f"{float(value.m)!r} {unit}" if unit else float(value.m)
 
@@ -105,12 +105,12 @@ def in_si(name: str, value: Any, units: str) -> Any:
 
     Raises ValueError as `si`, naming it.
     """
-    if not isinstance(given := as_text(value), str):
-        return given
+    if not isinstance(text := as_text(value), str):
+        return text
     try:
-        return si(given, units)
+        return si(text, units)
     except ValueError as error:
-        raise ValueError(f"{name} = {given!r}: {error}") from None
+        raise ValueError(f"{name} = {text!r}: {error}") from None
 
 
 T = TypeVar("T", float, float | None)
@@ -133,8 +133,8 @@ class SI(Generic[T]):
         """Return the number; of the class, the default, where dataclasses look for it."""
         if instance is None and self._default is MISSING:
             raise AttributeError(self._name)
-        found: T = self._default if instance is None else instance.__dict__[self._name]
-        return found
+        value: T = self._default if instance is None else instance.__dict__[self._name]
+        return value
 
     def __set__(self, instance: Any, value: Quantity) -> None:
         """Set the number, once: dataclasses are frozen."""
@@ -247,7 +247,7 @@ def _scale(written: str) -> Scale | None:
     for name, power in _factors(written):
         if name not in UNITS:
             return None
-        total = tuple(one + power * each for one, each in zip(total, UNITS[name], strict=True))
+        total = tuple(a + power * b for a, b in zip(total, UNITS[name], strict=True))
     return total
 
 

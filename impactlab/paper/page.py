@@ -21,7 +21,7 @@ from impactlab.figures.labels import Display, display
 from impactlab.figures.record import Figure
 from impactlab.files import check_source, read_netcdf, replaced
 from impactlab.paper.statements import judge_all
-from impactlab.paper.statements.statement import Judgement, Kind, Statement, Verdict
+from impactlab.paper.statements.statement import Judgement, Ruling, Statement, Subject
 from impactlab.report.page import Cell, Row, Table, pictures, provenance, write_page
 from impactlab.variables import provenance as made_now
 
@@ -29,12 +29,12 @@ log = logging.getLogger(__name__)
 
 MIXED = "depends on the reading"  # what is said of a statement whose cases differ
 SECTIONS = {
-    Kind.STATEMENT: ("Statements", "Each entry has a test, and a row per case or reading."),
-    Kind.MISPRINT: (
+    Subject.STATEMENT: ("Statements", "Each entry has a test, and a row per case or reading."),
+    Subject.MISPRINT: (
         "Misprints",
         "Each entry has what is printed, what holds instead, and the test that shows it.",
     ),
-    Kind.OBSERVATION: (
+    Subject.OBSERVATION: (
         "Observations of ours",
         "The paper leaves these open, and does not state them: what a reader who repeats its work "
         "meets.",
@@ -66,17 +66,17 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
     for folder in folders:
         paths = folder / "runs.nc", folder / "analysis.nc"
         if all(path.exists() for path in paths):
-            solved, found = read_netcdf(paths[0], "runs"), read_netcdf(paths[1], "analysis")
-            check_source(found, paths[1], solved, paths[0])
-            stored[folder.name] = solved, found
+            solved, analysis = read_netcdf(paths[0], "runs"), read_netcdf(paths[1], "analysis")
+            check_source(analysis, paths[1], solved, paths[0])
+            stored[folder.name] = solved, analysis
         else:
             log.warning("%s holds no runs.nc with an analysis.nc: it is left out", folder)
     runs = {name: pair[0] for name, pair in stored.items()}
     judged = judge_all(runs)
-    groups = {kind: [entry for entry in judged if entry[0].kind is kind] for kind in Kind}
-    statements = groups[Kind.STATEMENT]
+    groups = {kind: [entry for entry in judged if entry[0].kind is kind] for kind in Subject}
+    statements = groups[Subject.STATEMENT]
     tally = Counter(_summary(judgements) for _, judgements in statements)
-    cases = Counter(each.verdict for _, judgements in statements for each in judgements)
+    cases = Counter(judgement.verdict for _, judgements in statements for judgement in judgements)
     drawings = []
     for number, study, name in FIGURES:
         figure = applicable(*stored[study]).get(name) if study in stored else None
@@ -91,16 +91,16 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
         "statements.html.j2",
         output / "claims.html",
         package="impactlab.paper",
-        tally=[(tally[words], words) for words in (*Verdict, MIXED) if tally[words]],
-        cases=[(cases[verdict], verdict) for verdict in Verdict],
+        tally=[(tally[ruling], ruling) for ruling in (*Ruling, MIXED) if tally[ruling]],
+        cases=[(cases[ruling], ruling) for ruling in Ruling],
         overviews=[
             _overview(statements),
-            _misprints("Misprints", groups[Kind.MISPRINT], "Printed", "Verdict on the print"),
-            _misprints("Observations of ours", groups[Kind.OBSERVATION], "Test", "Verdict"),
+            _misprints("Misprints", groups[Subject.MISPRINT], "Printed", "Verdict on the print"),
+            _misprints("Observations of ours", groups[Subject.OBSERVATION], "Test", "Verdict"),
         ],
         groups=[
-            (kind.name.lower(), title, lead, [(one, _cases(found)) for one, found in groups[kind]])
-            for kind, (title, lead) in SECTIONS.items()
+            (kind.name.lower(), *text, [(entry, _cases(rows)) for entry, rows in groups[kind]])
+            for kind, text in SECTIONS.items()
         ],
         pictures=pictures(output / "figures").values(),
         solved=_solved(runs),
@@ -120,11 +120,13 @@ def _summary(judgements: Sequence[Judgement]) -> str:
 
     MIXED where some hold and some do not. Cases that cannot be judged count where all are such.
     """
-    known = [each.verdict for each in judgements if each.verdict != Verdict.UNKNOWN]
-    if not known:
-        return str(Verdict.UNKNOWN)
-    stand = {verdict != Verdict.FAILS for verdict in known}
-    return MIXED if len(stand) > 1 else str(known[0])
+    verdicts = [
+        judgement.verdict for judgement in judgements if judgement.verdict != Ruling.UNKNOWN
+    ]
+    if not verdicts:
+        return str(Ruling.UNKNOWN)
+    stand = {verdict != Ruling.FAILS for verdict in verdicts}
+    return MIXED if len(stand) > 1 else str(verdicts[0])
 
 
 def _overview(judged: Judged) -> Table:
@@ -133,8 +135,8 @@ def _overview(judged: Judged) -> Table:
     for statement, judgements in judged:
         counts = Counter(judgement.verdict for judgement in judgements)
         first, verdict = judgements[0], _summary(judgements)
-        stands = verdict in (Verdict.HOLDS, Verdict.READING)
-        cells = [Cell(str(counts[each] or "–"), "number") for each in Verdict]
+        stands = verdict in (Ruling.HOLDS, Ruling.READING)
+        cells = [Cell(str(counts[ruling] or "–"), "number") for ruling in Ruling]
         answer = f"{labels.sentence(first.case)}: {first.why}"
         rows.append([statement.text, Cell(verdict, "" if stands else "warning"), answer, *cells])
     head = ["Statement of the paper", "Verdict", "First case or reading"]
@@ -144,18 +146,18 @@ def _overview(judged: Judged) -> Table:
     )
 
 
-def _misprints(caption: str, judged: Judged, what: str, verdict: str) -> Table:
+def _misprints(caption: str, judged: Judged, heading: str, verdict: str) -> Table:
     """Return one row per misprint or observation: what is tested, what holds, and the verdict."""
     rows: list[Row] = [
         [statement.text, statement.holds, Cell(first.verdict, detail=statement.name)]
         for statement, (first, *_) in judged
     ]
-    return Table(caption, [what, "What holds", verdict], rows)
+    return Table(caption, [heading, "What holds", verdict], rows)
 
 
 def _cases(judgements: Iterable[Judgement]) -> Table:
     """Return one row per case."""
-    wrong = Verdict.FAILS, Verdict.UNKNOWN
+    wrong = Ruling.FAILS, Ruling.UNKNOWN
     rows: list[Row] = [
         [
             judgement.case,
@@ -184,13 +186,13 @@ def _write_tables(judged: Judged, output: Path) -> None:
     claims = [["claim", "kind", "statement", "case", "test", "numbers", "verdict", "why"]]
     numbers = [["claim", "case", "number", "value", "uncertainty", "units"]]
     for statement, judgements in judged:
-        for each in judgements:
+        for judgement in judgements:
             about = [statement.name, statement.kind.name.lower(), statement.text]
-            about += [each.case, statement.test]
-            claims.append([*about, _numbers(each), str(each.verdict), each.why])
-            for one in each.numbers:
-                values = [f"{one.value:.9g}", f"{one.uncertainty:.3g}"]
-                numbers.append([statement.name, each.case, one.name, *values, one.units])
+            about += [judgement.case, statement.test]
+            claims.append([*about, _numbers(judgement), str(judgement.verdict), judgement.why])
+            for number in judgement.numbers:
+                values = [f"{number.value:.9g}", f"{number.uncertainty:.3g}"]
+                numbers.append([statement.name, judgement.case, number.name, *values, number.units])
     output.mkdir(parents=True, exist_ok=True)
     for name, rows in (("claims.csv", claims), ("numbers.csv", numbers)):
         with replaced(output / name) as path, path.open("w", encoding="utf-8", newline="") as file:

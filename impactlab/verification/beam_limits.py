@@ -130,10 +130,10 @@ def slender_limit() -> Finding:
     duration, slenderness = 0.4e-3, (1, 2, 4, 8, 16)  # over that of the paper's beam
     family = [replace(slimmer(impact, times), beam_model="timoshenko") for times in slenderness]
     bare, *runs = (
-        run_dataset(each, grid, duration=duration, samples=401)
-        for each in (replace(impact, beam_model="elastic"), *family)
+        run_dataset(variant, grid, duration=duration, samples=401)
+        for variant in (replace(impact, beam_model="elastic"), *family)
     )
-    one, other = modal.solve_timoshenko(impact, duration), modal.solve(impact, duration)
+    sheared, slender = modal.solve_timoshenko(impact, duration), modal.solve(impact, duration)
     time, changes = bare.time.values, Comparisons("the paper's beam, 0.99 m/s")
     orders = Comparisons(f"{slenderness[-2]} and {slenderness[-1]} times as slender")
     ratios = impact.beam.depth / impact.beam.span / np.array(slenderness, dtype=np.float64)
@@ -143,7 +143,7 @@ def slender_limit() -> Finding:
         ("midspan_deflection", "mid-span deflection", "m"),
     ):
         ours = (runs[0][name] - bare[name]).values
-        expected = one.at(name, time) - other.at(name, time)
+        expected = sheared.at(name, time) - slender.at(name, time)
         label = f"what shear and rotary inertia change in the {quantity}"
         # Relative to a change which is itself the difference of two errors of order dx^2.
         changes.curve(label, units, ours, expected, 5e-3)

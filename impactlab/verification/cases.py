@@ -14,7 +14,7 @@ from impactlab.solver.stability import discretise
 
 
 @dataclass(frozen=True)
-class Case:
+class Sweep:
     """An impact at several velocities (m/s), each over `duration` (s)."""
 
     impact: Impact
@@ -66,8 +66,8 @@ def slimmer(impact: Impact, times: float) -> Impact:
     modulus, softer = beam.material.youngs_modulus, sphere.material
     share = (1.0 - beam.material.poissons_ratio**2) / modulus
     lost = share * (1.0 - 1.0 / times**2)
-    own = 1.0 - softer.poissons_ratio**2
-    soft = replace(softer, youngs_modulus=own / (own / softer.youngs_modulus + lost))
+    factor = 1.0 - softer.poissons_ratio**2
+    soft = replace(softer, youngs_modulus=factor / (factor / softer.youngs_modulus + lost))
     slim = replace(beam, depth=beam.depth / times, width=beam.width * times)
     slim = replace(slim, material=replace(beam.material, youngs_modulus=modulus * times**2))
     return replace(impact, beam=slim, sphere=replace(sphere, material=soft))

@@ -13,7 +13,7 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import run_dataset
-from impactlab.verification.cases import Case, elastic, rigid_backed
+from impactlab.verification.cases import Sweep, elastic, rigid_backed
 from impactlab.verification.comparisons import Comparisons
 from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions import hertz, lumped, modal
@@ -33,8 +33,8 @@ def half_space() -> Finding:
     """Compare peak force, largest indentation, contact duration and restitution."""
     impact = rigid_backed(0.99, "hertz")
     run = run_dataset(impact, _GRID, duration=0.4e-3)
-    found = Comparisons("the paper's sphere at 0.99 m/s")
-    return Finding(found.responses(run, _hertzian(impact), 2e-5))
+    comparisons = Comparisons("the paper's sphere at 0.99 m/s")
+    return Finding(comparisons.responses(run, _hertzian(impact), 2e-5))
 
 
 def _hertzian(impact: Impact) -> dict[str, float]:
@@ -61,11 +61,11 @@ def _compare_law(
     left = law.residual_indentation(deepest) / deepest
     lost = run.contact_dissipation.item() / (0.5 * mass * velocity**2)
     share = 1.0 - restitution**2
-    found = Comparisons(where)
-    found.absolute("restitution", "1", run.restitution.item(), restitution, tolerance)
-    found.relative("peak force", "N", peak, force, tolerance)
-    found.absolute("dent over indentation", "1", dent, left, tolerance)
-    return found.absolute("share of energy lost", "1", lost, share, tolerance)
+    comparisons = Comparisons(where)
+    comparisons.absolute("restitution", "1", run.restitution.item(), restitution, tolerance)
+    comparisons.relative("peak force", "N", peak, force, tolerance)
+    comparisons.absolute("dent over indentation", "1", dent, left, tolerance)
+    return comparisons.absolute("share of energy lost", "1", lost, share, tolerance)
 
 
 VELOCITIES = (0.012, 0.03, 0.1, 0.3, 0.99, 3.0, 10.0)
@@ -84,7 +84,7 @@ def contact_laws() -> Finding:
 
     Laws that create energy do so here, too: a restitution above 1 must appear in both solutions.
     """
-    found = Comparisons()
+    comparisons = Comparisons()
     forces: list[Curve] = []
     against_velocity: dict[str, list[Curve]] = {"restitution": [], "permanent_indentation": []}
     fine = np.geomspace(VELOCITIES[0], VELOCITIES[-1], 61)
@@ -99,7 +99,7 @@ def contact_laws() -> Finding:
             run = runs[velocity] = run_dataset(impact, _GRID, duration=duration, samples=401)
             where = f"{name}, {velocity:.3g} m/s"
             table.append(_compare_law(where, velocity, run, law, mass))
-        found.worst(table)
+        comparisons.worst(table)
         forces += _force_curves(runs[DRAWN], law, mass)
         deepest = [law.maximum_indentation(float(v), mass) for v in fine]
         expected = {
@@ -118,7 +118,7 @@ def contact_laws() -> Finding:
         Panel("restitution against velocity", _VELOCITY, _RESTITUTION, restitutions, log=True),
         Panel("permanent indentation against velocity", _VELOCITY, dent, dents, log=True),
     ]
-    return Finding(found, panels)
+    return Finding(comparisons, panels)
 
 
 def _force_curves(run: xr.Dataset, law: LawOnHalfSpace, mass: float) -> list[Curve]:
@@ -142,8 +142,8 @@ _FORCE_AXES = ("time", "s"), ("contact force", "N")
 _PAPER = elastic(paper_impact(0.99))
 _SLENDER = replace(_PAPER, beam=replace(_PAPER.beam, depth=0.008, width=0.02))
 CASES = {
-    "the paper's beam": Case(_PAPER, (0.1, 0.99, 5.0, 20.0), 0.5e-3),
-    "a slender beam": Case(_SLENDER, (0.2, 1.0), 20e-3),
+    "the paper's beam": Sweep(_PAPER, (0.1, 0.99, 5.0, 20.0), 0.5e-3),
+    "a slender beam": Sweep(_SLENDER, (0.2, 1.0), 20e-3),
 }
 """A heavy sphere touches the slender beam more than once."""
 
@@ -155,20 +155,20 @@ CASES = {
 )
 def spring_mass() -> Finding:
     """Compare histories, responses, the curvature, and the order in the time step."""
-    found = Comparisons()
+    comparisons = Comparisons()
     for beam, case in CASES.items():
         table = []
         for velocity in case.velocities:
             impact = replace(case.impact, velocity=velocity)
             table.append(_compare_spring_mass(f"{beam}, {velocity:g} m/s", impact, case.duration))
-        found.worst(table)
+        comparisons.worst(table)
     where, duration = "the paper's beam, 0.99 m/s", CASES["the paper's beam"].duration
     exact = lumped.solve_spring_mass(_PAPER, duration)
     runs = [_run_spring_mass(_PAPER, duration, courant) for courant in (1.0, 0.5)]
     gaps = [run.indentation.values - exact.at("indentation", run.time.values) for run in runs]
     coarse, fine = (float(np.sqrt(np.mean(gap**2))) for gap in gaps)
     label, observed = "order of convergence in the time step", float(np.log2(coarse / fine))
-    found += Comparisons(where).absolute(label, "1", observed, 2.0, 0.1)
+    comparisons += Comparisons(where).absolute(label, "1", observed, 2.0, 0.1)
     time = np.linspace(0.0, duration, _SAMPLES)
     series = modal.solve(_PAPER, duration)
     curves = [
@@ -177,7 +177,7 @@ def spring_mass() -> Finding:
         # whose mass resists only gradually
         Curve("elastic beam, modal series", time, series.at("contact_force", time), True),
     ]
-    return Finding(found, [Panel(where, *_FORCE_AXES, curves)])
+    return Finding(comparisons, [Panel(where, *_FORCE_AXES, curves)])
 
 
 def _run_spring_mass(impact: Impact, duration: float, courant: float = 0.5) -> xr.Dataset:
@@ -190,18 +190,18 @@ def _compare_spring_mass(where: str, impact: Impact, duration: float) -> Compari
     """Compare one impact; curvature with -12 w/L^2."""
     run = _run_spring_mass(impact, duration)
     exact, time = lumped.solve_spring_mass(impact, duration), run.time.values
-    found = Comparisons(where)
+    comparisons = Comparisons(where)
     for name, (quantity, units) in HISTORIES.items():
         values = run[name].values, exact.at(name, time)
-        found.curve(f"history of {quantity}", units, *values, SPRING_MASS_TOLERANCE)
+        comparisons.curve(f"history of {quantity}", units, *values, SPRING_MASS_TOLERANCE)
     # of the curvature the finite differences have (1 - 2/(nodes - 1)^2)
     label, tolerance = "history of mid-span curvature", 2.5 / (_NODES - 1) ** 2
     curvature = -12.0 / impact.beam.span**2 * exact.at("midspan_deflection", time)
-    found.curve(label, "m-1", run.midspan_curvature.values, curvature, tolerance)
+    comparisons.curve(label, "m-1", run.midspan_curvature.values, curvature, tolerance)
     expected = {"peak_force": exact.peak_force, "contact_duration": exact.contact_duration}
-    found.responses(run, expected, SPRING_MASS_TOLERANCE)
+    comparisons.responses(run, expected, SPRING_MASS_TOLERANCE)
     count, contacts = run.number_of_contacts.item(), float(len(exact.contacts))
-    return found.absolute("number of contacts", "1", count, contacts, 0.0)
+    return comparisons.absolute("number of contacts", "1", count, contacts, 0.0)
 
 
 RIGID_TOLERANCE = 5e-6
@@ -217,9 +217,9 @@ def rigid_beam() -> Finding:
     hertzian, plastic = [], []
     for velocity in (0.1, 0.99, 5.0, 20.0):
         impact = replace(paper_impact(velocity, "hertz"), gravity=0.0)
-        run, found = _run_rigid_beam(impact), Comparisons(f"Hertz contact, {velocity:g} m/s")
-        found.responses(run, _hertzian(impact), RIGID_TOLERANCE)
-        hertzian.append(found.absolute("deflection", "m", run.maximum_deflection.item(), 0.0, 0.0))
+        run, table = _run_rigid_beam(impact), Comparisons(f"Hertz contact, {velocity:g} m/s")
+        table.responses(run, _hertzian(impact), RIGID_TOLERANCE)
+        hertzian.append(table.absolute("deflection", "m", run.maximum_deflection.item(), 0.0, 0.0))
 
         impact = replace(impact, contact="stronge")
         law, mass = stronge_impact(impact), impact.sphere.total_mass
@@ -229,8 +229,8 @@ def rigid_beam() -> Finding:
             "maximum_indentation": deepest,
             "restitution": law.restitution(velocity, mass),
         }
-        run, found = _run_rigid_beam(impact), Comparisons(f"Stronge contact, {velocity:g} m/s")
-        plastic.append(found.responses(run, expected, RIGID_TOLERANCE))
+        run, table = _run_rigid_beam(impact), Comparisons(f"Stronge contact, {velocity:g} m/s")
+        plastic.append(table.responses(run, expected, RIGID_TOLERANCE))
     impact = paper_impact(0.02, "hertz")
     run = _run_rigid_beam(impact, samples=401)
     duration, time = run.duration.item(), run.time.values
@@ -246,8 +246,8 @@ def rigid_beam() -> Finding:
         Curve("DOP853 without gravity", time, bare.at("contact_force", time), independent=True),
     ]
     title = "the paper's sphere on a rigid beam, 0.02 m/s"
-    found = Comparisons().worst(hertzian).worst(plastic)
-    return Finding([*found, *slow], [Panel(title, *_FORCE_AXES, curves)])
+    comparisons = Comparisons().worst(hertzian).worst(plastic)
+    return Finding([*comparisons, *slow], [Panel(title, *_FORCE_AXES, curves)])
 
 
 def _run_rigid_beam(impact: Impact, samples: int = 2) -> xr.Dataset:

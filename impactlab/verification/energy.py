@@ -72,10 +72,10 @@ def audit(impact: Impact, grid: Discretisation, duration: float) -> Audit:
     earlier = float((fallen[-1] - fallen[-2]) / last)
     later = earlier + last * (gravity - float(force[-1]) / mass)
     ends = [run_dataset(impact, grid, duration=duration + s, samples=2) for s in (-dt, dt)]
-    before, here, after = (each.deflection.values for each in (ends[0], run, ends[1]))
+    before, now, after = (dataset.deflection.values for dataset in (ends[0], run, ends[1]))
     bend = _bend_modes if grid.scheme == "modal" else _bend_differences
-    curvature, momentum = bend(impact, grid, dt, here, (here - before) / dt)
-    moving = float(0.5 * momentum @ (after - here) / dt)
+    curvature, momentum = bend(impact, grid, dt, now, (now - before) / dt)
+    moving = float(0.5 * momentum @ (after - now) / dt)
     plastic, stored = _strain_energies(impact, grid, run, curvature)
     if grid.scheme == "modal":
         stored += _left_out(impact, grid, dt, (ends[0], run, ends[1]))
@@ -131,10 +131,10 @@ def _strain_energies(
     area = 0.5 * beam.depth * beam.width * weights
     strain, peeq = run.plastic_strain.values, run.equivalent_plastic_strain.values
     elastic = -np.multiply.outer(curvature, run.z.values) - strain
-    kept = 0.5 * material.youngs_modulus * elastic**2
-    kept += 0.5 * material.kinematic_hardening_modulus * strain**2
+    stored = 0.5 * material.youngs_modulus * elastic**2
+    stored += 0.5 * material.kinematic_hardening_modulus * strain**2
     lost = (material.yield_stress + 0.5 * material.isotropic_hardening_modulus * peeq) * peeq
-    return float(np.trapezoid(lost @ area, x)), float(np.trapezoid(kept @ area, x))
+    return float(np.trapezoid(lost @ area, x)), float(np.trapezoid(stored @ area, x))
 
 
 _DRAWN = {"leapfrog": 80, "modal": 40}  # numbers of drawn cases
@@ -149,7 +149,7 @@ def balances() -> Finding:
 
     Dissipations are never negative but for rounding, unless the contact law itself creates energy.
     """
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     curves: list[Curve] = []
     every: list[Audit] = []
     for scheme, number in _DRAWN.items():
@@ -158,7 +158,7 @@ def balances() -> Finding:
             values = _drawn(random, scheme)
             impact, grid = with_values(paper_impact(), Discretisation(), values)
             audits.append(audit(impact, grid, float(random.uniform(1e-3, 5e-3))))
-        found += _compare(scheme, audits)
+        comparisons += _compare(scheme, audits)
         rank = np.arange(1.0, number + 1.0)
         for label, errors in (
             ("energy", [case.energy for case in audits]),
@@ -169,7 +169,7 @@ def balances() -> Finding:
         every += audits
     axes = ("cases, the best first", "1"), ("share of what is brought", "1")
     excess = Panel("In excess at the end, case by case", *axes, curves, log=True)
-    return Finding([*found, *_created(every)], [excess, _loop_panel(every)])
+    return Finding([*comparisons, *_created(every)], [excess, _loop_panel(every)])
 
 
 def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
@@ -178,7 +178,7 @@ def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
         lost = case.run.contact_dissipation.item() if case.ended else case.contact
         contact.append((lost - case.contact) / case.brought)
         plastic.append((case.run.plastic_dissipation.item() - case.plastic) / case.brought)
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     for quantity, errors, tolerance in (
         ("energy in excess, the beam elastic", [a.energy for a in audits if not a.plastic], 1e-9),
         ("energy in excess, the beam yielding", [a.energy for a in audits if a.plastic], 2e-3),
@@ -188,7 +188,7 @@ def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
     ):
         where = f"{scheme}: worst of {len(errors)} drawn cases, over what is brought"
         worst = float(np.max(np.abs(errors)))
-        found += Comparisons(where).absolute(quantity, "1", worst, 0.0, tolerance)
+        comparisons += Comparisons(where).absolute(quantity, "1", worst, 0.0, tolerance)
     for name, cases in (
         ("plastic_dissipation", audits),
         ("contact_dissipation", [case for case in audits if not case.marked]),
@@ -196,8 +196,8 @@ def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
         least = float(np.nanmin([case.run[name].item() / case.brought for case in cases]))
         where = f"{scheme}: least of {len(cases)} cases, over what is brought"
         label = name.replace("_", " ")
-        found += Comparisons(where).absolute(label, "1", min(least, 0.0), 0.0, 1e-9)
-    return found
+        comparisons += Comparisons(where).absolute(label, "1", min(least, 0.0), 0.0, 1e-9)
+    return comparisons
 
 
 def _drawn(random: np.random.Generator, scheme: str) -> dict[str, Value]:
@@ -230,27 +230,27 @@ def _drawn(random: np.random.Generator, scheme: str) -> dict[str, Value]:
 
 def _created(audits: list[Audit]) -> list[Comparison]:
     """Compare the marked runs with those in which Stronge's loop gives back more than it took."""
-    marked, known = [], []
-    for found in audits:
-        if found.impact.contact in ("hertz", "stronge") and found.ended:
-            law, deepest = stronge_impact(found.impact), found.run.maximum_indentation.item()
-            yields = found.impact.contact == "stronge" and deepest > law.yield_indentation
-            marked.append(found.marked)
-            known.append(yields and law.released_work(deepest) > law.loading_work(deepest))
+    marked, expected = [], []
+    for case in audits:
+        if case.impact.contact in ("hertz", "stronge") and case.ended:
+            law, deepest = stronge_impact(case.impact), case.run.maximum_indentation.item()
+            yields = case.impact.contact == "stronge" and deepest > law.yield_indentation
+            marked.append(case.marked)
+            expected.append(yields and law.released_work(deepest) > law.loading_work(deepest))
     where = "runs marked; runs whose largest indentation says so by the law's closed form"
-    wrong = float(np.sum(np.array(marked) != np.array(known)))
+    wrong = float(np.sum(np.array(marked) != np.array(expected)))
     label, wrongly = "contact law created energy", Comparisons("runs marked wrongly")
-    all_runs = Comparisons(where).absolute(label, "1", sum(marked), sum(known), 0.0)
+    all_runs = Comparisons(where).absolute(label, "1", sum(marked), sum(expected), 0.0)
     return [*all_runs, *wrongly.absolute(label, "1", wrong, 0.0, 0.0)]
 
 
 def _loop_panel(audits: list[Audit]) -> Panel:
     """Draw the dissipation over the work of loading, where the law creates energy and beyond."""
     points = []
-    for found in audits:
-        law, lost = stronge_impact(found.impact), found.run.contact_dissipation.item()
-        times = found.run.maximum_indentation.item() / law.yield_indentation
-        if found.impact.contact == "stronge" and 0.2 < times < 8.0 and found.ended:
+    for case in audits:
+        law, lost = stronge_impact(case.impact), case.run.contact_dissipation.item()
+        times = case.run.maximum_indentation.item() / law.yield_indentation
+        if case.impact.contact == "stronge" and 0.2 < times < 8.0 and case.ended:
             points.append((times, lost / law.loading_work(times * law.yield_indentation)))
     solver = np.array(sorted(points)).reshape(-1, 2)
     law = stronge_impact(paper_impact())

@@ -16,7 +16,7 @@ from impactlab.types import Floats
 
 
 @dataclass(frozen=True)
-class Function:
+class AnalyticFunction:
     """A function of d parameters without unit.
 
     ranges: low and high of each parameter by its name. value: the function at points of shape
@@ -35,8 +35,8 @@ def _ishigami(x: Floats) -> Floats:
     its interaction with x1 alone.
     """
     sine = np.sin(x[:, 0])
-    found: Floats = sine + 7.0 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * sine
-    return found
+    values: Floats = sine + 7.0 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * sine
+    return values
 
 
 def _g(x: Floats) -> Floats:
@@ -45,15 +45,15 @@ def _g(x: Floats) -> Floats:
     Source: Saltelli and Sobol (1995), Reliab. Eng. Syst. Saf. 50, 225, with the usual eight a_i.
     """
     a = np.array([0.0, 1.0, 4.5, 9.0, 99.0, 99.0, 99.0, 99.0])
-    found: Floats = np.prod((np.abs(4.0 * x - 2.0) + a) / (1.0 + a), axis=1)
-    return found
+    values: Floats = np.prod((np.abs(4.0 * x - 2.0) + a) / (1.0 + a), axis=1)
+    return values
 
 
 FUNCTIONS = {
-    "ishigami": Function(
-        "Ishigami function", {f"x{at}": (-np.pi, np.pi) for at in (1, 2, 3)}, _ishigami
+    "ishigami": AnalyticFunction(
+        "Ishigami function", {f"x{i}": (-np.pi, np.pi) for i in (1, 2, 3)}, _ishigami
     ),
-    "g": Function("Sobol's G function", {f"x{at}": (0.0, 1.0) for at in range(1, 9)}, _g),
+    "g": AnalyticFunction("Sobol's G function", {f"x{i}": (0.0, 1.0) for i in range(1, 9)}, _g),
 }
 """Every function by its name in study files."""
 

@@ -63,7 +63,7 @@ def strip() -> Finding:
 
 def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> Finding:
     """Compare impacts with this `contact_compliance` with series; show another (its label)."""
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     panels = []
     for velocity in (0.99, 5.0):
         impact = elastic(paper_impact(velocity, "hertz"))
@@ -78,7 +78,7 @@ def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> 
         exact, beside = (_series(replace(ours, contact_compliance=o)) for o in (option, other[0]))
         table, time = Comparisons(f"{velocity:g} m/s, {nodes} nodes"), run.time.values
         force = exact.at("contact_force", time)
-        c, gamma = (float(each) for each in axis_compliance(ours))
+        c, gamma = (float(value) for value in axis_compliance(ours))
         beneath = c * exact.contact_force - gamma * exact.midspan_curvature
         if option == "strip":
             beneath -= _lift_by_pressure(ours, exact.contact_force)
@@ -92,14 +92,14 @@ def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> 
         indentation = run.indentation.values, exact.at("indentation", time)
         table.curve("history of indentation", "m", *indentation, TOLERANCE)
         table.responses(run, expected, TOLERANCE)
-        found += table.absolute("energy error", "1", run.energy_error.item(), 0.0, 5e-5)
+        comparisons += table.absolute("energy error", "1", run.energy_error.item(), 0.0, 5e-5)
         curves = [
             Curve("solver", time, run.contact_force.values),
             Curve("modal series", time, force, independent=True),
             Curve(f"modal series, {other[1]}", time, beside.at("contact_force", time), True),
         ]
         panels.append(Panel(table.where, ("time", "s"), ("contact force", "N"), curves))
-    return Finding(found, panels)
+    return Finding(comparisons, panels)
 
 
 def _lift_by_pressure(impact: Impact, force: Floats) -> Floats:
@@ -126,7 +126,7 @@ def _series(impact: Impact) -> ModalSolution:
         if inertia > 0.0
         else beam_modes.timoshenko_odd_modes(impact.beam, MODES)
     )
-    return solve_with(modes, impact, LONGER, None, *(float(each) for each in local(impact)))
+    return solve_with(modes, impact, LONGER, None, *(float(value) for value in local(impact)))
 
 
 @check(
@@ -141,22 +141,22 @@ def contact_prestress() -> Finding:
     """
     impact = paper_impact(5.0, "finite_element")
     impact = replace(impact, beam_model="timoshenko", contact_prestress="bending")
-    grid, found = Discretisation(nodes=201), Comparisons("5 m/s, 201 nodes")
+    grid, table = Discretisation(nodes=201), Comparisons("5 m/s, 201 nodes")
     run, plain = (
-        run_dataset(each, grid, duration=0.2e-3, samples=2001)
-        for each in (impact, replace(impact, contact_prestress="ignored"))
+        run_dataset(case, grid, duration=0.2e-3, samples=2001)
+        for case in (impact, replace(impact, contact_prestress="ignored"))
     )
     expected = _prestressed(impact, run)
     force, time = run.contact_force.values, run.time.values
-    found.curve("history of contact force", "N", force, expected, 1e-3)
-    found.absolute("equivalent plastic strain", "1", run.peak_plastic_strain.item(), 0.0, 0.0)
-    found.absolute("energy error", "1", run.energy_error.item(), 0.0, 1e-4)
+    table.curve("history of contact force", "N", force, expected, 1e-3)
+    table.absolute("equivalent plastic strain", "1", run.peak_plastic_strain.item(), 0.0, 0.0)
+    table.absolute("energy error", "1", run.energy_error.item(), 0.0, 1e-4)
     curves = [
         Curve("solver", time, force),
         Curve("law along its histories", time, expected, independent=True),
         Curve("stress ignored", time, plain.contact_force.values),
     ]
-    return Finding(found, [Panel(found.where, ("time", "s"), ("contact force", "N"), curves)])
+    return Finding(table, [Panel(table.where, ("time", "s"), ("contact force", "N"), curves)])
 
 
 def _prestressed(impact: Impact, run: xr.Dataset) -> Floats:
@@ -170,7 +170,7 @@ def _prestressed(impact: Impact, run: xr.Dataset) -> Floats:
         beam.material.poissons_ratio,
     )
     first_yield = of[1] * (0.825 * np.pi * strength / of[0]) ** 2
-    along, across = (float(each) for each in contact_stress(impact))
+    along, across = (float(stress) for stress in contact_stress(impact))
     outermost = 0.5 * beam.depth * beam.material.youngs_modulus * run.midspan_curvature.values
 
     def yields(d: float, bending: float) -> tuple[float, float]:
@@ -180,8 +180,8 @@ def _prestressed(impact: Impact, run: xr.Dataset) -> Floats:
         a = np.sqrt(of[1] * d * (1.0 + 0.04 * np.log(x) ** 2))
         s = (bending * (1.0 - a / beam.depth) + along * law) / strength, across * law / strength
         k = 3.0 / x + (1.0 - 1.0 / x) * (0.39 - 0.0008 * x)
-        both, apart = s[0] + s[1], s[0] - s[1]
-        g = (1.0 - k / 3.0 * (0.5 * both + 0.085 * both**2 + 0.23 * apart**2)) ** 3
+        total, difference = s[0] + s[1], s[0] - s[1]
+        g = (1.0 - k / 3.0 * (0.5 * total + 0.085 * total**2 + 0.23 * difference**2)) ** 3
         return residual + (d - residual) * (g * law / start) ** (1.0 / n), g * law
 
     forces, d = [], 1e-9
@@ -209,7 +209,7 @@ def contact_patch() -> Finding:
     against. The law's own indentation, less the local compliance: Hertz's under that force.
     Energy: the solver's own audit.
     """
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     panels: list[Panel] = []
     for (model, scheme, compliance), (nodes, chords) in GRIDS.items():
         impact = replace(elastic(paper_impact(VELOCITY)), beam_model=model, load="contact_patch")
@@ -229,7 +229,7 @@ def contact_patch() -> Finding:
         table.curve("curvature", "m-1", kappa, bent, 2e-3)
         table.curve("mean deflection ahead of mid-span", "m", moved.values, ahead, chords)
         table.curve("the law's own indentation", "m", law.values, hertzian, 2e-3)
-        found += table.absolute("energy error", "1", run.energy_error.item(), 0.0, 2e-5)
+        comparisons += table.absolute("energy error", "1", run.energy_error.item(), 0.0, 2e-5)
         if not panels:
             point = run_dataset(
                 replace(impact, load="point"), grid, duration=DURATION, samples=STEPS + 1
@@ -241,7 +241,7 @@ def contact_patch() -> Finding:
                 Curve("modes under Hertz's pressure", time, bent, independent=True),
             ]
             panels = [Panel(where, ("time", "s"), ("mid-span curvature", "m-1"), lines)]
-    return Finding(found, panels)
+    return Finding(comparisons, panels)
 
 
 def _under_pressure(

@@ -14,7 +14,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.types import Floats
-from impactlab.verification.cases import Case, aluminium_impact, elastic, timoshenko_impact
+from impactlab.verification.cases import Sweep, aluminium_impact, elastic, timoshenko_impact
 from impactlab.verification.comparisons import Comparison, Comparisons, rms_error
 from impactlab.verification.finding import Curve, Finding, Panel, check
 from impactlab.verification.solutions import hertz
@@ -62,7 +62,7 @@ closed form, and is added before histories are compared."""
 
 def _finding(
     title: str,
-    cases: Mapping[str, Case],
+    cases: Mapping[str, Sweep],
     solve: Callable[[Impact, float], ModalSolution],
     rivals: Mapping[str, ModalSolution],
     schemes: Sequence[Refinement],
@@ -76,7 +76,7 @@ def _finding(
 
     The panels show the paper's beam at 0.99 m/s; rivals: more curves in them.
     """
-    found = Comparisons()
+    comparisons = Comparisons()
     panels: list[Panel] = []
     for beam, case in cases.items():
         table = []
@@ -85,12 +85,12 @@ def _finding(
             keys = [(scheme.scheme, nodes) for scheme in schemes for nodes in scheme.nodes]
             runs = {key: _run(impact, key, case.duration) for key in keys}
             series, where = solve(impact, case.duration), f"{beam}, {velocity:g} m/s"
-            row = (_compare(f"{each.scheme}: {where}", each, runs, series) for each in schemes)
+            row = (_compare(f"{grids.scheme}: {where}", grids, runs, series) for grids in schemes)
             table.append([*chain.from_iterable(row)])
             if (beam, velocity) == ("the paper's beam", 0.99):
                 panels = _panels(title, schemes, runs, {"modal series": series, **rivals})
-        found.worst(table)
-    return Finding(found, panels)
+        comparisons.worst(table)
+    return Finding(comparisons, panels)
 
 
 def _run(impact: Impact, key: GridKey, duration: float) -> xr.Dataset:
@@ -106,7 +106,7 @@ def _compare(
     """Compare one impact: histories on two grids, responses on the middle one, and orders."""
     middle, finest = (runs[grids.scheme, nodes] for nodes in (grids.middle, grids.nodes[-1]))
     expected = {"peak_force": series.peak_force, "contact_duration": series.contact_duration}
-    found = [
+    comparisons = [
         *_histories(where, grids, middle, series).responses(middle, expected, 1e-3),
         *_histories(where, grids, finest, series),
     ]
@@ -114,15 +114,15 @@ def _compare(
     for (name, (quantity, _)), order in zip(HISTORIES.items(), grids.orders, strict=True):
         coarse, fine = (error(name, series, run) for run in pair)
         label, observed = f"order of convergence of {quantity}", float(np.log2(coarse / fine))
-        found += Comparisons(where).absolute(label, "1", observed, order, 0.2)
-    return found
+        comparisons += Comparisons(where).absolute(label, "1", observed, order, 0.2)
+    return comparisons
 
 
 def _histories(
     where: str, grids: Refinement, run: xr.Dataset, series: ModalSolution
 ) -> Comparisons:
     nodes, time = run.nodes.item(), run.time.values
-    found = Comparisons(f"{where}, {nodes} nodes")
+    comparisons = Comparisons(f"{where}, {nodes} nodes")
     finer = (grids.middle / nodes) ** 2.0
     for (name, (quantity, units)), limit in zip(HISTORIES.items(), grids.tolerances, strict=True):
         label, ours = f"history of {quantity}", run[name].values
@@ -130,8 +130,8 @@ def _histories(
             label += ", the modes left out added"
             modes = odd_modes(series.modes.beam, nodes // 2)
             ours = ours + modes.residual_curvature * run.contact_force.values
-        found.curve(label, units, ours, series.at(name, time), limit * finer)
-    return found
+        comparisons.curve(label, units, ours, series.at(name, time), limit * finer)
+    return comparisons
 
 
 def error(name: str, series: ModalSolution, run: xr.Dataset) -> float:
@@ -154,8 +154,8 @@ def _panels(
             time = run.time.values
             curves.append(Curve(f"{grids.scheme}, {grids.middle} nodes", time, run[name].values))
             nodes = np.array(grids.nodes, dtype=np.float64)
-            each = [error(name, series, runs[grids.scheme, n]) for n in grids.nodes]
-            errors.append(Curve(f"{grids.scheme}: {quantity}", nodes, np.array(each)))
+            sizes = [error(name, series, runs[grids.scheme, n]) for n in grids.nodes]
+            errors.append(Curve(f"{grids.scheme}: {quantity}", nodes, np.array(sizes)))
         for label, other in solutions.items():
             curves.append(Curve(label, time, other.at(name, time), independent=True))
         panels.append(Panel(title, ("time", "s"), (quantity, units), curves))
@@ -166,9 +166,9 @@ def _panels(
 
 
 BERNOULLI_CASES = {
-    "the paper's beam": Case(elastic(paper_impact(0.99)), (0.1, 0.99, 2.0, 5.0), 0.4e-3),
-    "Timoshenko's beam": Case(elastic(timoshenko_impact()), (0.01, 0.1, 1.0, 5.0), 0.3e-3),
-    "a beam of aluminium": Case(elastic(aluminium_impact()), (0.05, 0.1, 0.3, 0.8), 0.4e-3),
+    "the paper's beam": Sweep(elastic(paper_impact(0.99)), (0.1, 0.99, 2.0, 5.0), 0.4e-3),
+    "Timoshenko's beam": Sweep(elastic(timoshenko_impact()), (0.01, 0.1, 1.0, 5.0), 0.3e-3),
+    "a beam of aluminium": Sweep(elastic(aluminium_impact()), (0.05, 0.1, 0.3, 0.8), 0.4e-3),
 }
 
 
@@ -190,10 +190,10 @@ def _sheared(impact: Impact, span: float = 1.0) -> Impact:
 
 
 TIMOSHENKO_CASES = {
-    "the paper's beam": Case(_sheared(paper_impact(0.99)), (0.1, 0.99, 5.0), 0.4e-3),
-    "Timoshenko's example": Case(_sheared(timoshenko_impact()), (0.01, 1.0, 5.0), 0.3e-3),
-    "a beam of aluminium": Case(_sheared(aluminium_impact()), (0.05, 0.3), 0.4e-3),
-    "a stubby beam": Case(_sheared(paper_impact(), 0.25), (0.1, 1.0, 5.0), 1.5e-3),
+    "the paper's beam": Sweep(_sheared(paper_impact(0.99)), (0.1, 0.99, 5.0), 0.4e-3),
+    "Timoshenko's example": Sweep(_sheared(timoshenko_impact()), (0.01, 1.0, 5.0), 0.3e-3),
+    "a beam of aluminium": Sweep(_sheared(aluminium_impact()), (0.05, 0.3), 0.4e-3),
+    "a stubby beam": Sweep(_sheared(paper_impact(), 0.25), (0.1, 1.0, 5.0), 1.5e-3),
 }
 """The stubby beam's shear is 6 % of its static deflection."""
 
@@ -231,7 +231,7 @@ def sub_impacts() -> Finding:
     small = elastic(timoshenko_impact())
     sphere, beam = replace(small.sphere, radius=0.02), replace(small.beam, span=0.307)
     large = replace(small, sphere=sphere, beam=beam)
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     panels: list[Panel] = []
     for where, impact, duration in (
         ("sphere of 10 mm radius, span of 153.5 mm", small, 1e-3),
@@ -240,14 +240,14 @@ def sub_impacts() -> Finding:
         series = solve(impact, duration)
         grid = Discretisation(nodes=801, points=3)
         run = run_dataset(impact, grid, duration=duration, samples=4001)
-        found += _compare_contacts(where, run, series)
+        comparisons += _compare_contacts(where, run, series)
         time = run.time.values
         curves = [
             Curve(f"{grid.nodes} nodes", time, run.contact_force.values),
             Curve("modal series", time, series.at("contact_force", time), independent=True),
         ]
         panels.append(Panel(where, ("time", "s"), ("contact force", "N"), curves))
-    return Finding(found, panels)
+    return Finding(comparisons, panels)
 
 
 def _compare_contacts(where: str, run: xr.Dataset, series: ModalSolution) -> list[Comparison]:
@@ -255,15 +255,15 @@ def _compare_contacts(where: str, run: xr.Dataset, series: ModalSolution) -> lis
     theirs = _contacts(series.time, series.indentation, series.contact_force)
     count, total = run.number_of_contacts.item(), run.total_contact_time.item()
     in_contact = sum(end - begin for begin, end, _ in theirs)
-    found = Comparisons(where).absolute("number of contacts", "1", count, len(theirs), 0.5)
-    found.relative("total time in contact", "s", total, in_contact, 1e-4)
-    for number, (one, other) in enumerate(zip(ours, theirs, strict=False), 1):
-        each = Comparisons(f"{where}, contact {number}")
+    comparisons = Comparisons(where).absolute("number of contacts", "1", count, len(theirs), 0.5)
+    comparisons.relative("total time in contact", "s", total, in_contact, 1e-4)
+    for number, (contact, expected) in enumerate(zip(ours, theirs, strict=False), 1):
+        table = Comparisons(f"{where}, contact {number}")
         if number > 1:  # the first one begins at 0
-            each.relative("begin", "s", one[0], other[0], 1e-4)
-        each.relative("end", "s", one[1], other[1], 1e-4)
-        found += each.relative("peak force", "N", one[2], other[2], 1e-3)
-    return found
+            table.relative("begin", "s", contact[0], expected[0], 1e-4)
+        table.relative("end", "s", contact[1], expected[1], 1e-4)
+        comparisons += table.relative("peak force", "N", contact[2], expected[2], 1e-3)
+    return comparisons
 
 
 def _contacts(time: Floats, indentation: Floats, force: Floats) -> list[tuple[float, float, float]]:
@@ -272,8 +272,8 @@ def _contacts(time: Floats, indentation: Floats, force: Floats) -> list[tuple[fl
     roots = delta.roots(extrapolate=False)
     ends = np.append(0.0, roots[roots > 0.5 * time[1]])  # first touch is at 0
     turns = push.derivative().roots(extrapolate=False)
-    found = []
+    contacts = []
     for begin, end in ends.reshape(-1, 2):  # the last one has ended
         peaks = push(turns[(turns > begin) & (turns < end)])
-        found.append((float(begin), float(end), float(np.max(peaks))))
-    return found
+        contacts.append((float(begin), float(end), float(np.max(peaks))))
+    return contacts

@@ -40,7 +40,7 @@ def moment_curvature() -> Finding:
     out = np.linspace(0.0, turn, 41)[1:]
     back = np.linspace(turn, -turn, 101)[1:]
     path = np.concatenate([out, back, back[::-1]])
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     curves = []
     for name, moduli in _HARDENING.items():
         beam = with_beam_material(paper_impact(), **moduli).beam
@@ -53,13 +53,13 @@ def moment_curvature() -> Finding:
         where = f"{name}; every rule with {', '.join(map(str, _POINTS))} points, its own fibres"
         fibres = np.concatenate(ours), np.concatenate(expected)
         fine, exact = _moments(beam, "legendre", 100, kappa), _exact_moments(beam, kappa)
-        whole = f"{name}; 100 Gauss-Legendre points, the exact section"
-        found += Comparisons(where).curve("moment", "N m", *fibres, 1e-12)
-        found += Comparisons(whole).curve("moment", "N m", fine, exact, 5e-4)
+        exact_where = f"{name}; 100 Gauss-Legendre points, the exact section"
+        comparisons += Comparisons(where).curve("moment", "N m", *fibres, 1e-12)
+        comparisons += Comparisons(exact_where).curve("moment", "N m", fine, exact, 5e-4)
         curves.append(Curve(name, kappa, fine))
         curves.append(Curve(f"{name}, exact", kappa, exact, independent=True))
     axes = ("curvature", "m-1"), ("bending moment", "N m")
-    return Finding(found, [Panel("Bent to and fro", *axes, curves)])
+    return Finding(comparisons, [Panel("Bent to and fro", *axes, curves)])
 
 
 def _moments(beam: Beam, rule: str, points: int, curvatures: Floats) -> Floats:
@@ -68,11 +68,11 @@ def _moments(beam: Beam, rule: str, points: int, curvatures: Floats) -> Floats:
     grid = Discretisation(rule=rule, points=points)
     cut = section.make_section(case_table(impact, grid, duration=1.0)[0])
     strain, peeq = np.zeros((1, points // 2)), np.zeros((1, points // 2))
-    found = []
+    moments = []
     for kappa in curvatures:
         moment, _, _ = section.bend(cut, float(kappa), strain, peeq, 0)
-        found.append(cut.stiffness * kappa - moment)
-    return np.array(found)
+        moments.append(cut.stiffness * kappa - moment)
+    return np.array(moments)
 
 
 def _exact_moments(beam: Beam, kappa: Floats) -> Floats:
@@ -102,7 +102,7 @@ def static_deflection() -> Finding:
     """
     beam = paper_impact().beam
     impact = _slow_impact(beam, mass=8e4, velocity=0.02, softness=50e-3)
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     panels: list[Panel] = []
     for rule, points in (("lobatto", 9), ("lobatto", 2), ("layers", 5)):
         run = run_dataset(impact, Discretisation(nodes=101, points=points, rule=rule), duration=1.2)
@@ -111,7 +111,7 @@ def static_deflection() -> Finding:
         force = run.contact_force.values / float(1.5 * np.sum(weights * positions**2))
         expected = force * bending.static_deflection(beam, 1.0)
         where = f"the paper's beam, {points} points ({rule})"
-        found += _compare_bending(where, run, beam, force, expected)
+        comparisons += _compare_bending(where, run, beam, force, expected)
         curves = [
             Curve("solver", run.time.values, run.midspan_deflection.values),
             Curve("F L³/(48 EI)", run.time.values, expected, independent=True),
@@ -126,7 +126,7 @@ def static_deflection() -> Finding:
     softness = bending.static_deflection(beam, 1.0) + beam_modes.shear_deflection(beam, 1.0)
     expected = force * softness
     where = "a stubby Timoshenko beam, 3 points (lobatto)"
-    return Finding([*found, *_compare_bending(where, run, beam, force, expected)], panels[:1])
+    return Finding([*comparisons, *_compare_bending(where, run, beam, force, expected)], panels[:1])
 
 
 def _compare_bending(
@@ -134,8 +134,8 @@ def _compare_bending(
 ) -> Comparisons:
     w, kappa = run.midspan_deflection.values, run.midspan_curvature.values
     curvature = -force * beam.span / (4.0 * beam.bending_stiffness)
-    found = Comparisons(where).curve("deflection at mid-span", "m", w, deflection, 1e-3)
-    return found.curve("curvature at mid-span", "m-1", kappa, curvature, 1e-3)
+    comparisons = Comparisons(where).curve("deflection at mid-span", "m", w, deflection, 1e-3)
+    return comparisons.curve("curvature at mid-span", "m-1", kappa, curvature, 1e-3)
 
 
 def _slow_impact(beam: Beam, mass: float, velocity: float, softness: float) -> Impact:
@@ -166,7 +166,7 @@ def static_collapse() -> Finding:
     hardening = with_beam_material(paper_impact(), isotropic_hardening_modulus=5e9).beam
     run, harder = (_run_collapse(beam, "layers", 40) for beam in (perfect, hardening))
     largest = 30e-3  # m; every run exceeds it
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     curves = []
     for dataset, beam, where, tolerance, label in (
         (run, perfect, "elastic-perfectly plastic, 40 layers", 8e-3, "perfectly plastic"),
@@ -174,29 +174,31 @@ def static_collapse() -> Finding:
     ):
         points = np.linspace(0.5e-3, largest, 100)
         ours, expected = np.interp(points, *_on_loading(dataset)), _static(beam, points)
-        found += Comparisons(where).curve("load by deflection", "N", ours, expected, tolerance)
+        comparisons += Comparisons(where).curve(
+            "load by deflection", "N", ours, expected, tolerance
+        )
         deflection, force = dataset.midspan_deflection.values, dataset.contact_force.values
         points = np.linspace(0.5e-3, largest, 60)
         curves.append(Curve(label, deflection, force))
         curves.append(Curve(f"{label}, static", points, _static(beam, points), independent=True))
     limit = bending.collapse_load(perfect)
     layers = Comparisons("40 layers; 4 M_p/L")
-    found += layers.relative("collapse load", "N", _plateau(run), limit, 5e-4)
+    comparisons += layers.relative("collapse load", "N", _plateau(run), limit, 5e-4)
     far = np.array([1e3 * bending.yield_curvature(perfect)])
     for number in (3, 9):
         rule = quadrature.rule("lobatto", number)
-        own = 4.0 / perfect.span * bending.path_moments(perfect, far, *rule).item()
+        plastic_load = 4.0 / perfect.span * bending.path_moments(perfect, far, *rule).item()
         plateau = _plateau(_run_collapse(perfect, "lobatto", number))
         rules = Comparisons(f"{number} Lobatto points; 4/L times the rule's own plastic moment")
-        found += rules.relative("collapse load", "N", plateau, own, 5e-4)
+        comparisons += rules.relative("collapse load", "N", plateau, plastic_load, 5e-4)
     # The striker leaves slowly, the beam springs back elastically.
     deflection = run.midspan_deflection.values
     left = float(deflection.max()) - bending.static_deflection(perfect, limit)
     layers = Comparisons("40 layers; largest deflection less P_c L^3/(48 EI)")
     permanent = float(deflection[-400:].mean())
-    found += layers.relative("permanent deflection", "m", permanent, left, 1e-3)
+    comparisons += layers.relative("permanent deflection", "m", permanent, left, 1e-3)
     axes = ("deflection at mid-span", "m"), ("load at mid-span", "N")
-    return Finding(found, [Panel("Loading to collapse, and back", *axes, curves)])
+    return Finding(comparisons, [Panel("Loading to collapse, and back", *axes, curves)])
 
 
 def _run_collapse(beam: Beam, rule: str, points: int) -> xr.Dataset:
@@ -233,7 +235,7 @@ _MODE_GRID = Discretisation(nodes=101, points=40, rule="layers")
 )
 def rigid_plastic_mode() -> Finding:
     """Compare permanent deflection and duration with the mode, and the approach to it."""
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     # Kinetic energy over the largest elastic energy of the beam; mass of the striker over that of
     # the beam, whose momentum matters more, the lighter: 6 % at 5.
     ratios, heavy = np.array([10.0, 30.0, 100.0, 300.0]), 100.0
@@ -244,7 +246,7 @@ def rigid_plastic_mode() -> Finding:
         stop = float(run.time[int(np.argmax(run.midspan_deflection.values))])
         table.relative("permanent deflection", "m", left, deflection, 1e-2)
         time = collapse.mode_duration(impact)
-        found += table.relative("time to the largest deflection", "s", stop, time, 1e-2)
+        comparisons += table.relative("time to the largest deflection", "s", stop, time, 1e-2)
     permanents, modes, expected = [], [], []
     for ratio in ratios.tolist():
         impact, run = _struck(heavy, ratio)
@@ -253,7 +255,7 @@ def rigid_plastic_mode() -> Finding:
         expected.append(collapse.elastic_plastic_deflection(impact))
         where = f"energy ratio {ratio:g}, mass ratio {heavy:g}; mode and elastic bending"
         values = permanents[-1], expected[-1]
-        found += Comparisons(where).relative("permanent deflection", "m", *values, 5e-3)
+        comparisons += Comparisons(where).relative("permanent deflection", "m", *values, 5e-3)
     final = np.array(modes)
     shortfall = 1.0 - np.array(expected) / final
     curves = [
@@ -263,7 +265,7 @@ def rigid_plastic_mode() -> Finding:
     x = ("kinetic energy over the beam's elastic capacity", "1")
     y = ("shortfall of the permanent deflection from the mode's", "1")
     title = "The rest is elastic: it falls with the energy ratio"
-    return Finding(found, [Panel(title, x, y, curves, log=True)])
+    return Finding(comparisons, [Panel(title, x, y, curves, log=True)])
 
 
 def _struck(mass_ratio: float, energy_ratio: float) -> tuple[Impact, xr.Dataset]:
@@ -310,7 +312,7 @@ elements and steps."""
 )
 def fibre_elements() -> Finding:
     """Compare both schemes with an implicit solution of sphere, contact, beam and fibres."""
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     panels: list[Panel] = []
     for name, impact in STRUCK.items():
         exact = fibre_beam.solve(impact, STRUCK_DURATION, elements=ELEMENTS, steps=STEPS)
@@ -327,8 +329,8 @@ def fibre_elements() -> Finding:
                     table.curve(label, units, ours, theirs, tolerance)
                 else:
                     table.responses(run, {variable: theirs}, tolerance)
-            found += table
+            comparisons += table
             curves.append(Curve(f"{scheme}, {nodes} nodes", exact.time, run.contact_force.values))
         curves.append(Curve("fibre elements", exact.time, exact.contact_force, independent=True))
         panels.append(Panel(name, ("time", "s"), ("contact force", "N"), curves))
-    return Finding(found, panels)
+    return Finding(comparisons, panels)

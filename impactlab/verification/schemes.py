@@ -46,7 +46,7 @@ _LOADING = tuple(ANSWERS)[:4]
 
 
 @dataclass(frozen=True)
-class Case:
+class ConvergenceCase:
     """An impact, its points over the depth, and duration (s).
 
     answers: those of ANSWERS tried. orders: by scheme, of those schemes that have one here.
@@ -77,10 +77,10 @@ def _hardening(velocity: float) -> Impact:
 
 _SECOND = {"leapfrog": 2.0, "modal": 2.0}
 CASES_IN_TIME = {
-    "elastic, Hertz, 0.99 m/s": Case(
+    "elastic, Hertz, 0.99 m/s": ConvergenceCase(
         elastic(paper_impact(0.99)), 3, 0.4e-3, (*_LOADING, _SPLINE), _SECOND
     ),
-    "yielding, Stronge, 20 m/s": Case(_hardening(20.0), 64, 0.12e-3, _LOADING, _SECOND),
+    "yielding, Stronge, 20 m/s": ConvergenceCase(_hardening(20.0), 64, 0.12e-3, _LOADING, _SECOND),
 }
 """The yielding case ends before sections unload and yield again, each at some point within a step.
 Left out, because the grid's fastest modes weigh most in them: the mid-span curvature and what
@@ -88,13 +88,13 @@ follows from it, the plastic strain."""
 NODES_IN_TIME = {"leapfrog": 101, "modal": 25}
 _TO_THE_END = (*_LOADING, "contact duration")
 CASES_IN_SPACE = {
-    "elastic, Hertz, 0.99 m/s": Case(
+    "elastic, Hertz, 0.99 m/s": ConvergenceCase(
         elastic(paper_impact(0.99)), 3, 0.4e-3, _TO_THE_END, {"leapfrog": 2.0}
     ),
-    "elastic, Hertz, 0.99 m/s, histories": Case(
+    "elastic, Hertz, 0.99 m/s, histories": ConvergenceCase(
         elastic(paper_impact(0.99)), 3, 0.4e-3, _LOADING[:3], {"modal": 6.0}
     ),
-    "yielding, Stronge, 12 m/s": Case(
+    "yielding, Stronge, 12 m/s": ConvergenceCase(
         _hardening(12.0), 64, 0.2e-3, (*_TO_THE_END, "plastic dissipation"), {"leapfrog": 2.0}
     ),
 }
@@ -116,7 +116,7 @@ _SHORTER = {"leapfrog": 1.0, "modal": 8.0}
 )
 def observed_order() -> Finding:
     """Compare the orders in which the differences between successive runs fall with theory."""
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     panels: list[Panel] = []
     for (name, case), scheme in product(CASES_IN_TIME.items(), SCHEMES):
         # Successively shorter steps, sampled at the longest ones.
@@ -124,7 +124,7 @@ def observed_order() -> Finding:
         grid = Discretisation(nodes=nodes, points=case.points, scheme=scheme)
         least = math.ceil(case.duration / (0.8 * case.critical_step(grid)))
         runs = [case.run(grid, least * times, least + 1) for times in HALVINGS]
-        found += _orders(where, case, runs[-5:], case.orders[scheme])
+        comparisons += _orders(where, case, runs[-5:], case.orders[scheme])
         axis = "steps over those at a Courant number of 0.8"
         panels.append(_order_panel(where, case, runs, axis, HALVINGS, case.orders[scheme]))
     for name, case in CASES_IN_SPACE.items():
@@ -135,29 +135,31 @@ def observed_order() -> Finding:
             largest = grids[-1].courant * case.critical_step(grids[-1]) / _SHORTER[scheme]
             steps = math.ceil(case.duration / largest / (_SAMPLES - 1)) * (_SAMPLES - 1)
             runs = [case.run(grid, steps, _SAMPLES) for grid in grids]
-            found += _orders(where, case, runs[-3:], order)
+            comparisons += _orders(where, case, runs[-3:], order)
             panels.append(_order_panel(where, case, runs, "nodes", numbers, order))
-    return Finding(found, panels)
+    return Finding(comparisons, panels)
 
 
-def _orders(where: str, case: Case, runs: Sequence[xr.Dataset], order: float) -> Comparisons:
+def _orders(
+    where: str, case: ConvergenceCase, runs: Sequence[xr.Dataset], order: float
+) -> Comparisons:
     """Compare the orders from the first to the last difference, each from a doubling."""
-    found = Comparisons(where)
+    comparisons = Comparisons(where)
     for name in case.answers:
         apart = _apart(name, runs)
         observed = float(np.log2(apart[0] / apart[-1])) / (len(apart) - 1)
-        found.absolute(name, "1", observed, order, 0.2)
-    return found
+        comparisons.absolute(name, "1", observed, order, 0.2)
+    return comparisons
 
 
 def _apart(name: str, runs: Sequence[xr.Dataset]) -> Floats:
     """Return how far an answer of each run is from the next run's, relatively."""
     if name.startswith("history"):
         histories = [run[ANSWERS[name]].values for run in runs]
-        return np.array([rms_error(one, other) for one, other in pairwise(histories)])
+        return np.array([rms_error(coarse, fine) for coarse, fine in pairwise(histories)])
     read = _end_of_contact if name == _SPLINE else lambda run: float(run[ANSWERS[name]])
     numbers = [read(run) for run in runs]
-    return np.array([abs(one / other - 1.0) for one, other in pairwise(numbers)])
+    return np.array([abs(coarse / fine - 1.0) for coarse, fine in pairwise(numbers)])
 
 
 def _end_of_contact(run: xr.Dataset) -> float:
@@ -167,7 +169,7 @@ def _end_of_contact(run: xr.Dataset) -> float:
 
 def _order_panel(
     title: str,
-    case: Case,
+    case: ConvergenceCase,
     runs: Sequence[xr.Dataset],
     x: str,
     values: Sequence[int],
@@ -217,15 +219,15 @@ def _run(impact: Impact, scheme: str, nodes: int) -> xr.Dataset:
 
 def _yielding(impact: Impact, fine: xr.Dataset) -> list[Comparison]:
     """Compare the responses of the paper's perfectly plastic beam with those of a fine run."""
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     for scheme, nodes in YIELDING_NODES.items():
         table = Comparisons(f"{scheme}: {impact.velocity:g} m/s, {nodes} nodes")
         run = _run(impact, scheme, nodes)
         times = HINGED if scheme == "modal" and impact.velocity > 15.0 else 1.0
         for name, tolerance in TOLERANCES.items():
             table.responses(run, {name: fine[name].item()}, times * tolerance)
-        found += table
-    return found
+        comparisons += table
+    return comparisons
 
 
 def drawn(number: int, seed: int) -> dict[str, Any]:
@@ -253,13 +255,13 @@ def _stable() -> Comparison:
     """Compare the worst energy balance of the modal scheme; a diverged run has none."""
     grid = Discretisation(scheme="modal")
     runs = simulate_many(paper_impact(), grid, duration=4e-3, varied=drawn(48, seed=1))
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     for _, run in runs.groupby("run", squeeze=False):
         where = (
             f"modal: {run.velocity.item():.3g} m/s, {run.contact.item()}, "
             f"{run.nodes.item()} nodes, {run.points.item()} points, {run.rule.item()}"
         )
-        found += Comparisons(where).absolute(
+        comparisons += Comparisons(where).absolute(
             "energy error", "1", run.energy_error.item(), 0.0, 1e-2
         )
-    return worst(found)
+    return worst(comparisons)

@@ -93,8 +93,8 @@ def packed(outcomes: Sequence[Outcome]) -> xr.Dataset:
 def _table(dim: str, kinds: Kinds, rows: Sequence[Sequence[Any]]) -> dict[str, Any]:
     """Return variables on `dim`, one per column, with the right types even without rows."""
     return {
-        name: (dim, np.array([row[at] for row in rows], dtype=kind), {"long_name": words})
-        for at, (name, (kind, words)) in enumerate(kinds.items())
+        name: (dim, np.array([row[column] for row in rows], dtype=kind), {"long_name": long_name})
+        for column, (name, (kind, long_name)) in enumerate(kinds.items())
     }
 
 
@@ -103,17 +103,17 @@ def unpacked(dataset: xr.Dataset) -> list[Outcome]:
     curves, panels = _read(dataset, _CURVES), list(enumerate(_read(dataset, _PANELS)))
     ends = np.cumsum([points for *_, points in curves], dtype=int)[:-1]
     parts = [np.split(dataset[axis].values, ends) for axis in _POINTS]
-    drawn: dict[int, list[Curve]] = {at: [] for at, _ in panels}
-    for (at, label, independent, _), x, y in zip(curves, *parts, strict=False):
-        drawn[at].append(Curve(label, x, y, independent))  # no curve: one empty part
+    lines: dict[int, list[Curve]] = {panel: [] for panel, _ in panels}
+    for (panel, label, independent, _), x, y in zip(curves, *parts, strict=False):
+        lines[panel].append(Curve(label, x, y, independent))  # no curve: one empty part
     outcomes = []
     for name, title, source, _, reason, seconds in _read(dataset, _CHECKS):
         compared = [row for row in _read(dataset, _COMPARISONS) if row[0] == name]
         finding = Finding(
             [Comparison(*values) for _, *values, _ in compared],
             [
-                Panel(words, (x, x_units), (y, y_units), drawn[at], log)
-                for at, (check, words, x, x_units, y, y_units, log) in panels
+                Panel(heading, (x, x_units), (y, y_units), lines[panel], log)
+                for panel, (check, heading, x, x_units, y, y_units, log) in panels
                 if check == name
             ],
         )

@@ -38,11 +38,11 @@ def strain_rate() -> Finding:
     plastic = 0.25 * static * beam.width * beam.depth**2
     closed = plastic * (1.0 + 2.0 * Q / (2.0 * Q + 1.0) * (_RATES / D) ** (1.0 / Q))
     ours = _moments(impact, _RATES)
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     for rate, mine, exact in zip(_RATES, ours, closed, strict=True):
         at_rate = Comparisons(f"{rate:g} 1/s at the surface")
-        found += at_rate.relative("moment", "N m", mine, exact, 1e-3)
-    found += _contacts(impact)
+        comparisons += at_rate.relative("moment", "N m", mine, exact, 1e-3)
+    comparisons += _contacts(impact)
     impacts = Comparisons("20 m/s, contact patch")
     leapfrog, modal = (_run(impact, scheme) for scheme in ("leapfrog", "modal"))
     for name, tolerance in (("peak_plastic_strain", 0.02), ("plastic_dissipation", 0.02)):
@@ -51,14 +51,16 @@ def strain_rate() -> Finding:
         impacts.relative(label, units, *values, tolerance)
     curves = [Curve("solver", _RATES, ours), Curve("closed form", _RATES, closed, independent=True)]
     axes = ("strain rate at the surface", "s-1"), ("moment", "N m")
-    return Finding([*found, *impacts], [Panel("bent at a constant rate", *axes, curves, log=True)])
+    return Finding(
+        [*comparisons, *impacts], [Panel("bent at a constant rate", *axes, curves, log=True)]
+    )
 
 
 def _moments(impact: Impact, rates: Floats) -> Floats:
     """Return the moments (N m) of the solver's section, bent at these rates of the surface."""
     grid = Discretisation(rule="layers", points=64)
     cut, law = make_section(case_table(impact, grid, duration=1.0)[0]), CowperSymonds(D, Q)
-    found, steps, last = [], 200, 60.0 * cut.yield_curvature
+    moments, steps, last = [], 200, 60.0 * cut.yield_curvature
     for rate in rates:
         dt = 0.5 * impact.beam.depth * last / steps / rate
         strain, peeq, before = np.zeros((1, 32)), np.zeros((1, 32)), 0.0
@@ -66,13 +68,13 @@ def _moments(impact: Impact, rates: Floats) -> Floats:
         for kappa in np.linspace(0.0, last, steps + 1)[1:]:
             plastic, _, _, _ = bend_at_rate(cut, law, float(kappa), before, dt, strain, peeq, 0)
             moment, before = cut.stiffness * kappa - plastic, float(kappa)
-        found.append(moment)
-    return np.array(found)
+        moments.append(moment)
+    return np.array(moments)
 
 
 def _contacts(impact: Impact) -> list[Comparison]:
     """Compare contacts of the rate with those of the yield stress at the rate that Hertz gives."""
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     for velocity in (0.99, 10.0):
         dynamic = replace(impact, velocity=velocity, beam_model="elastic")
         mass, radius = dynamic.sphere.total_mass, dynamic.sphere.radius
@@ -81,11 +83,11 @@ def _contacts(impact: Impact) -> list[Comparison]:
         rate = 0.2 * circle / (0.5 * hertz.contact_duration(*bodies))
         raised = 345e6 * (1.0 + float(rate / D) ** (1.0 / Q))
         still = with_beam_material(dynamic, rate_coefficient=0.0, yield_stress=raised)
-        one, other = (_run(each, "modal") for each in (dynamic, still))
-        expected = {name: other[name].item() for name in ("peak_force", "maximum_indentation")}
+        run, reference = (_run(case, "modal") for case in (dynamic, still))
+        expected = {name: reference[name].item() for name in ("peak_force", "maximum_indentation")}
         where = f"{velocity:g} m/s, {rate:.0f} 1/s under the contact"
-        found += Comparisons(where).responses(one, expected, 1e-5)
-    return found
+        comparisons += Comparisons(where).responses(run, expected, 1e-5)
+    return comparisons
 
 
 def _run(impact: Impact, scheme: str) -> xr.Dataset:

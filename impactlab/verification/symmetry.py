@@ -94,7 +94,7 @@ def similarity() -> Finding:
     The independent part is dimensional analysis: a constant with a unit, hidden in the code, would
     break it.
     """
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     panels: list[Panel] = []
     for scheme, grid in _SCALED_GRIDS.items():
         curves = []
@@ -104,14 +104,14 @@ def similarity() -> Finding:
             for name, scale in {"the impact": UNSCALED, **SCALES}.items():
                 scaled, where = scale.simulate(impact, grid), f"{scheme}, {contact}, {name}"
                 if scale is not UNSCALED:
-                    found += _compare(where, run, scaled, scale)
+                    comparisons += _compare(where, run, scaled, scale)
                 if contact == "stronge":
                     time = scaled.time.values / scale.factor("s")
                     newtons = scaled.contact_force.values / scale.factor("N")
                     curves.append(Curve(name, time, newtons, scale is UNSCALED))
         axes = ("time", "s"), ("contact force", "N")
         panels.append(Panel(f"{scheme}, scaled back", *axes, curves))
-    return Finding(found, panels)
+    return Finding(comparisons, panels)
 
 
 def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> list[Comparison]:
@@ -235,12 +235,12 @@ def time_reversal() -> Finding:
     The march uses the kernels' beam and contact, and is shown to be that of simulate().
     """
     impact, duration = elastic(paper_impact(0.99)), 0.5e-3
-    found: list[Comparison] = []
+    comparisons: list[Comparison] = []
     curves: list[Curve] = []
     for kind, grid in _MARCHES.items():
         march = kind(impact, grid, duration)
         steps, velocity = march.steps, march.u_s
-        there = np.array([march.step() for _ in range(steps)])
+        forward = np.array([march.step() for _ in range(steps)])
         largest = float(np.max(np.abs(march.w)))
         march.turn()
         back = np.array([march.step() for _ in range(steps)])[::-1]
@@ -258,14 +258,14 @@ def time_reversal() -> Finding:
             "deflection left over the largest": (left / largest, 0.0),
         }
         # The force at the turn belongs to the way back, the force at first touch to the way there.
-        table.curve(label, "N", there, newtons[:-1], TOLERANCE)
-        table.curve("contact force, back and there", "N", back[:-1], there[1:], TOLERANCE)
+        table.curve(label, "N", forward, newtons[:-1], TOLERANCE)
+        table.curve("contact force, back and there", "N", back[:-1], forward[1:], TOLERANCE)
         for name, values in ends.items():
             table.absolute(name, "1", *values, TOLERANCE)
-        found += table
+        comparisons += table
         curves += [
-            Curve(f"{grid.scheme}: there", time[:-1], there),
+            Curve(f"{grid.scheme}: there", time[:-1], forward),
             Curve(f"{grid.scheme}: back, in reverse", time[1:], back, independent=True),
         ]
     axes = ("time since first touch", "s"), ("contact force", "N")
-    return Finding(found, [Panel("the paper's case, elastic", *axes, curves)])
+    return Finding(comparisons, [Panel("the paper's case, elastic", *axes, curves)])

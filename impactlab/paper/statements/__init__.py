@@ -27,6 +27,6 @@ STATEMENTS: list[Statement] = [
 def judge_all(data: Data) -> list[tuple[Statement, list[Judgement]]]:
     """Return all statements with their judgements on the runs of the studies that there are."""
     return [
-        (each, list(each.judge({name: data[name] for name in each.studies if name in data})))
-        for each in STATEMENTS
+        (entry, list(entry.judge({name: data[name] for name in entry.studies if name in data})))
+        for entry in STATEMENTS
     ]

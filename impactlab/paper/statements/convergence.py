@@ -17,8 +17,8 @@ from impactlab.paper.statements.statement import (
     Data,
     Judgement,
     Number,
+    Ruling,
     UnknownError,
-    Verdict,
     finest_grid,
     judged,
     runs_of,
@@ -76,7 +76,7 @@ def nodes_suffice(case: str, data: Data, velocity: float, names: tuple[str, ...]
         if not 0.5 * worst.value > TOLERANCE:
             raise UnknownError(f"the {worst.name} is not known: it takes three grids or more")
         why = f"Half of the change to the finest grid exceeds {100 * TOLERANCE:g} %: {worst.name}."
-        return Judgement(case, errors, Verdict.FAILS, why)
+        return Judgement(case, errors, Ruling.FAILS, why)
     highest = [error.high for error in errors]
     worst, least = names[int(np.argmax(highest))].replace("_", " "), max(needed)
     numbers = (*errors, Number("least nodes for all of them", least, "1"))
@@ -105,15 +105,15 @@ def _nodes_error(data: Data, velocity: float, name: str) -> tuple[Number, float]
     within = (error + share <= TOLERANCE).values
     count = int(np.argmin(within)) if not within.all() else within.size
     least = float(values["nodes"].values[count - 1]) if count else np.inf
-    at = float(error.sel(nodes=PRINTED_NODES))
-    return Number(f"error of the {name.replace('_', ' ')}", at, "1", share, percent=True), least
+    gap = float(error.sel(nodes=PRINTED_NODES))
+    return Number(f"error of the {name.replace('_', ' ')}", gap, "1", share, percent=True), least
 
 
 def _points_cases(data: Data) -> Iterator[Case]:
     for reading, rule, points, literal in READINGS_OF_P:
-        for words, velocity, names in _response_groups(data, POINTS_STUDY):
+        for case, velocity, names in _response_groups(data, POINTS_STUDY):
             where = {"velocity": velocity, "rule": rule}
-            yield f"{reading}; {words}", where, points, names, literal
+            yield f"{reading}; {case}", where, points, names, literal
 
 
 @statement(
@@ -141,10 +141,10 @@ def _points_error(data: Data, where: dict[str, Any], points: int, name: str) -> 
     """Return the relative error with so many points; infinite where the value should be zero."""
     values = select_response(runs_of(data, POINTS_STUDY), name, **where)
     values = values.sortby("points", ascending=False)
-    most, next_fewer = (float(values.isel(points=at)) for at in (0, 1))
-    given = float(values.sel(points=points))
-    scale = abs(most) or (np.nan if given or next_fewer else 1.0)
-    gaps = (abs(value - most) / scale for value in (given, next_fewer))
+    most, next_fewer = (float(values.isel(points=rank)) for rank in (0, 1))
+    printed = float(values.sel(points=points))
+    scale = abs(most) or (np.nan if printed or next_fewer else 1.0)
+    gaps = (abs(value - most) / scale for value in (printed, next_fewer))
     error, spread = (np.inf if np.isnan(gap) else float(gap) for gap in gaps)
     return Number(f"error of the {name.replace('_', ' ')}", error, "1", spread, percent=True)
 
@@ -175,8 +175,8 @@ def lobatto_is_the_reason(case: str, data: Data, points: int) -> Judgement:
         best, next_best = lobatto.sortby("points", ascending=False).values[:2].astype(float)
         layers = select_response(runs, name, velocity=VELOCITY, rule="layers", points=points)
         width = abs(best - next_best) / best
-        words = f"change of the {name.replace('_', ' ')}"
-        gaps.append(Number(words, float(layers) / best - 1.0, "1", width, percent=True))
+        label = f"change of the {name.replace('_', ' ')}"
+        gaps.append(Number(label, float(layers) / best - 1.0, "1", width, percent=True))
     needed = PRINTED_LAYERS - PRINTED_DIFFERENCE
     largest = max(abs(gap.value) + gap.uncertainty for gap in gaps)
     enough = "The rule may explain the difference."

@@ -15,9 +15,9 @@ from impactlab.paper.statements.convergence import READINGS_OF_P
 from impactlab.paper.statements.statement import (
     Data,
     Judgement,
-    Kind,
     Number,
-    Verdict,
+    Ruling,
+    Subject,
     judged,
     runs_of,
     select_response,
@@ -30,7 +30,7 @@ EQUAL = 1e-9  # relative difference within which two forces agree
 
 
 @statement(
-    kind=Kind.MISPRINT,
+    kind=Subject.MISPRINT,
     text="The scheme is stable for dt < dx/√(E/ρ).",
     test=(
         "ω dt ≤ 2 with ω = (4/dx²) √(EI/ρA), the highest frequency of the grid; and an explicit "
@@ -69,7 +69,7 @@ def time_step(case: str, data: Data, limit: Callable[[Beam, int], float]) -> Jud
 
 
 @statement(
-    kind=Kind.MISPRINT,
+    kind=Subject.MISPRINT,
     text="Eqs. 6 to 8: ρA w_tt = F − M_xx.",
     test=(
         "Every mode of the beam without load oscillates: its factor per step is at most 1, and an "
@@ -96,7 +96,7 @@ def moment_sign(case: str, data: Data, sign: float) -> Judgement:
 
 
 @statement(
-    kind=Kind.MISPRINT,
+    kind=Subject.MISPRINT,
     text="Eq. 9: w_t(n + 1/2) = w_t(n − 1/2) + Δt w_tt(n − 1/2), and below Eq. 10 “w_t at n”.",
     test=(
         "The step is of second order, as central differences are: on w = cos(ωt + 1) the error of "
@@ -109,12 +109,12 @@ def moment_sign(case: str, data: Data, sign: float) -> Judgement:
     ),
     holds="w_tt at n, both times",
 )
-def acceleration_time(case: str, data: Data, taken: Callable[[float], float]) -> Judgement:
+def acceleration_time(case: str, data: Data, acceleration: Callable[[float], float]) -> Judgement:
     """Judge what is taken for the acceleration of a step at t = 0, with omega = 1."""
     errors = []
     for dt in (1e-2, 5e-3):
         before, after = (-math.sin(1.0 + half * dt) for half in (-0.5, 0.5))
-        errors.append(abs((after - before) / dt - taken(dt)))
+        errors.append(abs((after - before) / dt - acceleration(dt)))
     order = math.log2(errors[0] / errors[1])
     off = f"The error is of order {order:.1f}."
     numbers = (Number("observed order", order, "1"),)
@@ -122,7 +122,7 @@ def acceleration_time(case: str, data: Data, taken: Callable[[float], float]) ->
 
 
 @statement(
-    kind=Kind.MISPRINT,
+    kind=Subject.MISPRINT,
     text="The unloading curve has the radius R_e of Eq. 17, and of Table 1.",
     test=(
         "With δ_r = δ_m − δ_y R_e/R* (Eq. 15), the unloading force (4/3) E* √R_e (δ_m − δ_r)^1.5 "
@@ -159,7 +159,7 @@ def unloading_radius(case: str, data: Data, outer: float, inner: float) -> Judge
 
 
 @statement(
-    kind=Kind.MISPRINT,
+    kind=Subject.MISPRINT,
     text="Table 1, elastic phase: F = (4/3) E* √R* δ_y^(3/2).",
     test="F = 0 where the contact begins (δ = 0), and the force grows with the indentation.",
     cases=(("as printed", 1.0), ("with δ in the place of δ_y", 0.0)),
@@ -176,7 +176,7 @@ def elastic_phase(case: str, data: Data, begins: float) -> Judgement:
 
 
 @statement(
-    kind=Kind.MISPRINT,
+    kind=Subject.MISPRINT,
     text="The beam has a mass of 10.929 kg (Table 2).",
     test=(
         "|ρ B H L − printed mass| ≤ U; U: half of the last printed digit of density (7800 kg/m³, "
@@ -202,7 +202,7 @@ def beam_mass(case: str, data: Data, printed: float) -> Judgement:
 
 
 @statement(
-    kind=Kind.OBSERVATION,
+    kind=Subject.OBSERVATION,
     text="Where the fully plastic phase begins, which the paper does not give.",
     test=(
         "The elastic-plastic force F_y u (1 + ln(u)/3.3) and the fully plastic one 2.8 F_y u/1.1 "
@@ -221,7 +221,7 @@ def fully_plastic(case: str, data: Data, depth: float) -> Judgement:
 
 
 @statement(
-    kind=Kind.OBSERVATION,
+    kind=Subject.OBSERVATION,
     text="P = 2 integration points represent the section.",
     test=(
         "The rule's elastic stiffness B Σ E w z² and its full plastic moment B Σ σ_y w |z| equal "
@@ -247,7 +247,7 @@ def few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> 
 
 
 @statement(
-    kind=Kind.OBSERVATION,
+    kind=Subject.OBSERVATION,
     text="Unloading with force continuity (Eqs. 15 to 17) creates no energy.",
     test=(
         "The coefficient of restitution of the contact alone is at most 1 for every "
@@ -265,15 +265,15 @@ def restitution(case: str, data: Data) -> Judgement:
     above = restitution > 1.0
     largest = Number("largest restitution", float(restitution.max()), "1")
     if not above.any():
-        return Judgement(case, (largest,), Verdict.HOLDS, "It is at most 1.")
+        return Judgement(case, (largest,), Ruling.HOLDS, "It is at most 1.")
     end = float(ratios[above].max())
     numbers = (largest, Number("δ_m/δ_y up to which it is above 1", end, "1", end * 0.0015))
     why = "The law creates energy in shallow contacts; the energy audit of the runs counts it."
-    return Judgement(case, numbers, Verdict.FAILS, why)
+    return Judgement(case, numbers, Ruling.FAILS, why)
 
 
 @statement(
-    kind=Kind.OBSERVATION,
+    kind=Subject.OBSERVATION,
     text="An impact has one contact.",
     test="The runs of figure 5 have one contact each.",
     cases=(("Stronge contact, 0.99 m/s",),),

@@ -34,9 +34,9 @@ SMALL = {
 }
 """Readings of what may be ignored, and the largest change under each."""
 _CASES = tuple(
-    (f"{velocity:g} m/s, {words}", velocity, limit)
+    (f"{velocity:g} m/s, {label}", velocity, limit)
     for velocity in (VELOCITY, 5.0, 10.0)
-    for words, limit in SMALL.items()
+    for label, limit in SMALL.items()
 )
 _LIMITS = (
     "The paper gives no number; two readings: 0, and the 2.4 % that it states for its force "
@@ -57,12 +57,12 @@ def shear(case: str, data: Data, velocity: float, limit: float) -> Judgement:
     """Judge what shear and rotary inertia change."""
     runs = runs_of(data, EFFECTS_STUDY)
     gaps = []
-    for name, words in RESPONSES.items():
+    for name, label in RESPONSES.items():
         with_shear, without = (
             finest_grid(runs, name, velocity=velocity, beam_rate_coefficient=0.0, beam_model=model)
             for model in ("timoshenko", BEAM)
         )
-        gaps.append(with_shear.relative_to(without, f"change of the {words}"))
+        gaps.append(with_shear.relative_to(without, f"change of the {label}"))
     return _judge_changes(case, gaps, limit)
 
 
@@ -94,15 +94,15 @@ def strain_rate(case: str, data: Data, velocity: float, limit: float) -> Judgeme
     where = {"velocity": velocity, "beam_model": BEAM}
     coefficients = runs["beam_rate_coefficient"].values.astype(float)
     gaps = []
-    for name, words in RESPONSES.items():
+    for name, label in RESPONSES.items():
         static = finest_grid(runs, name, **where, beam_rate_coefficient=0.0)
         rated = [
-            finest_grid(runs, name, **where, beam_rate_coefficient=D).relative_to(static, words)
+            finest_grid(runs, name, **where, beam_rate_coefficient=D).relative_to(static, label)
             for D in coefficients[coefficients > 0.0]
         ]
         low, high = min(gap.low for gap in rated), max(gap.high for gap in rated)
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        gaps.append(Number(f"change of the {words}", middle, "1", half, percent=True))
+        gaps.append(Number(f"change of the {label}", middle, "1", half, percent=True))
     return _judge_changes(case, gaps, limit)
 
 
@@ -121,18 +121,18 @@ def run_time(case: str, data: Data) -> Judgement:
     runs = runs_of(data, MESHES_STUDY)
     if "processor_time" not in runs or "element_size" not in runs.dims:
         raise UnknownError(f"the study {MESHES_STUDY} holds no processor times: solve it again")
-    taken = runs["processor_time"].sel(beam_model=SOLID).sortby("element_size")
-    if not np.isfinite(taken).all():
+    times = runs["processor_time"].sel(beam_model=SOLID).sortby("element_size")
+    if not np.isfinite(times).all():
         raise UnknownError(f"a run of the study {MESHES_STUDY} has no processor time")
     beam = _beam_time(float(runs["duration"]))
     numbers = [Number("beam", beam, "s")]
-    for at in (0, -1):
-        size = f"{1e3 * float(taken['element_size'][at]):g} mm"
-        solid = float(taken[at])
+    for mesh in (0, -1):
+        size = f"{1e3 * float(times['element_size'][mesh]):g} mm"
+        solid = float(times[mesh])
         numbers.append(Number(f"3-D, elements of {size}", solid / 60.0, "min"))
         numbers.append(Number(f"times the beam's ({size})", solid / beam, "1"))
     why = "Finite elements take many times as long, on every mesh."
-    return judged(case, tuple(numbers), beam < float(taken.min()), why, "The beam takes longer.")
+    return judged(case, tuple(numbers), beam < float(times.min()), why, "The beam takes longer.")
 
 
 def _beam_time(duration: float) -> float:

@@ -14,9 +14,9 @@ from impactlab.paper.statements.statement import (
     Data,
     Judgement,
     Number,
+    Ruling,
     Statement,
     UnknownError,
-    Verdict,
     finest_grid,
     judged,
     response_curve,
@@ -79,8 +79,8 @@ def _largest_to_5(data: Data, study: str, response: str) -> Number:
     ),
     cases=(
         *(
-            (f"in the paper's model, {words}", study, "peak_plastic_strain", literal)
-            for words, study, _, literal in AWAY
+            (f"in the paper's model, {place}", study, "peak_plastic_strain", literal)
+            for place, study, _, literal in AWAY
         ),
         ("in the 3-D model, after the first contact", SOLID_STUDY, "", False),
     ),
@@ -133,9 +133,9 @@ def _strain_beyond(data: Data, velocity: float, depths: float) -> Number:
         distance, strain = _profile(data, study, velocity)
         # Between two nodes the strain is linear: the place is the same on every grid.
         order = np.argsort(distance, kind="stable")
-        at = depths * paper_impact().beam.depth
-        edge = float(np.interp(at, distance[order], strain[order]))
-        values.append(max(edge, float(strain[distance > at].max())))
+        reach = depths * paper_impact().beam.depth
+        edge = float(np.interp(reach, distance[order], strain[order]))
+        values.append(max(edge, float(strain[distance > reach].max())))
         nodes.append(distance.size)
     by_grid = xr.DataArray(values, {"nodes": nodes}, "nodes")
     return Number("PEEQ", values[0], "1", uncertain(by_grid), percent=True)
@@ -152,8 +152,8 @@ def _judge_limit(
     """Judge the strain below the limit, or above it; unknown where U encloses the limit."""
     if isinstance(place, tuple):
         study, response = place
-        found = finest_grid(runs_of(data, study), response, velocity=velocity)
-        strain = replace(found, name="PEEQ", percent=True)
+        number = finest_grid(runs_of(data, study), response, velocity=velocity)
+        strain = replace(number, name="PEEQ", percent=True)
     else:  # beyond so many beam depths, after all contacts
         strain = _strain_beyond(data, velocity, place)
     if not np.isfinite(strain.uncertainty):
@@ -164,7 +164,7 @@ def _judge_limit(
             "The limit lies within the uncertainty: a perfectly plastic hinge has no limit in the "
             "nodes. Runs with the steel's hardening, which the paper does not give, would decide."
         )
-        return Judgement(case, (strain,), Verdict.UNKNOWN, why)
+        return Judgement(case, (strain,), Ruling.UNKNOWN, why)
     side = "below" if under else "above"
     why = f"{100 * strain.value:.2g} % lies {side} the limit by more than its uncertainty."
     return judged(case, (strain,), under is below, why, literal=literal)
@@ -181,11 +181,11 @@ def _limit_cases(velocity: float, below: bool, everywhere: bool) -> tuple[Case, 
         rows.append((f"beyond {depths:g} H from the impact", depths, False))
     early = EARLY, "remote_plastic_strain"
     rows.append(("beyond 1 H, 1 ms after first touch", early, False))
-    return tuple((f"{velocity:g} m/s, {words}", velocity, *row, below) for words, *row in rows)
+    return tuple((f"{velocity:g} m/s, {case}", velocity, *row, below) for case, *row in rows)
 
 
-def _strain_statement(name: str, text: str, words: str, cases: tuple[Case, ...]) -> Statement:
-    test = f"{words} PEEQ: the largest over the depth, 25 ms after first touch. {_HOW_FAR}"
+def _strain_statement(name: str, text: str, criterion: str, cases: tuple[Case, ...]) -> Statement:
+    test = f"{criterion} PEEQ: the largest over the depth, 25 ms after first touch. {_HOW_FAR}"
     return Statement(name, _judge_limit, text, test, cases, (*PROFILES, EARLY))
 
 
@@ -225,6 +225,6 @@ def plasticity_begins(case: str, data: Data, study: str, response: str, literal:
     if first == 0:  # no strain anywhere, or strain from the lowest velocity on
         raise UnknownError(f"the velocities of {study} do not enclose the first yield")
     below, above = list(curve)[first - 1 : first + 1]
-    found = Number("velocity at first yield", 0.5 * (below + above), "m s-1", 0.5 * (above - below))
+    onset = Number("velocity at first yield", 0.5 * (below + above), "m s-1", 0.5 * (above - below))
     why = f"No plastic strain at {below:g} m/s, some at {above:g} m/s."
-    return judged(case, (found,), below >= 5.0 and above <= 10.0, why, literal=literal)
+    return judged(case, (onset,), below >= 5.0 and above <= 10.0, why, literal=literal)

@@ -25,7 +25,7 @@ PRINTED_DIFFERENCE = 0.024
 """What the paper says of its force against finite elements; its scale where it says "small"."""
 
 
-class Verdict(StrEnum):
+class Ruling(StrEnum):
     """The outcome of a test."""
 
     HOLDS = "holds"
@@ -34,7 +34,7 @@ class Verdict(StrEnum):
     UNKNOWN = "cannot be judged"
 
 
-class Kind(StrEnum):
+class Subject(StrEnum):
     """The subject of a test."""
 
     STATEMENT = "statement of the paper"
@@ -92,7 +92,7 @@ class Judgement:
 
     case: str
     numbers: tuple[Number, ...]
-    verdict: Verdict
+    verdict: Ruling
     why: str
 
 
@@ -117,15 +117,15 @@ class Statement:
     cases: tuple[Case, ...] | Callable[[Data], Iterable[Case]]
     studies: tuple[str, ...] = ()
     holds: str = ""
-    kind: Kind = Kind.STATEMENT
+    kind: Subject = Subject.STATEMENT
 
     def judge(self, data: Data) -> Iterator[Judgement]:
         """Yield one judgement per case: UNKNOWN, with the reason, where a run is missing."""
-        for words, *rest in self.cases(data) if callable(self.cases) else self.cases:
+        for case, *rest in self.cases(data) if callable(self.cases) else self.cases:
             try:
-                judgement = self.judge_case(words, data, *rest)
+                judgement = self.judge_case(case, data, *rest)
             except UnknownError as reason:
-                judgement = Judgement(words, (), Verdict.UNKNOWN, str(reason))
+                judgement = Judgement(case, (), Ruling.UNKNOWN, str(reason))
             yield judgement
 
 
@@ -148,8 +148,8 @@ def judged(
     otherwise: what is said where the statement does not stand, if not the same.
     """
     if not stands:
-        return Judgement(case, numbers, Verdict.FAILS, otherwise or why)
-    return Judgement(case, numbers, Verdict.HOLDS if literal else Verdict.READING, why)
+        return Judgement(case, numbers, Ruling.FAILS, otherwise or why)
+    return Judgement(case, numbers, Ruling.HOLDS if literal else Ruling.READING, why)
 
 
 def runs_of(data: Data, study: str) -> xr.Dataset:
@@ -172,8 +172,8 @@ def select_response(runs: xr.Dataset, response: str, **where: Any) -> xr.DataArr
     bits = chosen["status"].values & status_bits([response])
     gaps = (bits != 0) | ~np.isfinite(chosen[response].values)
     if gaps.any():
-        found = reasons(int(np.bitwise_or.reduce(np.ravel(bits)))) or ["no reason is recorded"]
-        raise UnknownError(f"{int(gaps.sum())} of {gaps.size} runs lack it: {'; '.join(found)}")
+        causes = reasons(int(np.bitwise_or.reduce(np.ravel(bits)))) or ["no reason is recorded"]
+        raise UnknownError(f"{int(gaps.sum())} of {gaps.size} runs lack it: {'; '.join(causes)}")
     return chosen[response]
 
 

@@ -45,10 +45,10 @@ def _solid_response(data: Data, response: str, velocity: float) -> Number:
     elements = _refined_elements(runs)
     spacings = ELEMENT_SIZE.spacings[elements](runs[elements].values.astype(float))
     finest_first = np.argsort(spacings)
-    found = values.values.astype(float)[finest_first]
-    width = float(numerical_uncertainty(found, spacings[finest_first])[0][0])
+    finest = values.values.astype(float)[finest_first]
+    width = float(numerical_uncertainty(finest, spacings[finest_first])[0][0])
     entry = (RESPONSES | WITNESS)[response]
-    return _bounded(Number(f"{entry.long_name} (3-D)", found[0], entry.units, width))
+    return _bounded(Number(f"{entry.long_name} (3-D)", finest[0], entry.units, width))
 
 
 def _solid_runs(data: Data, velocity: float) -> xr.Dataset:
@@ -67,8 +67,8 @@ def _refined_runs(data: Data) -> tuple[xr.Dataset, str]:
 
 
 def _refined_elements(runs: xr.Dataset) -> str:
-    if found := [name for name in ELEMENTS if name in runs.dims]:
-        return found[0]
+    if names := [name for name in ELEMENTS if name in runs.dims]:
+        return names[0]
     study = runs.attrs.get("study", "?")
     raise UnknownError(f"the study {study} does not vary {ELEMENTS[0]}: its error is unknown")
 
@@ -140,13 +140,13 @@ def _spelled(gap: Number) -> str:
 
 def _impulses(data: Data) -> tuple[Number, ...]:
     """Return the impulses of both models over the stored time, and their relative difference."""
-    found: list[Number] = []
-    for model, words in ((BEAM, "beam"), (SOLID, "3-D")):
+    impulses: list[Number] = []
+    for model, label in ((BEAM, "beam"), (SOLID, "3-D")):
         time, curves = _histories(data, "contact_force", model)
         finest, next_finer = (float(np.trapezoid(curve, time)) for curve in curves[:2])
         width = 3.0 * abs(finest - next_finer)
-        found.append(Number(f"impulse ({words})", finest, "N s", width))
-    return *found, found[0].relative_to(found[1], "difference, relative to the 3-D model")
+        impulses.append(Number(f"impulse ({label})", finest, "N s", width))
+    return *impulses, impulses[0].relative_to(impulses[1], "difference, relative to the 3-D model")
 
 
 @statement(
@@ -260,7 +260,7 @@ def _zone_extent(data: Data, variable: str, factor: float) -> Number:
         "line: readings of r along the struck surface, at any depth, in depth; and the radius "
         "√(R δ) of an elastic contact at the largest indentation, which is no plastic zone."
     ),
-    cases=(*((words, *found) for words, found in _ZONE.items()), ("the contact's radius", "", 1.0)),
+    cases=(*((place, *zone) for place, zone in _ZONE.items()), ("the contact's radius", "", 1.0)),
     studies=(FIRST_CONTACT, MESHES),
 )
 def plastic_zone_extent(case: str, data: Data, variable: str, factor: float) -> Judgement:
@@ -268,8 +268,8 @@ def plastic_zone_extent(case: str, data: Data, variable: str, factor: float) -> 
     reach = _zone_extent(data, variable, factor) if variable else _contact_radius(data, 1.0)
     gap = abs(reach.value - PRINTED_EXTENT)
     stands = gap <= reach.uncertainty
-    words = "within" if stands else "more than"
-    why = f"It differs by {1e3 * gap:.2f} mm, {words} the uncertainty."
+    margin = "within" if stands else "more than"
+    why = f"It differs by {1e3 * gap:.2f} mm, {margin} the uncertainty."
     return judged(case, (reach,), stands, why, literal=False)
 
 

@@ -12,8 +12,8 @@ from impactlab.paper.statements.statement import (
     Data,
     Judgement,
     Number,
+    Ruling,
     UnknownError,
-    Verdict,
     judged,
     response_curve,
     runs_of,
@@ -47,25 +47,25 @@ def _contact_laws(data: Data) -> Iterator[tuple[str, str]]:
 def duration_falls(case: str, data: Data, law: str) -> Judgement:
     """Judge the fall from each velocity to the next."""
     curve = response_curve(data, CONTACT_STUDY, "contact_duration", contact=law)
-    speeds, found = list(curve), list(curve.values())
-    falls = [faster.high < slower.low for slower, faster in pairwise(found)]
+    speeds, durations = list(curve), list(curve.values())
+    falls = [faster.high < slower.low for slower, faster in pairwise(durations)]
     count = [*falls, False].index(False)
     # at the lowest velocity, where the duration stops falling, and at the highest
     numbers = tuple(
-        replace(found[at], name=f"contact duration at {speeds[at]:g} m/s")
-        for at in dict.fromkeys((0, count, len(falls)))
+        replace(durations[i], name=f"contact duration at {speeds[i]:g} m/s")
+        for i in dict.fromkeys((0, count, len(falls)))
     )
     case = f"{case}, {speeds[0]:g} to {speeds[-1]:g} m/s"
     if count == len(falls):
         why = f"It falls at every one of the {count} steps."
-        return Judgement(case, numbers, Verdict.HOLDS, why)
-    last, after = found[count : count + 2]
+        return Judgement(case, numbers, Ruling.HOLDS, why)
+    last, after = durations[count : count + 2]
     change = "rises" if after.low > last.high else "does not fall by more than its uncertainty"
     why = f"It falls up to {speeds[count]:g} m/s and {change} from there to "
     why += f"{speeds[count + 1]:g} m/s"
     merges = after.value > 1.25 * last.value  # a second push with the first
     why += ": the sphere no longer lifts off between two pushes." if merges else "."
-    outcome = Verdict.READING if count else Verdict.FAILS
+    outcome = Ruling.READING if count else Ruling.FAILS
     return Judgement(case, numbers, outcome, why)
 
 
@@ -89,10 +89,12 @@ def above_spring_mass(case: str, data: Data, law: str) -> Judgement:
     higher: list[str] = []
     lower: list[str] = []
     ratios = []
-    for (velocity, one), other in zip(ours.items(), theirs.values(), strict=True):
-        (higher if one.low > other.high else lower).append(f"{velocity:g}")
-        ratio = one.value / other.value
-        width = ratio * (one.uncertainty / one.value + other.uncertainty / other.value)
+    for (velocity, duration), reference in zip(ours.items(), theirs.values(), strict=True):
+        (higher if duration.low > reference.high else lower).append(f"{velocity:g}")
+        ratio = duration.value / reference.value
+        width = ratio * (
+            duration.uncertainty / duration.value + reference.uncertainty / reference.value
+        )
         ratios.append((ratio, width))
     first = itemgetter(0)
     ends = {"smallest": min(ratios, key=first), "largest": max(ratios, key=first)}
@@ -101,11 +103,11 @@ def above_spring_mass(case: str, data: Data, law: str) -> Judgement:
         for name, (ratio, width) in ends.items()
     )
     if not lower:
-        return Judgement(case, numbers, Verdict.HOLDS, "It is above at every velocity.")
+        return Judgement(case, numbers, Ruling.HOLDS, "It is above at every velocity.")
     if not higher:
-        return Judgement(case, numbers, Verdict.FAILS, "It is above at no velocity.")
+        return Judgement(case, numbers, Ruling.FAILS, "It is above at no velocity.")
     why = f"Above at {', '.join(higher)} m/s, not at {', '.join(lower)}."
-    return Judgement(case, numbers, Verdict.READING, why)
+    return Judgement(case, numbers, Ruling.READING, why)
 
 
 @statement(
@@ -192,4 +194,4 @@ def duration_measured(case: str, data: Data) -> Judgement:
         "The measured points of figure 8, read off with their scatter, would decide; this project "
         "has the text alone."
     )
-    return Judgement(case, numbers, Verdict.UNKNOWN, why)
+    return Judgement(case, numbers, Ruling.UNKNOWN, why)

@@ -122,12 +122,12 @@ def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
     lower = a * EI * q**4 / (mu * inertia) / upper
     small = coupling / (2.0 * root * (root + half))
     squares, shares = np.concatenate((lower, upper)), np.concatenate((1.0 - small, small))
-    both = np.tile(q, 2)
+    wave_numbers = np.tile(q, 2)
     flexibilities = 2.0 * shares / (mu * beam.span * squares)
-    curvatures = mu * squares / a - both**2
+    curvatures = mu * squares / a - wave_numbers**2
     deflection, curvature = _bending_statics(beam)
     statics = deflection + 0.25 * beam.span * (1.0 / a), curvature
-    return BeamModes(beam, both, np.sqrt(squares), flexibilities, curvatures, statics)
+    return BeamModes(beam, wave_numbers, np.sqrt(squares), flexibilities, curvatures, statics)
 
 
 def strip_odd_modes(beam: Beam, count: int, inertia: float) -> BeamModes:
@@ -166,7 +166,7 @@ def strip_odd_modes(beam: Beam, count: int, inertia: float) -> BeamModes:
     rest = np.linalg.solve(springs(many), np.broadcast_to(middle[:, None], (many.size, 3, 1)))
     statics = 2.0 / beam.span * np.array([np.sum(rest[:, :, 0] @ middle), -many @ rest[:, 1, 0]])
     spectra = np.sqrt(squares), flexibilities, curvatures
-    omega, flexible, bent = (each.T.ravel() for each in spectra)
+    omega, flexible, bent = (spectrum.T.ravel() for spectrum in spectra)
     still = float(statics[0]), float(statics[1])
     return BeamModes(beam, np.tile(q, 3), omega, flexible, bent, still)
 

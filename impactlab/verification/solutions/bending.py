@@ -84,17 +84,17 @@ def path_stresses(material: Material, strains: ArrayLike) -> Floats:
     stresses, stress = [], np.zeros(path.shape[1:])
     limit = (1.0 - share) * material.yield_stress
     farthest = np.full(path.shape[1:], material.yield_stress)
-    for before, here in pairwise(np.concatenate([np.zeros_like(path[:1]), path])):
+    for before, strain in pairwise(np.concatenate([np.zeros_like(path[:1]), path])):
         if isotropic:
-            elastic = stress + E * (here - before)
+            elastic = stress + E * (strain - before)
             beyond = np.maximum(np.abs(elastic) - farthest, 0.0)
             stress = elastic - np.sign(elastic) * beyond * E / (E + isotropic)
             farthest = np.maximum(farthest, np.abs(stress))
         else:  # the perfectly plastic fibre beside the spring
-            stress = np.clip(stress + (1.0 - share) * E * (here - before), -limit, limit)
+            stress = np.clip(stress + (1.0 - share) * E * (strain - before), -limit, limit)
         stresses.append(stress)
-    found = np.array(stresses)
-    return found if isotropic else np.asarray(share * E * path + found)
+    fibre = np.array(stresses)
+    return fibre if isotropic else np.asarray(share * E * path + fibre)
 
 
 def path_moments(beam: Beam, curvatures: Floats, positions: Floats, weights: Floats) -> Floats:

@@ -126,8 +126,8 @@ def _contact(law: LawOnHalfSpace, delta: float, deepest: float) -> tuple[float, 
         return law.unloading_force(d, deepest) if deepest > 0.0 else 0.0
 
     apart = 1e-7 * max(abs(delta), 1e-9)
-    here = force(delta)
-    return here, (force(delta + apart) - here) / apart
+    value = force(delta)
+    return value, (force(delta + apart) - value) / apart
 
 
 def _elements(beam: Beam, elements: int) -> tuple[Floats, Floats, Floats]:
@@ -148,9 +148,9 @@ def _elements(beam: Beam, elements: int) -> tuple[Floats, Floats, Floats]:
         shapes = (12 * s - 6) / h**2, (6 * s - 4) / h, (6 - 12 * s) / h**2, (6 * s - 2) / h
         bend[two, dofs] = np.column_stack(shapes)
         lengths[two] = 0.5 * h * weights
-        whole = [[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]
+        coefficients = [[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]
         scale = np.array([1.0, h, 1.0, h])
-        mass[dofs, dofs] += beam.mass_per_length * h / 420 * np.outer(scale, scale) * whole
+        mass[dofs, dofs] += beam.mass_per_length * h / 420 * np.outer(scale, scale) * coefficients
     # Without the support's deflection, and the sphere in the place of mid-span's slope.
     bend[:, -1], mass[-1], mass[:, -1] = 0.0, 0.0, 0.0
     return bend[:, 1:], lengths, mass[1:, 1:]

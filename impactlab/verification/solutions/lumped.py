@@ -101,7 +101,7 @@ def solve(
     turn.direction = -1.0  # type: ignore[attr-defined]
     args, tolerance = hertz.arguments(impact), 1e-12
     depth = hertz.maximum_indentation(*args)
-    found = solve_ivp(
+    solution = solve_ivp(
         motion,
         (0.0, duration),
         [0.0, 0.0, v0, 0.0],
@@ -112,14 +112,14 @@ def solve(
         events=(touch_and_parting, turn),
         dense_output=True,
     )
-    touches, turns = found.t_events
+    touches, turns = solution.t_events
     later = touches[touches > 0.0]  # the first touch is at 0
     ends = np.concatenate(([0.0], later, [np.nan] * ((later.size + 1) % 2)))
-    depths = [state[0] - state[1] for state in (*found.y_events[1], found.y[:, -1])]
+    depths = [state[0] - state[1] for state in (*solution.y_events[1], solution.y[:, -1])]
     deepest = int(np.argmax(depths))
     contacts = np.asarray(ends.reshape(-1, 2))
     peak, time = float(_force(depths[deepest], k)), float([*turns, duration][deepest])
-    return LumpedSolution(impact, duration, contacts, peak, time, found.sol)
+    return LumpedSolution(impact, duration, contacts, peak, time, solution.sol)
 
 
 def _force(delta: Any, k: float) -> Any:

@@ -166,11 +166,11 @@ def _march(
     v[0, 0] = impact.velocity
     for i in range(steps):
         free = position[0] * y[i] + position[1] * v[i] + position[2] * force[i]
-        kept = rate[0] * y[i] + rate[1] * v[i] + rate[2] * force[i]
+        free_rate = rate[0] * y[i] + rate[1] * v[i] + rate[2] * force[i]
         free += fall
         depth[i + 1], force[i + 1] = _contact(float(approach @ free), flexibility, k)
         y[i + 1] = free + position[3] * force[i + 1]
-        v[i + 1] = kept + gain + rate[3] * force[i + 1]
+        v[i + 1] = free_rate + gain + rate[3] * force[i + 1]
     return force, depth, y, v
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from impactlab.paper.statements import misprints
-from impactlab.paper.statements.statement import Statement, Verdict
+from impactlab.paper.statements.statement import Ruling, Statement
 
-HOLDS, _, FAILS, _ = Verdict
+HOLDS, _, FAILS, _ = Ruling
 
 
 @pytest.mark.parametrize(
@@ -24,7 +24,7 @@ HOLDS, _, FAILS, _ = Verdict
         (misprints.restitution, [FAILS]),
     ],
 )
-def test_verdicts(statement: Statement, expected: list[Verdict]) -> None:
+def test_verdicts(statement: Statement, expected: list[Ruling]) -> None:
     assert [entry.verdict for entry in statement.judge({})] == expected
 
 

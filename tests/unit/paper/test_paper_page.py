@@ -11,7 +11,7 @@ import pytest
 
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.paper.page import _summary, write_paper
-from impactlab.paper.statements.statement import Judgement, Verdict
+from impactlab.paper.statements.statement import Judgement, Ruling
 
 Study = Any
 
@@ -49,12 +49,12 @@ def test_page_tables_and_figures(velocity_study: Study, tmp_path: Path) -> None:
 
 def test_a_statement_is_summed_up_from_its_cases() -> None:
     verdicts = {
-        (Verdict.HOLDS, Verdict.READING): "holds",
-        (Verdict.READING, Verdict.HOLDS): "holds under the stated reading",
-        (Verdict.READING, Verdict.UNKNOWN): "holds under the stated reading",
-        (Verdict.HOLDS, Verdict.FAILS): "depends on the reading",
-        (Verdict.UNKNOWN, Verdict.FAILS): "does not hold",
-        (Verdict.UNKNOWN, Verdict.UNKNOWN): "cannot be judged",
+        (Ruling.HOLDS, Ruling.READING): "holds",
+        (Ruling.READING, Ruling.HOLDS): "holds under the stated reading",
+        (Ruling.READING, Ruling.UNKNOWN): "holds under the stated reading",
+        (Ruling.HOLDS, Ruling.FAILS): "depends on the reading",
+        (Ruling.UNKNOWN, Ruling.FAILS): "does not hold",
+        (Ruling.UNKNOWN, Ruling.UNKNOWN): "cannot be judged",
     }
     for found, expected in verdicts.items():
         assert _summary([Judgement("", (), each, "") for each in found]) == expected

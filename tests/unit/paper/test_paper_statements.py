@@ -18,17 +18,17 @@ from impactlab.paper.statements import (
     plastic_strain,
     velocity,
 )
-from impactlab.paper.statements.statement import Kind, Verdict
+from impactlab.paper.statements.statement import Ruling, Subject
 from impactlab.solver import outputs
 from impactlab.verification.solutions.stronge import stronge_impact
 
 Build = Callable[..., xr.Dataset]
-HOLDS, READING, FAILS, UNKNOWN = Verdict
+HOLDS, READING, FAILS, UNKNOWN = Ruling
 GRIDS = [301, 601, 1201]
 SPEEDS = [0.99, 5.0, 6.0, 7.0, 10.0, 15.0, 20.0]
 
 
-def verdicts(judgements: Any) -> list[Verdict]:
+def verdicts(judgements: Any) -> list[Ruling]:
     return [entry.verdict for entry in judgements]
 
 
@@ -340,7 +340,7 @@ def test_without_studies_only_closed_forms_are_judged() -> None:
             assert set(verdicts(found)) == {UNKNOWN}, statement.name
             assert all("has not been solved" in judgement.why for judgement in found)
             continue
-        assert statement.kind is not Kind.STATEMENT, "only misprints are judged by closed forms"
+        assert statement.kind is not Subject.STATEMENT, "only misprints are judged by closed forms"
         assert UNKNOWN not in verdicts(found), statement.name
 
 

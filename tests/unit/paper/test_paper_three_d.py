@@ -10,9 +10,9 @@ import pytest
 import xarray as xr
 
 from impactlab.paper.statements import three_d
-from impactlab.paper.statements.statement import Verdict
+from impactlab.paper.statements.statement import Ruling
 
-HOLDS, READING, FAILS, UNKNOWN = Verdict
+HOLDS, READING, FAILS, UNKNOWN = Ruling
 AXES = {
     "velocity": [0.99, 5.0],
     "beam_model": ["euler_bernoulli", "solid"],
@@ -74,7 +74,7 @@ def mesh_study(data: dict[str, xr.Dataset]) -> xr.Dataset:
     return runs.sel(velocity=0.99, beam_model=["solid"])
 
 
-def verdicts(judgements: Any) -> list[Verdict]:
+def verdicts(judgements: Any) -> list[Ruling]:
     return [entry.verdict for entry in judgements]
 
 
