@@ -34,8 +34,8 @@ def responses(runs: xr.Dataset) -> list[str]:
 
     Those that the table does not know, the responses of another solver, come last.
     """
-    others = [name for name in names(runs, "responses") if name not in RESPONSES]
-    return [name for name in [*RESPONSES, *others] if name in runs.data_vars]
+    unlisted = [name for name in names(runs, "responses") if name not in RESPONSES]
+    return [name for name in [*RESPONSES, *unlisted] if name in runs.data_vars]
 
 
 def known(analysis: xr.Dataset, response: str) -> bool:
@@ -45,9 +45,9 @@ def known(analysis: xr.Dataset, response: str) -> bool:
 
 def design_dims(runs: xr.Dataset, dims: Iterable[object] | None = None) -> list[str]:
     """Return the dimensions that number the runs (of `dims`, if given), in their order."""
-    own = names(runs, "varied")  # functions may have a parameter x
+    parameters = names(runs, "varied")  # functions may have a parameter x
     every = runs.dims if dims is None else dims
-    return [str(dim) for dim in every if dim not in SAMPLED or dim in own]
+    return [str(dim) for dim in every if dim not in SAMPLED or dim in parameters]
 
 
 def is_sample(runs: xr.Dataset) -> bool:
@@ -86,16 +86,16 @@ def means_by_word(
     In SI units, NaN for a word without an answer. Of a Sobol sample only base samples count as
     independent draws.
     """
-    values, found = usable(runs, response).values, {}
+    values, means = usable(runs, response).values, {}
     confidence = float(runs.attrs.get("confidence", 0.95))
     share = float(runs.attrs.get("base_samples", values.size)) / values.size
     for word in np.atleast_1d(runs[parameter].attrs["values"]).tolist():
-        given = values[(runs[parameter].values == word) & np.isfinite(values)]
+        answers = values[(runs[parameter].values == word) & np.isfinite(values)]
         half = np.nan
-        if (number := share * given.size) > 1:
-            half = NormalDist().inv_cdf((1 + confidence) / 2) * given.std() / np.sqrt(number)
-        found[str(word)] = float(given.mean()) if given.size else np.nan, float(half)
-    return found
+        if (number := share * answers.size) > 1:
+            half = NormalDist().inv_cdf((1 + confidence) / 2) * answers.std() / np.sqrt(number)
+        means[str(word)] = float(answers.mean()) if answers.size else np.nan, float(half)
+    return means
 
 
 def absent(runs: xr.Dataset, name: str) -> xr.DataArray:
@@ -119,10 +119,10 @@ def causes(runs: xr.Dataset, mask: xr.DataArray) -> Counter[str]:
     """Return the number of the marked runs per reason; mask: bool on the design dimensions."""
     status, chosen = xr.broadcast(runs.get("status", xr.zeros_like(mask, dtype=int)), mask)
     bits, counts = np.unique(status.values[chosen.values], return_counts=True)
-    found: Counter[str] = Counter()
+    tally: Counter[str] = Counter()
     for bit, number in zip(bits.tolist(), counts.tolist(), strict=True):
-        found["; ".join(reasons(int(bit))) or UNEXPLAINED] += number
-    return found
+        tally["; ".join(reasons(int(bit))) or UNEXPLAINED] += number
+    return tally
 
 
 def missing_note(runs: xr.Dataset, variables: Sequence[str]) -> str:
@@ -136,10 +136,10 @@ def missing_words(runs: xr.Dataset, mask: xr.DataArray, where: str) -> str:
     """Return a sentence on the marked runs and the reasons; "" without any."""
     if not bool(mask.any()):
         return ""
-    found = [f"{number} × “{why}”" for why, number in causes(runs, mask).items()]
+    counts = [f"{number} × “{why}”" for why, number in causes(runs, mask).items()]
     total = int(mask.sum())
     verb = "is" if total == 1 else "are"
-    return f"{total} of {count(runs)} runs {verb} missing {where}: {labels.listing(found)}."
+    return f"{total} of {count(runs)} runs {verb} missing {where}: {labels.listing(counts)}."
 
 
 @dataclass(frozen=True)

@@ -20,29 +20,32 @@ _PRIOR = "0.75"
 
 
 @style.paper
-def calibration(found: xr.Dataset) -> Figure:
+def calibration(results: xr.Dataset) -> Figure:
     """Draw a panel per parameter, one of all predictions, and one of the contact laws' weights."""
-    names = [str(name) for name in found["parameter"].values]
-    laws = found.sizes["model"] > 1
+    names = [str(name) for name in results["parameter"].values]
+    laws = results.sizes["model"] > 1
     figure, axes = style.panels(len(names) + 1 + laws, columns=3, height=50)
     for ax, name in zip(axes, names, strict=False):
-        _parameter(ax, found.sel(parameter=name))
-    _predictions(axes[len(names)], found)
+        _parameter(ax, results.sel(parameter=name))
+    _predictions(axes[len(names)], results)
     if laws:
-        order = np.argsort(found["model_weight"].values, kind="stable")
+        order = np.argsort(results["model_weight"].values, kind="stable")
         rows = np.arange(order.size)
-        axes[-1].barh(rows, found["model_weight"].values[order], color=style.COLOURS[0])
-        listed = [CONTACT_LAWS[name].short for name in found["model"].values[order]]
+        axes[-1].barh(rows, results["model_weight"].values[order], color=style.COLOURS[0])
+        listed = [CONTACT_LAWS[name].short for name in results["model"].values[order]]
         axes[-1].set_yticks(rows, listed)
         axes[-1].set(xlabel="weight (–)", xlim=(0.0, 1.0), ylabel="contact law")
     return style.finish(figure)
 
 
-def _parameter(ax: Axes, one: xr.Dataset) -> None:
+def _parameter(ax: Axes, marginal: xr.Dataset) -> None:
     """Draw the posterior's histogram over the density of the prior."""
-    name, units = str(one["parameter"].item()), {"units": str(one["parameter_units"].item())}
-    unit = labels.display(xr.DataArray(one["prior_draws"].values, name=name, attrs=units))
-    prior, posterior = unit(one["prior_draws"].values), unit(one["draws"].values)
+    name, units = (
+        str(marginal["parameter"].item()),
+        {"units": str(marginal["parameter_units"].item())},
+    )
+    unit = labels.display(xr.DataArray(marginal["prior_draws"].values, name=name, attrs=units))
+    prior, posterior = unit(marginal["prior_draws"].values), unit(marginal["draws"].values)
     bins: Any = np.linspace(prior.min(), prior.max(), _BINS + 1).tolist()
     ax.hist(prior, bins=bins, density=True, label="before the data", color=_PRIOR)
     look: Any = {"histtype": "step", "linewidth": 1.5, "color": style.COLOURS[0]}
@@ -50,37 +53,39 @@ def _parameter(ax: Axes, one: xr.Dataset) -> None:
     ax.set(xlabel=labels.wrapped_axis(labels.parameter(name), unit.symbol), yticks=[])
     ax.set_ylabel("probability density")
     scales.linear(ax, "x", 4)
-    single = np.isfinite(one["mode_weight"]).sum() == 1
-    if single and float(one["spread_ratio"]) >= SILENT:
+    single = np.isfinite(marginal["mode_weight"]).sum() == 1
+    if single and float(marginal["spread_ratio"]) >= SILENT:
         corner: Any = {"xycoords": "axes fraction"}
         style.note(ax, "the data cannot tell", (0.0, 1.0), (0, 3), warning=True, **corner)
 
 
-def _predictions(ax: Axes, found: xr.Dataset) -> None:
+def _predictions(ax: Axes, results: xr.Dataset) -> None:
     """Draw each measurement and its prediction, in standard uncertainties from the measurement."""
-    scale = COVERAGE / found["measured_uncertainty"].values
-    rows = np.arange(found.sizes["measurement"], dtype=float)
-    off = (found["predicted_mean"].values - found["measured"].values) * scale
-    parts = [found[key].values for key in ("predicted_deviation", "surrogate_error")]
+    scale = COVERAGE / results["measured_uncertainty"].values
+    rows = np.arange(results.sizes["measurement"], dtype=float)
+    off = (results["predicted_mean"].values - results["measured"].values) * scale
+    parts = [results[key].values for key in ("predicted_deviation", "surrogate_error")]
     looks: Any = {"linestyle": "", "elinewidth": 1.0, "capsize": 2.0, "markersize": 3.0}
-    for at, centre, bar, label, colour, marker in (
-        (rows + 0.12, 0 * rows, found["measured_uncertainty"].values, "measured", "black", "D"),
+    for y, centre, bar, label, colour, marker in (
+        (rows + 0.12, 0 * rows, results["measured_uncertainty"].values, "measured", "black", "D"),
         (rows - 0.12, off, COVERAGE * np.hypot(*parts), "predicted", style.COLOURS[1], "o"),
     ):
         looks |= {"label": label, "color": colour, "marker": marker}
-        ax.errorbar(centre, at, xerr=bar * scale, **looks)
-    ax.set_yticks(rows, _words(found), fontsize=6)
+        ax.errorbar(centre, y, xerr=bar * scale, **looks)
+    ax.set_yticks(rows, _words(results), fontsize=6)
     ax.set_ylim(rows.size - 0.5, -0.5)
     ax.set(xlabel="from the measured value (standard uncertainties)", ylabel="measurement")
 
 
-def _words(found: xr.Dataset) -> list[str]:
+def _words(results: xr.Dataset) -> list[str]:
     """Return the measurements in words, with the conditions in which they differ."""
-    stated = [json.loads(text) for text in found["measured_conditions"].values.tolist()]
-    keys = dict.fromkeys(key for each in stated for key in each)
-    differ = [key for key in keys if len({each.get(key) for each in stated}) > 1]
-    told = []
-    for name, each in zip(found["measured_quantity"].values.tolist(), stated, strict=True):
-        values = [f"{key.replace('_', ' ')} {each[key]}" for key in differ if key in each]
-        told.append(", ".join([labels.response(name), *values]))
-    return told
+    stated = [json.loads(text) for text in results["measured_conditions"].values.tolist()]
+    keys = dict.fromkeys(key for conditions in stated for key in conditions)
+    differ = [key for key in keys if len({conditions.get(key) for conditions in stated}) > 1]
+    texts = []
+    for name, conditions in zip(results["measured_quantity"].values.tolist(), stated, strict=True):
+        values = [
+            f"{key.replace('_', ' ')} {conditions[key]}" for key in differ if key in conditions
+        ]
+        texts.append(", ".join([labels.response(name), *values]))
+    return texts

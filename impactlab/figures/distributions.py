@@ -33,7 +33,8 @@ _EVEN = ("sobol", "delta", "pawn", "regression")
     lambda runs, analysis: is_sample(runs) and bool(responses(runs)),
     lambda runs, analysis: (
         "Line: median; shaded: from the 5th to the 95th percentile of the independent draws."
-        * ("quantile" in analysis),
+        if "quantile" in analysis
+        else "",
         *_jumps(runs),
         access.missing_note(runs, responses(runs)),
     ),
@@ -46,8 +47,8 @@ def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         ax.set_title(label, loc="left")
         percentiles = None
         if analysed(runs, analysis, "quantile") and access.known(analysis, name):
-            found = analysis["quantile"].sel(response=name, probability=[0.05, 0.5, 0.95])
-            percentiles = display(usable(runs, name))(found)
+            quantiles = analysis["quantile"].sel(response=name, probability=[0.05, 0.5, 0.95])
+            percentiles = display(usable(runs, name))(quantiles)
         _distribution(ax, values.values[np.isfinite(values.values)], percentiles)
     return style.finish(figure, y="Number of runs (–)")
 
@@ -98,8 +99,9 @@ def _jumps(runs: xr.Dataset) -> list[str]:
 
 def spread_evenly(runs: xr.Dataset) -> str:
     """Return the clause on intervals of draws that are no random ones; "" for others."""
-    even = runs.attrs.get("method") in _EVEN
-    return ", which is on the safe side, for the draws spread more evenly than random ones" * even
+    if runs.attrs.get("method") not in _EVEN:
+        return ""
+    return ", which is on the safe side, for the draws spread more evenly than random ones"
 
 
 def limited(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
@@ -124,7 +126,7 @@ def _cumulative_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, 
 )
 def cumulative_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response: the curve, its band, and the limit if the study has one."""
-    names, given = analysed(runs, analysis), limits(runs)
+    names, thresholds = analysed(runs, analysis), limits(runs)
     figure, axes = responses_grid.panels(names, height=40)
     level = float(analysis.attrs.get("confidence", 0.95))
     for name, ax in axes.items():
@@ -134,12 +136,12 @@ def cumulative_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         if not values.size:
             responses_grid.empty(ax, "no finite values")
             continue
-        some = scales.spread(values.size, _MOST)
-        x = unit(values[some])
-        ax.fill_between(x, low[some], high[some], step="post", color="0.87", label="band")
-        ax.step(x, share[some], where="post", color=style.COLOURS[0], label="share of the draws")
-        if name in given:
-            limit = float(unit(given[name]))
+        steps = scales.spread(values.size, _MOST)
+        x = unit(values[steps])
+        ax.fill_between(x, low[steps], high[steps], step="post", color="0.87", label="band")
+        ax.step(x, share[steps], where="post", color=style.COLOURS[0], label="share of the draws")
+        if name in thresholds:
+            limit = float(unit(thresholds[name]))
             ax.axvline(limit, label="_guide: limit", linestyle="--", **style.GUIDE)
         ax.set_ylim(0.0, 1.0)
         scales.linear(ax, "xy", 4)
@@ -150,15 +152,15 @@ def exceedance(response: str) -> Figure:
     """Return the figure of each parameter in runs above the limit of a response, and in others."""
 
     def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
-        found = analysis.sel(response=response)
-        above, total, missing = (int(np.nan_to_num(found[key])) for key in _COUNTS)
-        others = total - missing - above
+        statistics = analysis.sel(response=response)
+        above, total, missing = (int(np.nan_to_num(statistics[key])) for key in _COUNTS)
+        below = total - missing - above
         unit = display(runs[response])
-        limit = f"{labels.number(float(unit(found['limit'])))} {unit.symbol}".strip()
+        limit = f"{labels.number(float(unit(statistics['limit'])))} {unit.symbol}".strip()
         return (
             "Cumulative distribution of each parameter, of words the share of each, in the "
             f"{above:,} draws with a {labels.response(response)} above {limit}, and in the other "
-            f"{others:,}.",
+            f"{below:,}.",
             "D: largest distance of the two (Kolmogorov and Smirnov); p: probability of such a "
             "distance if the parameter does not matter. Pale: not significant at the level of the "
             "intervals, shared among the parameters (Bonferroni).",
@@ -179,17 +181,17 @@ def exceedance(response: str) -> Figure:
         """Draw a panel per parameter."""
         sample = Sample.of(runs)
         outputs, rows = drawn_outputs(runs, response), draws(sample)
-        found, least = analysis.sel(response=response), significance(analysis)
+        statistics, least = analysis.sel(response=response), significance(analysis)
 
         def draw(ax: Axes, column: xr.DataArray) -> None:
-            one = found.sel(varied_parameter=str(column.name))
-            distance, p = (float(one[f"exceedance_{key}"]) for key in ("distance", "p_value"))
+            test = statistics.sel(varied_parameter=str(column.name))
+            distance, p = (float(test[f"exceedance_{key}"]) for key in ("distance", "p_value"))
             _two_curves(ax, column[rows], outputs, limits(runs)[response], p < least)
             if np.isfinite(distance):
                 small = "p < 0.001" if p < 0.001 else f"p = {labels.number(p, 2)}"
-                text, at = f"D = {distance:.2f}\n{small}", (0.04, 0.96)
+                text, place = f"D = {distance:.2f}\n{small}", (0.04, 0.96)
                 corner = {"xycoords": "axes fraction", "va": "top"}
-                style.note(ax, text, at, (0, 0), warning=False, **corner)
+                style.note(ax, text, place, (0, 0), warning=False, **corner)
 
         return along_parameters(sample.runs, "Share of the draws (–)", 40, draw)
 
@@ -203,20 +205,20 @@ def _two_curves(
     ax: Axes, column: xr.DataArray, outputs: Floats, limit: float, matters: bool
 ) -> None:
     """Draw the cumulative distributions of a parameter (draws,) above the limit and below it."""
-    x, above, others = places(column), outputs > limit, outputs <= limit
-    if not above.any() or not others.any():
-        responses_grid.empty(ax, "all draws on one side" if (above | others).any() else "no answer")
+    x, above, below = places(column), outputs > limit, outputs <= limit
+    if not above.any() or not below.any():
+        responses_grid.empty(ax, "all draws on one side" if (above | below).any() else "no answer")
         return
-    kinds = {"above the limit": (above, style.COLOURS[1]), "others": (others, style.COLOURS[0])}
+    kinds = {"above the limit": (above, style.COLOURS[1]), "others": (below, style.COLOURS[0])}
     for label, (which, colour) in kinds.items():
         if labels.words(column):  # whose order has no meaning
             values, counts = np.unique(x[which], return_counts=True)
             (line,) = ax.plot(values, counts / which.sum(), "D", color=colour, label=label)
         else:
             ordered = np.sort(x[which])
-            some = np.array(scales.spread(ordered.size, _MOST))
-            share = (some + 1) / ordered.size
-            (line,) = ax.step(ordered[some], share, where="post", color=colour, label=label)
+            steps = np.array(scales.spread(ordered.size, _MOST))
+            share = (steps + 1) / ordered.size
+            (line,) = ax.step(ordered[steps], share, where="post", color=colour, label=label)
         line.set_alpha(None if matters else 0.4)
     ax.set_ylim(0.0, 1.0)
     ticks(ax, "x", column)

@@ -31,7 +31,7 @@ Drawing = tuple[record.Figure, tuple[xr.Dataset, xr.Dataset]]
 
 def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]:
     """Draw each figure of the catalogue that applies to a study of runs; see `draw`."""
-    drawings = [(each, (runs, analysis)) for each in applicable(runs, analysis).values()]
+    drawings = [(figure, (runs, analysis)) for figure in applicable(runs, analysis).values()]
     return draw(drawings, folder, str(runs.attrs.get("study")), made_from=analysis)
 
 
@@ -40,15 +40,15 @@ def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:
     outcomes = gravest_first(unpacked(stored))
 
     def figure(name: str, title: str, plot: Any, caption: Any, shown: Any) -> Drawing:
-        drawer, words = (lambda *_: plot(shown)), (lambda *_: caption(shown))
-        return record.Figure(name, title, lambda *_: True, drawer, words), (stored, stored)
+        drawer, writer = (lambda *_: plot(shown)), (lambda *_: caption(shown))
+        return record.Figure(name, title, lambda *_: True, drawer, writer), (stored, stored)
 
     overview = findings.plot_overview, findings.overview_caption
     drawings = [figure(OVERVIEW, "All comparisons", *overview, outcomes)]
     drawings += [
-        figure(each.name, each.title, findings.plot_curves, findings.curves_caption, each)
-        for each in outcomes
-        if any(panel.curves for panel in each.finding.panels)
+        figure(outcome.name, outcome.title, findings.plot_curves, findings.curves_caption, outcome)
+        for outcome in outcomes
+        if any(panel.curves for panel in outcome.finding.panels)
     ]
     return draw(drawings, folder, study=str(stored.attrs.get("study")), made_from=stored)
 
@@ -71,22 +71,22 @@ def draw(
         before.update(record.listed(folder))
     written: list[Path] = []
     captions: dict[str, dict[str, str]] = {}
-    for each, pair in drawings:
+    for entry, pair in drawings:
         try:
-            figure = each.plot(*pair)
+            figure = entry.plot(*pair)
             source = f"study {pair[0].attrs.get('study', study)}"
             if digest := pair[0].attrs.get("study_sha256"):
                 source += f", SHA-256 of its file: {digest}"
-            written += save(figure, folder, each.name, {"Title": each.title, "Source": source})
-            written += data.save(figure, folder, each.name)
-            captions[each.name] = {
-                "title": each.title,
-                "caption": each.caption(*pair),
+            written += save(figure, folder, entry.name, {"Title": entry.title, "Source": source})
+            written += data.save(figure, folder, entry.name)
+            captions[entry.name] = {
+                "title": entry.title,
+                "caption": entry.caption(*pair),
                 "alt": data.alt(figure),
                 "made_from": identity(made_from),
             }
         except Exception as error:
-            error.add_note(f"while drawing the figure {each.name} of study {study}")
+            error.add_note(f"while drawing the figure {entry.name} of study {study}")
             raise
     with replaced(folder / record.CAPTIONS) as path:
         path.write_text(json.dumps(captions, indent=2, ensure_ascii=False) + "\n", "utf-8")

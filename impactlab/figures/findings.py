@@ -128,22 +128,22 @@ def _looks(panel: Panel) -> dict[str, dict[str, Any]]:
     )
     count, broken = len(style.COLOURS), style.LINES[1:]
     looks: dict[str, dict[str, Any]] = {}
-    for at, label in enumerate(ours):
+    for number, label in enumerate(ours):
         looks[label] = {
-            "color": style.COLOURS[at % count],
-            "linestyle": style.LINES[at // count % len(style.LINES)],
+            "color": style.COLOURS[number % count],
+            "linestyle": style.LINES[number // count % len(style.LINES)],
             "linewidth": 1.6,
-            "zorder": 3.0 - 0.01 * at,
+            "zorder": 3.0 - 0.01 * number,
             # one further each time round, so that no colour has its marker twice
-            "marker": style.MARKERS[(at + at // count) % len(style.MARKERS)],
+            "marker": style.MARKERS[(number + number // count) % len(style.MARKERS)],
         }
-    for at, label in enumerate(independent):
+    for number, label in enumerate(independent):
         looks[label] = {
             "color": "black",
-            "linestyle": broken[at % len(broken)],
+            "linestyle": broken[number % len(broken)],
             "linewidth": 0.9,
             "zorder": 4.0,
-            "marker": style.MARKERS[at % len(style.MARKERS)],
+            "marker": style.MARKERS[number % len(style.MARKERS)],
             "markerfacecolor": "none",
             "markersize": 6.5,
             "markeredgewidth": 0.8,
@@ -151,9 +151,9 @@ def _looks(panel: Panel) -> dict[str, dict[str, Any]]:
     return looks
 
 
-def _label(curve: Curve, others: Sequence[Curve]) -> str:
+def _label(curve: Curve, curves: Sequence[Curve]) -> str:
     """Return the curve's label, changed where the solver's has the same."""
-    same = any(curve.label == other.label and not other.independent for other in others)
+    same = any(curve.label == other.label and not other.independent for other in curves)
     return f"{curve.label}, independent" if curve.independent and same else curve.label
 
 
@@ -170,8 +170,8 @@ def _draw_panel(ax: Axes, panel: Panel, looks: dict[str, dict[str, Any]]) -> Non
         if np.isfinite(x + y).any():
             ax.plot(x, y, label=label, **(looks[label] | _points(curve, panel.curves)))
     if not ax.lines:
-        words = "no finite values above zero" if panel.log else "no finite values"
-        responses_grid.empty(ax, words)
+        text = "no finite values above zero" if panel.log else "no finite values"
+        responses_grid.empty(ax, text)
     elif panel.log:
         scales.logarithmic(ax, "x", scales.drawn(ax, "x"))
         scales.logarithmic(ax, "y", scales.drawn(ax, "y"))
@@ -179,11 +179,11 @@ def _draw_panel(ax: Axes, panel: Panel, looks: dict[str, dict[str, Any]]) -> Non
         scales.linear(ax, "xy")
 
 
-def _points(curve: Curve, others: Sequence[Curve]) -> dict[str, Any]:
+def _points(curve: Curve, curves: Sequence[Curve]) -> dict[str, Any]:
     """Leave out the markers of many points, and the line through few beside such a curve."""
     if np.size(curve.x) > _FEW:
         return {"marker": ""}
-    return {"linestyle": ""} if any(np.size(other.x) > _FEW for other in others) else {}
+    return {"linestyle": ""} if any(np.size(other.x) > _FEW for other in curves) else {}
 
 
 def _unit(panel: Panel, axis: str) -> Display:

@@ -125,10 +125,10 @@ def _plan_laws(runs: xr.Dataset) -> Plan:
 
 def _law_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     names, velocity = _law_variables(runs), runs["velocity"]
-    at = labels.value(velocity, velocity.size // 2)
+    middle = labels.value(velocity, velocity.size // 2)
     beyond = bool(((runs["status"] & _OUTSIDE) != 0).any())
     return [
-        f"Force against indentation at {at}, while in contact." if _FORCE in names else "",
+        f"Force against indentation at {middle}, while in contact." if _FORCE in names else "",
         "Permanent indentations of zero or below are not shown." if _DENT in names else "",
         "Open markers: beyond the range of the law." if beyond else "",
         _plan_laws(runs).note(runs),
@@ -206,8 +206,8 @@ def _along(runs: xr.Dataset) -> str | None:
 
 
 def _plan_effects(runs: xr.Dataset) -> Plan:
-    others = [name for name in physical(runs) if name != _along(runs)]
-    return plan(runs, responses(runs)[0], along=[str(_along(runs))], prefer=others)
+    parameters = [name for name in physical(runs) if name != _along(runs)]
+    return plan(runs, responses(runs)[0], along=[str(_along(runs))], prefer=parameters)
 
 
 @record.figure(
@@ -277,8 +277,8 @@ def shear(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a column per response: against depth over span above, over contact duration below."""
     selected = _plan_shear(runs)
     figure, axes = style.panels(4, columns=2, height=55)
-    for at, name in enumerate(_SHEARED):
-        above, below = axes[at], axes[at + 2]
+    for column, name in enumerate(_SHEARED):
+        above, below = axes[column], axes[column + 2]
         for curve in selected.curves:  # joined by depth: two pushes may reverse the pace
             slenderness, pace, change = _shear_curve(runs, name, curve.where)
             curves.add(above, slenderness, change, curve)
@@ -309,9 +309,9 @@ def _scale_changes(ax: Axes) -> None:
         responses_grid.empty(ax, "no finite values")
         return
     scales.logarithmic(ax, "x", scales.drawn(ax, "x"))
-    drawn = scales.drawn(ax, "y")
-    low, high = min(0.0, np.nanmin(drawn)), max(0.0, np.nanmax(drawn))
-    if np.nanmax(abs(drawn)) > _WIDE:
+    changes = scales.drawn(ax, "y")
+    low, high = min(0.0, np.nanmin(changes)), max(0.0, np.nanmax(changes))
+    if np.nanmax(abs(changes)) > _WIDE:
         ax.set_yscale("symlog", linthresh=_THRESHOLD)
         steps = [first * 10.0**power for power in range(4) for first in (1.0, 2.0, 5.0)]
         ticks = sorted([0.0, *steps, *(-step for step in steps)])
@@ -320,7 +320,7 @@ def _scale_changes(ax: Axes) -> None:
         scales.linear(ax, "y")
     ax.set_ylim(1.3 * low, 1.3 * high)  # from no change on
     for sign in (-1.0, 1.0):
-        if (sign * drawn > 0).any():
+        if (sign * changes > 0).any():
             ax.axhline(
                 sign * _THRESHOLD, label="_guide: ±1 %", linestyle=(0, (4, 2)), **style.GUIDE
             )
@@ -329,15 +329,15 @@ def _scale_changes(ax: Axes) -> None:
 def _shear_finding(runs: xr.Dataset, name: str) -> str:
     """Return a sentence on the drawn curves: their change, where it matters, and the pace."""
     selected = _plan_shear(runs)
-    found = [_shear_curve(runs, name, curve.where) for curve in selected.curves]
-    slenderness, pace, change = (np.concatenate(part) for part in zip(*found, strict=True))
-    known = np.isfinite(change + pace)
-    if not known.any():
+    series = [_shear_curve(runs, name, curve.where) for curve in selected.curves]
+    slenderness, pace, change = (np.concatenate(part) for part in zip(*series, strict=True))
+    finite = np.isfinite(change + pace)
+    if not finite.any():
         return ""
-    matters = known & (abs(change) >= _THRESHOLD)
+    matters = finite & (abs(change) >= _THRESHOLD)
     deep = f" (depth over span {labels.span(slenderness[matters], 2)})" if matters.any() else ""
     return (
-        f"The {labels.response(name)} changes by {labels.span(change[known], 2)} %, by "
-        f"{labels.number(_THRESHOLD)} % or more in {matters.sum()} of {known.sum()} "
-        f"impacts{deep}, while depth over duration goes from {labels.span(pace[known], 2)} m/s."
+        f"The {labels.response(name)} changes by {labels.span(change[finite], 2)} %, by "
+        f"{labels.number(_THRESHOLD)} % or more in {matters.sum()} of {finite.sum()} "
+        f"impacts{deep}, while depth over duration goes from {labels.span(pace[finite], 2)} m/s."
     )

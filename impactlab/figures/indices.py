@@ -55,9 +55,9 @@ def index_bars(family: Family) -> Figure:
         analysis = analysis.isel(parameter=np.argsort(-largest.values, kind="stable"))
         height = 10 + max(5.2, 2.4 * len(shown)) * analysis.sizes["parameter"]
         figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
-        for at, (response, ax) in enumerate(axes.items()):
+        for position, (response, ax) in enumerate(axes.items()):
             bars(ax, analysis, family, response)
-            ax.tick_params(axis="y", labelleft=at % responses_grid.COLUMNS == 0)
+            ax.tick_params(axis="y", labelleft=position % responses_grid.COLUMNS == 0)
         return style.finish(figure, family.axis)
 
     return plot
@@ -65,11 +65,11 @@ def index_bars(family: Family) -> Figure:
 
 def _bar_sentences(family: Family, analysis: xr.Dataset) -> list[str]:
     """Return a caption's sentences on what the bars, their lines and their shades are."""
-    found = {
-        measure.words: analysis[measure.name].attrs.get("estimator")
+    sources = {
+        measure.label: analysis[measure.name].attrs.get("estimator")
         for measure in family.measures_in(analysis)
     }
-    estimators = [f"{words}: {source}" for words, source in found.items() if source]
+    estimators = [f"{label}: {source}" for label, source in sources.items() if source]
     noise = "Pale: the interval holds zero."
     if any(f"dummy_{measure.name}" in analysis for measure in family.measures):
         noise = (
@@ -94,17 +94,17 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
     shown, listed = family.measures_in(analysis), parameters(analysis)
     rows, count = np.arange(len(listed)), len(shown)
     colours = style.COLOURS if count < 4 else ("#0072B2", "#56B4E9", "#D55E00", "#E69F00")
-    for at, (measure, colour) in enumerate(zip(shown, colours[:count], strict=True)):
-        found = measures.index(analysis, measure.name, response)
-        finite = np.isfinite(found.margins)
-        margins = np.where(finite, found.margins, 0.0) if finite.any() else None
-        places, thick = rows + _THICK * ((at + 0.5) / count - 0.5), _THICK / count
+    for number, (measure, colour) in enumerate(zip(shown, colours[:count], strict=True)):
+        index = measures.index(analysis, measure.name, response)
+        finite = np.isfinite(index.margins)
+        margins = np.where(finite, index.margins, 0.0) if finite.any() else None
+        places, thick = rows + _THICK * ((number + 0.5) / count - 0.5), _THICK / count
         look: Any = {"error_kw": {"elinewidth": 0.8, "ecolor": "0.15"}, "color": colour}
-        drawn = ax.barh(places, found.values, thick, xerr=margins, label=measure.words, **look)
-        for bar, stands in zip(drawn.patches, found.significant | ~finite, strict=True):
+        container = ax.barh(places, index.values, thick, xerr=margins, label=measure.label, **look)
+        for bar, stands in zip(container.patches, index.significant | ~finite, strict=True):
             bar.set_alpha(None if stands else _PALE)
-        if found.floor:
-            ends = [found.floor] if family.shares else [-found.floor, found.floor]
+        if index.floor:
+            ends = [index.floor] if family.shares else [-index.floor, index.floor]
             dashes = (0, (3, 1.5))
             ax.vlines(ends, len(rows) - 0.5, -0.5, color=colour, linestyle=dashes, linewidth=0.9)
     ax.axvline(0.0, color="0.15", linewidth=0.6)
@@ -131,15 +131,15 @@ def index_convergence(measure: Measure) -> Figure:
     variable = f"{measure.name}_by_samples"
 
     def sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
-        what = (
-            f"The {measure.words} index from the first samples alone, up to all "
+        opening = (
+            f"The {measure.label} index from the first samples alone, up to all "
             f"{int(analysis[_SAMPLES].max())} base samples; bands: {access.confidence(analysis)} "
             "intervals, cut off outside −0.25 to 1.25. Indices that still drift beyond their bands "
             "at the right need more samples."
         )
-        return what, _missing(runs, analysis)
+        return opening, _missing(runs, analysis)
 
-    title = f"{labels.sentence(measure.words)} indices against the number of samples"
+    title = f"{labels.sentence(measure.label)} indices against the number of samples"
 
     @record.figure(
         title,
@@ -155,11 +155,11 @@ def index_convergence(measure: Measure) -> Figure:
         figure, axes = responses_grid.panels(analysed(runs, analysis), height=44)
         samples = analysis[_SAMPLES].values
         for name, ax in axes.items():
-            found = analysis.sel(response=name)
-            for at, parameter in enumerate(parameters(analysis)):
-                index = found[[variable, f"{variable}_interval"]].isel(parameter=at)
-                y, margin = (each.values for each in index.values())
-                look = style.distinct(at) | {"label": labels.parameter(parameter)}
+            indices = analysis.sel(response=name)
+            for number, parameter in enumerate(parameters(analysis)):
+                index = indices[[variable, f"{variable}_interval"]].isel(parameter=number)
+                y, margin = (array.values for array in index.values())
+                look = style.distinct(number) | {"label": labels.parameter(parameter)}
                 _line_with_band(ax, samples, y, margin, markersize=2.5, **look)
             if not ax.lines:
                 style.remark(ax, "no finite values")
@@ -183,10 +183,10 @@ def _line_with_band(ax: Axes, x: Floats, y: Floats, margin: Floats, **look: Any)
 
 def _pair_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, str]:
     left = len(analysed(runs, analysis)) - len(_significant_pairs(runs, analysis))
-    words = f"{labels.counted(left, 'response')} without an index that differs from zero"
+    insignificant = f"{labels.counted(left, 'response')} without an index that differs from zero"
     return (
         f"Grey, without a number: zero lies within the {access.confidence(analysis)} interval.",
-        f"Left out: {words}." if left else "",
+        f"Left out: {insignificant}." if left else "",
         _missing(runs, analysis),
     )
 
@@ -205,10 +205,10 @@ def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     # no weaker than _WEAK, to keep noise pale
     tops = [np.max(values[n], initial=_WEAK, where=where) for n, where in significant.items()]
     colours = Normalize(0.0, max(map(float, tops)))
-    for at, (name, ax) in enumerate(axes.items()):
+    for position, (name, ax) in enumerate(axes.items()):
         image = _map(ax, values[name], significant[name], colours)
         responses_grid.write_verdict(ax, analysis, _VERDICT, name, sound=False)
-        _number(ax, listed, named=at % responses_grid.COLUMNS == 0)
+        _number(ax, listed, named=position % responses_grid.COLUMNS == 0)
     thin = 20 * min(len(axes), 2)
     bar = figure.colorbar(
         image, ax=list(axes.values()), location="bottom", fraction=0.05, aspect=thin, shrink=0.6
@@ -220,12 +220,12 @@ def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
 def _significant_pairs(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, NDArray[np.bool_]]:
     """Return the responses with an index of second order beyond its interval, and which are so."""
     interval = f"{_PAIRS}_interval"
-    found = {
+    masks = {
         name: abs(pairs(analysis[_PAIRS].sel(response=name)))
         > pairs(analysis[interval].sel(response=name))
         for name in analysed(runs, analysis, _PAIRS, interval)
     }
-    return {name: where for name, where in found.items() if where.any()}
+    return {name: where for name, where in masks.items() if where.any()}
 
 
 def pairs(index: xr.DataArray) -> Floats:
@@ -234,8 +234,8 @@ def pairs(index: xr.DataArray) -> Floats:
     index: on (parameter, other_parameter).
     """
     square = index.transpose("parameter", "other_parameter").values
-    both = np.where(np.isfinite(square), square, square.T)
-    return np.where(np.triu(np.ones_like(both, dtype=bool), 1), both, np.nan)
+    symmetric = np.where(np.isfinite(square), square, square.T)
+    return np.where(np.triu(np.ones_like(symmetric, dtype=bool), 1), symmetric, np.nan)
 
 
 def _map(ax: Axes, values: Floats, significant: NDArray[np.bool_], colours: Normalize) -> AxesImage:
@@ -254,8 +254,10 @@ def _map(ax: Axes, values: Floats, significant: NDArray[np.bool_], colours: Norm
 def _number(ax: Axes, listed: list[str], *, named: bool) -> None:
     """Write numbers along rows and columns, and the names of the parameters beside the rows."""
     count = len(listed)
-    numbers = [str(at) for at in range(1, count + 1)]
-    rows = [f"{labels.parameter(name)} {at}" for name, at in zip(listed, numbers, strict=True)]
+    numbers = [str(number) for number in range(1, count + 1)]
+    rows = [
+        f"{labels.parameter(name)} {number}" for name, number in zip(listed, numbers, strict=True)
+    ]
     ax.set_yticks(range(count), rows if named else numbers)
     ax.set_xticks(range(count), numbers)
     ax.set(xlim=(-0.5, count - 0.5), ylim=(count - 0.5, -0.5), aspect="auto")
@@ -290,11 +292,11 @@ def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> No
     effects = xr.DataArray(strength.values, attrs=runs[response].attrs, name=response)
     unit = display(effects)
     x, y, margin = unit(strength.values), unit(spread), unit(strength.margins)
-    for at, name in enumerate(parameters(analysis)):
-        if np.isfinite(x[at]):
-            xerr = margin[at] if np.isfinite(margin[at]) else None
-            look = style.distinct(at) | {"linestyle": "", "elinewidth": 0.8}
-            ax.errorbar(x[at], y[at], xerr=xerr, label=labels.parameter(name), **look)
+    for number, name in enumerate(parameters(analysis)):
+        if np.isfinite(x[number]):
+            xerr = margin[number] if np.isfinite(margin[number]) else None
+            look = style.distinct(number) | {"linestyle": "", "elinewidth": 0.8}
+            ax.errorbar(x[number], y[number], xerr=xerr, label=labels.parameter(name), **look)
     responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
@@ -330,27 +332,29 @@ def _time_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, s
 def indices_over_time(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a column per history: first order, total order and mean, one beneath the other."""
     names = measures.histories(analysis)
-    words = [labels.sentence(labels.response(name)) for name in names]
-    titles = [f"{word}, {order}" for order in measures.OVER_TIME.values() for word in words]
-    titles += [f"{word}, mean" for word in words]
+    histories = [labels.sentence(labels.response(name)) for name in names]
+    titles = [
+        f"{history}, {order}" for order in measures.OVER_TIME.values() for history in histories
+    ]
+    titles += [f"{history}, mean" for history in histories]
     figure, axes = style.titled_panels(titles, columns=len(names), height=38, sharex=True)
     time = display(analysis["time"])
     for row, order in enumerate(measures.OVER_TIME):
-        for at, name in enumerate(names):
-            _at_times(axes[row * len(names) + at], analysis.sel(history=name), order, time)
+        for column, name in enumerate(names):
+            _at_times(axes[row * len(names) + column], analysis.sel(history=name), order, time)
     for ax, name in zip(axes[-len(names) :], names, strict=True):
         _mean(ax, analysis.sel(history=name), time)
     return style.finish(figure, labels.axis("time since first touch", time.symbol))
 
 
-def _at_times(ax: Axes, found: xr.Dataset, order: str, time: Display) -> None:
+def _at_times(ax: Axes, history: xr.Dataset, order: str, time: Display) -> None:
     """Draw a line with its band per parameter; gaps where there is no index, or no interval."""
-    x = time(found["time"].values)
-    for at, name in enumerate(parameters(found)):
-        one = found.isel(parameter=at)
-        margin = one[f"{order}_interval"].values
-        y = np.where(np.isfinite(margin), one[order].values, np.nan)
-        look = style.distinct(at) | {"marker": "", "linewidth": 0.9}
+    x = time(history["time"].values)
+    for number, name in enumerate(parameters(history)):
+        indices = history.isel(parameter=number)
+        margin = indices[f"{order}_interval"].values
+        y = np.where(np.isfinite(margin), indices[order].values, np.nan)
+        look = style.distinct(number) | {"marker": "", "linewidth": 0.9}
         _line_with_band(ax, x, y, margin, label=labels.parameter(name), **look)
     if not ax.lines:
         style.remark(ax, "no finite values")
@@ -358,16 +362,16 @@ def _at_times(ax: Axes, found: xr.Dataset, order: str, time: Display) -> None:
     ax.set_ylim(max(min(low, 0.0), _ENDS[0]), min(max(high, 1.0), _ENDS[1]))
     ax.set_ylabel("Share (–)")
     scales.linear(ax, "xy")
-    verdict = access.read(found[measures.HISTORY_VERDICT])
+    verdict = access.read(history[measures.HISTORY_VERDICT])
     if not verdict.sound:
         responses_grid.write(ax, verdict)
 
 
-def _mean(ax: Axes, found: xr.Dataset, time: Display) -> None:
+def _mean(ax: Axes, history: xr.Dataset, time: Display) -> None:
     """Draw the mean of the runs with a band of one standard deviation to either side."""
-    mean, deviation = found["history_mean"], found["history_deviation"].values
-    unit = display(mean.assign_attrs(units=str(found["history_units"].item())))
-    x, look = time(found["time"].values), {"color": "0.15", "linewidth": 0.9}
+    mean, deviation = history["history_mean"], history["history_deviation"].values
+    unit = display(mean.assign_attrs(units=str(history["history_units"].item())))
+    x, look = time(history["time"].values), {"color": "0.15", "linewidth": 0.9}
     _line_with_band(ax, x, unit(mean.values), unit(deviation), label="_mean", **look)
     if not ax.lines:
         style.remark(ax, "no finite values")

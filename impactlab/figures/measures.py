@@ -21,7 +21,7 @@ class Measure:
     """
 
     name: str
-    words: str
+    label: str
     optional: bool = False
 
 
@@ -42,11 +42,11 @@ class Family:
 
     def given(self, analysis: xr.Dataset) -> bool:
         """Return whether the analysis has every measure that is not optional."""
-        return all(one.name in analysis for one in self.measures if not one.optional)
+        return all(measure.name in analysis for measure in self.measures if not measure.optional)
 
     def measures_in(self, analysis: xr.Dataset) -> list[Measure]:
         """Return the measures that the analysis has."""
-        return [one for one in self.measures if one.name in analysis]
+        return [measure for measure in self.measures if measure.name in analysis]
 
 
 @dataclass(frozen=True)
@@ -162,8 +162,8 @@ def analysed(runs: xr.Dataset, analysis: xr.Dataset, *needed: str) -> list[str]:
 
     needed: variables of the analysis.
     """
-    given = all(name in analysis for name in needed)
-    return [name for name in responses(runs) if given and known(analysis, name)]
+    complete = all(name in analysis for name in needed)
+    return [name for name in responses(runs) if complete and known(analysis, name)]
 
 
 HISTORY_VERDICT = "history_verdict"
@@ -173,8 +173,8 @@ OVER_TIME = {"first_order_over_time": "first order", "total_order_over_time": "t
 
 def histories(analysis: xr.Dataset) -> list[str]:
     """Return the histories that the analysis has indices of."""
-    given = all(name in analysis for name in (*OVER_TIME, "history_mean", HISTORY_VERDICT))
-    return [str(name) for name in analysis["history"].values] if given else []
+    complete = all(name in analysis for name in (*OVER_TIME, "history_mean", HISTORY_VERDICT))
+    return [str(name) for name in analysis["history"].values] if complete else []
 
 
 def parameters(analysis: xr.Dataset) -> list[str]:
@@ -187,8 +187,8 @@ def index(analysis: xr.Dataset, measure: str, response: str) -> Index:
 
     def beside(kind: str, gap: float) -> Floats:
         nothing = xr.full_like(analysis[measure], np.nan)
-        found = analysis.get(f"{measure}_{kind}", nothing).sel(response=response)
-        return np.asarray(np.nan_to_num(found.values, nan=gap))
+        companion = analysis.get(f"{measure}_{kind}", nothing).sel(response=response)
+        return np.asarray(np.nan_to_num(companion.values, nan=gap))
 
     dummy = (f"dummy_{measure}", f"dummy_{measure}_interval")
     ends = [analysis[name].sel(response=response).item() for name in dummy if name in analysis]

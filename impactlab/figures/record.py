@@ -60,6 +60,6 @@ def listed(folder: Path) -> dict[str, dict[str, str]]:
     with suppress(ValueError, TypeError, AttributeError):
         entries: dict[str, dict[str, str]] = json.loads(path.read_bytes())
         sound = {"title", "caption", "alt"}.issubset
-        if all(re.fullmatch(r"\w+", name) and sound(each) for name, each in entries.items()):
+        if all(re.fullmatch(r"\w+", name) and sound(entry) for name, entry in entries.items()):
             return entries
     raise ValueError(f"{path}: is damaged: draw the figures again (impactlab figures)")

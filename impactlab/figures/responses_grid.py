@@ -42,10 +42,10 @@ def write_verdict(
 
     sound: also where it is no warning.
     """
-    found = access.verdict(analysis, variable, name)
-    if found is None or (found.sound and not sound):
+    verdict = access.verdict(analysis, variable, name)
+    if verdict is None or (verdict.sound and not sound):
         return
-    write(ax, found)
+    write(ax, verdict)
 
 
 def write(ax: Axes, verdict: access.Verdict) -> None:

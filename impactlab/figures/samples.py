@@ -48,13 +48,13 @@ def scatter(response: str) -> Figure:
         total = runs.sizes["run"]
         columns = [runs[name] for name in varied(runs)]
         points = f"{_SHOWN} of the {total} runs, drawn at random" if total > _SHOWN else "the runs"
-        what = (
+        opening = (
             f"Points: {points}. Line: mean of the response over all runs with about this value of "
             "the parameter; where it is flat, the parameter alone changes nothing."
             + " Each regime has a line of its own." * bool(of_runs(runs, response).size)
             + " Diamonds: mean over all runs with this word." * any(map(labels.words, columns))
         )
-        return what, access.missing_note(runs, [response])
+        return opening, access.missing_note(runs, [response])
 
     title = f"{labels.sentence(labels.response(response))} against each parameter"
 
@@ -70,7 +70,7 @@ def scatter(response: str) -> Figure:
         values, label = responses_grid.shown(runs, response)
         middles = display(runs[response])(of_runs(runs, response))
         return along_parameters(
-            runs, label, 42, lambda ax, at: scatter_runs(ax, at, values.values, middles)
+            runs, label, 42, lambda ax, column: scatter_runs(ax, column, values.values, middles)
         )
 
     return plot
@@ -100,8 +100,8 @@ def places(column: xr.DataArray) -> Floats:
     if not labels.words(column):
         return display(column)(column.values)
     listed = np.atleast_1d(column.attrs["values"])
-    found = column.values[:, None] == listed
-    return np.where(found.any(axis=1), found.argmax(axis=1).astype(float), np.nan)
+    matches = column.values[:, None] == listed
+    return np.where(matches.any(axis=1), matches.argmax(axis=1).astype(float), np.nan)
 
 
 def _beside(column: xr.DataArray, places: Floats) -> Floats:
@@ -135,8 +135,8 @@ def scatter_runs(ax: Axes, column: xr.DataArray, y: Floats, middles: Floats) -> 
     x, y = x[finite], y[finite]
     if not x.size:
         return
-    some = np.random.default_rng(1).permutation(x.size)[:_SHOWN]  # a sample's order has structure
-    ax.plot(_beside(column, x)[some], y[some], label="_runs", rasterized=True, **_POINTS)
+    chosen = np.random.default_rng(1).permutation(x.size)[:_SHOWN]  # a sample's order has structure
+    ax.plot(_beside(column, x)[chosen], y[chosen], label="_runs", rasterized=True, **_POINTS)
     regime = np.searchsorted(middles, y)
     for part in (regime == number for number in np.unique(regime)):
         if labels.words(column):
@@ -167,12 +167,12 @@ def conditional_mean(x: Floats, y: Floats) -> tuple[Floats, Floats]:
 def _validation_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str]:
     tests = analysis.sizes["held_out"]
     shown = f", {_MOST} of them shown" if tests > _MOST else ""
-    what = (
+    opening = (
         "Prediction of a polynomial chaos against the solver's answer, for "
         f"{labels.counted(tests, 'run')}, by fits that left them out{shown}; on the line both "
         "agree. Q²: 1 less the mean squared error over the variance of all of them."
     )
-    return what, access.missing_note(runs, analysed(runs, analysis))
+    return opening, access.missing_note(runs, analysed(runs, analysis))
 
 
 @record.figure(
@@ -203,19 +203,19 @@ def _held_out(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> No
     answers = usable(runs, name)
     unit = display(answers)
     ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
-    found = analysis["surrogate_held_out"].sel(response=name)
-    found = found[scales.spread(found.size, _MOST)]
-    computed = unit(answers.set_index(run="run").sel(run=found["held_out"].values))
-    predicted = unit(found)
-    given = np.isfinite(computed) & np.isfinite(predicted)
-    if not given.any():
+    held_out = analysis["surrogate_held_out"].sel(response=name)
+    held_out = held_out[scales.spread(held_out.size, _MOST)]
+    computed = unit(answers.set_index(run="run").sel(run=held_out["held_out"].values))
+    predicted = unit(held_out)
+    finite = np.isfinite(computed) & np.isfinite(predicted)
+    if not finite.any():
         return
-    ends = np.array([computed[given], predicted[given]])
+    ends = np.array([computed[finite], predicted[finite]])
     low, high = float(ends.min()), float(ends.max())
     ax.axline((low, low), (high, high), label="_guide: agreement", **style.GUIDE)
     look: Any = {"linestyle": "", "marker": "o", "markersize": 1.8, "markeredgewidth": 0}
     look |= {"alpha": 0.6, "color": style.COLOURS[0]}
-    ax.plot(computed[given], predicted[given], label="runs held out", **look)
+    ax.plot(computed[finite], predicted[finite], label="runs held out", **look)
     scales.linear(ax, "xy", ticks=4)
 
 
@@ -239,7 +239,9 @@ def _failure_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 def failure_shares(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per parameter."""
     failed = access.failed(runs).values
-    return along_parameters(runs, "Failed runs (%)", 36, lambda ax, at: _shares(ax, at, failed))
+    return along_parameters(
+        runs, "Failed runs (%)", 36, lambda ax, column: _shares(ax, column, failed)
+    )
 
 
 def _shares(ax: Axes, column: xr.DataArray, failed: NDArray[np.bool_]) -> None:
@@ -248,14 +250,14 @@ def _shares(ax: Axes, column: xr.DataArray, failed: NDArray[np.bool_]) -> None:
     place = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, max(edges.size - 2, 0))
     if labels.words(column):
         place = x.astype(int)
-    found = []
-    for at in np.unique(place):
-        here = place == at
-        test = scipy.stats.binomtest(int(failed[here].sum()), int(here.sum()))
+    shares = []
+    for number in np.unique(place):
+        inside = place == number
+        test = scipy.stats.binomtest(int(failed[inside].sum()), int(inside.sum()))
         low, high = test.proportion_ci(method="wilson")
-        share = failed[here].mean()
-        found.append((x[here].mean(), 100 * share, 100 * (share - low), 100 * (high - share)))
-    middle, share, below, above = np.array(found).T
+        share = failed[inside].mean()
+        shares.append((x[inside].mean(), 100 * share, 100 * (share - low), 100 * (high - share)))
+    middle, share, below, above = np.array(shares).T
     look: Any = {"color": style.COLOURS[0], "marker": "o", "linestyle": "", "elinewidth": 0.8}
     ax.errorbar(middle, share, np.clip([below, above], 0.0, None), label="share", **look)
     ax.axhline(100 * failed.mean(), label="_guide: all runs", linestyle="--", **style.GUIDE)
@@ -266,26 +268,28 @@ def _shares(ax: Axes, column: xr.DataArray, failed: NDArray[np.bool_]) -> None:
 
 def _distances(runs: xr.Dataset) -> dict[str, float]:
     """Return the Kolmogorov-Smirnov distances of the most telling parameters, the largest first."""
-    failed, found = access.failed(runs).values, {}
+    failed, distances = access.failed(runs).values, {}
     for name in varied(runs):
         values = runs[name].values
         if labels.words(runs[name]):  # they have no order: the total variation of their shares
-            here = values[:, None] == np.unique(values)
-            found[name] = float(abs(here[failed].mean(0) - here[~failed].mean(0)).sum() / 2)
+            indicators = values[:, None] == np.unique(values)
+            distances[name] = float(
+                abs(indicators[failed].mean(0) - indicators[~failed].mean(0)).sum() / 2
+            )
             continue
         test = scipy.stats.ks_2samp(values[failed], values[~failed], method="asymp")
-        found[name] = float(test.statistic)
-    ranked = sorted(found, key=lambda name: -found[name])
-    return {name: found[name] for name in ranked[:3]}
+        distances[name] = float(test.statistic)
+    ranked = sorted(distances, key=lambda name: -distances[name])
+    return {name: distances[name] for name in ranked[:3]}
 
 
 def _map_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    told = [f"{labels.parameter(name)} {value:.2f}" for name, value in _distances(runs).items()]
+    entries = [f"{labels.parameter(name)} {value:.2f}" for name, value in _distances(runs).items()]
     return [
         f"The {int(access.failed(runs).sum())} failed runs among the good ones (at most "
         f"{_DRAWN['failed']} and {_DRAWN['good']} are drawn), over the parameters whose values "
         "differ most between the two. Distance of Kolmogorov and Smirnov between failed and good "
-        f"runs, 1 where they do not overlap: {labels.listing(told)}."
+        f"runs, 1 where they do not overlap: {labels.listing(entries)}."
     ]
 
 
@@ -307,8 +311,8 @@ def failure_map(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     kinds = {"good": np.flatnonzero(~failed), "failed": np.flatnonzero(failed)}
     for ax, pair in zip(axes, pairs, strict=True):
         for kind, which in kinds.items():
-            some = np.random.default_rng(1).permutation(which)[: _DRAWN[kind]]
-            x, y = (_beside(runs[name], places(runs[name]))[some] for name in pair)
+            chosen = np.random.default_rng(1).permutation(which)[: _DRAWN[kind]]
+            x, y = (_beside(runs[name], places(runs[name]))[chosen] for name in pair)
             ax.plot(x, y, linestyle="", label=kind, rasterized=kind == "good", **_LOOKS[kind])
         ax.set(xlabel=axis_label(runs[pair[0]]), ylabel=axis_label(runs[pair[1]]))
         ticks(ax, "x", runs[pair[0]])

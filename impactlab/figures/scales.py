@@ -89,13 +89,15 @@ def apart(values: ArrayLike) -> list[float]:
     """Return the values that have room on a logarithmic axis, from the largest on."""
     ordered = np.sort(np.ravel(np.asarray(values, dtype=float)))[::-1]
     least = 0.18 * np.log(ordered[0] / ordered[-1])
-    kept: list[float] = []
+    spaced: list[float] = []
     for value in ordered.tolist():
-        if not kept or np.log(kept[-1] / value) >= least:
-            kept.append(value)
-    return kept
+        if not spaced or np.log(spaced[-1] / value) >= least:
+            spaced.append(value)
+    return spaced
 
 
 def spread(size: int, most: int) -> list[int]:
     """Return at most `most` positions of `size`, evenly spread, with the first and the last."""
-    return [int(at) for at in np.unique(np.linspace(0, size - 1, min(size, most)).round())]
+    return [
+        int(position) for position in np.unique(np.linspace(0, size - 1, min(size, most)).round())
+    ]

@@ -132,10 +132,12 @@ def displacement_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     x = time(runs["time"])
     for ax, where, _ in panels:
         scales.linear(ax, "xy")
-        for at, (name, label) in enumerate(_DISPLACEMENTS.items()):
+        for number, (name, label) in enumerate(_DISPLACEMENTS.items()):
             y = unit(usable(runs, name).isel(where))
             if np.isfinite(y).any():
-                ax.plot(x, y, label=label, color=style.COLOURS[at], linestyle=style.LINES[at])
+                ax.plot(
+                    x, y, label=label, color=style.COLOURS[number], linestyle=style.LINES[number]
+                )
         if ax.lines:
             ax.set_xlim(0.0, float(x[-1]))
             ax.set_ylim(_until_flight(runs.isel(where), unit))
@@ -229,9 +231,9 @@ def _plastic(runs: xr.Dataset) -> xr.Dataset:
     """Return the runs at the velocities with a plastic strain in some run; all if none has."""
     if "velocity" not in runs[_STRAIN].dims:
         return runs
-    some = _largest(runs) > 0
-    kept = some.any([dim for dim in some.dims if dim != "velocity"])
-    return runs.isel(velocity=kept.values.nonzero()[0]) if bool(kept.any()) else runs
+    yielded = _largest(runs) > 0
+    velocities = yielded.any([dim for dim in yielded.dims if dim != "velocity"])
+    return runs.isel(velocity=velocities.values.nonzero()[0]) if bool(velocities.any()) else runs
 
 
 def _elastic(runs: xr.Dataset) -> str:
@@ -261,15 +263,15 @@ def _strain_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str,
 )
 def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a curve per run; zeros, which a logarithmic axis cannot show, leave a gap."""
-    kept = _plastic(runs)
-    strain, place = display(kept[_STRAIN]), display(kept["x"])
+    plastic = _plastic(runs)
+    strain, place = display(plastic[_STRAIN]), display(plastic["x"])
 
     def line(run: xr.Dataset) -> tuple[Floats, Floats]:
         largest = run[_STRAIN].max("z").dropna("x")
         return place(largest["x"]), strain(largest.where(largest > 0))
 
     along = labels.axis("distance from the left support", place.symbol)
-    figure, axes, selected = curves.draw(kept, _STRAIN, line, along, labels.axis("PEEQ", "%"))
+    figure, axes, selected = curves.draw(plastic, _STRAIN, line, along, labels.axis("PEEQ", "%"))
     for ax in axes:
         values = scales.drawn(ax, "y")
         scales.linear(ax, "x")
@@ -279,13 +281,13 @@ def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             ax.set_ylim(_LOWEST, top)
         elif ax.lines:
             style.remark(ax, "no plastic strain")
-        if not kept["beam_depth"].ndim and not kept["beam_span"].ndim:
-            middle, depth = float(kept["beam_span"]) / 2, float(kept["beam_depth"])
+        if not plastic["beam_depth"].ndim and not plastic["beam_span"].ndim:
+            middle, depth = float(plastic["beam_span"]) / 2, float(plastic["beam_depth"])
             for mark in (middle - depth, middle + depth):
-                words = "_guide: one beam depth from the impact"
-                ax.axvline(place.scale * mark, linestyle=":", label=words, **style.GUIDE)
-        words = f"_guide: {_PAPER_LIMIT} %, the paper's limit"
-        ax.axhline(_PAPER_LIMIT, linestyle="--", label=words, **style.GUIDE)
+                label = "_guide: one beam depth from the impact"
+                ax.axvline(place.scale * mark, linestyle=":", label=label, **style.GUIDE)
+        label = f"_guide: {_PAPER_LIMIT} %, the paper's limit"
+        ax.axhline(_PAPER_LIMIT, linestyle="--", label=label, **style.GUIDE)
     return selected.finish(figure)
 
 
@@ -299,8 +301,8 @@ def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 )
 def plastic_strain_depth(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a curve per run, the depth downwards as in the beam."""
-    kept = _plastic(runs)
-    strain, depth = display(kept[_STRAIN]), display(kept["z"])
+    plastic = _plastic(runs)
+    strain, depth = display(plastic[_STRAIN]), display(plastic["z"])
 
     def line(run: xr.Dataset) -> tuple[Floats, Floats]:
         section = run[_STRAIN].isel(x=int(np.argmax(run[_STRAIN].max("z").fillna(-1.0).values)))
@@ -308,7 +310,7 @@ def plastic_strain_depth(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
     across = labels.axis("PEEQ", strain.symbol)
     down = labels.axis("distance below the axis", depth.symbol)
-    figure, axes, selected = curves.draw(kept, _STRAIN, line, across, down, markers=True)
+    figure, axes, selected = curves.draw(plastic, _STRAIN, line, across, down, markers=True)
     for ax in axes:
         values = scales.drawn(ax, "x")
         if np.isfinite(values).any():
@@ -334,10 +336,10 @@ def picture(run: xr.Dataset) -> Figure:
     """Return the picture of a run of impactlab.simulate, of four panels."""
     figure, (force, motion, loop, beam) = style.panels(4, columns=2, height=52)
     _draw_over(force, run, "time", ["contact_force"], "contact force")
-    peak, at = run["peak_force"], run["time_of_peak_force"]
+    peak, time = run["peak_force"], run["time_of_peak_force"]
     if np.isfinite(peak):
-        place = display(run["time"])(at).item(), display(run["contact_force"])(peak).item()
-        force.annotate(f"  {_quantity(peak)} at {_quantity(at)}", place, va="top")
+        place = display(run["time"])(time).item(), display(run["contact_force"])(peak).item()
+        force.annotate(f"  {_quantity(peak)} at {_quantity(time)}", place, va="top")
     _draw_over(motion, run, "time", list(_DISPLACEMENTS)[:2], "displacement down")
     motion.legend()
     touching = run.where(run["contact_force"] > 0)
@@ -351,8 +353,8 @@ def picture(run: xr.Dataset) -> Figure:
     for axes in (force, loop):
         axes.set(xlim=(0.0, None), ylim=(0.0, None))
     case = f"Sphere of {_quantity(run['sphere_radius'])} radius at {_quantity(run['velocity'])}"
-    words = {"contact_duration": "first contact", "restitution": "restitution"}
-    answers = [f"{text} {_quantity(run[name])}" for name, text in words.items() if run[name] >= 0]
+    phrases = {"contact_duration": "first contact", "restitution": "restitution"}
+    answers = [f"{text} {_quantity(run[name])}" for name, text in phrases.items() if run[name] >= 0]
     title = ": ".join(filter(None, (case, ", ".join(answers))))
     figure.suptitle(title, x=0.01, ha="left", fontsize=9)
     return figure
@@ -364,8 +366,8 @@ def _draw_over(axes: Axes, run: xr.Dataset, across: str, names: list[str], text:
     x, y = display(run[across]), display(run[largest])
     for name, color in zip(names, style.COLOURS, strict=False):
         axes.plot(x(run[across]), y(run[name]), color=color, label=_DISPLACEMENTS.get(name))
-    words = str(run[across].attrs["long_name"]).partition(" (")[0]
-    axes.set_xlabel(labels.axis(words, x.symbol))
+    quantity = str(run[across].attrs["long_name"]).partition(" (")[0]
+    axes.set_xlabel(labels.axis(quantity, x.symbol))
     axes.set_ylabel(labels.axis(text, y.symbol))
     scales.linear(axes, "xy")
     axes.margins(x=0.0)

@@ -121,26 +121,26 @@ def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
     "_guide: WORDS" come last. A label that is a line in one panel and markers in another is both
     in the legend.
     """
-    found: dict[str, dict[str, Any]] = {}
+    entries: dict[str, dict[str, Any]] = {}
     guides: dict[str, dict[str, Any]] = {}
     for axes in figure.axes:
         for line in axes.lines:
-            start, _, words = str(line.get_label()).partition("_guide: ")
-            if words and not start:
-                guides.setdefault(words, {"line": line})
+            start, _, text = str(line.get_label()).partition("_guide: ")
+            if text and not start:
+                guides.setdefault(text, {"line": line})
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             alone = isinstance(handle, Line2D) and handle.get_linestyle() in ("", "None")
-            found.setdefault(label, {}).setdefault("markers" if alone else "line", handle)
-    if len(found) + len(guides) < 2 and not title:
+            entries.setdefault(label, {}).setdefault("markers" if alone else "line", handle)
+    if len(entries) + len(guides) < 2 and not title:
         return
-    found = {label: found[label] for label in order if label in found} or found
-    found |= guides
-    columns = _columns(figure.get_figwidth() / MILLIMETRE, list(found))
-    rows = math.ceil(len(found) / columns) + bool(title)
+    entries = {label: entries[label] for label in order if label in entries} or entries
+    entries |= guides
+    columns = _columns(figure.get_figwidth() / MILLIMETRE, list(entries))
+    rows = math.ceil(len(entries) / columns) + bool(title)
     figure.set_figheight(figure.get_figheight() + (rows * 4.2 + 1.0) * MILLIMETRE)
-    handles: Any = [tuple(kinds.values()) for kinds in found.values()]
+    handles: Any = [tuple(kinds.values()) for kinds in entries.values()]
     figure.legend(
-        handles, list(found), loc="outside upper center", ncols=columns, title=title or None
+        handles, list(entries), loc="outside upper center", ncols=columns, title=title or None
     )
 
 
@@ -191,12 +191,12 @@ def _columns(width: float, labels: list[str], letter: float = 1.6) -> int:
     return max(1, min(fit, len(labels)))
 
 
-def distinct(at: int) -> dict[str, Any]:
-    """Return colour, line and marker of the curve number `at`, alike in all panels."""
+def distinct(number: int) -> dict[str, Any]:
+    """Return colour, line and marker of the curve of this number, alike in all panels."""
     return {
-        "color": COLOURS[at % len(COLOURS)],
-        "linestyle": LINES[at // len(COLOURS) % len(LINES)],
-        "marker": MARKERS[at // len(COLOURS) % len(MARKERS)],
+        "color": COLOURS[number % len(COLOURS)],
+        "linestyle": LINES[number // len(COLOURS) % len(LINES)],
+        "marker": MARKERS[number // len(COLOURS) % len(MARKERS)],
     }
 
 

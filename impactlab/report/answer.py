@@ -79,26 +79,28 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     if analysis is None and runs.attrs.get("content") != "findings":
         analysis = analyse(runs)
     lines, _ = entries(runs, analysis)
-    told = ["; ".join(": ".join(entry) for entry in line) + "." for line in lines]
-    if told and (correlated := shared(runs)):
-        told[0] += f" {correlated}"
-    return told or ["There is no answer in these runs."]
+    sentences = ["; ".join(": ".join(entry) for entry in line) + "." for line in lines]
+    if sentences and (correlated := shared(runs)):
+        sentences[0] += f" {correlated}"
+    return sentences or ["There is no answer in these runs."]
 
 
 def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[list[Entry]], str]:
     """Return the entries of each line of `answers`, and what their numbers are."""
     if analysis is None:
         return _packed(_verification(runs), LINES), ""
-    if families := [one for one in RANKED if one.given(analysis) and analysed(runs, analysis)]:
-        found = _ranking(runs, analysis, families[0])
-        kind = measures.ranking(families[0], analysis).words
+    if families := [
+        family for family in RANKED if family.given(analysis) and analysed(runs, analysis)
+    ]:
+        findings = _ranking(runs, analysis, families[0])
+        kind = measures.ranking(families[0], analysis).label
         note = f"{families[0].title}, {kind}, ± the half-width of the"
         note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
     elif needs := needed(runs, analysis):
-        found = _convergence(analysis, needs)
+        findings = _convergence(analysis, needs)
         note = "± the difference to the finest grid and the numerical uncertainty of that grid."
     else:
-        found = _ranges(runs, analysis)
+        findings = _ranges(runs, analysis)
         note = (
             "Variation: the variance over the grid; a parameter explains that of its mean effect."
         )
@@ -110,24 +112,25 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
     if over := history_entries(analysis):
         note += " Over time: generalised total order, of the variance added up over all times."
     room = LINES - len(first) - bool(last)
-    histories = _packed(over, 2 if room >= len(found) + len(over) else 1)
-    return [*first, *_packed(found, room - len(histories)), *histories, *[last] * bool(last)], note
+    histories = _packed(over, 2 if room >= len(findings) + len(over) else 1)
+    lines = [*first, *_packed(findings, room - len(histories)), *histories]
+    return [*lines, last] if last else lines, note
 
 
-def _packed(found: list[Entry], lines: int) -> list[list[Entry]]:
-    size = max(1, -(-len(found) // lines))  # entries per line
-    return [found[at : at + size] for at in range(0, len(found), size)]
+def _packed(findings: list[Entry], lines: int) -> list[list[Entry]]:
+    size = max(1, -(-len(findings) // lines))  # entries per line
+    return [findings[first : first + size] for first in range(0, len(findings), size)]
 
 
-def _verification(findings: xr.Dataset) -> list[Entry]:
-    outcomes = gravest_first(unpacked(findings))
+def _verification(stored: xr.Dataset) -> list[Entry]:
+    outcomes = gravest_first(unpacked(stored))
     total = sum(len(outcome.finding.comparisons) for outcome in outcomes)
     bad = [outcome for outcome in outcomes if outcome.verdict != "passed"]
     size = f"{labels.counted(total, 'comparison')} of {labels.counted(len(outcomes), 'check')}"
-    found = [("Passed", f"all {size} are within their tolerance")]
+    findings = [("Passed", f"all {size} are within their tolerance")]
     if bad or not outcomes:
         failed = sum(len(outcome.failures) for outcome in outcomes)
-        found = [("Failed", f"{failed} of {size}; {len(bad)} did not pass")]
+        findings = [("Failed", f"{failed} of {size}; {len(bad)} did not pass")]
     closest = sorted(outcomes, key=lambda outcome: -(outcome.worst.ratio if outcome.worst else 0))
     for outcome in (bad or closest)[: LINES - 1]:
         worst, text = outcome.worst, outcome.reason or "it compared nothing"
@@ -139,8 +142,8 @@ def _verification(findings: xr.Dataset) -> list[Entry]:
             )
             text = f"largest error {many} its tolerance"
             text += f", {worst.quantity}, {worst.where}"
-        found.append((outcome.title, text))
-    return found
+        findings.append((outcome.title, text))
+    return findings
 
 
 def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Entry]:
@@ -148,19 +151,18 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
     names, shown = measures.parameters(analysis), analysed(runs, analysis)
     most = max(1, 4 - -(-len(shown) // LINES))  # named per response
     measure = measures.ranking(family, analysis).name
-    found: list[Entry] = []
+    findings: list[Entry] = []
     for name in shown:
         index = measures.index(analysis, measure, name)
         sizes = np.where(index.above_noise, np.abs(index.values), 0.0)
         listed: list[str] = []
-        for at in np.argsort(-sizes, kind="stable")[:most].tolist():
-            text = _written(runs, analysis, family, index, name, at)
-            if family is SOBOL and not found and not listed:
-                text = text.replace(")", ") of the variance", 1)
+        for number in np.argsort(-sizes, kind="stable")[:most].tolist():
+            share_of = "" if findings or listed else " of the variance"
+            text = _written(runs, analysis, family, index, name, number, share_of)
             if not listed:
-                text += _of_words(runs, names[at], name)
-            if sizes[at] > _MATTERS * sizes.max():
-                listed.append(f"{labels.parameter(names[at])} {text}")
+                text += _of_words(runs, names[number], name)
+            if sizes[number] > _MATTERS * sizes.max():
+                listed.append(f"{labels.parameter(names[number])} {text}")
         if listed and family is REGRESSION and "regression_r_squared" in analysis:
             fit = float(analysis["regression_r_squared"].sel(response=name))
             listed[-1] += f" (R² of the fit: {labels.number(fit, 2)})"
@@ -171,11 +173,11 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
         none = "no parameter stands out from the noise"
         if not np.isfinite(index.values).any():
             none = "no index is defined"
-        told = ", ".join(listed) or none
+        summary = ", ".join(listed) or none
         if gaps := int(access.absent(runs, name).sum()):
-            told += f" ({gaps:,} of {labels.counted(access.count(runs), 'run')} missing)"
-        found.append((f"{subject} ({verdict.words})" if verdict else subject, told))
-    return found
+            summary += f" ({gaps:,} of {labels.counted(access.count(runs), 'run')} missing)"
+        findings.append((f"{subject} ({verdict.words})" if verdict else subject, summary))
+    return findings
 
 
 def _of_words(runs: xr.Dataset, parameter: str, response: str) -> str:
@@ -183,30 +185,46 @@ def _of_words(runs: xr.Dataset, parameter: str, response: str) -> str:
     listed = labels.words(runs[parameter]) if parameter in runs.coords else []
     if not listed:
         return ""
-    found = access.means_by_word(runs, parameter, response).values()
-    given = [(each, word) for word, each in zip(listed, found, strict=True) if each[0] == each[0]]
+    means = access.means_by_word(runs, parameter, response).values()
+    intervals = [
+        (interval, word)
+        for word, interval in zip(listed, means, strict=True)
+        if interval[0] == interval[0]
+    ]
     low, high = (
-        f"{in_units(runs[response], *each)} with {word}" for each, word in (min(given), max(given))
+        f"{in_units(runs[response], *interval)} with {word}"
+        for interval, word in (min(intervals), max(intervals))
     )
     return f" (on average {low} to {high})"
 
 
 def _written(
-    runs: xr.Dataset, analysis: xr.Dataset, family: Family, index: Index, name: str, at: int
+    runs: xr.Dataset,
+    analysis: xr.Dataset,
+    family: Family,
+    index: Index,
+    name: str,
+    number: int,
+    share_of: str,
 ) -> str:
-    """Return an index with its interval, and of a Sobol index what the parameter does alone."""
-    value, margin = float(index.values[at]), float(index.margins[at])
+    """Return an index with its interval, and of a Sobol index what the parameter does alone.
+
+    share_of: follows a share of the variance, which the first one of an answer names.
+    """
+    value, margin = float(index.values[number]), float(index.margins[number])
     text = with_margin(value, margin)
     if family is MORRIS:
         text = in_units(runs[name], value, margin)
     elif family is SOBOL:
-        text = share(value, margin, float(index.numerical[at]))
+        text = share(value, margin, float(index.numerical[number])) + share_of
         first = measures.index(analysis, "first_order", name)
-        surplus = value - first.values[at]  # none where the first order ranks
-        reach = margin + first.margins[at] + index.numerical[at] + first.numerical[at]
+        surplus = value - first.values[number]  # none where the first order ranks
+        reach = margin + first.margins[number] + index.numerical[number] + first.numerical[number]
         if surplus > max(_INTERACTS, reach):
-            text += f", {max(0.0, 100 * first.values[at]):.0f} % alone"
-    return text + ", which the numerical error may explain" * bool(index.numerically_lost[at])
+            text += f", {max(0.0, 100 * first.values[number]):.0f} % alone"
+    if index.numerically_lost[number]:
+        text += ", which the numerical error may explain"
+    return text
 
 
 def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
@@ -228,9 +246,10 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
         if "numerical_uncertainty" in analysis and access.known(analysis, name):
             error = float(analysis["numerical_uncertainty"].sel(response=name))
             text += f" (numerically {uncertainty(error)})"
-        doubts = [f"{int(array.isnull().sum())} missing"] * bool(array.isnull().any())
-        if doubts := [*doubts, *filter(None, [beside(runs, analysis, name)])]:
-            text += f" ({'; '.join(doubts)})"
+        gaps = int(array.isnull().sum())
+        doubts = [f"{gaps} missing" if gaps else "", beside(runs, analysis, name)]
+        if any(doubts):
+            text += f" ({'; '.join(filter(None, doubts))})"
         effects = {
             labels.parameter(dim): float(array.mean(set(array.dims) - {dim}).var() / array.var())
             for dim in design_dims(runs, array.dims)
@@ -240,16 +259,16 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
         if effects and effects[driver] < 0.5:
             driver = "several parameters together"
         drives[driver].append((effects.get(driver, np.nan), text))
-    found, left = [], len(responses(runs)) - len(shown)
-    for driver, told in sorted(drives.items(), key=lambda item: -len(item[1])):
-        shares, subject = np.array([effect for effect, _ in told]), labels.sentence(driver)
+    findings, left = [], len(responses(runs)) - len(shown)
+    for driver, texts in sorted(drives.items(), key=lambda item: -len(item[1])):
+        shares, subject = np.array([effect for effect, _ in texts]), labels.sentence(driver)
         if (shares >= 0.5).all() and len(design_dims(runs)) > 1:
             subject += f" explains {labels.span(100 * shares, 2)} % of the variation"
-        found.append((subject, ", ".join(text for _, text in told)))
+        findings.append((subject, ", ".join(text for _, text in texts)))
     if left:
-        subject, text = found.pop()
-        found.append((subject, f"{text}; {labels.counted(left, 'other response')} below"))
-    return found
+        subject, text = findings.pop()
+        findings.append((subject, f"{text}; {labels.counted(left, 'other response')} below"))
+    return findings
 
 
 def _convergence(analysis: xr.Dataset, needs: Needs) -> list[Entry]:
@@ -258,25 +277,25 @@ def _convergence(analysis: xr.Dataset, needs: Needs) -> list[Entry]:
     for name, need in needs.grids.items():
         groups[need].append(name)
     while len(groups) > LINES - 1:  # the two smallest groups share a grid that is fine enough
-        one, other = sorted(groups, key=lambda need: len(groups[need]))[:2]
-        both = groups.pop(one) + groups.pop(other)
-        groups[tuple(map(min, one, other))] += both
-    found = []
+        first, second = sorted(groups, key=lambda need: len(groups[need]))[:2]
+        merged = groups.pop(first) + groups.pop(second)
+        groups[tuple(map(min, first, second))] += merged
+    findings = []
     for need, names in sorted(groups.items(), key=lambda item: -len(item[1])):
-        told = [uncertainty(max(float(needs.errors[name][need]) for name in names))]
+        remarks = [uncertainty(max(float(needs.errors[name][need]) for name in names))]
         for axis in (ORDERED[dim] for dim in needs.axes if dim in ORDERED):
             found_orders = finest(analysis[f"{axis}_observed_order"], needs.runs)
             orders = found_orders.sel(response=names).values
             if np.isfinite(orders).any():
                 order = labels.span(orders[np.isfinite(orders)], 2)
-                told.append(f"observed order {order} in the {axis.replace('_', ' ')}")
+                remarks.append(f"observed order {order} in the {axis.replace('_', ' ')}")
         listed = labels.listing([labels.response(name) for name in names])
         head = f"Within {labels.percent(TOLERANCE)} from {needs.words(need)}"
-        found.append((head, f"{listed} ({', '.join(told)})"))
+        findings.append((head, f"{listed} ({', '.join(remarks)})"))
     beyond = []
     for name in [name for name in needs.errors if name not in needs.grids]:
         error = float(needs.errors[name].min())
-        told = [uncertainty(error)] if error < 1 else []
-        told += needs.doubts(analysis, name)
-        beyond.append(f"{labels.response(name)} ({', '.join(told)})")
-    return found + ([("On no grid of this study", labels.listing(beyond))] if beyond else [])
+        remarks = [uncertainty(error)] if error < 1 else []
+        remarks += needs.doubts(analysis, name)
+        beyond.append(f"{labels.response(name)} ({', '.join(remarks)})")
+    return findings + ([("On no grid of this study", labels.listing(beyond))] if beyond else [])

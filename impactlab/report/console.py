@@ -40,11 +40,11 @@ def print_responses(run: Any) -> None:
         rows.append((name, text, entry.long_name))
     _print_table(("response", Column("value", justify="right"), "meaning"), rows)
     console, status = Console(), run["status"].item()
-    for flag, (bit, words) in FAILURES.items():
+    for flag, (bit, reason) in FAILURES.items():
         if status & bit:
             without = [name for name, entry in RESPONSES.items() if entry.missing == flag]
-            missing = f"Missing because {words}: {', '.join(without)}."
-            console.print(missing if without else f"Missing: {words}.", markup=False)
+            missing = f"Missing because {reason}: {', '.join(without)}."
+            console.print(missing if without else f"Missing: {reason}.", markup=False)
     for note in (*reasons(status, MARKS), *reasons(run["remarks"].item(), WARNINGS)):
         console.print(f"note: {note}", markup=False)
 
@@ -55,8 +55,8 @@ def print_predictions(predicted: Any) -> None:
     predicted: a dataset of Surrogate.predict at one point.
     """
     rows = []
-    for name, found in predicted.data_vars.items():
-        value, attrs = found.item(), found.attrs
+    for name, prediction in predicted.data_vars.items():
+        value, attrs = prediction.item(), prediction.attrs
         numbers, verdict = ("none", "–", "–"), attrs["verdict"].replace("_", " ")
         if not math.isnan(value):
             error = engineering(attrs["error"], attrs["units"], digits=2)
@@ -83,18 +83,21 @@ def print_solved(path: Path) -> None:
         name = next(name for name in runs.data_vars if name not in FLAGS)
         low, high = float(runs[name].min()), float(runs[name].max())
         size, units = runs[name].size, str(runs[name].attrs["units"])
-    words = f"{path}: {size:,} run{'s' * (size != 1)}, {failed:,} without an answer"
+    text = f"{path}: {size:,} run{'' if size == 1 else 's'}, {failed:,} without an answer"
     if not math.isnan(low):
-        words += f"; {name} from {engineering(low, units)} to {engineering(high, units)}"
-    print(words)
+        text += f"; {name} from {engineering(low, units)} to {engineering(high, units)}"
+    print(text)
 
 
 def print_estimate(cost: Estimate, workers: int) -> None:
     """Print what a study costs, and the limits that it exceeds."""
-    at = []
+    settings = []
     for name, value in cost.largest_run.items():
         units = PARAMETERS[name].units if name in PARAMETERS else "1"
-        at.append(f"{name} = {value if isinstance(value, str) else engineering(value, units)}")
+        settings.append(
+            f"{name} = {value if isinstance(value, str) else engineering(value, units)}"
+        )
+    case = f" ({', '.join(settings)})" if settings else ""
     lines = {
         "runs": f"{cost.runs:,}",
         "cost": f"about {time(cost.seconds)} of one core, most of it by {cost.slow}",
@@ -102,14 +105,14 @@ def print_estimate(cost: Estimate, workers: int) -> None:
         "memory": f"about {decimal(round(cost.memory))}",
         "disk": f"about {decimal(round(cost.disk))} of the "
         f"{decimal(round(cost.free))} that it may use",
-        "largest run": f"about {time(cost.largest)}" + f" ({', '.join(at)})" * bool(at),
+        "largest run": f"about {time(cost.largest)}{case}",
     }
     if cost.auto:
         default = "auto: pilot runs will determine it; this estimate uses the default"
         lines["discretisation"] = default
     console = Console(soft_wrap=True)
-    for name, words in lines.items():
-        console.print(f"{name:15s}{words}", markup=False, highlight=False)
+    for name, text in lines.items():
+        console.print(f"{name:15s}{text}", markup=False, highlight=False)
     for problem in cost.exceeded():
         console.print(f"exceeds the limit: {problem}", markup=False, highlight=False)
 
@@ -128,16 +131,16 @@ def print_outcomes(outcomes: Iterable[Outcome]) -> None:
     _print_table(("check", "verdict", "passed", "worst error / tolerance", "seconds"), rows)
 
 
-def print_status(name: str, found: Status) -> None:
+def print_status(name: str, status: Status) -> None:
     """Print the progress of a study: its runs, its files, and the process at work."""
-    left = found.runs - found.done
-    print(f"{name}: {found.done:,} of {found.runs:,} runs solved, {left:,} left")
-    if found.failed:
-        print(f"failed: {found.failed:,} lack a requested response")
-    if found.age is not None:
-        print(f"on disk: {decimal(found.size)}, last written {time(found.age)} ago")
-    print(f"at work: {found.holder or 'nobody'}")
-    print(found.written)
+    left = status.runs - status.done
+    print(f"{name}: {status.done:,} of {status.runs:,} runs solved, {left:,} left")
+    if status.failed:
+        print(f"failed: {status.failed:,} lack a requested response")
+    if status.age is not None:
+        print(f"on disk: {decimal(status.size)}, last written {time(status.age)} ago")
+    print(f"at work: {status.holder or 'nobody'}")
+    print(status.written)
 
 
 def print_files(reasons_of: Mapping[Path, str]) -> None:
@@ -149,18 +152,18 @@ def print_files(reasons_of: Mapping[Path, str]) -> None:
     print(f"{files}, {decimal(sum(sizes.values()))}")
 
 
-def print_recommendation(found: xr.Dataset) -> None:
+def print_recommendation(candidates: xr.Dataset) -> None:
     """Print the recommended discretisation and the evidence for it, one row per response.
 
-    found: the dataset of study.adaptive.recommendation.
+    candidates: the dataset of study.adaptive.recommendation.
     """
-    best, tolerance = int(found["recommended"]), f"{100 * found.attrs['tolerance']:g} %"
-    none = f"No discretisation up to {int(found['nodes'].max())} nodes meets {tolerance} for"
-    missed = found["response"].values[(found["asked"] & ~found["reached"]).values]
+    best, tolerance = int(candidates["recommended"]), f"{100 * candidates.attrs['tolerance']:g} %"
+    none = f"No discretisation up to {int(candidates['nodes'].max())} nodes meets {tolerance} for"
+    missed = candidates["response"].values[(candidates["asked"] & ~candidates["reached"]).values]
     if best < 0:
         head = f"{none} any requested response."
     else:
-        chosen = found.isel(candidate=best)
+        chosen = candidates.isel(candidate=best)
         grid = ", ".join(f"{axis} = {chosen[f'candidate_{axis}'].item():g}" for axis in _AXES)
         head = (
             f"The cheapest discretisation for {tolerance} is {grid}; it costs "
@@ -170,42 +173,42 @@ def print_recommendation(found: xr.Dataset) -> None:
             head = f"{none} {', '.join(missed)}. Without them: t{head[1:]}"
     console = Console()
     console.print(head, markup=False)
-    evidence = _evidence(found, best)
+    evidence = _evidence(candidates, best)
     rows = []
-    for name in found["response"].values:
+    for name in candidates["response"].values:
         shares = [float(column.sel(response=name)) for column in evidence]
         texts = [
-            f"{float(f'{100 * one:.2g}'):g} %" if math.isfinite(one) else "no bound"
-            for one in shares
+            f"{float(f'{100 * share:.2g}'):g} %" if math.isfinite(share) else "no bound"
+            for share in shares
         ]
-        own = found.sel(response=name)
-        remark = ("" if own["reached"] else "not reached") if own["asked"] else "not asked"
+        row = candidates.sel(response=name)
+        remark = ("" if row["reached"] else "not reached") if row["asked"] else "not asked"
         rows.append((str(name), *texts, *[""] * (len(_AXES) + 2 - len(texts)), remark))
     _print_table((Column("response", no_wrap=True), "total", *_AXES, "checked", ""), rows)
     console.print(
         "The table gives the largest relative uncertainty over the "
-        f"{found.sizes['case']} corner cases, in total and per axis. The check is the difference "
-        "from the finest level of all axes at once.",
+        f"{candidates.sizes['case']} corner cases, in total and per axis. The check is the "
+        "difference from the finest level of all axes at once.",
         markup=False,
     )
 
 
-def _evidence(found: xr.Dataset, best: int) -> list[xr.DataArray]:
+def _evidence(candidates: xr.Dataset, best: int) -> list[xr.DataArray]:
     """Return columns on (response): the uncertainty, its parts per axis, and the check.
 
     best: the recommended candidate; without one (-1), the least uncertainty of all candidates.
     """
     if best < 0:
-        return [found["candidate_uncertainty"].min("candidate")]
+        return [candidates["candidate_uncertainty"].min("candidate")]
     from impactlab.study.adaptive.recommendation import relative  # late: it loads the solver
 
-    chosen = found.isel(candidate=best)
-    last = found["nodes_value"].isel(nodes=-1, drop=True)
+    chosen = candidates.isel(candidate=best)
+    last = candidates["nodes_value"].isel(nodes=-1, drop=True)
     parts = [
-        found[f"{axis}_uncertainty"].sel({axis: chosen[f"candidate_{axis}"].item()}, drop=True)
+        candidates[f"{axis}_uncertainty"].sel({axis: chosen[f"candidate_{axis}"].item()}, drop=True)
         for axis in _AXES
     ]
-    shares = [relative(part, last).max("case") for part in (*parts, found["check_difference"])]
+    shares = [relative(part, last).max("case") for part in (*parts, candidates["check_difference"])]
     return [chosen["candidate_uncertainty"], *shares]
 
 

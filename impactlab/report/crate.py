@@ -1,4 +1,4 @@
-"""What a folder of results holds and how it was made, as an RO-Crate (version 1.1).
+"""Description of a folder of results and how it was made, as an RO-Crate (version 1.1).
 
 Source: Sefton et al. (2020), RO-Crate Metadata Specification 1.1, doi:10.5281/zenodo.4031327.
 """
@@ -51,8 +51,8 @@ def write_crate(stored: xr.Dataset, folder: Path, figures_folder: Path, report: 
         unfinished.write_bytes(str(attrs["study_text"]).encode())
     named = {study: ("Study file", "")}
     named |= {folder / name: (text, "") for name, text in _FILES.items()}
-    drawn = listed(figures_folder) if (figures_folder / CAPTIONS).exists() else {}
-    for name, entry in drawn.items():
+    captions = listed(figures_folder) if (figures_folder / CAPTIONS).exists() else {}
+    for name, entry in captions.items():
         for file in sorted(figures_folder.glob(f"{name}.*")):
             named[file] = (entry["title"], entry["caption"])
     named[figures_folder / CAPTIONS] = ("Captions of the figures", "")
@@ -64,10 +64,10 @@ def write_crate(stored: xr.Dataset, folder: Path, figures_folder: Path, report: 
         if path.is_file() and path.resolve().is_relative_to(folder.resolve())
     ]
     solved = [study.name, *(name for name in _SOLVED if (folder / name).exists())]
-    made = [each["@id"] for each in files if each["@id"] not in solved]
+    outputs = [entity["@id"] for entity in files if entity["@id"] not in solved]
     actions = [
         _action("solve", "Design and solution of the runs", solved[:1], solved[1:], attrs),
-        _action("report", "Analysis, figures and report", solved[1:], made, {}),
+        _action("report", "Analysis, figures and report", solved[1:], outputs, {}),
     ]
     licence = {
         "@id": "#licence-of-the-results",
@@ -83,8 +83,8 @@ def write_crate(stored: xr.Dataset, folder: Path, figures_folder: Path, report: 
         "description": str(attrs.get("description") or title),
         "datePublished": str(attrs["created"]),
         "license": {"@id": licence["@id"]},
-        "hasPart": [{"@id": each["@id"]} for each in files],
-        "mentions": [{"@id": each["@id"]} for each in actions],
+        "hasPart": [{"@id": entity["@id"]} for entity in files],
+        "mentions": [{"@id": entity["@id"]} for entity in actions],
     }
     metadata = {
         "@id": METADATA,
@@ -101,15 +101,15 @@ def write_crate(stored: xr.Dataset, folder: Path, figures_folder: Path, report: 
 
 
 def _links(names: list[str]) -> Entity | list[Entity]:
-    found = [{"@id": name} for name in names]
-    return found[0] if len(found) == 1 else found
+    links = [{"@id": name} for name in names]
+    return links[0] if len(links) == 1 else links
 
 
 def _file(path: Path, folder: Path, name: str, description: str) -> Entity:
     with path.open("rb") as handle:
         digest = hashlib.file_digest(handle, "sha256").hexdigest()
     kind = mimetypes.guess_type(path.name)[0] or "application/yaml"
-    found = {
+    entity = {
         "@id": path.resolve().relative_to(folder.resolve()).as_posix(),
         "@type": "File",
         "name": name,
@@ -117,22 +117,22 @@ def _file(path: Path, folder: Path, name: str, description: str) -> Entity:
         "contentSize": str(path.stat().st_size),
         "sha256": digest,
     }
-    return found | ({"description": description} if description else {})
+    return entity | ({"description": description} if description else {})
 
 
 def _action(
-    name: str, title: str, used: list[str], made: list[str], attrs: dict[str, Any]
+    name: str, title: str, inputs: list[str], outputs: list[str], attrs: dict[str, Any]
 ) -> Entity:
     """Return a step of the software; attrs: provenance of the runs."""
-    told = {"endTime": "created", "description": "processor"}
+    terms = {"endTime": "created", "description": "processor"}
     return {
         "@id": f"#{name}",
         "@type": "CreateAction",
         "name": title,
         "instrument": {"@id": "#impactlab"},
-        "object": _links(used),
-        "result": _links(made),
-    } | {key: str(attrs[given]) for key, given in told.items() if given in attrs}
+        "object": _links(inputs),
+        "result": _links(outputs),
+    } | {key: str(attrs[source]) for key, source in terms.items() if source in attrs}
 
 
 def _software(attrs: dict[str, Any]) -> list[Entity]:
@@ -145,10 +145,12 @@ def _software(attrs: dict[str, Any]) -> list[Entity]:
         "name": citation["license"],
     }
     authors = []
-    for at, given in enumerate(citation["authors"], 1):
-        person = f"{given.get('given-names', '')} {given.get('family-names', '')}".strip()
-        kind, name = ("Person", person) if person else ("Organization", given["name"])
-        authors.append({"@id": given.get("orcid", f"#author-{at}"), "@type": kind, "name": name})
+    for number, entry in enumerate(citation["authors"], 1):
+        person = f"{entry.get('given-names', '')} {entry.get('family-names', '')}".strip()
+        kind, name = ("Person", person) if person else ("Organization", entry["name"])
+        authors.append(
+            {"@id": entry.get("orcid", f"#author-{number}"), "@type": kind, "name": name}
+        )
     revision = str(attrs.get("source_revision", ""))
     software = {
         "@id": "#impactlab",

@@ -38,22 +38,23 @@ _SHARED = " Of correlated parameters each distance includes what one shares with
 
 def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str]]:
     """Return one entry per limit: its probability, and the parameters that lead beyond it."""
-    found = []
+    entries = []
     for name in limited(runs, analysis):
         text, led = probability(analysis.sel(response=name)), leading(analysis, name)
         response = labels.sentence(labels.response(name))
-        text += f"; runs above it have {led}" * bool(led)
-        found.append((f"{response} above {_limit(runs, analysis, name)}", text))
-    return found
+        if led:
+            text += f"; runs above it have {led}"
+        entries.append((f"{response} above {_limit(runs, analysis, name)}", text))
+    return entries
 
 
-def probability(found: xr.Dataset) -> str:
+def probability(statistics: xr.Dataset) -> str:
     """Return the probability that one response exceeds its limit, with its interval, in words.
 
-    found: the analysis of the response.
+    statistics: the analysis of the response.
     """
-    total, missing, above = (int(np.nan_to_num(found[key])) for key in _COUNTS)
-    low, high = (float(found[f"exceedance_{end}"]) for end in ("low", "high"))
+    total, missing, above = (int(np.nan_to_num(statistics[key])) for key in _COUNTS)
+    low, high = (float(statistics[f"exceedance_{end}"]) for end in ("low", "high"))
     if np.isnan(low):
         return f"unknown, for none of {labels.counted(total, 'draw')} has an answer"
     draws = labels.counted(total, "draw")
@@ -62,7 +63,7 @@ def probability(found: xr.Dataset) -> str:
     if not missing and above == total:
         return f"at least {_percent(low, 1 - low)} (all of {draws})"
     mean, none, every = (
-        _percent(float(found[f"exceedance_{key}"]), high - low)
+        _percent(float(statistics[f"exceedance_{key}"]), high - low)
         for key in ("probability", "if_none", "if_all")
     )
     ends = f"{_percent(low, high - low).removesuffix(' %')} to {_percent(high, high - low)}"
@@ -85,19 +86,23 @@ def _limit(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
 
 def leading(analysis: xr.Dataset, name: str) -> str:
     """Return the parameters that differ most in runs above the limit; "" where none does."""
-    found = analysis.sel(response=name)
-    matters = (found["exceedance_p_value"] < significance(analysis)).values
-    distances = np.where(matters, found["exceedance_distance"].values, 0.0)
-    told = []
-    for at in np.argsort(-distances, kind="stable")[:_NAMED].tolist():
-        if matters[at]:
-            parameter = labels.parameter(str(found["varied_parameter"].values[at]))
-            told.append(f"{_direction(found, at)} {parameter} (distance {distances[at]:.2f})")
-    return labels.listing(told)
+    statistics = analysis.sel(response=name)
+    matters = (statistics["exceedance_p_value"] < significance(analysis)).values
+    distances = np.where(matters, statistics["exceedance_distance"].values, 0.0)
+    differences = []
+    for number in np.argsort(-distances, kind="stable")[:_NAMED].tolist():
+        if matters[number]:
+            parameter = labels.parameter(str(statistics["varied_parameter"].values[number]))
+            differences.append(
+                f"{_direction(statistics, number)} {parameter} (distance {distances[number]:.2f})"
+            )
+    return labels.listing(differences)
 
 
-def _direction(found: xr.Dataset, at: int) -> str:
-    return {1: "larger", -1: "smaller"}.get(int(found["exceedance_direction"][at]), "another")
+def _direction(statistics: xr.Dataset, number: int) -> str:
+    return {1: "larger", -1: "smaller"}.get(
+        int(statistics["exceedance_direction"][number]), "another"
+    )
 
 
 def limit_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
@@ -108,47 +113,54 @@ def limit_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     rows: list[Row] = []
     apart: list[Row] = []
     for name in names:
-        found = analysis.sel(response=name)
-        counts = [Cell(f"{int(np.nan_to_num(found[key])):,}", "number") for key in _COUNTS]
+        statistics = analysis.sel(response=name)
+        counts = [Cell(f"{int(np.nan_to_num(statistics[key])):,}", "number") for key in _COUNTS]
         response = labels.sentence(labels.response(name))
-        text = Cell(probability(found), "number")
+        text = Cell(probability(statistics), "number")
         rows.append([response, _limit(runs, analysis, name), *counts, text])
-        if found["exceedance_distance"].notnull().any():
-            apart.append([response, *_distances(analysis, found)])
+        if statistics["exceedance_distance"].notnull().any():
+            apart.append([response, *_distances(analysis, statistics)])
     parameters = [
-        labels.sentence(labels.parameter(str(each))) for each in analysis["varied_parameter"].values
+        labels.sentence(labels.parameter(str(parameter)))
+        for parameter in analysis["varied_parameter"].values
     ]
     level = access.confidence(analysis)
     head = ["Response", "Limit", "Draws", "Missing", "Above the limit", f"Probability ({level})"]
     tables = [Table("Probability that a response exceeds its limit", head, rows)]
     if apart:
         caption = "Parameters in runs above the limit beside the others"
-        reading = _READING + _SHARED * bool(correlations(runs))
+        reading = _READING + _SHARED if correlations(runs) else _READING
         tables.append(Table(caption, ["Response", *parameters], apart, [reading]))
-    lead = _LEAD.format(even=spread_evenly(runs)) + _MISSING * gaps
-    drawn = [exceedance(name).name for name in names]
-    return [Section("limits", "Limits", lead, tables=tables, figures=drawn)]
+    lead = _LEAD.format(even=spread_evenly(runs))
+    if gaps:
+        lead += _MISSING
+    figures = [exceedance(name).name for name in names]
+    return [Section("limits", "Limits", lead, tables=tables, figures=figures)]
 
 
-def _distances(analysis: xr.Dataset, found: xr.Dataset) -> list[Cell]:
-    matter = (found["exceedance_p_value"] < significance(analysis)).values
+def _distances(analysis: xr.Dataset, statistics: xr.Dataset) -> list[Cell]:
+    matter = (statistics["exceedance_p_value"] < significance(analysis)).values
     return [
-        Cell(f"{distance:.2f}", "number" if matter[at] else "muted", _direction(found, at))
-        for at, distance in enumerate(found["exceedance_distance"].values.tolist())
+        Cell(
+            f"{distance:.2f}",
+            "number" if matter[number] else "muted",
+            _direction(statistics, number),
+        )
+        for number, distance in enumerate(statistics["exceedance_distance"].values.tolist())
     ]
 
 
 def summary(analysis: xr.Dataset, name: str, unit: Display) -> list[Cell]:
     """Return mean, standard deviation and PERCENTILES of a response, with their intervals below."""
-    found, cells = analysis.sel(response=name), []
-    biased = int(found["distribution_verdict"]) == DistributionVerdict.SELECTED
+    statistics, cells = analysis.sel(response=name), []
+    biased = int(statistics["distribution_verdict"]) == DistributionVerdict.SELECTED
     for key in ("mean", "standard_deviation"):
-        value, margin = (float(unit(found[each])) for each in (key, f"{key}_interval"))
+        value, margin = (float(unit(statistics[field])) for field in (key, f"{key}_interval"))
         cells.append(_number(value, f"± {labels.number(margin, 2)}", biased))
-    for at in PERCENTILES.values():
-        one = found.sel(probability=at)
+    for probability in PERCENTILES.values():
+        percentile = statistics.sel(probability=probability)
         value, low, high = (
-            float(unit(one[key])) for key in ("quantile", "quantile_low", "quantile_high")
+            float(unit(percentile[key])) for key in ("quantile", "quantile_low", "quantile_high")
         )
         cells.append(_number(value, _range(low, high), biased))
     return cells
@@ -173,7 +185,7 @@ def remarks(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """Return what the numbers of `summary` are."""
     total, gaps = (analysis[key].max().item() for key in ("number_of_draws", "missing_draws"))
     draws, level = labels.counted(int(total), "independent draw"), access.confidence(analysis)
-    told = (
+    basis = (
         f"Mean, standard deviation and percentiles are those of the {draws} of the sample, below "
         f"them their {level} intervals{spread_evenly(runs)}: by Student's t, by the fourth moment, "
         "and by order statistics."
@@ -186,7 +198,7 @@ def remarks(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     biased = analysis["response"].values[codes.values == DistributionVerdict.SELECTED].tolist()
     warning = f"{labels.listing([labels.response(name) for name in biased])}: "
     warning = labels.sentence(warning + DistributionVerdict.SELECTED.meaning) + "."
-    return [told, *[missing] * bool(gaps), *[warning] * bool(biased)]
+    return [basis, *([missing] if gaps else []), *([warning] if biased else [])]
 
 
 HEADS: Sequence[str] = ("Mean", "Standard deviation", *PERCENTILES)

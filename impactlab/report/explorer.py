@@ -93,7 +93,7 @@ def _positions(lowest: float, highest: float, logarithmic: bool) -> list[float]:
     else:
         least = (highest - lowest) / _POSITIONS
         decade = 10.0 ** math.floor(math.log10(least))
-        step = next(decade * each for each in (1, 2, 5, 10) if decade * each >= least)
+        step = next(decade * factor for factor in (1, 2, 5, 10) if decade * factor >= least)
         inner = [k * step for k in range(math.ceil(lowest / step), math.ceil(highest / step))]
     return sorted({lowest, highest, *(_short(x) for x in inner if lowest < x < highest)})
 
@@ -103,30 +103,32 @@ def _short(value: float) -> float:
     return float(f"{value:.12g}")
 
 
-def _response(found: xr.Dataset, values: xr.DataArray) -> dict[str, Any]:
+def _response(surrogate: xr.Dataset, values: xr.DataArray) -> dict[str, Any]:
     """Return what the page knows of a response; numbers are in its SI unit.
 
     terms: of each its coefficient, and the parameters that it has a polynomial in, by position,
     with the degree. lowest, highest: of the runs.
     """
-    units, name = str(found["response_units"].item()), str(found["response"].item())
-    pairs = zip(found["coefficient"].values.tolist(), found["degree"].values.tolist(), strict=True)
+    units, name = str(surrogate["response_units"].item()), str(surrogate["response"].item())
+    pairs = zip(
+        surrogate["coefficient"].values.tolist(), surrogate["degree"].values.tolist(), strict=True
+    )
     terms = [
-        [coefficient, [[at, degree] for at, degree in enumerate(degrees) if degree]]
+        [coefficient, [[number, degree] for number, degree in enumerate(degrees) if degree]]
         for coefficient, degrees in pairs
         if coefficient
     ]
     return {
         "name": name,
         "label": labels.sentence(labels.response(name)),
-        "meaning": str(found["response_long_name"].item()),
+        "meaning": str(surrogate["response_long_name"].item()),
         "symbol": symbol(units),
         "prefixed": units in PREFIXED,
         "terms": terms,
-        "error": float(found["error"]),
-        "growth": float(found["error_growth"]),
-        "reach": float(found["reach"]),
-        "q2": f"{float(found['q2']):.4f}",
+        "error": float(surrogate["error"]),
+        "growth": float(surrogate["error_growth"]),
+        "reach": float(surrogate["reach"]),
+        "q2": f"{float(surrogate['q2']):.4f}",
         "lowest": float(values.min()),
         "highest": float(values.max()),
     }

@@ -28,26 +28,33 @@ def entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
     verdicts = analysis["compared_verdict"].values
     counted = Counter(verdicts.tolist())
     total = labels.counted(len(verdicts), "comparison")
-    told = [f"{counted[Agreement.COMPATIBLE]} of {total} compatible"]
+    texts = [f"{counted[Agreement.COMPATIBLE]} of {total} compatible"]
     bad = analysis.isel(comparison=np.flatnonzero(verdicts == Agreement.INCOMPATIBLE))
     ratio = abs(bad["compared_difference"] / bad["compared_combined"]).values
-    worst = [_difference(bad.isel(comparison=at)) for at in np.argsort(-ratio, kind="stable")[:3]]
+    worst = [
+        _difference(bad.isel(comparison=number)) for number in np.argsort(-ratio, kind="stable")[:3]
+    ]
     if worst:
         which = "" if len(ratio) <= len(worst) else "the worst of the others: "
-        told.append(which + ", ".join(worst))
-    others = {Agreement.NOT_JUDGED: "not judged", Agreement.OTHER_IMPACT: "of another impact"}
-    told += [f"{counted[each]} {words}" for each, words in others.items() if counted[each]]
+        texts.append(which + ", ".join(worst))
+    excluded = {Agreement.NOT_JUDGED: "not judged", Agreement.OTHER_IMPACT: "of another impact"}
+    texts += [f"{counted[kind]} {text}" for kind, text in excluded.items() if counted[kind]]
     models = all(analysis["compared_simulated"].values)
-    return [("Beside another model" if models else "Beside measurements", "; ".join(told))]
+    return [("Beside another model" if models else "Beside measurements", "; ".join(texts))]
 
 
 def _difference(row: xr.Dataset) -> str:
     """Return by how much the model is off: "peak force +2.5 % (± 0.6, stronge)"."""
-    difference, width = _relative(row, "difference"), _relative(row, "combined")
+    difference, width = _signed(row), _relative(row, "combined")
     case = str(row["compared_case"].item()).replace("_", " ")
     inside = ", ".join(filter(None, (f"± {width.removesuffix(' %')}", case)))
     name = labels.response(str(row["compared_quantity"].item()))
-    return f"{name} {'+' * (float(row['compared_difference']) > 0)}{difference} ({inside})"
+    return f"{name} {difference} ({inside})"
+
+
+def _signed(row: xr.Dataset) -> str:
+    sign = "+" if float(row["compared_difference"]) > 0 else ""
+    return f"{sign}{_relative(row, 'difference')}"
 
 
 def _relative(row: xr.Dataset, key: str) -> str:
@@ -66,16 +73,18 @@ def sections(analysis: xr.Dataset) -> list[Section]:
         return []
     verdicts = analysis["compared_verdict"].values
     order = np.argsort((verdicts - 1) % len(Agreement), kind="stable")  # those that agree last
-    rows = [_row(analysis.isel(comparison=at)) for at in order[:_MOST]]
+    rows = [_row(analysis.isel(comparison=number)) for number in order[:_MOST]]
     head = ["Measured", "Conditions", "Model", "Measured value", "Model's value", "Difference"]
     sources = (analysis[f"compared_{key}"].values.tolist() for key in ("source", "simulated"))
     remarks = [
-        f"Source: {source}" + " (values of another model, not measured)" * bool(simulated)
+        f"Source: {source}{' (values of another model, not measured)' if simulated else ''}"
         for source, simulated in dict(zip(*sources, strict=True)).items()
     ]
     if (left := verdicts.size - _MOST) > 0:
         remarks.append(f"{left} further rows are in analysis.nc.")
-    meanings = [(_verdict(each), each.meaning) for each in Agreement if each in verdicts]
+    meanings = [
+        (_verdict(agreement), agreement.meaning) for agreement in Agreement if agreement in verdicts
+    ]
     caption = "Each measurement beside each model"
     table = Table(caption, [*head, "Verdict"], rows, remarks, meanings)
     return [Section("measurements", "Beside measurements", _LEAD, tables=[table])]
@@ -88,15 +97,13 @@ def _verdict(verdict: Agreement) -> str:
 def _row(row: xr.Dataset) -> Row:
     verdict = list(Agreement)[int(row["compared_verdict"])]
     keys = "quantity", "units", "conditions", "case", "reason"
-    quantity, units, given, case, reason = (str(row[f"compared_{key}"].item()) for key in keys)
+    quantity, units, conditions, case, reason = (str(row[f"compared_{key}"].item()) for key in keys)
     of_numbers = "measured", "uncertainty", "model", "numerical"
     numbers = [row[f"compared_{key}"].item() for key in of_numbers]
     unit = labels.display(xr.DataArray(numbers[:1], name=quantity, attrs={"units": units}))
     measured, uncertainty, model, numerical = unit(numbers).tolist()
-    stated = [_condition(*each) for each in json.loads(given).items()]
-    difference = "–"
-    if np.isfinite(model):
-        difference = "+" * (float(row["compared_difference"]) > 0) + _relative(row, "difference")
+    stated = [_condition(*condition) for condition in json.loads(conditions).items()]
+    difference = _signed(row) if np.isfinite(model) else "–"
     kind = "" if verdict.sound else "warning"
     return [
         Cell(labels.sentence(labels.response(quantity))),

@@ -132,26 +132,26 @@ def _environment(package: str) -> Environment:
     )
 
 
-def described(stored: xr.Dataset, what: str = "runs") -> dict[str, Any]:
-    """Return what every page says of a study; what: the contents of the dataset."""
-    given = {key: str(stored.attrs.get(key, "")) for key in ("study", "description", "study_text")}
-    title = str(stored.attrs.get("title") or given["study"])
-    return given | {"title": title, "provenance": provenance(stored, what)}
+def described(stored: xr.Dataset, contents: str = "runs") -> dict[str, Any]:
+    """Return what every page says of a study; contents: those of the dataset."""
+    attrs = {key: str(stored.attrs.get(key, "")) for key in ("study", "description", "study_text")}
+    title = str(stored.attrs.get("title") or attrs["study"])
+    return attrs | {"title": title, "provenance": provenance(stored, contents)}
 
 
-def provenance(stored: xr.Dataset, what: str = "runs") -> Table:
+def provenance(stored: xr.Dataset, contents: str = "runs") -> Table:
     """Return one row per attribute of provenance that a stored dataset has."""
     shown = {key: str(stored.attrs[key]) for key in _PROVENANCE if key in stored.attrs}
     with suppress(KeyError, ValueError):  # a time that is not ISO stays as it is
         created = datetime.fromisoformat(shown["created"])
         shown["created"] = created.strftime("%Y-%m-%d %H:%M:%S %Z").strip()
     rows: list[Row] = [[_PROVENANCE[key], text] for key, text in shown.items()]
-    return Table(f"Provenance of the {what}", ["What", "Value"], rows)
+    return Table(f"Provenance of the {contents}", ["What", "Value"], rows)
 
 
-def largest(found: xr.Dataset, variable: str, text: Any = labels.percent) -> Cell:
+def largest(results: xr.Dataset, variable: str, text: Any = labels.percent) -> Cell:
     """Return the largest number of a variable as text; a dash where it is not given."""
-    value = float(found[variable].max()) if variable in found else np.nan
+    value = float(results[variable].max()) if variable in results else np.nan
     return Cell("–" if np.isnan(value) else text(value), "number")
 
 
@@ -177,14 +177,14 @@ def pictures(
     if any(entry.get("made_from") != identity(made_from) for entry in entries.values()):
         again = "draw them again with `impactlab figures`"
         raise ValueError(f"{folder}: its figures were drawn from other results: {again}")
-    order = {name: at for at, name in enumerate(placed)} | {leading(entries): -1}
+    order = {name: position for position, name in enumerate(placed)} | {leading(entries): -1}
     names = sorted(entries, key=lambda name: order.get(name, len(order)))
-    found: dict[str, dict[str, Any]] = {}
+    figures: dict[str, dict[str, Any]] = {}
     for number, name in enumerate(names, 1):
         entry, svg = entries[name], svgs[name]
         root = re.search(rb'<svg [^>]*?\bwidth="([\d.]+)pt"', svg)  # as matplotlib writes it
         numbers = folder / f"{name}.csv"
-        found[name] = entry | {
+        figures[name] = entry | {
             "number": number,
             "name": name,
             "alt": f"{entry['title']}. {entry['alt']}".strip(),
@@ -192,7 +192,7 @@ def pictures(
             "width": round(float(root.group(1)) * 96 / 72 * _SCREEN) if root else 0,
             "data": drawn_data(numbers) if numbers.exists() else None,
         }
-    return found
+    return figures
 
 
 def leading(names: Iterable[str]) -> str:

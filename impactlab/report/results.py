@@ -83,12 +83,12 @@ def write_index(results: Path, path: Path) -> None:
                 except (OSError, ValueError):  # no analysis, or that of other runs
                     continue
                 figures = report.with_name("figures")
-                drawn = listed(figures) if (figures / CAPTIONS).exists() else {}
-                name = leading(drawn)  # the figure that answers the study's question
+                captions = listed(figures) if (figures / CAPTIONS).exists() else {}
+                name = leading(captions)  # the figure that answers the study's question
                 entry |= {"study": report.parent.name, "report": address(report)}
                 if (figures / f"{name}.svg").exists():
                     picture = address(figures / f"{name}.svg")
-                    entry |= {"thumbnail": picture, "alt": drawn[name]["title"]}
+                    entry |= {"thumbnail": picture, "alt": captions[name]["title"]}
                 entries.append(entry)
                 break
     claims = results / "paper" / "claims.html"

@@ -84,8 +84,8 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
     elif correlations(runs):
         lead = "There is none, nor an explorer: its terms assume independent parameters."
         yield Section("surrogate", "Surrogate", lead)
-    elif drawn := [name for name in access.varied(runs) if labels.words(runs[name])]:
-        listed = labels.listing([labels.parameter(name) for name in drawn])
+    elif categorical := [name for name in access.varied(runs) if labels.words(runs[name])]:
+        listed = labels.listing([labels.parameter(name) for name in categorical])
         lead = f"There is none, nor an explorer: no polynomial follows words ({listed})."
         yield Section("surrogate", "Surrogate", lead)
 
@@ -94,7 +94,7 @@ def shared(runs: xr.Dataset) -> str:
     """Return a sentence on what correlations mean for the indices; "" where there are none."""
     if not (pairs := correlations(runs)):
         return ""
-    joined = dict.fromkeys(name for one, other, _ in pairs for name in (one, other))
+    joined = dict.fromkeys(name for first, second, _ in pairs for name in (first, second))
     meaning = "the index of each includes what it shares with the others, and indices overlap"
     if runs.attrs.get("method") == "regression":
         meaning = (
@@ -112,8 +112,8 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             "sensitivity",
             "First and total order" if total else "First order",
             "A first-order index is the share of the variance that comes from a parameter alone"
-            + "; a total-order index adds all its interactions" * total
-            + ". Indices in grey are not distinguishable from zero.",
+            f"{'; a total-order index adds all its interactions' if total else ''}"
+            ". Indices in grey are not distinguishable from zero.",
             tables=index_tables(runs, analysis, SOBOL),
             figures=[SOBOL.figure],
         )
@@ -152,31 +152,40 @@ def history_entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
     """Return one entry per history: the parameters that matter over all times, or why none."""
     entries: list[tuple[str, str]] = []
     for history in measures.histories(analysis):
-        found = analysis.sel(history=history)
-        verdict = access.read(found[measures.HISTORY_VERDICT])
-        total, margin = (found[f"generalised_total_order{end}"].values for end in ("", "_interval"))
+        indices = analysis.sel(history=history)
+        verdict = access.read(indices[measures.HISTORY_VERDICT])
+        total, margin = (
+            indices[f"generalised_total_order{end}"].values for end in ("", "_interval")
+        )
         named = [
-            f"{labels.parameter(name)} {share(total[at], margin[at])}"
-            for at, name in enumerate(measures.parameters(analysis))
-            if total[at] > margin[at]
+            f"{labels.parameter(name)} {share(total[number], margin[number])}"
+            for number, name in enumerate(measures.parameters(analysis))
+            if total[number] > margin[number]
         ]
         ranked = np.argsort(-total[total > margin], kind="stable")[:_NAMED]
-        told = [labels.listing([named[at] for at in ranked]) or "no parameter exceeds its interval"]
+        texts = [
+            labels.listing([named[number] for number in ranked])
+            or "no parameter exceeds its interval"
+        ]
         if named and not entries:
-            told[0] += " of the variance"
-        told = told * bool(np.isfinite(total).any()) + [verdict.meaning] * (not verdict.sound)
-        entries.append((f"{labels.sentence(labels.response(history))} over time", "; ".join(told)))
+            texts[0] += " of the variance"
+        if not np.isfinite(total).any():
+            texts = []
+        if not verdict.sound:
+            texts.append(verdict.meaning)
+        entries.append((f"{labels.sentence(labels.response(history))} over time", "; ".join(texts)))
     return entries
 
 
 def _left_out(analysis: xr.Dataset, history: str) -> str:
     """Return a sentence on the base samples left out, and on times that have no index."""
-    found = analysis.sel(history=history)
-    left, times = int(found["base_samples_left_out"]), found["time_verdict"]
+    indices = analysis.sel(history=history)
+    left, times = int(indices["base_samples_left_out"]), indices["time_verdict"]
     alike = int((times == TimeVerdict.CONSTANT).sum())
     name, total = labels.sentence(labels.response(history)), int(analysis.attrs["base_samples"])
     text = f"{name}: {left or 'none'} of {total} base samples left out"
-    text += " because a run of theirs failed" * bool(left)
+    if left:
+        text += " because a run of theirs failed"
     if alike:
         text += f"; no index at {alike} of {times.size} times, at which all runs have one value"
     return f"{text}."
@@ -186,11 +195,14 @@ def _generalised(analysis: xr.Dataset, histories: list[str], measure: Measure) -
     """Return one row per history: the generalised index of each parameter, grey within noise."""
     rows: list[Row] = []
     for history in histories:
-        found, key = analysis.sel(history=history), f"generalised_{measure.name}"
-        name = _judged(history, access.read(found[measures.HISTORY_VERDICT]))
-        cells = (_index(found.isel(parameter=at), key) for at in range(found.sizes["parameter"]))
+        indices, key = analysis.sel(history=history), f"generalised_{measure.name}"
+        name = _judged(history, access.read(indices[measures.HISTORY_VERDICT]))
+        cells = (
+            _index(indices.isel(parameter=number), key)
+            for number in range(indices.sizes["parameter"])
+        )
         rows.append([name, *cells])
-    caption = _caption(f"Generalised Sobol indices, {measure.words}", analysis)
+    caption = _caption(f"Generalised Sobol indices, {measure.label}", analysis)
     meanings = _meanings(analysis, measures.HISTORY_VERDICT)
     return Table(caption, ["History", *_parameters(analysis)], rows, meanings=meanings)
 
@@ -199,14 +211,14 @@ def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
     """Return the section on the surrogate: its error on runs left out, and its indices."""
     rows: list[Row] = []
     for name in analysed(runs, analysis):
-        found = analysis.sel(response=name)
-        q2 = float(found["surrogate_q2"])
+        statistics = analysis.sel(response=name)
+        q2 = float(statistics["surrogate_q2"])
         quality = Cell("undefined", "muted")
         if np.isfinite(q2):
-            low = float(found["surrogate_q2_low"])
+            low = float(statistics["surrogate_q2_low"])
             kind, detail = ("number", "at least") if low >= _GOOD else ("warning", "poor: at least")
             quality = Cell(labels.number(q2, 3), kind, f"{detail} {labels.number(low, 3)}")
-        error = in_units(runs[name], float(found["surrogate_rmse"]))
+        error = in_units(runs[name], float(statistics["surrogate_rmse"]))
         rows.append([named(analysis, name), quality, Cell(error, "number")])
     caption = (
         "The surrogate on runs left out (1: perfect, 0: no better than the mean), with the lower "
@@ -228,7 +240,7 @@ def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
 
 def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """Return one sentence per response and order whose two estimates do not overlap."""
-    found = []
+    sentences = []
     keys = np.array([labels.parameter(key) for key in measures.parameters(analysis)])
     for name in analysed(runs, analysis):
         for order in SOBOL.measures_in(analysis):
@@ -237,12 +249,12 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
             apart = np.abs(sampled.values - fitted.values) > sampled.margins + fitted.margins
             if apart.any():
                 response = labels.sentence(labels.response(name))
-                found.append(
-                    f"{response}: the {order.words.replace(' ', '-')} indices of the runs and of "
+                sentences.append(
+                    f"{response}: the {order.label.replace(' ', '-')} indices of the runs and of "
                     "the surrogate differ by more than their intervals for "
                     f"{labels.listing(keys[apart].tolist())}."
                 )
-    return found
+    return sentences
 
 
 def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
@@ -251,19 +263,21 @@ def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
     rows: list[Row] = []
     for name in analysed(runs, analysis):
         index, row = measures.index(analysis, measure.name, name), [named(analysis, name)]
-        for at, (best, worst) in enumerate(index.ranks):
-            if not np.isfinite(index.values[at]):
+        for number, (best, worst) in enumerate(index.ranks):
+            if not np.isfinite(index.values[number]):
                 row.append(Cell("undefined", "muted"))
-            elif index.significant[at]:
+            elif index.significant[number]:
                 row.append(Cell(str(best) if best == worst else f"{best}–{worst}", "number"))
             else:
-                row.append(Cell("numerical" if index.numerically_lost[at] else "noise", "muted"))
+                row.append(
+                    Cell("numerical" if index.numerically_lost[number] else "noise", "muted")
+                )
         rows.append(row)
-    dummy = " or the dummy" * (f"dummy_{measure.name}" in analysis)
+    dummy = " or the dummy" if f"dummy_{measure.name}" in analysis else ""
     explained = f"noise: not distinguishable from zero{dummy}"
     if f"{measure.name}_numerical" in analysis:
         explained += "; numerical: not distinguishable from its numerical error"
-    caption = f"Ranks of the parameters by {family.title}, {measure.words} ({explained})"
+    caption = f"Ranks of the parameters by {family.title}, {measure.label} ({explained})"
     meanings = _meanings(analysis, "sensitivity_verdict")
     return Table(caption, ["Response", *_parameters(analysis)], rows, meanings=meanings)
 
@@ -287,7 +301,7 @@ def share(value: float, margin: float, error: float = 0.0) -> str:
 
 def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Table]:
     """Return one table per measure: responses by parameters, index ± half-width; the dummy last."""
-    found = []
+    tables = []
     for measure in family.measures_in(analysis):
         dummy = f"dummy_{measure.name}"
         rows: list[Row] = []
@@ -295,16 +309,20 @@ def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list
             index = measures.index(analysis, measure.name, name)
             written = partial(in_units, runs[name]) if family is MORRIS else with_margin
             row = [named(analysis, name)]
-            for at, (value, margin) in enumerate(zip(index.values, index.margins, strict=True)):
+            for number, (value, margin) in enumerate(zip(index.values, index.margins, strict=True)):
                 text = written(value, margin)
-                detail = "below numerical error" if index.numerically_lost[at] else ""
-                row.append(Cell(text, "number" if index.significant[at] else "muted", detail))
+                detail = "below numerical error" if index.numerically_lost[number] else ""
+                row.append(Cell(text, "number" if index.significant[number] else "muted", detail))
             if dummy in analysis:
                 row.append(replace(_index(analysis.sel(response=name), dummy), kind="muted"))
             rows.append(row)
-        head = ["Response", *_parameters(analysis), *["Dummy parameter"] * (dummy in analysis)]
-        found.append(Table(_caption(f"{family.title}, {measure.words}", analysis), head, rows))
-    return found
+        head = [
+            "Response",
+            *_parameters(analysis),
+            *(["Dummy parameter"] if dummy in analysis else []),
+        ]
+        tables.append(Table(_caption(f"{family.title}, {measure.label}", analysis), head, rows))
+    return tables
 
 
 def second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
@@ -313,16 +331,16 @@ def second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     rows: list[Row] = []
     for first, second in combinations(range(len(names)), 2):
         pair = f"{labels.parameter(names[first])} and {labels.parameter(names[second])}"
-        found = analysis.isel(parameter=first, other_parameter=second)
-        cells = (_index(found.sel(response=name), "second_order") for name in shown)
+        indices = analysis.isel(parameter=first, other_parameter=second)
+        cells = (_index(indices.sel(response=name), "second_order") for name in shown)
         rows.append([Cell(labels.sentence(pair)), *cells])
     head = ["Pair", *(labels.sentence(labels.response(name)) for name in shown)]
     return Table(_caption("Second-order Sobol indices", analysis), head, rows)
 
 
-def _index(at: xr.Dataset, name: str) -> Cell:
+def _index(indices: xr.Dataset, name: str) -> Cell:
     """Return one index with its half-width, grey unless it exceeds that."""
-    value, margin = float(at[name]), float(at.get(f"{name}_interval", np.inf))
+    value, margin = float(indices[name]), float(indices.get(f"{name}_interval", np.inf))
     return Cell(with_margin(value, margin), "number" if abs(value) > margin else "muted")
 
 
@@ -336,8 +354,8 @@ def named(analysis: xr.Dataset, response: str) -> Cell:
 
 
 def _judged(name: str, verdict: access.Verdict | None) -> Cell:
-    words = verdict.words if verdict and not verdict.sound else ""
-    return Cell(labels.sentence(labels.response(name)), "warning" if words else "", words)
+    text = verdict.words if verdict and not verdict.sound else ""
+    return Cell(labels.sentence(labels.response(name)), "warning" if text else "", text)
 
 
 def with_margin(value: float, margin: float) -> str:
@@ -377,19 +395,19 @@ def numerical_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     if not based and not any(key in analysis for key in _OF_RESPONSES):
         return []
     occurring = access.occurring(analysis.get("numerical_from", xr.DataArray()))
-    lead = _LEAD + "".join(_BASES.get(each.flag, "") for each in occurring)
+    lead = _LEAD + "".join(_BASES.get(flag.flag, "") for flag in occurring)
     orders = {
-        f"{order.name}_numerical": f"Largest numerical error of the indices of {order.words}"
+        f"{order.name}_numerical": f"Largest numerical error of the indices of {order.label}"
         for order in SOBOL.measures
         if f"{order.name}_numerical" in analysis
     }
     rows: list[Row] = []
     for name in analysed(runs, analysis):
-        found = analysis.sel(response=name)
-        cells = [largest(found, key, _bounded) for key in _OF_RESPONSES]
-        cells += [largest(found, key, labels.number) for key in orders]
+        statistics = analysis.sel(response=name)
+        cells = [largest(statistics, key, _bounded) for key in _OF_RESPONSES]
+        cells += [largest(statistics, key, labels.number) for key in orders]
         basis = access.verdict(analysis, "numerical_from", name)
         rows.append([named(analysis, name), *cells, *([Cell(basis.words)] if basis else [])])
-    head = ["Response", *_OF_RESPONSES.values(), *orders.values(), *["Basis"] * based]
+    head = ["Response", *_OF_RESPONSES.values(), *orders.values(), *(["Basis"] if based else [])]
     table = Table("Numerical uncertainty of each response", head, rows)
     return [Section("numerical", "Numerical uncertainty", lead, tables=[table])]

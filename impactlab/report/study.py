@@ -32,7 +32,7 @@ _FAILED_RUNS = 20  # largest number of failed runs listed one by one
 _EACH = "Each response against each parameter"
 _SCATTER = (
     "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
-    "around a flat line suggest a parameter that matters together with others."
+    "around a flat line show that the parameter matters together with others."
 )
 
 
@@ -53,10 +53,10 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     sections = _sections(runs, analysis)
     answer, note = entries(runs, analysis)
     placed = [name for section in sections for name in section.figures]
-    drawn = pictures(figures_folder, placed, analysis)
-    total, first = len(drawn), next(iter(drawn), "")
-    rest = [name for name in drawn if name not in (*placed, first)]
-    if rest or not drawn:
+    figures = pictures(figures_folder, placed, analysis)
+    total, first = len(figures), next(iter(figures), "")
+    rest = [name for name in figures if name not in (*placed, first)]
+    if rest or not figures:
         lead = "" if rest else "This study stores no data that a figure could show."
         sections.append(Section("figures", "Figures", lead, figures=rest))
     if warnings := list(cautions(runs)):
@@ -73,14 +73,14 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         answers=answer,
         note=note,
         bad=bool(regime_entries(runs)),
-        leading=drawn.pop(first, None),
+        leading=figures.pop(first, None),
         facts=[
-            size + ", none failed" * (not ending),
+            size if ending else f"{size}, none failed",
             labels.counted(len(varied(runs)), "varied parameter"),
             labels.counted(total, "figure"),
         ],
         ending=ending,
-        pictures=drawn,
+        pictures=figures,
         files=os.path.relpath(figures_folder, path.parent),
         sections=sections,
         explorer=write_explorer(runs, analysis, path),
@@ -104,7 +104,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     lead = NO_DISTRIBUTION.get(str(runs.attrs.get("method")), "")
     lead = lead and f"There are no moments and percentiles: {lead}."
     by_word = [_by_word(runs, name) for name in varied(runs) if labels.words(runs[name])]
-    drawn = ("response_distributions", "cumulative_distributions")
+    figures = ("response_distributions", "cumulative_distributions")
     return [
         *distribution.limit_sections(runs, analysis),
         *sensitivity.sections(runs, analysis),
@@ -115,7 +115,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             "Distribution of each response",
             lead,
             tables=[ranges, *by_word],
-            figures=drawn,
+            figures=figures,
         ),
         _outcome(runs, analysis, ["failure_shares", "failure_map"]),
         inputs,
@@ -126,21 +126,21 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
 def _inputs(runs: xr.Dataset) -> Section:
     """Return the section on the parameters: varied ones with values or distribution, fixed ones."""
     groups = dict(zip(names(runs, "varied"), names(runs, "groups"), strict=False))
-    known = {name: attributes(name) for name in (*PARAMETERS, "duration")}
+    metadata = {name: attributes(name) for name in (*PARAMETERS, "duration")}
     changed: list[Row] = []
     for name in varied(runs):
-        values = _values(runs[name].assign_attrs(known.get(name, {}) | runs[name].attrs))
+        values = _values(runs[name].assign_attrs(metadata.get(name, {}) | runs[name].attrs))
         group = [groups[name].replace("_", " ")] if groups else []
         label = labels.sentence(labels.parameter(name))
         changed.append([label, *values, *group, Cell(name, "muted")])
     fixed: list[Row] = []
-    for name, table in known.items():
+    for name, table in metadata.items():
         if name in runs.coords and runs[name].ndim == 0 and name not in varied(runs):
             coordinate = runs[name].assign_attrs(table | runs[name].attrs)
             label = labels.sentence(coordinate.attrs["long_name"])
             text = labels.values(coordinate, [0])[0] + labels.unit(coordinate)
             fixed.append([label, text, Cell(name, "muted")])
-    head = ["Parameter", "Values", "Number", *["Group"] * bool(groups), "Key"]
+    head = ["Parameter", "Values", "Number", *(["Group"] if groups else []), "Key"]
     tables = [Table("Varied parameters", head, changed)] if changed else []
     tables += [_correlations(runs, pairs)] if (pairs := correlations(runs)) else []
     caption = "Parameters that are the same in every run"
@@ -151,30 +151,30 @@ def _inputs(runs: xr.Dataset) -> Section:
 def _correlations(runs: xr.Dataset, pairs: list[tuple[str, str, float]]) -> Table:
     """Return one row per pair of correlated parameters: as stated, and as found in the sample."""
     rows: list[Row] = []
-    for one, other, stated in pairs:
-        found = float(scipy.stats.spearmanr(runs[one].values, runs[other].values).statistic)
-        pair = labels.sentence(f"{labels.parameter(one)} and {labels.parameter(other)}")
-        rows.append([pair, *(Cell(f"{rank:.2f}", "number") for rank in (stated, found))])
+    for first, second, stated in pairs:
+        observed = float(scipy.stats.spearmanr(runs[first].values, runs[second].values).statistic)
+        pair = labels.sentence(f"{labels.parameter(first)} and {labels.parameter(second)}")
+        rows.append([pair, *(Cell(f"{rank:.2f}", "number") for rank in (stated, observed))])
     caption = "Rank correlations, by a Gaussian copula; all other pairs vary independently"
     return Table(caption, ["Parameters", "As stated", "In the sample"], rows)
 
 
 def _values(coordinate: xr.DataArray) -> Row:
     """Return values and their number, or a distribution: "uniform: low 250 MPa, high 450 MPa"."""
-    unit, size, attrs, told = labels.unit(coordinate), coordinate.size, coordinate.attrs, []
+    unit, size, attrs, texts = labels.unit(coordinate), coordinate.size, coordinate.attrs, []
     if listed := labels.words(coordinate):
         weights = np.atleast_1d(attrs["weights"]).tolist()
         for word, weight in zip(listed, weights, strict=True):
-            told.append(f"{word} {labels.percent(weight, 3)}")
+            texts.append(f"{word} {labels.percent(weight, 3)}")
     elif "distribution" in attrs:
         scale = display(coordinate).scale
         for key in (key for key in attrs if key not in ("distribution", "units", "long_name")):
             ratio = "geometric" in key  # without the parameter's unit
             text = labels.number(float(attrs[key]) * (1.0 if ratio else scale))
-            told.append(f"{key.replace('_', ' ')} {text}{'' if ratio else unit}")
-    if told:
+            texts.append(f"{key.replace('_', ' ')} {text}{'' if ratio else unit}")
+    if texts:
         name = str(attrs["distribution"]).replace("_", "-")
-        return [f"{name}: {', '.join(told)}", Cell(f"{size} draws", "number")]
+        return [f"{name}: {', '.join(texts)}", Cell(f"{size} draws", "number")]
     where, between = list(range(size)), ", "
     if size > _GRID_VALUES and coordinate.dtype.kind in "if":
         numbers, between = coordinate.values, " to "
@@ -188,8 +188,10 @@ def _by_word(runs: xr.Dataset, name: str) -> Table:
     for response in responses(runs):
         unit, cells = display(runs[response]), []
         for mean, half in access.means_by_word(runs, name, response).values():
-            margin = f" ± {labels.number(float(unit(half)), 2)}" * bool(np.isfinite(half))
-            cells.append(Cell(labels.number(float(unit(mean)), 3) + margin, "number"))
+            text = labels.number(float(unit(mean)), 3)
+            if np.isfinite(half):
+                text += f" ± {labels.number(float(unit(half)), 2)}"
+            cells.append(Cell(text, "number"))
         rows.append([labels.axis(labels.response(response), unit.symbol), *cells])
     caption = (
         f"Mean of each response by {labels.parameter(name)}, over the runs that have it, with the "
@@ -228,15 +230,17 @@ def _failed_runs(runs: xr.Dataset, failed: xr.DataArray) -> Table:
         listed = labels.listing([labels.response(name) for name in absent])
         listed = "all" if len(absent) == len(responses(runs)) else listed
         rows.append([_place(runs, where), Cell("; ".join(why), "warning"), listed])
-    more = f" (the first {_FAILED_RUNS} of {len(positions)})" * (len(positions) > _FAILED_RUNS)
-    return Table(f"Runs without an answer{more}", ["Run", "Reason", "Missing responses"], rows)
+    caption = "Runs without an answer"
+    if len(positions) > _FAILED_RUNS:
+        caption += f" (the first {_FAILED_RUNS} of {len(positions)})"
+    return Table(caption, ["Run", "Reason", "Missing responses"], rows)
 
 
 def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
     """Return the run's number in a sample and its varied parameters, in words."""
     named = [f"run {where['run']}"] if "run" in where else []
     columns = (runs[name] for name in varied(runs) if runs[name].ndim)
-    named += [labels.setting(one, [where[str(one.dims[0])]]) for one in columns]
+    named += [labels.setting(column, [where[str(column.dims[0])]]) for column in columns]
     return ", ".join(named) or "the only run"
 
 
@@ -256,14 +260,18 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
             details = [""] * 2 if sample else ["in every run"] * 2
             if not sample and array.min() < array.max():
                 ends: Any = (array.argmin(...), array.argmax(...))
-                details = [_place(runs, {dim: int(i) for dim, i in at.items()}) for at in ends]
+                details = [
+                    _place(runs, {dim: int(i) for dim, i in position.items()}) for position in ends
+                ]
             texts = (labels.number(float(number)) for number in numbers)
-            cells = [Cell(text, "number", at) for text, at in zip(texts, details, strict=True)]
+            cells = [
+                Cell(text, "number", place) for text, place in zip(texts, details, strict=True)
+            ]
         if heads:
             cells = [*distribution.summary(analysis, name, unit), *cells]
         doubt = beside(runs, analysis, name)
         detail = "; ".join(filter(None, (runs[name].attrs.get("long_name"), doubt)))
-        response = Cell(labels.sentence(labels.response(name)), "warning" * bool(doubt), detail)
+        response = Cell(labels.sentence(labels.response(name)), "warning" if doubt else "", detail)
         missing = Cell(str(gaps), "warning" if gaps else "number")
         rows.append([response, unit.symbol or "–", *cells, missing])
     head = ["Response", "Unit", *heads, "Smallest", "Largest", "Runs missing"]

@@ -46,7 +46,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
     outcomes = gravest_first(unpacked(findings))
     answer, note = entries(findings)
     size, failed = counts(findings)
-    drawn = pictures(figures_folder, made_from=findings)
+    figures = pictures(figures_folder, made_from=findings)
     summary = Section("summary", "All checks", tables=[_summary(outcomes)])
     write_page(
         "report.html.j2",
@@ -56,10 +56,10 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
         bad=bool(failed),
         answers=answer,
         note=note,
-        leading=drawn.pop(OVERVIEW, None),
+        leading=figures.pop(OVERVIEW, None),
         facts=[size],
         ending=failed,
-        pictures=drawn,
+        pictures=figures,
         sections=[summary, *map(_section, outcomes)],
         command="verify",
         purpose="repeats these checks",
@@ -81,7 +81,8 @@ def _section(outcome: Outcome) -> Section:
         table = Table(f"Passed: {title} ({number})", _HEAD, passed)
         (shown if len(passed) <= _SHORT else folded).append(table)
     bad = outcome.verdict != "passed"
-    title += f": {outcome.verdict}" * bad
+    if bad:
+        title += f": {outcome.verdict}"
     return Section(outcome.name, title, lead, notes, shown, [outcome.name], folded, grave=bad)
 
 
