@@ -16,7 +16,7 @@ from impactlab.types import Floats
 
 FEWEST, SHARE = 5, 0.01
 """Smallest number and share of the draws of a regime; fewer are outliers."""
-_GAP, _BESIDE = 0.5, 3.0
+_GAP, _BESIDE = 0.5, 3.5
 """Smallest gap: in standard deviations, and in widths of FEWEST draws on either side of it."""
 _CHANCE = 0.05
 """Bound on the probability that a distribution with one mode shows such a gap."""
@@ -70,6 +70,13 @@ def cuts(values: Floats) -> Floats:
     A density with one mode is in a gap no lower than it is on one of the two sides. There, m gaps
     of draws are together narrower than the gap over c/m with a probability of at most
     (1 + c/m)^-m, as of exponential variables; each of the gaps is allowed its part of _CHANCE.
+
+    Over 200 seeds of 64 to 2048 draws, 19 responses with one mode (sums, products, steep rises,
+    Ishigami's and Sobol's G function among them) are taken for several regimes in 0.5 % of the
+    samples or fewer, and a root beside an atom at zero in 4 % of those of 64 draws and 1 % of
+    larger ones. A second regime one width of a regime away from the first is detected in 93 % of
+    the samples where it has 26 draws, and one two widths away where it has 13
+    (tests/benchmarks/regimes.py).
     """
     ordered = np.sort(values[np.isfinite(values)])
     fewest = max(FEWEST, int(np.ceil(SHARE * ordered.size)))

@@ -125,8 +125,8 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     """Fit and test a surrogate of one response, (runs,), NaN where missing.
 
     Returns the verdict, and by name the chaos and what `analysis` tells of it; nothing where
-    constant or with too few runs. q2 and its lower end are -inf where the tested values are all
-    equal.
+    constant or with too few runs, and no indices of a response in several regimes. q2 and its lower
+    end are -inf where the tested values are all equal.
     """
     sample, answered = divided.sample, np.isfinite(values)
     tested = answered[divided.tests]
@@ -151,13 +151,14 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     found = {"chaos": chaos, "q2": q2, "q2_low": low, "rmse": rmse, "runs": rows.size}
     found |= ErrorModel.of(leverage(chaos, divided.inputs(tests)), errors).variables()
     found["held_out"] = predicted
-    found |= indices(chaos, sample.memberships, pull, missed, sample.confidence)
+    if not (regimes := of_sample(sample, values).size):
+        found |= indices(chaos, sample.memberships, pull, missed, sample.confidence)
     levels, most = distinct(known)
     if known.size < values.size:
         return SurrogateVerdict.FAILED_RUNS, found
     if most >= MOSTLY * known.size:
         return SurrogateVerdict.MOSTLY_CONSTANT, found
-    if levels <= min(FEW, known.size // 10) or of_sample(sample, values).size:
+    if levels <= min(FEW, known.size // 10) or regimes:
         return SurrogateVerdict.JUMPS, found
     return SurrogateVerdict.USABLE if low >= GOOD else SurrogateVerdict.POOR, found
 

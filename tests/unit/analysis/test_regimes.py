@@ -30,6 +30,7 @@ ONE_REGIME: dict[str, Draw] = {
     "cauchy": lambda rng, size: rng.standard_cauchy(size),
     "arcsine": lambda rng, size: np.sin(2 * np.pi * rng.random(size)),
     "sigmoid": lambda rng, size: 1 / (1 + np.exp(-20 * (rng.random(size) - 0.5))),
+    "root": lambda rng, size: np.sqrt(np.maximum(rng.random(size) - 0.3, 0)),
     "outliers": lambda rng, size: np.append(rng.normal(size=size - 4), 50 + np.arange(4)),
     "counts": lambda rng, size: rng.poisson(1.0, size),
 }
@@ -99,8 +100,9 @@ def test_the_answer_tells_regimes_first_and_gives_no_indices(runs: xr.Dataset) -
     codes = analysis["sensitivity_verdict"].values
     assert flags[codes[0]] == "several_regimes"
     assert flags[codes[1]] != "several_regimes"
-    assert np.isnan(analysis["pawn"][0]).all()
-    assert np.isfinite(analysis["pawn"][1]).all()
+    for name in ("pawn", "surrogate_total_order"):
+        assert np.isnan(analysis[name][0]).all()
+        assert np.isfinite(analysis[name][1]).all()
     surrogates = analysis["surrogate_verdict"]
     assert surrogates.attrs["flag_meanings"].split()[int(surrogates[0])] == "jumps"
     first, second = answers(runs, analysis)
