@@ -29,6 +29,8 @@ CREDIBLE_ORDERS = (0.5, 3.0)
 HIGHEST_RELIABLE = 2.1
 """Order from which on convergence is too fast to be more than chance (Eca and Hoekstra)."""
 SAFETY_CREDIBLE, SAFETY_DOUBTFUL = 1.25, 3.0
+SAME_ORDER = 0.1
+"""Difference of two orders up to which one confirms the other."""
 
 
 class Behaviour(Verdict):
@@ -108,6 +110,12 @@ class Estimate:
         curvature = (slopes[1] - slopes[0]) / (r21 * r32 - 1.0)
         return max(self.error, abs(slopes[0] - r21 * curvature))
 
+    @property
+    def first_order_error(self) -> float:
+        """The error of f1 at first order, by its difference to f2 or to f3, the larger."""
+        (f1, f2, f3), (r21, r32) = self.values, self.ratios
+        return max(abs(f2 - f1) / (r21 - 1.0), abs(f3 - f1) / (r21 * r32 - 1.0))
+
     def gci(self, safety: float) -> float:
         """Return the relative GCI of the finest grid; infinite where the finest value is zero."""
         return relative(safety * self.error, self.values[0])
@@ -169,6 +177,19 @@ def safety(triples: list[Estimate]) -> float:
     credible = all(triple.credible for triple in triples)
     reliable = credible and triples[0].order < HIGHEST_RELIABLE
     return SAFETY_CREDIBLE if reliable else SAFETY_DOUBTFUL
+
+
+def confirmed(triples: list[Estimate]) -> bool:
+    """Return True if more than chance supports the order of the three finest grids (the first).
+
+    The next three grids show the same order, or, on three grids in all, it is the formal one.
+    """
+    finest, *coarser = triples
+    if not coarser:
+        return finest.credible and abs(finest.order - FORMAL_ORDER) <= SAME_ORDER
+    following = coarser[0]
+    both = finest.credible and following.credible
+    return both and abs(finest.order - following.order) <= SAME_ORDER
 
 
 def observed_order(change: float, r21: float, r32: float) -> float:

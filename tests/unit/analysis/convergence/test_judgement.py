@@ -30,8 +30,11 @@ def test_every_grid_of_a_converging_sequence_holds_the_limit(
     if grids > 2 or order >= 1:  # of two grids the first order is assumed, with a factor of 3
         assert (amounts >= errors).all()
     if order <= 2 and grids > 2:
-        # an order of 1.5 may be that of orders 1 and 2 together
-        assert (amounts <= (1.7 if order == 1.5 else 1.5) * errors).all()
+        # an order of 1.5 may be that of orders 1 and 2 together; three grids confirm order 2 alone
+        most = 1.7 if order == 1.5 else 1.5
+        if grids == 3 and order < 2:
+            most = 3.0 * (4.0**order - 1.0) / 3.0 + 1e-9 if order >= 1 else 1.6
+        assert (amounts <= most * errors).all()
 
 
 @pytest.mark.parametrize(
@@ -64,13 +67,20 @@ def test_two_and_three_grids_by_hand() -> None:
 
 
 def test_nasa_table() -> None:
-    """GCI of the finest 0.1031 %; a parabola through the three grids meets zero further off."""
+    """GCI of the finest 0.1031 %; order 1.79 on three grids, which may be that of noise."""
     values = [0.97050, 0.96854, 0.96178]
-    amounts, _ = numerical_uncertainty(values, [1.0, 2.0, 4.0])
-    parabola = np.polyval(np.polyfit([1.0, 2.0, 4.0], values, 2), 0.0)
-    assert amounts[0] == pytest.approx(1.25 * (parabola - 0.97050), rel=1e-9)
-    assert 0.001031 < amounts[0] / 0.97050 < 0.00131
+    found = judge(np.array(values), H[:3])
+    assert found.gci == pytest.approx(0.001031, rel=1e-3)
+    amounts, _ = numerical_uncertainty(values, H[:3])
+    assert amounts[0] == pytest.approx(3 * (0.97050 - 0.96178) / 3)
     assert amounts[1] == pytest.approx(amounts[0] + 0.00196)
+
+
+def test_three_grids_that_agree_leave_nothing_to_the_fit() -> None:
+    """A count that differs on the coarsest grid alone: its verdict is sound, so is its number."""
+    found = judge(np.array([4.0, 4.0, 4.0, 3.0, 3.0]), H)
+    assert found.verdict is AxisVerdict.AT_ROUND_OFF
+    assert found.uncertainty <= 1e-9
 
 
 def test_a_slow_drift_is_bounded_by_its_own_order() -> None:
@@ -104,6 +114,8 @@ FAMILIES = {
     "order 1": lambda h, u, noise: h,
     "order 3": lambda h, u, noise: h**3,
     "order 2 under noise": lambda h, u, noise: h**2 + u * noise,
+    "order 1 under noise": lambda h, u, noise: h + u * noise,
+    "noise": lambda h, u, noise: noise,
 }
 
 
@@ -112,17 +124,17 @@ FAMILIES = {
     ("ratio", "grids"), [(1.1, 4), (1.2, 3), (1.2, 6), (2**0.5, 3), (2**0.5, 5), (2.0, 3), (2.0, 4)]
 )
 def test_what_is_sound_holds_the_limit(family: str, ratio: float, grids: int) -> None:
-    """The errors are 0.01 to 3 %; the noise is at most the finest error."""
+    """The errors are 0.01 to 3 %; under noise 92 % or more hold, less two standard errors."""
     random, h, held = np.random.default_rng(3), ratio ** np.arange(grids), []
-    for _ in range(60):
+    for _ in range(400 if "noise" in family else 60):
         errors = FAMILIES[family](h, random.uniform(), random.normal(size=grids))
         errors = errors * 10 ** random.uniform(-4, -1.5) / abs(errors[:2]).mean()
         found = judge(1 + errors, h)
         if found.verdict.sound:
             held.append(found.uncertainty * (1 + 1e-9) >= abs(errors[0] / (1 + errors[0])))
-    assert sum(held) >= (0.9 if "noise" in family else 1.0) * len(held)
+    assert sum(held) >= (0.88 if "noise" in family else 1.0) * len(held)
     if ratio == 2 and family == "order 2 under noise":
-        assert len(held) > 40
+        assert len(held) > 200
 
 
 @pytest.mark.parametrize(
