@@ -288,7 +288,8 @@ class Study:
         """
         from impactlab.study.estimate import estimate
 
-        return estimate(self.declared, self.folder, workers)
+        declared = steps.resolved(self.declared, self.folder) or self.declared
+        return estimate(declared, self.folder, workers)
 
     def status(self) -> Status | None:
         """Return the progress of the runs.

@@ -23,6 +23,8 @@ import xarray as xr
 from netCDF4 import Dataset, set_chunk_cache
 from rich.filesize import decimal
 
+from impactlab import wings
+
 KINDS = {
     ".nc": "netCDF",
     ".html": "HTML",
@@ -90,10 +92,8 @@ CONTENTS = {
     "findings": "impactlab verify",
     "calibration": "impactlab calibrate",
     "impact": "impactlab simulate",
-    "witness": "impactlab witness",
-    "beams": "impactlab witness",
     "figure": "impactlab figures",
-}
+} | wings.contents()
 """What a dataset's file may hold, and the command that makes it."""
 _CACHE = 1_000_000
 """Bytes per variable that HDF5 holds until a file is closed (64 MB by default): chunks are written

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from impactlab import wings
 from impactlab.duration import too_short
 from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import SOLID, Impact
+from impactlab.model.impact import Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
 from impactlab.model.plausibility import (
     ImplausibleWarning,
@@ -421,11 +422,9 @@ def _table(
     impact: Impact, discretisation: Discretisation, duration: float, runs: int
 ) -> np.ndarray[Any, Any]:
     """Return the records of as many runs as the impact's columns are long, or one for all."""
-    if np.any(np.equal(impact.beam_model, SOLID)):
-        raise ValueError(
-            f"beam_model = {SOLID!r}: is no model of the kernels: use `impactlab witness`, "
-            "impactlab.fem3d.solver.solve, or a study of the method grid"
-        )
+    for model in wings.among(impact.beam_model):
+        reason = f"is no model of the kernels: {model.advice}"
+        raise ValueError(f"beam_model = {model.name!r}: {reason}")
     discretisation = discretisation.resolved(np.unique(impact.beam_model).tolist())
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
     values["sphere_mass"] = impact.sphere.total_mass

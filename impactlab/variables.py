@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from impactlab import wings
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import outputs
 from impactlab.solver.contact import CONTACT_LAWS
@@ -179,9 +180,12 @@ _AXES = "impactlab.analysis.convergence.axes:"
 ANALYSES: dict[str, Analysis] = {
     "convergence_in_nodes": Analysis(f"{_AXES}NODES", *_grid(3, "nodes")),
     "convergence_in_time_step": Analysis(f"{_AXES}TIME_STEP", *_grid(3, "courant")),
-    "convergence_in_element_size": Analysis(
-        f"{_AXES}ELEMENT_SIZE", *_grid(3, "element_size", "elements_per_radius")
-    ),
+    **{
+        f"convergence_in_{model.axis}": Analysis(
+            model.references["axis"], *_grid(3, *(size.name for size in model.sizes))
+        )
+        for model in wings.models().values()
+    },
     "convergence_in_points": Analysis("impactlab.analysis.convergence.points", *_grid(2, "points")),
     "sensitivity": Analysis(
         "impactlab.analysis.sensitivity",
@@ -206,41 +210,19 @@ ANALYSES: dict[str, Analysis] = {
 }
 """The registry of analyses, by the names that study files have for them."""
 
-UNLIKE: dict[str, str] = dict.fromkeys(
-    ("peak_plastic_strain", "plastic_zone_length", "plastic_dissipation"),
-    "with the contact in 3-D, of bending alone in the beam models",
-) | {"energy_error": "of each model's own balance"}
-"""Responses that are not the same quantity in the 3-D model and in those of the beam, and why."""
-
 
 def _table(*entries: Variable) -> dict[str, Variable]:
     return {entry.name: entry for entry in entries}
 
 
-WITNESS = _table(
-    Variable(
-        "plastic_zone_radius",
-        (),
-        "m",
-        "distance from the centre of the impact to which the struck surface has a PEEQ above 0.2 %",
-        comment="of the 3-D model alone: NaN for models of the beam",
-    ),
-    Variable(
-        "plastic_zone_depth",
-        (),
-        "m",
-        "depth below the centre of the impact to which the beam has a PEEQ above 0.2 %",
-        comment="of the 3-D model alone: NaN for models of the beam",
-    ),
-    Variable(
-        "processor_time",
-        (),
-        "s",
-        "processor time of the run, meshing included",
-        comment="of the 3-D model alone: NaN for models of the beam; differs from run to run",
-    ),
+OF_WINGS = _table(
+    *(
+        Variable(name, (), units, long_name, comment=comment)
+        for model in wings.models().values()
+        for name, units, long_name, comment in model.variables
+    )
 )
-"""Variables of runs of the 3-D model other than the responses, by name."""
+"""What models of wings answer beside the responses, by name."""
 HISTORIES = _table(
     Variable("contact_force", ("time",), "N", "contact force"),
     Variable("midspan_deflection", ("time",), "m", "deflection of the beam at mid-span"),
@@ -267,7 +249,7 @@ COORDINATES = _table(
     Variable("duration", (), "s", "simulated time"),
     Variable("run", ("run",), "1", "number of the run"),
 )
-VARIABLES = RESPONSES | WITNESS | HISTORIES | PROFILES | COORDINATES
+VARIABLES = RESPONSES | OF_WINGS | HISTORIES | PROFILES | COORDINATES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
 

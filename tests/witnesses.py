@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.convergence import axes
+from impactlab.fem3d.convergence import ELEMENT_SIZE
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
@@ -38,7 +39,7 @@ def _runs_of(first: xr.DataArray, name: str) -> xr.Dataset:
 def analysed(runs: xr.Dataset) -> xr.Dataset:
     """Return both convergence studies of the runs."""
     return xr.merge(
-        [axes.NODES.analysis(runs), axes.ELEMENT_SIZE.analysis(runs)], join="exact", compat="equals"
+        [axes.NODES.analysis(runs), ELEMENT_SIZE.analysis(runs)], join="exact", compat="equals"
     )
 
 

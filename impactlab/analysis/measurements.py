@@ -17,19 +17,12 @@ import xarray as xr
 
 from impactlab.analysis.responses import usable
 from impactlab.analysis.verdicts import Verdict, flagged
+from impactlab.model.parameters import REFINEMENTS
 from impactlab.variables import FAILED, MARKED, reasons
 
 COVERAGE = 2.0
 """Coverage factor of every expanded uncertainty in datasets: about 95 % of a normal error."""
 _SAME = 1e-6  # relative difference up to which two conditions are the same
-_AXES = {
-    "nodes": ("nodes", True),
-    "points": ("points", True),
-    "courant": ("time_step", False),
-    "element_size": ("element_size", False),
-    "elements_per_radius": ("element_size", True),
-}
-"""Refined parameters: prefix of their variables in the analysis; True where more is finer."""
 
 
 @dataclass(frozen=True)
@@ -189,17 +182,17 @@ def same(given: Any, wanted: Any) -> bool:
 
 def _finest(array: xr.DataArray) -> xr.DataArray:
     """Return the values on the finest grid."""
-    for dim, (_, more) in _AXES.items():
+    for dim, refinement in REFINEMENTS.items():
         if dim in array.dims:
-            order = np.argsort(array[dim].values)
-            array = array.isel({dim: int(order[-1] if more else order[0])}, drop=True)
+            finest = refinement.finest_first(array[dim].values)[0]
+            array = array.isel({dim: int(finest)}, drop=True)
     return array
 
 
 def _numerical(analysis: xr.Dataset, name: str, runs: xr.Dataset) -> xr.DataArray:
     """Return the relative numerical uncertainty on the finest grid; NaN where nothing bounds it."""
     total, judged = xr.DataArray(0.0), False
-    for dim, (axis, _) in _AXES.items():
+    for dim, (axis, _) in REFINEMENTS.items():
         if runs.sizes.get(dim, 1) == 1:
             continue
         if f"{axis}_uncertainty" not in analysis:

@@ -33,7 +33,7 @@ _COMMANDS = {
     "index": "impactlab.cli.results:index",
     "clean": "impactlab.cli.studies:clean",
     "compile": "impactlab.cli.simulate:compile_kernels",
-} | wings.COMMANDS
+} | wings.commands()
 """Module and function by name, in the order of the help."""
 _HELP = {"help_option_names": ["-h", "--help"]}
 

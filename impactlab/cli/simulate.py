@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import warnings
 from pathlib import Path
-from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -112,8 +111,9 @@ def _checked(base: str, values: dict[str, Value]) -> tuple[Impact, Discretisatio
 
 
 def compile_kernels(
-    fem3d: Annotated[
-        bool, typer.Option("--fem3d", help="Compile those of the 3-D model, too.")
+    further: Annotated[
+        bool,
+        typer.Option("--wings", help="Compile those of the wings, such as the 3-D model, too."),
     ] = False,
 ) -> None:
     """Compile the kernels of the beam models into their cache.
@@ -123,6 +123,7 @@ def compile_kernels(
     """
     from impactlab.simulate import compile_kernels
 
-    for compiles in (compile_kernels, *[resolve_name(wings.COMPILE)] * fem3d):
+    models = wings.models().values() if further else ()
+    for compiles in (compile_kernels, *(model.part("compile") for model in models)):
         folder = compiles()
         print(f"Compiled kernels: {folder}" if folder else "Compiled kernels cannot be kept.")

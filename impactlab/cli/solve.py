@@ -134,7 +134,7 @@ def run(
     study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
     path = output or steps.results_folder(study.name) / "runs.nc"
     if dry_run:
-        cost = estimate(study, path.parent, workers)
+        cost = estimate(steps.resolved(study, path.parent) or study, path.parent, workers)
         for problem in cost.implausible:
             logging.getLogger("impactlab").warning("%s", problem)
         print_estimate(cost, workers)

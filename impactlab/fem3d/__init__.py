@@ -1,4 +1,4 @@
 """The 3-D finite-element model of the impact: solver, decks, Kratos, studies, figures, report.
 
-A wing: the core never imports it, and finds it in impactlab.wings.
+A wing: the core never imports it, and reads in wing.py what it adds.
 """

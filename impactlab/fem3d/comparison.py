@@ -20,13 +20,14 @@ from impactlab.fem3d.figures.run import draw_witness
 from impactlab.fem3d.plan import MODELS, Plan
 from impactlab.fem3d.solver import solve_on
 from impactlab.fem3d.solver.march import Progress
+from impactlab.fem3d.wing import SOLID, UNLIKE
 from impactlab.figures import labels
 from impactlab.figures.labels import display
 from impactlab.files import opened, replaced, write_netcdf
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import SOLID, Impact
+from impactlab.model.impact import Impact
 from impactlab.simulate import run_dataset
-from impactlab.variables import RESPONSES, UNLIKE, attributes, reasons, status_bits
+from impactlab.variables import RESPONSES, attributes, reasons, status_bits
 
 _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_because")
 

@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 
 from impactlab.fem3d.figures import witness
+from impactlab.fem3d.wing import UNLIKE
 from impactlab.figures import labels
 from impactlab.figures.access import responses, usable
 from impactlab.figures.labels import Display, display
 from impactlab.report.page import Cell, Section, Table
-from impactlab.variables import UNLIKE
 
 _LEAD = (
     "Each model on its finest grid, with its numerical uncertainty (± of the value itself; none "

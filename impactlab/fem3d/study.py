@@ -26,11 +26,12 @@ from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.jit import COMPILER
 from impactlab.fem3d.solver.responses import plastic_reach
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
+from impactlab.fem3d.wing import SIZES, SOLID, VARIABLES
 from impactlab.model import cost
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import SOLID, Impact, paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import with_values
 from impactlab.simulate import case_table
 from impactlab.simulate import solve as solve_cases
@@ -40,7 +41,7 @@ from impactlab.solver.types import CASE
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.solvers import flattened, impact, run_shape
 from impactlab.study.store import OutputSpec
-from impactlab.variables import FAILURES, HISTORIES, RESPONSES, WITNESS, described
+from impactlab.variables import FAILURES, HISTORIES, RESPONSES, described
 
 log = logging.getLogger(__name__)
 
@@ -51,6 +52,7 @@ _BEAM_MODELS_ONLY = (
     *("nodes", "points", "rule", "scheme", "courant"),
 )
 """Fields that the 3-D FE model does not use."""
+_USUAL_SIZE = 1e-3  # of elements, in m, that saves time
 _STEPS = 10_001  # samples of a history until it has the study's times: closer than the time steps
 
 
@@ -78,7 +80,7 @@ def table(
     found["beam_model"][solid] = SOLID_MODEL
     for name in _BEAM_MODELS_ONLY:
         found[name][solid] = 0
-    for name in ("element_size", "elements_per_radius"):
+    for name in SIZES:
         values = varied.get(name, [getattr(grid, name)])
         if not any(value is None for value in values):
             break
@@ -114,6 +116,14 @@ def work(cases: Array) -> Array:
 def memory(cases: Array) -> Array:
     """Return the estimated memory of each run in bytes."""
     return _priced(cases, cost.memory, lambda run: run.memory_bytes)
+
+
+def usual(case: Array, duration: float) -> Array:
+    """Return the record of the usual run that a record is compared with: 3-D beside 3-D."""
+    impact = paper_impact()
+    if is_solid(case).all():
+        impact = replace(impact, beam_model=SOLID)
+    return table(impact, Discretisation(element_size=_USUAL_SIZE), duration=duration, varied={})
 
 
 def _priced(
@@ -191,7 +201,7 @@ def solve(cases: Array, form: OutputSpec) -> Columns:
         missing = np.nan if values.dtype.kind == "f" else 0
         columns[name] = np.full((cases.size, *values.shape[1:]), missing, dtype=values.dtype)
         columns[name][~solid] = values
-    columns |= {name: np.full(cases.size, np.nan) for name in WITNESS}
+    columns |= {name: np.full(cases.size, np.nan) for name in VARIABLES}
     for at in np.flatnonzero(solid):
         for name, value in solve_one(cases[at], form.samples).items():
             columns[name][at] = value
@@ -201,14 +211,14 @@ def solve(cases: Array, form: OutputSpec) -> Columns:
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """Return the answers of a design's runs, in its order, with labels and provenance."""
     dims, shape = run_shape(design)
-    own = {name: (dims, answers[name].reshape(shape)) for name in WITNESS}
+    own = {name: (dims, answers[name].reshape(shape)) for name in VARIABLES}
     return described(impact.labelled(design, answers).assign(own))
 
 
 SOLVER = replace(
     impact.SOLVER,
     version=hashlib.sha256(f"{SOURCES_HASH} {COMPILER.sources_hash}".encode()).hexdigest(),
-    columns=lambda design: (*impact.columns(design), *WITNESS),
+    columns=lambda design: (*impact.columns(design), *VARIABLES),
     cases=cases,
     cost=work,
     solve=solve,

@@ -33,7 +33,6 @@ ANSWERS = (
     grids.parameter_effects,
     convergence.nodes_convergence,
     convergence.time_step_convergence,
-    convergence.element_size_convergence,
     convergence.points_convergence,
     convergence.convergence_cost,
     distributions.response_distributions,
@@ -59,8 +58,9 @@ CATALOGUE = {figure.name: figure for figure in (*ANSWERS, *INDICES)}
 
 def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Figure]:
     """Return the figures that apply to a study, by name, in the order of the report."""
-    of_wings: dict[str, Figure] = wings.added("figures", runs) or {}
+    further = wings.among(runs.coords.get("beam_model", ""))
+    of_wings = (figure for model in further for figure in model.part("figures").values())
     scatters = map(samples.scatter, access.responses(runs))
     beyond = [distributions.exceedance(name) for name in limits(runs) if name in runs]
-    everything = (*of_wings.values(), *beyond, *ANSWERS, *scatters, *INDICES)
+    everything = (*of_wings, *beyond, *ANSWERS, *scatters, *INDICES)
     return {figure.name: figure for figure in everything if figure.applies(runs, analysis)}

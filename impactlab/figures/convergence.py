@@ -20,15 +20,14 @@ from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.needs import needed
 from impactlab.model.cost import node_steps
-from impactlab.model.impact import SOLID
-from impactlab.model.parameters import ELEMENTS
+from impactlab.model.parameters import REFINEMENTS
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.types import Floats
 
 _DIFFERENCE = "Relative difference (–)"
 _FEWEST = 3
 _NAMED = 3  # largest number of cases per response that a caption names
-_CAPTION = (
+CAPTION = (
     "Difference to the limit, relative to it: Richardson's value, or where there is none that of "
     "the least-squares fit, or else the finest value. Thin dashes: the order p of that limit (in "
     "brackets where it is assumed, not observed). The bar at the finest value reaches up to its "
@@ -94,7 +93,7 @@ _POINTS = Refined("points", "points", ("rule", "velocity"), most=6)
 _COST = Refined("nodes", "nodes", ("scheme", "courant", "velocity"), most=6)
 
 
-@record.figure("Convergence in nodes", _CAPTION, _NODES.applies, _NODES.sentences)
+@record.figure("Convergence in nodes", CAPTION, _NODES.applies, _NODES.sentences)
 def nodes_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw against the spacing of the nodes, over the span where that is varied."""
     spacing, label = 1.0 / (runs["nodes"].values - 1.0), "Spacing of the nodes over the span (–)"
@@ -102,56 +101,22 @@ def nodes_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         metres = runs["beam_span"].values * spacing
         unit = display(xr.DataArray(metres, attrs={"units": "m"}, name="spacing"))
         spacing, label = unit(metres), labels.axis("spacing of the nodes", unit.symbol)
-    return _draw(runs, analysis, _NODES, spacing, label)
+    return draw(runs, analysis, _NODES, spacing, label)
 
 
 @record.figure(
     "Convergence in the time step",
-    f"The nodes of a curve stay the same: its limit is the answer of these nodes. {_CAPTION}",
+    f"The nodes of a curve stay the same: its limit is the answer of these nodes. {CAPTION}",
     _TIME_STEP.applies,
     _TIME_STEP.sentences,
 )
 def time_step_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw against the Courant number."""
     label = labels.axis(labels.parameter("courant"), "")
-    return _draw(runs, analysis, _TIME_STEP, runs["courant"].values.astype(float), label)
+    return draw(runs, analysis, _TIME_STEP, runs["courant"].values.astype(float), label)
 
 
-def _elements(runs: xr.Dataset) -> Refined:
-    dim = next((name for name in ELEMENTS if name in runs.dims), ELEMENTS[0])
-    return Refined("element_size", dim, ("velocity", "beam_yield_stress"))
-
-
-def _solid(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the runs of the 3-D model, which do not depend on the nodes."""
-    if "beam_model" in dataset.dims:
-        dataset = dataset.sel(beam_model=SOLID)
-    return dataset.isel(nodes=0) if "nodes" in dataset.dims else dataset
-
-
-@record.figure(
-    "Convergence in the size of the solid elements",
-    "Three-dimensional model alone; elements beyond the contact keep their largest size. "
-    f"{_CAPTION}",
-    lambda runs, analysis: (
-        _elements(runs).applies(runs, analysis) and SOLID in runs["beam_model"].values
-    ),
-    lambda runs, analysis: _elements(runs).sentences(_solid(runs), _solid(analysis)),
-)
-def element_size_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
-    """Draw against the size of the elements, or over the radius that the contact is to have."""
-    axis = _elements(runs)
-    values = runs[axis.dim].values
-    if axis.dim == "element_size":
-        unit = display(runs[axis.dim])
-        sizes, label = unit(values), labels.axis("element size", unit.symbol)
-    else:
-        sizes = np.round(100.0 / values, 1)
-        label = labels.axis("element size over expected contact radius", "%")
-    return _draw(_solid(runs), _solid(analysis), axis, sizes, label)
-
-
-def _draw(
+def draw(
     runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, spacing: Floats, label: str
 ) -> Figure:
     """Draw a panel per response over the spacing of the runs, in the unit of the label."""
@@ -245,18 +210,13 @@ def _relative_difference(
 ) -> xr.DataArray:
     """Return |f - f0|/|f0| on (axis, ...), NaN where the limit f0 is 0."""
     values = usable(runs, name)
-    # without a limit the value of most nodes, or of the smallest courant or element size
-    reference = values.isel({axis.dim: _finest(runs, axis.dim)}, drop=True)
+    finest = REFINEMENTS[axis.dim].finest_first(runs[axis.dim].values)[0]
+    reference = values.isel({axis.dim: int(finest)}, drop=True)  # without a limit
     for kind in ("fit_extrapolated", "extrapolated"):
         limit = _of(analysis, f"{axis.name}_{kind}", name)
         reference = limit.where(np.isfinite(limit), reference)
     ratio = abs(values - reference) / abs(reference).where(reference != 0)
     return ratio.where((values != 0) | (reference != 0), 0.0).transpose(axis.dim, ...)
-
-
-def _finest(runs: xr.Dataset, dim: str) -> int:
-    refined = runs[dim].values
-    return int(np.argmin(refined) if dim in ("courant", "element_size") else np.argmax(refined))
 
 
 def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray:

@@ -13,14 +13,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from impactlab import wings
 from impactlab.analysis.measurements import COVERAGE, Agreement
 from impactlab.figures import access, labels, scales, style
 from impactlab.figures.access import design_dims, usable
 from impactlab.figures.labels import Display
-from impactlab.model.impact import SOLID
+from impactlab.model.parameters import REFINEMENTS
 from impactlab.types import Floats
 
-_LARGE, _SMALL = ("nodes", "points", "elements_per_radius"), ("courant", "element_size")
 _JUMP, _FEW_STEPS = 5.0, 4
 _MOST = 6  # largest number of panels, and of curves if no other is asked for
 
@@ -93,10 +93,9 @@ def plan(
         panels = [Choice({panel: at}, labels.value(runs[panel], at)) for at in places]
     rank = {dim: at for at, dim in enumerate(prefer)}
     left = sorted((dim for dim in dims if dim != panel), key=lambda dim: rank.get(dim, len(rank)))
-    # beside 3-D runs, as no model there is refined by what refines the other
-    finest = (
-        {*_LARGE, *_SMALL} - {*prefer} if SOLID in np.ravel(runs.get("beam_model", "")) else set()
-    )
+    # beside a wing's runs, as no model there is refined by what refines the other
+    mixed = wings.among(runs.get("beam_model", ""))
+    finest = REFINEMENTS.keys() - {*prefer} if mixed else set()
     several = [dim for dim in left if runs.sizes[dim] > 1 and dim not in finest]
     shown: dict[str, list[int]] = {}
     # the first of at most two dimensions leaves room for two values of the second
@@ -118,10 +117,8 @@ def plan(
 
 def _held(coordinate: xr.DataArray) -> int:
     """Return the position of the finest numerics, the middle number, or the first name."""
-    if coordinate.name in _SMALL:
-        return int(np.argmin(coordinate.values))
-    if coordinate.name in _LARGE:
-        return int(np.argmax(coordinate.values))
+    if refinement := REFINEMENTS.get(str(coordinate.name)):
+        return int(refinement.finest_first(coordinate.values)[0])
     return coordinate.size // 2 if coordinate.dtype.kind in "if" else 0
 
 

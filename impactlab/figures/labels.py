@@ -14,8 +14,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from impactlab import wings
 from impactlab.model.distributions import CHOICE
-from impactlab.model.impact import SOLID
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.types import Floats
@@ -97,7 +97,8 @@ def response(name: str) -> str:
 
 def beam_model(name: str) -> str:
     """Return the proper name of a model of the beam: "Euler-Bernoulli"."""
-    return "3-D FE model" if name == SOLID else "-".join(map(str.capitalize, name.split("_")))
+    further = wings.models().get(name)
+    return further.label if further else "-".join(map(str.capitalize, name.split("_")))
 
 
 def parameter(name: str) -> str:

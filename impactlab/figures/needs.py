@@ -12,13 +12,11 @@ from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels
 from impactlab.figures.access import usable
 from impactlab.figures.measures import analysed
-from impactlab.model.parameters import ELEMENTS
+from impactlab.model.parameters import REFINEMENTS
 
-ORDERED = {"nodes": "nodes", "courant": "time_step"} | dict.fromkeys(ELEMENTS, "element_size")
+ORDERED = {dim: axis for dim, (axis, _) in REFINEMENTS.items() if dim != "points"}
 """Refined axes: the prefix of their variables in the analysis."""
 REFINED = ORDERED | {"points": "points"}
-_COSTS = {"nodes": 3, "points": 1, "courant": -1, ELEMENTS[0]: -4, ELEMENTS[1]: 4}
-"""Power of each refined axis in the cost of a run; below zero, less is finer."""
 _KINDS = ("rule", "scheme")
 """Discretisations side by side: an answer names the one that needs least."""
 
@@ -62,7 +60,7 @@ def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
     axes = []
     for dim, axis in REFINED.items():
         if dim in runs.dims:
-            runs = runs.sortby(dim, ascending=_COSTS[dim] < 0)  # the finest first
+            runs = runs.sortby(dim, ascending=REFINEMENTS[dim].cost_power < 0)  # the finest first
             if f"{axis}_uncertainty" in analysis:
                 axes.append(dim)
             else:
@@ -79,7 +77,7 @@ def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
 def _least(runs: xr.Dataset, analysis: xr.Dataset, axes: list[str]) -> Needs:
     cost = xr.ones_like(runs[axes[0]], float)
     for dim in axes:
-        cost = cost * runs[dim].astype(float) ** _COSTS[dim]
+        cost = cost * runs[dim].astype(float) ** REFINEMENTS[dim].cost_power
     names = analysis["response"].values.tolist()
     values = xr.Dataset({name: usable(runs, name) for name in names}).to_array("response")
     limit = values.isel(dict.fromkeys(axes, 0))

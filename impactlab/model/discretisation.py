@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from impactlab import wings
 from impactlab.model.checks import integer, one_of, positive, require
 from impactlab.model.quantities import SI
 from impactlab.solver import BENDING_MODELS, RULES, SCHEMES
@@ -71,13 +72,11 @@ class Discretisation:
         one_of("Discretisation", "rule", self.rule, RULES)
         schemes = SCHEMES if np.ndim(self.scheme) else (*SCHEMES, "auto")
         one_of("Discretisation", "scheme", self.scheme, schemes)
-        for field in ("element_size", "elements_per_radius"):
-            if getattr(self, field) is not None:
-                positive("Discretisation", field, getattr(self, field))
-        twice = self.element_size is not None and self.elements_per_radius is not None
-        message = "element_size says it already: take one of them out"
-        size = self.elements_per_radius
-        require(not twice, "Discretisation", "elements_per_radius", size, message)
+        sizes = [name for name in wings.sizes() if getattr(self, name) is not None]
+        for name in sizes:
+            positive("Discretisation", name, getattr(self, name))
+            message = f"{sizes[0]} says it already: take one of them out"
+            require(name == sizes[0], "Discretisation", name, getattr(self, name), message)
         courant = positive("Discretisation", "courant", self.courant)
         message = "must be in (0, 1]; above 1 the scheme is unstable or inaccurate"
         require(courant <= 1, "Discretisation", "courant", self.courant, message)

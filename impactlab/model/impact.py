@@ -9,14 +9,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from impactlab import wings
 from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS, PRESTRESSES
 from impactlab.solver.contact import LAWS
 
-SOLID = "solid"
-"""The word for the 3-D model of beam and sphere (impactlab.fem3d), no kernel's."""
-MODELS = (*BEAM_MODELS, SOLID)
+MODELS = (*BEAM_MODELS, *wings.models())
 """Names of all models of the beam."""
 
 

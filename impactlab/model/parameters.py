@@ -9,8 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from impactlab import wings
 from impactlab.model.checks import Column
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
@@ -38,6 +41,7 @@ class Parameter:
     any_word: bool = False
 
 
+_SIZES = wings.sizes().values()
 _MATERIAL = (
     ("density", "kg m-3", "density"),
     ("youngs_modulus", "Pa", "Young's modulus"),
@@ -75,18 +79,7 @@ _ROWS = (
     ("rule", "1", "integration rule", "discretisation.rule"),
     ("scheme", "1", "scheme in time", "discretisation.scheme"),
     ("courant", "1", "time step over the scheme's largest", "discretisation.courant"),
-    (
-        "element_size",
-        "m",
-        "size of the solid elements about the contact",
-        "discretisation.element_size",
-    ),
-    (
-        "elements_per_radius",
-        "1",
-        "solid elements over the expected contact radius",
-        "discretisation.elements_per_radius",
-    ),
+    *((size.name, size.units, size.long_name, f"discretisation.{size.name}") for size in _SIZES),
 )
 _CHOICES = {
     "contact": LAWS,
@@ -104,8 +97,34 @@ PARAMETERS: dict[str, Parameter] = {
     )
     for name, units, text, path in _ROWS
 }
-ELEMENTS = ("element_size", "elements_per_radius")
-"""The parameters of the 3-D model's elements, which takes one of them."""
+
+
+class Refinement(NamedTuple):
+    """A parameter of the discretisation that a grid refines.
+
+    axis: prefix of its variables in the analysis. cost_power: its power in the cost of a run; below
+    zero, less is finer.
+    """
+
+    axis: str
+    cost_power: int
+
+    def finest_first(self, values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+        """Return the positions of values, those of the finest grid first."""
+        order = np.argsort(values)
+        return order if self.cost_power < 0 else order[::-1]
+
+
+REFINEMENTS = {
+    "nodes": Refinement("nodes", 3),
+    "points": Refinement("points", 1),
+    "courant": Refinement("time_step", -1),
+} | {
+    size.name: Refinement(model.axis, size.cost_power)
+    for model in wings.models().values()
+    for size in model.sizes
+}
+"""Every refinement, by parameter."""
 
 
 def flatten(impact: Impact, discretisation: Discretisation) -> dict[str, Value]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from impactlab import wings
 from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels
 from impactlab.figures.measures import analysed
@@ -35,7 +36,7 @@ _RULES = (
 _AXES = {
     "nodes": ("Convergence in nodes along the span", _ORDERS),
     "time_step": ("Convergence in the time step at fixed nodes", _ORDERS),
-    "element_size": ("Convergence in the size of the solid elements", _ORDERS),
+    **{model.axis: (model.axis_title, _ORDERS) for model in wings.models().values()},
     "points": ("Convergence in integration points over the depth", _RULES),
 }
 """Caption and explanation of each axis, in the order space, time, depth."""

@@ -21,6 +21,7 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from impactlab.figures import labels
 from impactlab.figures.measures import RANKED
+from impactlab.figures.needs import REFINED
 from impactlab.figures.record import listed
 from impactlab.files import identity, replaced
 
@@ -42,7 +43,7 @@ _PROVENANCE = {
 }
 _LEADING = (
     *(family.figure for family in RANKED),
-    *(f"{axis}_convergence" for axis in ("nodes", "time_step", "element_size", "points")),
+    *(f"{axis}_convergence" for axis in dict.fromkeys(REFINED.values())),
     "parameter_effects",
 )
 """Figures that answer a question, the first of a study before its others."""

@@ -91,11 +91,11 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the sections on results, inputs and runs, in the order of the page."""
     inputs, ranges = _inputs(runs), _ranges(runs, analysis)
     if not is_sample(runs):
-        added = wings.added("sections", runs)
+        further = wings.among(runs.coords.get("beam_model", ""))
         return [
             *convergence(runs, analysis),
             *measured.sections(analysis),
-            *(added(runs, analysis) if added else []),
+            *(section for model in further for section in model.part("sections")(runs, analysis)),
             Section("results", "Results", tables=[ranges]),
             _outcome(runs, analysis),
             inputs,

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from pkgutil import resolve_name
 from shutil import disk_usage
 from types import SimpleNamespace
 from typing import Any
@@ -13,10 +12,9 @@ from typing import Any
 import numpy as np
 from distributed.system import MEMORY_LIMIT
 
-from impactlab import wings
 from impactlab.model.cost import A_SECOND, memory, work
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import SOLID, paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
 from impactlab.model.plausibility import implausibilities
 from impactlab.model.quantities import amount, time
@@ -27,9 +25,8 @@ from impactlab.study.runs import BOUND_IT, file_stats
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.checks import extremes, has_solid_runs, key_of
+from impactlab.study.schema.checks import extremes, further_models, key_of
 from impactlab.study.schema.study import FunctionStudy, Study
-from impactlab.study.steps import resolved
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
 MOST_TIME = 30 * 86400.0
@@ -40,7 +37,7 @@ _PER_RUN = 60.0  # bytes per run in memory beside them: its key, place and cost
 _ON_DISK = 2  # copies of answers on disk: in shards and in runs.nc
 _PROGRAM = 4e8  # bytes of the program and its compiler
 _FUNCTION = 1e-6  # seconds per value of a test function
-_USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES, _USUAL_SIZE = 10_000, 0.012, 1000, 1e-3
+_USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES = 10_000, 0.012, 1000
 _MOST = 4096  # runs of a cost sample
 _TAIL = 1e-3  # probability of either tail of a distribution that a cost sample leaves out
 
@@ -130,12 +127,11 @@ class Estimate:
 def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estimate:
     """Return the cost of a study on so many workers of this machine, within a factor of about 3.
 
-    folder: for its results; what they take already counts as free. Of many runs a sample is taken,
-    always the same one; the largest run is sought at the extremes of parameters. Pilot runs of
-    `auto` and the analysis are not included. Raises StudyError where a sampled run is impossible,
-    or where pilot runs solved before found no discretisation within the tolerance.
+    study: with its discretisation, where that is known (see steps.resolved). folder: for its
+    results; what they take already counts as free. Of many runs a sample is taken, always the same
+    one; the largest run is sought at the extremes of parameters. Pilot runs of `auto` and the
+    analysis are not included. Raises StudyError where a sampled run is impossible.
     """
-    study = resolved(study, folder) or study
     there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
     own = sum(each.st_size for each in file_stats(folder.rglob("*")))
     file, doubted = str(study.path), []
@@ -147,10 +143,9 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
         kept, held, working = parameters + 2, parameters + 2, 0.0
         slow = large = "sampling"
     else:
-        # as of the 3-D model: see model.cost
-        model: Any = SimpleNamespace(table=case_table, work=work, memory=memory)
-        if has_solid_runs(study):
-            model = resolve_name(wings.SOLID["cases"])
+        model: Any = SimpleNamespace(table=case_table, work=work, memory=memory, usual=_usual)
+        for further in further_models(study):  # with the same functions
+            model = further.part("costs")
         sample = _cost_sample(study)
         cases = _cases(study, model, sample)
         costs = model.work(cases)
@@ -184,11 +179,7 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
 
 def _drivers(study: Study, model: Any, case: Array, runs: int) -> list[str]:
     """Return the keys that drive time and space: the usual values of which would save most."""
-    impact = paper_impact()
-    if has_solid_runs(study) and model.is_solid(case).all():
-        impact = replace(impact, beam_model=SOLID)
-    grid = Discretisation(element_size=_USUAL_SIZE)
-    usual = model.table(impact, grid, duration=_USUAL_DURATION, varied={})
+    usual = model.usual(case, _USUAL_DURATION)
     slow = {"sampling": runs / _USUAL_RUNS}
     large = dict(slow)
     for name in usual.dtype.names:
@@ -201,6 +192,11 @@ def _drivers(study: Study, model: Any, case: Array, runs: int) -> list[str]:
         large[name] = float(case[name][0]) / getattr(Discretisation(), name)
     names = [max(gains, key=gains.__getitem__) for gains in (slow, large)]
     return [key_of(name, study.sampling) if name in PARAMETERS else name for name in names]
+
+
+def _usual(case: Array, duration: float) -> Array:
+    """Return the record of the usual run that `case` is compared with."""
+    return case_table(paper_impact(), Discretisation(), duration=duration, varied={})
 
 
 def _cost_sample(study: Study) -> dict[str, Array]:

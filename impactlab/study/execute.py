@@ -106,10 +106,8 @@ def solved(work: Work, missing: Array, engine: Engine) -> Iterator[tuple[Array, 
 
     Raises OSError when no scheduler answers, or when its workers fail.
     """
-    solver = work.solver
-    solver.prepare(work.design)
-    values = solver.values(solver.cases(work.design, missing[:1]), work.output)
-    batches = Batches(missing, work.cost, values, engine.batch_seconds)
+    work.solver.prepare(work.design)
+    batches = Batches(missing, work.cost, work.values, engine.batch_seconds)
     with engine.client() as client:
         pool = WorkerPool(client, work, batches)
         # with results: waiting for the result of a lost worker would never end

@@ -41,7 +41,8 @@ _CHUNK = 10_000  # runs whose cases are in memory together: a table of all would
 class Work:
     """The runs of a design: the key of each, shape (runs,), and its cost in the solver's unit.
 
-    name: of the solver; without the attribute, a design is one of impacts.
+    name: of the solver; without the attribute, a design is one of impacts. values: numbers
+    kept of each run.
     """
 
     design: xr.Dataset
@@ -50,6 +51,7 @@ class Work:
     output: OutputSpec
     keys: Array
     cost: Array
+    values: int
 
     @staticmethod
     def of(design: xr.Dataset) -> Work:
@@ -65,7 +67,8 @@ class Work:
                 raise ValueError(f"{error}{advice}") from None
             keys.append(run_keys(cases, output, solver.version))
             cost.append(solver.cost(cases))
-        return Work(design, name, solver, output, np.concatenate(keys), np.concatenate(cost))
+        columns = np.concatenate(keys), np.concatenate(cost)
+        return Work(design, name, solver, output, *columns, solver.values(cases, output))
 
 
 _OPEN = 100  # shards that stay open: opening one takes longer than reading a column

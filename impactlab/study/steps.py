@@ -126,13 +126,14 @@ def run(
         check_unclaimed(study, path, source)
     for file in study.measurements if isinstance(study, Study) else ():
         read_measurements(file)  # mistakes there are told before hours of runs
-    cost = estimate(study, path.parent, engine.workers)
+    declared = resolved(study, path.parent, tell=tell)
+    cost = estimate(declared or study, path.parent, engine.workers)
     for problem in cost.implausible:
         log.warning("%s", problem)
     if (exceeded := cost.exceeded()) and not force:
         raise StudyError(*exceeded)
     if drawn is None:
-        drawn = design(resolved(study, path.parent, engine, tell) or study)
+        drawn = design(declared or resolved(study, path.parent, engine, tell) or study)
     solve(drawn.assign_attrs(study_file=source), path, engine)
 
 

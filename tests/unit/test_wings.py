@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,9 +13,8 @@ import pytest
 
 from impactlab import wings
 
+CHECKOUT = Path(__file__).parents[2]
 PROGRAM = """
-import sys
-from pkgutil import resolve_name
 from command_line import SMALL, done
 from pathlib import Path
 
@@ -22,25 +23,52 @@ done("run", "study.yaml", "--output", "runs.nc", cwd=".")
 done("analyse", "runs.nc", cwd=".")
 done("figures", "runs.nc", "analysis.nc", "--output", "figures", cwd=".")
 done("report", "runs.nc", "analysis.nc", "--figures", "figures", "--output", "report.html", cwd=".")
-print(*(name for name in sys.modules if name.startswith(("impactlab.fem3d", "impactlab.paper"))))
+"""
+LOADED = """
+import sys
+print(*(name for name in sys.modules if name.startswith(("impactlab.fem3d.", "impactlab.paper."))))
 """
 
 
-@pytest.mark.slow
-def test_a_study_of_beams_imports_nothing_of_the_wings(tmp_path: Path) -> None:
-    tests = Path(__file__).parents[1]
-    program = f"import sys; sys.path.insert(0, {str(tests)!r})\n{PROGRAM}"
+def ran(folder: Path, program: str, package: Path) -> str:
+    """Return what a program prints that imports impactlab from the folder `package`."""
+    paths = [str(package), str(CHECKOUT / "tests")]
     done = subprocess.run(
-        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True
+        [sys.executable, "-c", f"import sys; sys.path[:0] = {paths!r}\n{program}"],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(package)},
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.slow
+def test_a_study_of_beams_imports_only_the_records_of_the_wings(tmp_path: Path) -> None:
+    printed = ran(tmp_path, PROGRAM + LOADED, CHECKOUT)
     assert (tmp_path / "report.html").exists()
-    assert done.stdout.splitlines()[-1] == ""
+    assert printed.splitlines()[-1].split() == ["impactlab.fem3d.wing", "impactlab.paper.wing"]
 
 
-@pytest.mark.parametrize(
-    "reference",
-    [wings.COMPILE, *wings.COMMANDS.values(), *wings.SOLVERS.values(), *wings.SOLID.values()],
-)
+@pytest.mark.slow
+def test_the_core_works_without_the_folders_of_the_wings(tmp_path: Path) -> None:
+    wings_and_caches = shutil.ignore_patterns("fem3d", "paper", "__pycache__")
+    shutil.copytree(CHECKOUT / "impactlab", tmp_path / "core/impactlab", ignore=wings_and_caches)
+    shutil.copy(CHECKOUT / "CITATION.cff", tmp_path / "core")  # for the report
+    printed = ran(tmp_path, f"{PROGRAM}print(done('-h', cwd='.').stdout)", tmp_path / "core")
+    assert "report" in printed
+    assert not {"paper", "witness"} & set(printed.split())
+    assert "Peak force" in (tmp_path / "report.html").read_text("utf-8")
+
+
+def references() -> list[str]:
+    """Return all that the records of the wings refer to."""
+    models = wings.models().values()
+    parts = [reference for model in models for reference in model.references.values()]
+    return [*wings.commands().values(), *parts]
+
+
+@pytest.mark.parametrize("reference", references())
 def test_what_a_wing_adds_is_there(reference: str) -> None:
     assert resolve_name(reference)

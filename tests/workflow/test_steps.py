@@ -80,7 +80,7 @@ def test_one_command_reports_a_verification_before_it_fails(folder, monkeypatch)
 
 
 def test_kernels_are_compiled_on_demand(tmp_path):
-    told = impactlab("compile", "--fem3d", cwd=tmp_path).stdout.splitlines()
+    told = impactlab("compile", "--wings", cwd=tmp_path).stdout.splitlines()
     folders = [Path(line.removeprefix("Compiled kernels: ")) for line in told]
     kept = [path.name for folder in folders for path in folder.glob("*.kernel")]
     kernels = ("euler_bernoulli", "timoshenko", "lumped", "modal", "close_gaps")

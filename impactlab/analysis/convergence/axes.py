@@ -1,6 +1,6 @@
 """Convergence of all responses along an axis of the discretisation, as labelled variables.
 
-The axes are the nodes, the time step, and the size of the elements.
+The axes are the nodes and the time step; models of wings have further ones.
 
 Some responses have no limit in the model itself: no grid makes them converge, and no number is
 given. Source: Bazant and Planas (1998), Fracture and Size Effect, ch. 8 (localisation of strain in
@@ -16,14 +16,21 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
+from impactlab import wings
 from impactlab.analysis.convergence.judgement import AxisVerdict, How, Judgement, judge
 from impactlab.analysis.convergence.least_squares import Expansion
 from impactlab.analysis.convergence.richardson import Behaviour
 from impactlab.analysis.responses import usable
 from impactlab.analysis.verdicts import TOLERANCE, Verdict, flagged, verdict_variables
-from impactlab.model.impact import SOLID
-from impactlab.model.parameters import ELEMENTS
 from impactlab.types import Floats
+
+
+@dataclass(frozen=True)
+class Growth:
+    """The runs whose peak plastic strain, where they yield, has no limit along an axis, and why."""
+
+    reason: str
+    affected: Callable[[xr.Dataset], xr.DataArray]
 
 
 @dataclass(frozen=True)
@@ -32,13 +39,14 @@ class Axis:
 
     name: prefix of the variables; words: the axis in titles, such as "the nodes". spacings: by
     dimension of the runs, the function from its values to what tends to zero, in any unit. comment:
-    what to know about the order, from the runs.
+    what to know about the order, from the runs. growth: of what has no limit, if anything.
     """
 
     name: str
     words: str
     spacings: Mapping[str, Callable[[Floats], Floats]]
     comment: Callable[[xr.Dataset], str]
+    growth: Growth | None = None
 
     def applies(self, runs: xr.Dataset) -> bool:
         """Return whether the runs are a grid with three or more values on the axis."""
@@ -65,7 +73,7 @@ class Axis:
             vectorize=True,
         )
         fields = dict(zip(Judgement._fields, judged, strict=True))
-        limited = ~without_limit(runs, values, self.name, dim)
+        limited = ~without_limit(runs, values, self.growth, dim)
         found = {
             name: field.where(limited, _WITHOUT_LIMIT.get(name, np.nan))
             for name, field in fields.items()
@@ -73,8 +81,8 @@ class Axis:
         found["observed_order"] = fields["observed_order"]
         comment = self.comment(runs)
         said = {"tolerance": TOLERANCE, "comment": comment}
-        if self.name in WITHOUT_LIMIT and _STRAIN in values["response"].values:
-            said["without_limit"] = f"{_STRAIN}: {WITHOUT_LIMIT[self.name]}"
+        if self.growth and _STRAIN in values["response"].values:
+            said["without_limit"] = f"{_STRAIN}: {self.growth.reason}"
         dataset = xr.Dataset()
         for key, long_name in _NUMBERS.items():
             about = f"{_COMMENTS.get(key, '')} {comment}".strip()
@@ -127,33 +135,29 @@ _WITHOUT_LIMIT = {
     "verdict": AxisVerdict.NOT_CONVERGENT_BY_DESIGN,
 }
 """What is stored where there is no limit; of other fields, NaN."""
-
-
 _STRAIN = "peak_plastic_strain"
-WITHOUT_LIMIT = {
-    "nodes": "in a beam that does not harden, plastic strain gathers at the node that is struck: "
-    "its peak grows with the nodes, up to twice as much with each halving of the spacing",
-    "element_size": "in the contact of a solid, plastic strain gathers at the edge of the dent: "
-    "its peak grows as the elements shrink",
-}
-"""By axis, why the peak plastic strain of runs that yield has no limit."""
 
 
-def without_limit(runs: xr.Dataset, values: xr.DataArray, axis: str, dim: str) -> xr.DataArray:
+def without_limit(
+    runs: xr.Dataset, values: xr.DataArray, growth: Growth | None, dim: str
+) -> xr.DataArray:
     """Return True on (response, *rest of the grid) where there is no limit along `dim`.
 
     values: the usable responses of the runs on (response, *grid dims).
     """
     largest = values.max(dim)
     found = xr.zeros_like(largest, dtype=bool)
-    if axis in WITHOUT_LIMIT:
-        affected = runs.coords.get("beam_model", xr.DataArray("")) == SOLID
-        if axis == "nodes":
-            affected = ~affected
-            for kind in ("isotropic", "kinematic"):  # without a stated modulus it may harden
-                affected = affected & (runs.get(f"beam_{kind}_hardening_modulus", np.nan) == 0)
-        found = (found["response"] == _STRAIN) & (largest > 0) & affected
+    if growth:
+        found = (found["response"] == _STRAIN) & (largest > 0) & growth.affected(runs)
     return found.transpose(*largest.dims).reset_coords(drop=True)
+
+
+def _beams_that_do_not_harden(runs: xr.Dataset) -> xr.DataArray:
+    models: xr.DataArray = runs.coords.get("beam_model", xr.DataArray(""))
+    affected = ~models.isin(list(wings.models()))
+    for kind in ("isotropic", "kinematic"):  # without a stated modulus it may harden
+        affected = affected & (runs.get(f"beam_{kind}_hardening_modulus", np.nan) == 0)
+    return affected
 
 
 _STEPS = {
@@ -182,7 +186,17 @@ def coupling(runs: xr.Dataset) -> str:
     )
 
 
-NODES = Axis("nodes", "the nodes", {"nodes": lambda nodes: 1.0 / (nodes - 1.0)}, coupling)
+NODES = Axis(
+    "nodes",
+    "the nodes",
+    {"nodes": lambda nodes: 1.0 / (nodes - 1.0)},
+    coupling,
+    Growth(
+        "in a beam that does not harden, plastic strain gathers at the node that is struck: its "
+        "peak grows with the nodes, up to twice as much with each halving of the spacing",
+        _beams_that_do_not_harden,
+    ),
+)
 """spacing = span/(nodes - 1)."""
 
 TIME_STEP = Axis(
@@ -195,15 +209,3 @@ TIME_STEP = Axis(
     ),
 )
 """The time step is proportional to courant."""
-
-ELEMENT_SIZE = Axis(
-    "element_size",
-    "the element size",
-    dict(zip(ELEMENTS, (lambda size: size, lambda count: 1.0 / count), strict=True)),
-    lambda runs: (
-        "The elements of the 3-D model shrink about the contact, and the time step with them; "
-        "beyond they keep their largest size. Models of the beam do not know the element size, and "
-        "agree."
-    ),
-)
-"""The size of the solid elements about the contact."""

@@ -14,10 +14,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter
 from matplotlib.transforms import ScaledTranslation
 
+from impactlab.fem3d.figures.convergence import element_size_convergence
+from impactlab.fem3d.wing import SOLID
 from impactlab.figures import access, labels, record, scales, style
 from impactlab.figures.access import known, usable
 from impactlab.figures.labels import display
-from impactlab.model.impact import SOLID
 from impactlab.types import Floats
 
 AXES = {"nodes": np.argmax, "element_size": np.argmin, "elements_per_radius": np.argmax}
@@ -295,5 +296,5 @@ def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return " ".join(sentences)
 
 
-FIGURES = {figure.name: figure for figure in (witness, witness_parts)}
+FIGURES = {figure.name: figure for figure in (witness, witness_parts, element_size_convergence)}
 """Figures of a study, by name, in the order of the report."""

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from impactlab.fem3d.wing import SOLID
 from impactlab.figures import labels
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import SOLID, paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.paper.statements.statement import (
     BEAM,
     PRINTED_DIFFERENCE,

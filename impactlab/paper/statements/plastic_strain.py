@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.model.impact import SOLID, paper_impact
+from impactlab.fem3d.wing import SOLID
+from impactlab.model.impact import paper_impact
 from impactlab.paper.statements.statement import (
     Case,
     Data,

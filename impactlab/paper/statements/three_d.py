@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.convergence.axes import ELEMENT_SIZE
 from impactlab.analysis.convergence.judgement import numerical_uncertainty
+from impactlab.fem3d.convergence import ELEMENT_SIZE
+from impactlab.fem3d.wing import SIZES, SOLID
 from impactlab.figures import labels
-from impactlab.model.impact import SOLID, paper_impact
-from impactlab.model.parameters import ELEMENTS
+from impactlab.model.impact import paper_impact
 from impactlab.paper.statements.statement import (
     BEAM,
     PRINTED_DIFFERENCE,
@@ -28,7 +28,7 @@ from impactlab.paper.statements.statement import (
     statement,
 )
 from impactlab.types import Floats
-from impactlab.variables import RESPONSES, WITNESS
+from impactlab.variables import VARIABLES
 
 FIRST_CONTACT, MESHES = "witness", "witness_mesh"
 """Studies: beam and 3-D models over the velocities; the 3-D model at VELOCITY on finer meshes."""
@@ -47,7 +47,7 @@ def _solid_response(data: Data, response: str, velocity: float) -> Number:
     finest_first = np.argsort(spacings)
     finest = values.values.astype(float)[finest_first]
     width = float(numerical_uncertainty(finest, spacings[finest_first])[0][0])
-    entry = (RESPONSES | WITNESS)[response]
+    entry = VARIABLES[response]
     return _bounded(Number(f"{entry.long_name} (3-D)", finest[0], entry.units, width))
 
 
@@ -67,10 +67,10 @@ def _refined_runs(data: Data) -> tuple[xr.Dataset, str]:
 
 
 def _refined_elements(runs: xr.Dataset) -> str:
-    if names := [name for name in ELEMENTS if name in runs.dims]:
+    if names := [name for name in SIZES if name in runs.dims]:
         return names[0]
     study = runs.attrs.get("study", "?")
-    raise UnknownError(f"the study {study} does not vary {ELEMENTS[0]}: its error is unknown")
+    raise UnknownError(f"the study {study} does not vary {SIZES[0]}: its error is unknown")
 
 
 def _bounded(number: Number) -> Number:

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from scipy.linalg import hadamard
 
 from impactlab.analysis.convergence import points
-from impactlab.analysis.convergence.axes import without_limit
+from impactlab.analysis.convergence.axes import NODES, without_limit
 from impactlab.analysis.convergence.judgement import numerical_uncertainty
 from impactlab.analysis.responses import usable
 from impactlab.model.cost import node_steps
@@ -285,7 +285,9 @@ def solve_along(
     runs = execute(described(xr.Dataset(coords=scalars | varied, attrs=attrs)), folder, engine)
     values = usable(runs).transpose("response", "case", axis)
     others = set(values.coords) - {*values.dims, "response_units", "response_long_name"}
-    return values.drop_vars(others), without_limit(runs, values, axis, axis)
+    return values.drop_vars(others), without_limit(
+        runs, values, NODES.growth if axis == "nodes" else None, axis
+    )
 
 
 def corner_cases(study: Study) -> dict[str, list[Value]]:

@@ -17,7 +17,7 @@ from impactlab.model.parameters import flatten, with_values
 from impactlab.study.errors import Problem, StudyError
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
-from impactlab.study.schema.checks import has_solid_runs
+from impactlab.study.schema.checks import further_models
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.schema.study import FunctionStudy, Study
 from impactlab.study.solvers import run_shape
@@ -51,7 +51,7 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
         base = with_values(study.impact, study.discretisation, sampling.fixed)
         fixed = flatten(*base) | {"duration": study.duration}
         own = {
-            "solver": "witness" if has_solid_runs(study) else "impact",
+            "solver": next((model.solver for model in further_models(study)), "impact"),
             "histories": int(study.store.histories),
             "profiles": int(study.store.profiles),
             "history_samples": study.store.samples,

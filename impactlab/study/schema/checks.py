@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from impactlab import wings
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
-from impactlab.model.impact import SOLID
-from impactlab.model.parameters import ELEMENTS, PARAMETERS, Value
+from impactlab.model.parameters import PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, outputs
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS
 from impactlab.study.errors import unknown
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
@@ -29,9 +29,9 @@ _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
 _TAILS = np.array([1e-3, 1 - 1e-3])
 
 
-def has_solid_runs(study: Study | StudyFile) -> bool:
-    """Return True if any run is of the 3-D model."""
-    return SOLID in values_of(study.sampling, "beam_model", study.impact.beam_model)
+def further_models(study: Study | StudyFile) -> list[wings.Model]:
+    """Return the models of wings that some of the runs have."""
+    return wings.among(values_of(study.sampling, "beam_model", study.impact.beam_model))
 
 
 def values_of(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, ...]:
@@ -174,48 +174,26 @@ def _impacts(file: StudyFile) -> Reasons:
     for name, plain in TIMOSHENKO_OPTIONS.items():
         given = values_of(sampling, name, getattr(file.impact, name))
         ours = sorted(set(map(str, given)) - {plain})
-        if ours and set(models) - {"timoshenko", SOLID}:
+        if ours and set(models) - {"timoshenko", *wings.models()}:
             yield key_of(name, sampling), f"{ours[0]} {TIMOSHENKO_ALONE}"
 
 
-def _solid(file: StudyFile) -> Reasons:
-    """Check that runs of the 3-D model have one element size and its options, and others none."""
-    own, auto = file.discretisation
-    sizes = [
-        key_of(name, file.sampling)
-        for name in ELEMENTS
-        if name in file.sampling.parameters or getattr(own, name) is not None
-    ]
-    if not has_solid_runs(file):
-        for key in sizes:
-            yield key, f"has no effect without beam_model: {SOLID}: take it out"
-        return
-    if not sizes:
-        times = "runs with 1 mm take seconds, those with 0.5 mm a minute"
-        yield f"discretisation.{ELEMENTS[0]}", f"is required for beam_model: {SOLID} ({times})"
-    for key in sizes[1:]:
-        yield key, f"has no effect beside {sizes[0]}: take one of them out"
-    if not isinstance(file.sampling, Grid):
-        reason = f"beam_model: {SOLID} needs method: grid, because a run takes minutes"
-        yield "sampling.method", reason
-    if auto is not None:
-        reason = f"is not possible with beam_model: {SOLID}: state the discretisation"
-        yield "discretisation.auto", reason
-    if file.store.profiles:
-        yield "store.profiles", f"must be false with beam_model: {SOLID}, which has no profiles"
-    for entry in outputs.RESPONSES:
-        if entry.beam_models_only and entry.name in file.responses:
-            reason = f"{entry.name} is not available with beam_model: {SOLID}: leave it out"
-            yield "responses", reason
+def _further_models(file: StudyFile) -> Reasons:
+    """Check runs of a wing's model as the wing does; without any, its sizes have no effect."""
+    for model in wings.models().values():
+        if model in further_models(file):
+            yield from model.part("checks")(file)
+            continue
+        for key in size_keys(file, model):
+            yield key, f"has no effect without beam_model: {model.name}: take it out"
 
 
-def _solid_rate(file: StudyFile) -> Reasons:
-    name = "beam_rate_coefficient"
-    if has_solid_runs(file) and any(
-        values_of(file.sampling, name, file.impact.beam.material.rate_coefficient)
-    ):
-        reason = f"must be 0 with beam_model: {SOLID}: the beam models alone have a strain rate"
-        yield key_of(name, file.sampling), reason
+def size_keys(file: StudyFile, model: wings.Model) -> list[str]:
+    """Return the keys of the sizes of a wing's model that the file states."""
+    varied, grid = file.sampling.parameters, file.discretisation[0]
+    names = (size.name for size in model.sizes)
+    stated = (name for name in names if name in varied or getattr(grid, name) is not None)
+    return [key_of(name, file.sampling) for name in stated]
 
 
 CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
@@ -226,7 +204,6 @@ CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (_automatic_discretisation, {"discretisation", "responses", "sampling"}),
     (_indices_to_grow_by, {"analyses", "responses", "sampling"}),
     (_impacts, {"impact", "discretisation", "sampling"}),
-    (_solid, {"impact", "discretisation", "sampling", "responses", "store"}),
-    (_solid_rate, {"impact", "sampling"}),
+    (_further_models, {"impact", "discretisation", "sampling", "responses", "store"}),
 )
 """The checks, and the sections that each reads: without errors of their own, or it is left out."""

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator, create_model
 
-from impactlab.model.impact import SOLID
 from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.model.quantities import si_units
 from impactlab.study.errors import Problem, StudyError, unknown
@@ -17,7 +16,7 @@ from impactlab.study.sampling import read_sampling
 from impactlab.study.sampling.grid import Grid
 from impactlab.study.sampling.samples import Sobol
 from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.checks import CHECKS, has_solid_runs, limit_reasons, values_of
+from impactlab.study.schema.checks import CHECKS, further_models, limit_reasons, values_of
 from impactlab.study.schema.section import Heading, Names, names, validated
 from impactlab.study.schema.study import (
     Analysis,
@@ -87,8 +86,8 @@ def describe(path: Path) -> dict[str, Any]:
 
     traits: "checks" (a verification), "auto" (its discretisation is to be found), "sample" (its
     impacts are drawn), "sobol" (by Sobol's sequence), "growing" (until its intervals are narrow),
-    "fem3d" (some runs are of the 3-D FE model). measurements: its files of them, if any. Of a file
-    that is wrong: name, no traits, and `error`.
+    and those of the wings' models that some runs have. measurements: its files of them, if any. Of
+    a file that is wrong: name, no traits, and `error`.
     """
     try:
         study = read_any(path)
@@ -101,9 +100,9 @@ def describe(path: Path) -> dict[str, Any]:
         "auto": isinstance(study, Study) and study.auto is not None,
         "sample": impacts and isinstance(sampling, Sample),
         "sobol": impacts and isinstance(sampling, Sobol),
-        "fem3d": isinstance(study, Study) and has_solid_runs(study),
     }
     listed = [name for name, has in traits.items() if has]
+    listed += [model.trait for model in further_models(study)] if isinstance(study, Study) else []
     found = {"name": study.name, "title": study.title, "size": study.size, "traits": listed}
     measured = list(getattr(study, "measurements", ()))
     return found | ({"measurements": measured} if measured else {})
@@ -149,8 +148,8 @@ def _study(source: Source) -> Study:
     grid, auto = file.discretisation
     models = values_of(file.sampling, "beam_model", file.impact.beam_model)
     grid = grid.resolved(map(str, models))
-    if python and has_solid_runs(file):
-        reason = f"are given beam runs, which those with beam_model: {SOLID} are not"
+    if python and (further := further_models(file)):
+        reason = f"are given beam runs, which those with beam_model: {further[0].name} are not"
         raise StudyError(Problem(path, "python_responses", reason))
     own: dict[str, Any] = dict(file) | {"discretisation": grid, "auto": auto, "python": python}
     own["analysis"] = file.analysis or Analysis()

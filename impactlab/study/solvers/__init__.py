@@ -1,4 +1,4 @@
-"""Solvers of a study's runs: one file each, and one line in SOLVERS or in wings.SOLVERS."""
+"""Solvers of a study's runs: one file each, and one line in SOLVERS or in a wing's record."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Solver:
 SOLVERS = {
     "impact": "impactlab.study.solvers.impact:SOLVER",
     "function": "impactlab.study.solvers.function:SOLVER",
-} | wings.SOLVERS
+} | {model.solver: model.references["solver"] for model in wings.models().values()}
 """References to solvers, by the name that designs hold in their attribute `solver`."""
 
 

@@ -12,6 +12,7 @@ import impactlab as il
 from impactlab.fem3d import solver as solid
 from impactlab.fem3d import study as witness
 from impactlab.fem3d.solver.estimates import contact_radius
+from impactlab.fem3d.wing import VARIABLES
 from impactlab.model.cost import A_SECOND
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate
@@ -20,7 +21,7 @@ from impactlab.study.runs import Work
 from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.store import OutputSpec
-from impactlab.variables import STATUS_FLAGS, WITNESS
+from impactlab.variables import STATUS_FLAGS
 
 TEXT = """
 title: Both
@@ -63,7 +64,7 @@ def test_each_model_answers_as_it_does_alone(solved):
     np.testing.assert_allclose(there["contact_force"], force, rtol=2e-3)
     assert there["contact_force"][-1] > 100.0
     assert there["midspan_curvature"].isnull().all()
-    for name in WITNESS:
+    for name in VARIABLES:
         assert solved[name].sel(beam_model="timoshenko").isnull().all()
         assert (solved[name].sel(beam_model="solid") >= 0).all()
     assert 0.0 < solved["processor_time"].max() < 100.0

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.fem3d.wing import SIZES
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
-from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten, with_values
+from impactlab.model.parameters import PARAMETERS, flatten, with_values
 from impactlab.simulate import case_table
 from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
@@ -37,7 +38,7 @@ def test_a_wrong_run_is_named_with_its_field():
 
 RUNS = 40
 RANDOM = np.random.default_rng(3)
-TOGETHER = tuple(name for name in PARAMETERS if name != ELEMENTS[1])
+TOGETHER = tuple(name for name in PARAMETERS if name != SIZES[1])
 """But for what contradicts another."""
 WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "load": LOADS}
 WORDS |= {name: (word,) for name, word in TIMOSHENKO_OPTIONS.items()}

@@ -11,7 +11,8 @@ import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab.model.parameters import ELEMENTS, PARAMETERS, flatten
+from impactlab.fem3d.wing import SIZES
+from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.model.plausibility import TooShortWarning
 from impactlab.solver import RULES
 from impactlab.variables import (
@@ -68,7 +69,7 @@ def test_every_parameter_is_a_coordinate(run):
         "sphere_mass": IMPACT.sphere.total_mass,
         "duration": DURATION,
     }
-    names = {*PARAMETERS, "duration"} - {*ELEMENTS}  # of the 3-D model alone
+    names = {*PARAMETERS, "duration"} - {*SIZES}  # of the 3-D model alone
     assert {name: run[name].item() for name in names} == expected
     assert set(run.coords) == {*names, *COORDINATES} - {"run"}
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from impactlab.model.parameters import ELEMENTS, PARAMETERS
+from impactlab.fem3d.wing import SIZES
+from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.types import CASE
 
 OF_KERNELS = {
-    name: entry
-    for name, entry in PARAMETERS.items()
-    if name not in (*ELEMENTS, "contact_compliance")
+    name: entry for name, entry in PARAMETERS.items() if name not in (*SIZES, "contact_compliance")
 }
 """Without those of the 3-D model alone, and that which becomes five numbers."""
 DERIVED = (

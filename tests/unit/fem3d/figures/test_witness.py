@@ -41,7 +41,7 @@ def test_the_figure_has_values_above_and_differences_below(study):
     assert np.asarray(force.lines[0].get_ydata()) == pytest.approx(10.1 * SPEEDS)
     shown = [np.asarray(marks.lines[0].get_ydata()) for marks in below.containers]
     assert shown == [pytest.approx([5.0] * 3), pytest.approx([-2.0] * 3)]
-    assert CATALOGUE["element_size_convergence"].applies(*study)
+    assert FIGURES["element_size_convergence"].applies(*study)
     assert not CATALOGUE["convergence_cost"].applies(*study)
 
 
@@ -81,8 +81,8 @@ def test_elements_may_be_counted_over_the_radius(study):
             one, other = (witness.side(*each, name, model) for each in (study, counted))
             assert one.value == pytest.approx(other.value)
             assert one.uncertainty == pytest.approx(other.uncertainty, rel=1e-6)
-    assert CATALOGUE["element_size_convergence"].applies(*counted)
-    figure = CATALOGUE["element_size_convergence"].plot(*counted)
+    assert FIGURES["element_size_convergence"].applies(*counted)
+    figure = FIGURES["element_size_convergence"].plot(*counted)
     assert "contact radius (%)" in figure.get_supxlabel()
     sizes = np.asarray(figure.axes[0].lines[0].get_xdata())
     assert sorted(sizes) == pytest.approx([12.5, 25.0, 50.0])

@@ -7,8 +7,9 @@ import pytest
 import xarray as xr
 from SALib.analyze import sobol as sobol_analysis
 
+from impactlab.fem3d.wing import SIZES
 from impactlab.model.impact import paper_impact
-from impactlab.model.parameters import ELEMENTS, PARAMETERS
+from impactlab.model.parameters import PARAMETERS
 from impactlab.study.engine import Engine
 from impactlab.study.errors import StudyError
 from impactlab.study.estimate import estimate
@@ -78,9 +79,7 @@ def test_a_grid_has_a_dimension_for_each_varied_parameter(designed):
 def test_what_is_not_varied_is_a_scalar_coordinate(designed):
     grid = designed(GRID)
     scalars = {name for name, coordinate in grid.coords.items() if coordinate.ndim == 0}
-    assert scalars == PARAMETERS.keys() - {"rule", "velocity", "sphere_mass", *ELEMENTS} | {
-        "duration"
-    }
+    assert scalars == PARAMETERS.keys() - {"rule", "velocity", "sphere_mass", *SIZES} | {"duration"}
     assert grid["nodes"].item() == 51
     assert grid["duration"].item() == 0.012
     assert grid["beam_depth"].item() == paper_impact().beam.depth

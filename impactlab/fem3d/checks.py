@@ -1,0 +1,32 @@
+"""Checks of a study in which some runs are of the 3-D FE model."""
+
+from __future__ import annotations
+
+from impactlab.fem3d.wing import MODEL, SIZES
+from impactlab.solver import outputs
+from impactlab.study.sampling.grid import Grid
+from impactlab.study.schema.checks import Reasons, key_of, size_keys, values_of
+from impactlab.study.schema.study import StudyFile
+
+
+def reasons(file: StudyFile) -> Reasons:
+    """Check that the runs have one element size, and what else the 3-D model requires."""
+    model, sizes = f"beam_model: {MODEL.name}", size_keys(file, MODEL)
+    if not sizes:
+        times = "runs with 1 mm take seconds, those with 0.5 mm a minute"
+        yield f"discretisation.{SIZES[0]}", f"is required for {model} ({times})"
+    for key in sizes[1:]:
+        yield key, f"has no effect beside {sizes[0]}: take one of them out"
+    if not isinstance(file.sampling, Grid):
+        yield "sampling.method", f"{model} needs method: grid, because a run takes minutes"
+    if file.discretisation[1] is not None:
+        yield "discretisation.auto", f"is not possible with {model}: state the discretisation"
+    if file.store.profiles:
+        yield "store.profiles", f"must be false with {model}, which has no profiles"
+    for entry in outputs.RESPONSES:
+        if entry.beam_models_only and entry.name in file.responses:
+            yield "responses", f"{entry.name} is not available with {model}: leave it out"
+    name = "beam_rate_coefficient"
+    if any(values_of(file.sampling, name, file.impact.beam.material.rate_coefficient)):
+        reason = f"must be 0 with {model}: the beam models alone have a strain rate"
+        yield key_of(name, file.sampling), reason
