@@ -134,9 +134,9 @@ def _inputs(runs: xr.Dataset) -> Section:
         label = labels.sentence(labels.parameter(name))
         changed.append([label, *values, *group, Cell(name, "muted")])
     fixed: list[Row] = []
-    for name, table in metadata.items():
+    for name in dict.fromkeys((*metadata, *map(str, runs.coords))):
         if name in runs.coords and runs[name].ndim == 0 and name not in varied(runs):
-            coordinate = runs[name].assign_attrs(table | runs[name].attrs)
+            coordinate = runs[name].assign_attrs(metadata.get(name, {}) | runs[name].attrs)
             label = labels.sentence(coordinate.attrs["long_name"])
             text = labels.values(coordinate, [0])[0] + labels.unit(coordinate)
             fixed.append([label, text, Cell(name, "muted")])

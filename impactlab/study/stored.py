@@ -89,8 +89,14 @@ def write_runs(runs: xr.Dataset, path: Path) -> None:
     """Write runs.nc, and remove what was made beside it from the runs that it held before."""
     before = _identity(path)
     write_netcdf(runs, path, "runs")
-    analysis = path.with_name("analysis.nc")
-    if before in ("", _identity(path)) or before not in _identity(analysis, "made_from").split():
+    if before in ("", _identity(path)):
+        return
+    analysis, calibration = path.with_name("analysis.nc"), path.with_name("calibration.nc")
+    if _identity(calibration, "study_sha256") not in ("", runs.attrs.get("study_sha256")):
+        for suffix in (".nc", ".svg", ".png"):
+            calibration.with_suffix(suffix).unlink(missing_ok=True)
+        log.warning("%s: the calibration by the runs before is removed", path)
+    if before not in _identity(analysis, "made_from").split():
         return
     captions, drawings = path.with_name("figures") / "captions.json", {}
     with suppress(OSError, ValueError):

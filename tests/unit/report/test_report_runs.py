@@ -30,6 +30,13 @@ def test_varied_and_fixed_parameters_with_units(report: Any, material_study: Stu
     assert "beam_yield_stress" not in names
 
 
+def test_a_fixed_parameter_of_a_python_function(report: Any, material_study: Study) -> None:
+    runs, analysis = material_study
+    runs = runs.assign_coords(gap=((), 0.003, {"long_name": "gap", "units": "m"}))
+    fixed = "Parameters that are the same in every run"
+    assert _row(report(runs, analysis), fixed, "Gap")[1:] == ["3 mm", "gap"]
+
+
 def test_a_varied_parameter_may_have_one_value_left(
     report: Any, velocity_study: Study, failing: Any
 ) -> None:

@@ -7,10 +7,11 @@ import shutil
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from command_line import called, done
 
 import impactlab as il
-from impactlab.files import read_netcdf
+from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.results import write_index
 from impactlab.study.steps import removable
 from impactlab.study.stored import same_runs
@@ -119,6 +120,19 @@ def test_a_study_of_the_same_runs_takes_them_over(folder):
 def test_unchanged_runs_leave_the_report(folder):
     done("run", "studies/ishigami.yaml", cwd=folder)
     assert all(Path("results/ishigami", name).exists() for name in MADE)
+
+
+def test_a_calibration_by_the_runs_before_goes(folder):
+    calibration, sha256 = Path("results/ishigami/calibration.nc"), stored().attrs["study_sha256"]
+    write_netcdf(xr.Dataset(attrs={"study_sha256": sha256}), calibration, "calibration")
+    calibration.with_suffix(".svg").touch()
+    Path("results/ishigami/analysis.nc").unlink()
+    done("run", "studies/ishigami.yaml", cwd=folder)
+    assert calibration.exists()
+    Path("studies/ishigami.yaml").write_text(EDITED)
+    done("run", "studies/ishigami.yaml", cwd=folder)
+    assert not calibration.exists()
+    assert not calibration.with_suffix(".svg").exists()
 
 
 def test_tidying_up_leaves_the_runs_of_another_study(folder):
