@@ -305,7 +305,7 @@ def reasons(bits: int, flags: Mapping[str, tuple[int, str]] = FAILURES) -> list[
     return [text for bit, text in flags.values() if bits & bit]
 
 
-_PACKAGES = "impactlab numpy numba xarray netCDF4 dask SALib scikit-learn scipy"
+_PACKAGES = "impactlab numpy numba xarray netCDF4 dask scikit-learn scipy"
 
 
 def provenance() -> dict[str, str]:

@@ -24,6 +24,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from impactlab.analysis.responses import Sample, labels, listed, usable
+from impactlab.analysis.sensitivity import sobol
 from impactlab.analysis.verdicts import Verdict, flagged, names
 from impactlab.types import Floats
 from impactlab.variables import NO_DISTRIBUTION
@@ -83,8 +84,6 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     """
     sample = Sample.of(runs)
     if sample.settings["method"] == "sobol":
-        from impactlab.analysis.sensitivity import sobol  # late: figures do without SALib
-
         sobol.check(sample)
     rows, level, given = draws(sample), sample.confidence, limits(runs)
     columns = {name: sample.runs[name].values[rows] for name in sample.parameters if given}

@@ -1,9 +1,9 @@
-"""Morris' elementary effects, by SALib: a screening, cheap but without shares of the variance."""
+"""Morris' elementary effects: a screening, cheap but without shares of the variance."""
 
 from __future__ import annotations
 
 import numpy as np
-from SALib.analyze import morris
+import scipy  # its stats are loaded when first used
 
 from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.method import Index, Method
@@ -39,8 +39,7 @@ def _check(sample: Sample) -> None:
     sample.ordered()
     trajectories, factors = sample.number("trajectories"), len(sample.factors)
     sample.expect(trajectories * (factors + 1), f"{trajectories} trajectories of {factors} steps")
-    path = levels(sample.inputs).reshape(trajectories, factors + 1, -1)
-    moved = np.diff(path, axis=1) != 0
+    moved = _directions(sample) != 0
     members = np.array(sample.factors)[:, None] == np.array(sample.memberships)
     steps = (moved[:, :, None, :] == members).all(axis=-1)
     if not (steps.sum(axis=1) == 1).all():
@@ -51,25 +50,47 @@ def _check(sample: Sample) -> None:
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    names, groups = list(sample.parameters), list(sample.memberships)
-    problem = {"num_vars": len(names), "names": names, "groups": groups}
-    bootstrap = {"num_resamples": sample.resamples, "conf_level": sample.confidence}
-    settings = bootstrap | {"num_levels": sample.number("levels"), "seed": sample.rng(response)}
-    found = morris.analyze(problem, levels(sample.inputs), outputs, **settings)
-    alone = np.array([sample.memberships.count(name) == 1 for name in sample.factors])
+    trajectories, level_count = sample.number("trajectories"), sample.number("levels")
+    changes = np.diff(outputs.reshape(trajectories, -1), axis=1)
+    # exact: a trajectory has one step of each parameter
+    effects = np.einsum("ij,ijk->ik", changes, _directions(sample)).T
+    effects = effects / (level_count / (2.0 * (level_count - 1)))
+    members = np.array(sample.factors)[:, None] == np.array(sample.memberships)
+    sizes = members.sum(axis=1)
+
+    def mean_of_group(values: Floats) -> Floats:
+        return np.asarray((values * members).sum(axis=1) / sizes)
+
     return {
-        "morris_mu": np.where(alone, np.asarray(found["mu"], float), np.nan),
-        "morris_mu_star": np.asarray(found["mu_star"], float),
-        "morris_mu_star_interval": np.asarray(found["mu_star_conf"], float),
-        "morris_sigma": np.asarray(found["sigma"], float),
+        "morris_mu": np.where(sizes == 1, mean_of_group(effects.mean(axis=1)), np.nan),
+        "morris_mu_star": mean_of_group(np.abs(effects).mean(axis=1)),
+        "morris_mu_star_interval": mean_of_group(_half_widths(effects, sample, response)),
+        "morris_sigma": np.where(sizes == 1, mean_of_group(effects.std(axis=1, ddof=1)), np.nan),
     }
+
+
+def _half_widths(effects: Floats, sample: Sample, response: str) -> Floats:
+    """Return the bootstrap half-widths of each parameter's mean absolute effect."""
+    (rng,) = sample.rng(response).spawn(1)
+    quantile = scipy.stats.norm.ppf(0.5 + sample.confidence / 2)
+    trajectories = effects.shape[1]
+    widths = np.empty(len(effects))
+    for parameter, sizes in enumerate(np.abs(effects)):
+        resamples = sizes[rng.integers(trajectories, size=(sample.resamples, trajectories))]
+        widths[parameter] = quantile * resamples.mean(axis=1).std(ddof=1)
+    return widths
+
+
+def _directions(sample: Sample) -> Floats:
+    """Return the sign of each parameter's change, (trajectories, steps, parameters)."""
+    paths = levels(sample.inputs).reshape(sample.number("trajectories"), -1, len(sample.parameters))
+    return np.asarray(np.sign(np.diff(paths, axis=1)))
 
 
 def levels(inputs: Floats) -> Floats:
     """Return the number of the level of each value, (runs, parameter), from 0 on.
 
-    SALib sees a step in every change; the same level may come out of a quantile with another last
-    digit.
+    The same level may come out of a quantile with another last digit.
     """
     found = np.empty(inputs.shape)
     for at, column in enumerate(inputs.T):

@@ -158,7 +158,20 @@ class Morris(Grouped):
 
     def draws(self) -> Floats:
         """Draw trajectories of levels, 0 and 1 included: a start, and one step per factor."""
-        return self.by_salib("morris", self.trajectories, num_levels=self.levels)
+        (rng,) = np.random.default_rng(self.seed).spawn(1)  # as in SALib: same bits
+        groups = list(self.group_of.values())
+        names = list(dict.fromkeys(groups))
+        group_numbers = [names.index(group) for group in groups]
+        step = self.levels / (2.0 * (self.levels - 1))
+        lower_levels = np.linspace(0, 1 - step, self.levels // 2)
+        points = np.arange(len(names) + 1)[:, None]
+        trajectories = np.empty((self.trajectories, len(names) + 1, len(groups)))
+        for trajectory in trajectories:
+            order = rng.permutation(len(names))[group_numbers]
+            ascending = rng.choice([False, True], len(groups))
+            starts = rng.choice(lower_levels, len(groups))
+            trajectory[:] = starts + step * ((points > order) == ascending)
+        return trajectories.reshape(-1, len(groups))
 
 
 class Fast(Sample):
@@ -321,7 +334,11 @@ class Latin(Sample):
 
         Correlations change the order of these values alone.
         """
-        unit = self.by_salib("latin", self.samples)
+        (rng,) = np.random.default_rng(self.seed).spawn(1)  # as in SALib: same bits
+        edges = np.arange(self.samples + 1)[:, None] * (1.0 / self.samples)
+        unit = rng.uniform(edges[:-1], edges[1:], (self.samples, len(self.varied)))
+        for column in unit.T:
+            rng.shuffle(column)
         if not self.correlations:
             return unit
         return correlated(unit, correlation_matrix(list(self.varied), self.correlations))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping
 from functools import partial
-from importlib import import_module
 from typing import Annotated, Any, Self
 
 import numpy as np
@@ -174,18 +173,6 @@ class Sample(Sampling):
     def draws(self) -> Floats:
         """Draw in the unit cube, on (run, varied parameter)."""
 
-    def by_salib(self, sampler: str, number: int, *others: str, **options: Any) -> Floats:
-        """Draw with a module of SALib.sample; others: names of parameters that are not varied."""
-        names = [*self.varied, *others]
-        bounds = [[0.0, 1.0]] * len(names)
-        problem: dict[str, Any] = {"num_vars": len(names), "names": names, "bounds": bounds}
-        if self.group_of:
-            problem["groups"] = list(self.group_of.values())
-        generator = np.random.default_rng(self.seed)  # SALib ignores some seeds of 0
-        draw = import_module(f"SALib.sample.{sampler}").sample  # late: with pandas, a second
-        found: Floats = draw(problem, number, seed=generator, **options)
-        return found
-
     def columns(self) -> dict[str, np.ndarray[Any, Any]]:
         """Draw one value per run of each varied parameter, in SI units, or one word."""
         unit = np.clip(self.draws(), _EDGE, 1 - _EDGE).T
@@ -211,7 +198,7 @@ class Grouped(Sample):
     group of its own.
 
     Raises ValueError unless every group has a name of its own, each member is a varied parameter
-    of one group alone, and there are two groups or more (SALib takes a single group for none).
+    of one group alone, and there are two groups or more.
     """
 
     groups: Annotated[Mapping[str, Names], BeforeValidator(_check_names)] = Field(

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from SALib.analyze import morris as salib
 from SALib.sample import morris as sampler
 from scipy.stats import norm
 
 from impactlab.analysis import sensitivity
+from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.morris import levels
 
 Build = Callable[..., xr.Dataset]
@@ -73,6 +75,28 @@ def test_groups_have_no_sign(drawn: Build) -> None:
     np.testing.assert_allclose(found["morris_mu_star"], [3, 2], atol=1e-12)
     np.testing.assert_allclose(found["morris_mu"], [np.nan, -2], atol=1e-12)
     np.testing.assert_allclose(found["morris_sigma"], [np.nan, 0], atol=1e-12)
+
+
+@pytest.mark.parametrize("groups", [None, ["one", "other", "one"]])
+def test_indices_are_salibs_to_the_last_bit(
+    drawn: Build, ishigami: Any, groups: list[str] | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seeds = lambda *_: np.random.default_rng(3)  # noqa: E731
+    monkeypatch.setattr(Sample, "rng", seeds)
+    unit = _unit(3, groups, 150)
+    outputs = ishigami.of_unit(unit)
+    attrs = {"trajectories": 150} | ({"groups": groups} if groups else {})
+    runs = _runs(drawn, unit, outputs, **attrs)
+    ours = sensitivity.analysis(runs).isel(response=0)
+    names = ["x0", "x1", "x2"]
+    problem = {"num_vars": 3, "names": names, "groups": groups or names}
+    options = {"num_resamples": runs.attrs["resamples"], "seed": seeds()}
+    theirs = salib.analyze(problem, unit, outputs, **options)
+    np.testing.assert_array_equal(ours["morris_mu_star"], theirs["mu_star"])
+    np.testing.assert_array_equal(ours["morris_mu_star_interval"], theirs["mu_star_conf"])
+    np.testing.assert_array_equal(ours["morris_sigma"], theirs["sigma"])
+    if groups is None:
+        np.testing.assert_array_equal(ours["morris_mu"], theirs["mu"])
 
 
 def test_few_trajectories_of_a_rough_function_are_wide(
