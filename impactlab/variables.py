@@ -155,7 +155,7 @@ NO_DISTRIBUTION: dict[str, str] = {
 
 
 @dataclass(frozen=True)
-class Analysis:
+class AnalysisEntry:
     """An analysis of the runs of a study.
 
     place: path of an object in impactlab.analysis with `applies(runs)`, True where it can analyse
@@ -177,32 +177,34 @@ def _grid(least: int, *axes: str) -> tuple[str, Callable[[str, Mapping[str, int]
 
 
 _AXES = "impactlab.analysis.convergence.axes:"
-ANALYSES: dict[str, Analysis] = {
-    "convergence_in_nodes": Analysis(f"{_AXES}NODES", *_grid(3, "nodes")),
-    "convergence_in_time_step": Analysis(f"{_AXES}TIME_STEP", *_grid(3, "courant")),
+ANALYSES: dict[str, AnalysisEntry] = {
+    "convergence_in_nodes": AnalysisEntry(f"{_AXES}NODES", *_grid(3, "nodes")),
+    "convergence_in_time_step": AnalysisEntry(f"{_AXES}TIME_STEP", *_grid(3, "courant")),
     **{
-        f"convergence_in_{model.axis}": Analysis(
+        f"convergence_in_{model.axis}": AnalysisEntry(
             model.references["axis"], *_grid(3, *(size.name for size in model.sizes))
         )
         for model in wings.models().values()
     },
-    "convergence_in_points": Analysis("impactlab.analysis.convergence.points", *_grid(2, "points")),
-    "sensitivity": Analysis(
+    "convergence_in_points": AnalysisEntry(
+        "impactlab.analysis.convergence.points", *_grid(2, "points")
+    ),
+    "sensitivity": AnalysisEntry(
         "impactlab.analysis.sensitivity",
         "a sample (any method but grid)",
         lambda method, *_: method != "grid",
     ),
-    "sensitivity_over_time": Analysis(
+    "sensitivity_over_time": AnalysisEntry(
         "impactlab.analysis.sensitivity.over_time",
         "a Sobol sample with histories (store: {histories: true})",
         lambda method, _, histories: method == "sobol" and histories,
     ),
-    "distribution": Analysis(
+    "distribution": AnalysisEntry(
         "impactlab.analysis.distribution",
         "a sample that represents it (any method but grid, morris and fast)",
         lambda method, *_: method not in NO_DISTRIBUTION,
     ),
-    "surrogate": Analysis(
+    "surrogate": AnalysisEntry(
         "impactlab.analysis.surrogate",
         "a sample (any method but grid)",
         lambda method, *_: method != "grid",

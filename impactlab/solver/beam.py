@@ -96,10 +96,10 @@ def move_virgin(
     """
     after, outside = 1 - now, 0.0
     for i in range(np.uint64(first), np.uint64(stop)):
-        here, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]
-        outside += 1.0 if abs((beside - 2.0 * here) * grid.per_dx2) > kappa_y else 0.0
-        u[i] -= grid.stiffness * (w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * here)
-        w[after, i] = here + u[i]
+        w_i, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]
+        outside += 1.0 if abs((beside - 2.0 * w_i) * grid.per_dx2) > kappa_y else 0.0
+        u[i] -= grid.stiffness * (w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * w_i)
+        w[after, i] = w_i + u[i]
     return outside
 
 
@@ -120,13 +120,13 @@ def move(
     """
     after, outside = 1 - now, 0.0
     for i in range(np.uint64(first), np.uint64(grid.mid + 1)):
-        here, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]
-        kappa = (beside - 2.0 * here) * grid.per_dx2
+        w_i, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]
+        kappa = (beside - 2.0 * w_i) * grid.per_dx2
         outside += 1.0 if kappa > kappa_max[i] else 0.0
         outside += 1.0 if kappa < kappa_min[i] else 0.0
-        fourth = w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * here
+        fourth = w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * w_i
         u[i] += plastic[i] - grid.stiffness * fourth
-        w[after, i] = here + u[i]
+        w[after, i] = w_i + u[i]
     return outside
 
 

@@ -74,7 +74,7 @@ def spread_over_nodes(
     beam without mid-span, J; number of nodes pushed beside mid-span).
     """
     u, du, after, mid = beam.u, beam.du, beam.w[1 - now], grid.mid
-    taken, mean, pushed = 0.0, 0.0, 0
+    shares, mean, pushed = 0.0, 0.0, 0
     while pushed < mid - 2 and pushed * grid.dx < a:
         pushed += 1
         i, share = mid - pushed, node_share(pushed, grid.dx, a)
@@ -82,11 +82,11 @@ def spread_over_nodes(
         du[i] += change
         u[i] += change
         after[i] += change
-        taken += share
+        shares += share
         mean += share * u[i]
-    back = 2.0 * taken * grid.push * F
+    back = 2.0 * shares * grid.push * F
     du[mid] -= back
     u[mid] -= back
     after[mid] -= back
     mirror(beam.w, now, grid)
-    return 2.0 * (mean - taken * u[mid]), F * mean, pushed
+    return 2.0 * (mean - shares * u[mid]), F * mean, pushed

@@ -36,13 +36,13 @@ def start(events: Record) -> None:
 
 
 @compiled
-def vertex(before: float, here: float, after: float) -> tuple[float, float]:
-    """Return (offset in steps from `here`, value) of the extremum of a parabola by 3 points."""
-    bend = before - 2.0 * here + after
+def vertex(before: float, middle: float, after: float) -> tuple[float, float]:
+    """Return (offset in steps from `middle`, value) of the extremum of a parabola by 3 points."""
+    bend = before - 2.0 * middle + after
     if bend == 0.0:
-        return 0.0, here
+        return 0.0, middle
     offset = 0.5 * (before - after) / bend
-    return offset, here - 0.25 * (before - after) * offset
+    return offset, middle - 0.25 * (before - after) * offset
 
 
 def between_steps(load_to: Callable[..., Any], force: Callable[..., float]) -> Any:

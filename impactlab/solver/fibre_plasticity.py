@@ -229,9 +229,9 @@ def _yield(
     i: Index,
     kappa: float,
 ) -> None:
-    """Bend section i out of its elastic interval; rate: the section's, which rules at compile time.
+    """Bend section i out of its elastic interval.
 
-    A coefficient of 0 is none, too.
+    `rate` is fixed at compile time; None, or a coefficient of 0 disables it.
     """
     if rate is not None and rate.D > 0.0:
         M_0 = flow(plastic_state, section, rate, i, kappa, grid.dt)
@@ -280,12 +280,12 @@ def plastic_energy(
     stored, dissipated = 0.0, 0.0
     for i in range(2, grid.mid + 1):
         if plastic_state.peeq[i, 0] > 0.0:  # the outermost fibre yields first
-            kept, lost = plastic_energies(
+            stored_i, dissipated_i = plastic_energies(
                 section, plastic_state.plastic_strain, plastic_state.peeq, i
             )
             times = 1.0 if i == grid.mid else 2.0
-            stored += times * kept
-            dissipated += times * (lost + plastic_state.flowed[i, 1])
+            stored += times * stored_i
+            dissipated += times * (dissipated_i + plastic_state.flowed[i, 1])
     return stored * grid.dx, dissipated * grid.dx
 
 

@@ -236,8 +236,8 @@ def lowest(start: float, end: float, steps: int, bend: float) -> float:
     slope = (end - start) / steps
     if abs(slope) >= 0.5 * bend * steps:
         return min(start, end)
-    at = 0.5 * steps - slope / bend
-    return start - 0.5 * bend * at * at
+    turn = 0.5 * steps - slope / bend
+    return start - 0.5 * bend * turn * turn
 
 
 @inlined
@@ -253,20 +253,20 @@ def note_leap(
     most = _most(leaps.bounds, w, w_after, level)
     if most <= top[_SEEN]:
         return
-    at = _ROOM
-    while at > 0:
-        at -= 1
-        if leaps.levels[at] < 0 or leaps.most[at] <= top[_SEEN]:
+    slot = _ROOM
+    while slot > 0:
+        slot -= 1
+        if leaps.levels[slot] < 0 or leaps.most[slot] <= top[_SEEN]:
             break
     else:
         largest_deflection(leaps, D, w_max)
-    leaps.levels[at], leaps.most[at] = level, most
+    leaps.levels[slot], leaps.most[slot] = level, most
     for p in range(q.size):
-        leaps.held[at, 0, p], leaps.held[at, 1, p] = q[p], u[p]
-        leaps.held[at, 2, p] = leaps.rest[p]
+        leaps.held[slot, 0, p], leaps.held[slot, 1, p] = q[p], u[p]
+        leaps.held[slot, 2, p] = leaps.rest[p]
     for k in range(level + 1):
-        leaps.held_bounds[at, 0, k] = leaps.bounds[0, k]
-        leaps.held_bounds[at, 1, k] = leaps.bounds[1, k]
+        leaps.held_bounds[slot, 0, k] = leaps.bounds[0, k]
+        leaps.held_bounds[slot, 1, k] = leaps.bounds[1, k]
 
 
 @compiled

@@ -60,7 +60,7 @@ def _sample(
     step: int,
     steps: int,
     before: Point,
-    here: Point,
+    after: Point,
 ) -> None:
     """Fill the samples of `out`, shape (5, samples), that fall into the step that ends here."""
     per_step = (out.shape[1] - 1) / steps
@@ -68,7 +68,7 @@ def _sample(
     while k < out.shape[1] and k <= step * per_step * (1.0 + 1e-12):
         share = 1.0 - (step - k / per_step)
         for row in range(5):
-            out[row, k] = before[row] + share * (here[row] - before[row])
+            out[row, k] = before[row] + share * (after[row] - before[row])
         k += 1
 
 
@@ -90,9 +90,9 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
         sphere: tuple[float, float, float, float],
         step: int,
         steps: int,
-        here: Point,
+        point: Point,
     ) -> tuple[int, Point]:
-        """Return (number of steps, what was sampled last).
+        """Return (number of steps, last point sampled).
 
         sphere: its displacement, its last step, how much each grows by, and indentation (m).
         """
@@ -103,9 +103,9 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
         for j in range(1, leapt if samples.shape[1] > 0 else 0):
             w, kappa = retrace(state)
             moved = j * (last + 0.5 * (j + 1) * fall)
-            before, here = here, (0.0, w, kappa, w_s + moved, delta + moved - (w - w_mid))
-            _sample(samples, step + j, steps, before, here)
-        return leapt, here
+            before, point = point, (0.0, w, kappa, w_s + moved, delta + moved - (w - w_mid))
+            _sample(samples, step + j, steps, before, point)
+        return leapt, point
 
     return fly
 

@@ -12,7 +12,7 @@ from impactlab.solver.section import Section
 
 
 class State(NamedTuple):
-    """What a run marches: contact pair, section and grid, and the state of the beam.
+    """The state that a run marches: contact pair, section and grid, and the beam.
 
     own: what the model of the beam has besides; its type is the model's.
     """

@@ -28,9 +28,9 @@ MODAL = SCHEMES.index("modal")
 CONTACT_PATCH = LOADS.index("contact_patch")
 
 
-def record(real: str, whole: str = "") -> np.dtype[Any]:
+def record(real: str, integers: str = "") -> np.dtype[Any]:
     """Return a record type of whole numbers and floats, each given as names with spaces between."""
-    fields = [(name, np.int64) for name in whole.split()] + [(name, float) for name in real.split()]
+    fields = [(n, np.int64) for n in integers.split()] + [(n, float) for n in real.split()]
     return np.dtype((np.record, fields))
 
 
@@ -45,7 +45,7 @@ CASE = record(
     compliance bending_compliance stress_along stress_across
     width_inertia axis_compliance axis_bending
     """,
-    whole="contact beam_model load contact_prestress nodes points rule scheme",
+    integers="contact beam_model load contact_prestress nodes points rule scheme",
 )
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 

@@ -287,7 +287,7 @@ def energies(
     if contact.delta_m > contact.delta_w and not prestressed:
         contact.work += loading_work(pair, contact.delta_w, contact.delta_m)
         contact.delta_w = contact.delta_m
-    whole = 0.0 if prestressed else _released(contact, contact.delta_m - contact.delta_r, fast)
+    released = 0.0 if prestressed else _released(contact, contact.delta_m - contact.delta_r, fast)
     over = max(approach - contact.delta_r, 0.0)
     if pair.compliance != 0.0:
         over = recovered(contact, pair, approach)
@@ -295,4 +295,4 @@ def energies(
     if pair.compliance != 0.0:
         F = contact.K * over**contact.n
         stored += 0.5 * pair.compliance * F * F + contact.bending_work
-    return stored, contact.work - whole
+    return stored, contact.work - released

@@ -48,9 +48,9 @@ def strengthening(x: float, along: float, across: float) -> float:
     x = min(max(x, 1.0), LARGEST)
     mises = math.sqrt(along * along - along * across + across * across)
     share = 1.0 / max(mises, 1.0)
-    both, apart = share * (along + across), share * (along - across)
+    total, difference = share * (along + across), share * (along - across)
     k = 3.0 / x + (1.0 - 1.0 / x) * (K_0 - K_1 * x)
-    e = -0.5 * both - B * both * both - C * apart * apart
+    e = -0.5 * total - B * total * total - C * difference * difference
     return max(1.0 + k * e / 3.0, _LEAST) ** 3
 
 

@@ -31,17 +31,17 @@ def _no_radius(law: int, *of: float) -> float:
     return np.nan
 
 
-def _link(what: str, number: int, others: Any) -> Any:
-    """Return a function that asks law `number` for its curve, limit or radius, or else `others`."""
-    chosen = getattr(import_module(f"impactlab.solver.contact.{LAWS[number]}"), what)
+def _link(attribute: str, number: int, fallback: Any) -> Any:
+    """Return a function that calls this attribute of law `number`, or else `fallback`."""
+    chosen = getattr(import_module(f"impactlab.solver.contact.{LAWS[number]}"), attribute)
 
     def ask(law: int, *of: float) -> Any:
         if law == number:
             return chosen(*of)
-        return others(law, *of)
+        return fallback(law, *of)
 
     # numba knows functions by their names and would take one made here for another
-    ask.__qualname__ = ask.__name__ = f"{what}_{number}"
+    ask.__qualname__ = ask.__name__ = f"{attribute}_{number}"
     return linked(ask)
 
 

@@ -19,7 +19,7 @@ from impactlab.analysis.sensitivity import method, sobol
 from impactlab.analysis.surrogate import chaos
 from impactlab.files import write_netcdf
 from impactlab.study.steps import analyse_runs
-from impactlab.variables import ANALYSES, Analysis
+from impactlab.variables import ANALYSES, AnalysisEntry
 
 Build = Callable[..., xr.Dataset]
 IN_UNITS_OF_RESPONSES = (
@@ -82,7 +82,9 @@ def test_a_new_analysis_is_one_line(
     largest = xr.Dataset({"largest": discretisation["peak_force"].max()})
     module = SimpleNamespace(applies=lambda runs: "nodes" in runs.dims, analysis=lambda _: largest)
     monkeypatch.setitem(sys.modules, "impactlab.analysis.largest", module)
-    entry = Analysis("impactlab.analysis.largest", "a grid", lambda method, *_: method == "grid")
+    entry = AnalysisEntry(
+        "impactlab.analysis.largest", "a grid", lambda method, *_: method == "grid"
+    )
     monkeypatch.setitem(ANALYSES, "largest", entry)
     depth = {"beam_depth": il.Uniform("26 mm", "29 mm"), "velocity": il.Uniform(1, 2)}
     given: Any = {"title": "New", "impact": il.paper_impact(), "duration": "1 ms"}
