@@ -51,19 +51,10 @@ def applies(runs: xr.Dataset) -> bool:
     return method not in NO_DISTRIBUTION and "run" in runs.dims and "varied" in runs.attrs
 
 
-def draws(sample: Sample) -> NDArray[np.int64]:
-    """Return the numbers of the runs that are draws of their own: of a Saltelli sample, A and B."""
-    rows = np.arange(sample.size)
-    if sample.settings["method"] != "sobol":
-        return rows
-    size = sample.size // sample.number("base_samples")
-    return np.concatenate([rows[::size], rows[size - 1 :: size]])
-
-
 def drawn_outputs(runs: xr.Dataset, response: str) -> Floats:
     """Return a response of the draws, (draws,), in SI units, NaN where it is missing."""
     sample = Sample.of(runs.assign_attrs(responses=response))  # whatever else they lack
-    return np.asarray(usable(sample.runs, response).values[0][draws(sample)])
+    return np.asarray(usable(sample.runs, response).values[0][sample.draws])
 
 
 def limits(runs: xr.Dataset) -> dict[str, float]:
@@ -85,7 +76,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     sample = Sample.of(runs)
     if sample.settings["method"] == "sobol":
         sobol.check(sample)
-    rows, level, given = draws(sample), sample.confidence, limits(runs)
+    rows, level, given = sample.draws, sample.confidence, limits(runs)
     columns = {name: sample.runs[name].values[rows] for name in sample.parameters if given}
     found: list[dict[str, Any]] = []
     verdicts = []

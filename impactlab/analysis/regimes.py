@@ -10,7 +10,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.distribution import draws
 from impactlab.analysis.responses import Sample, usable
 from impactlab.types import Floats
 
@@ -46,7 +45,7 @@ def of_sample(sample: Sample, outputs: Floats) -> Floats:
     """
     if sample.settings["method"] == "morris":
         return np.array([])
-    rows = draws(sample)
+    rows = sample.draws
     values = outputs[rows]
     middles = cuts(values)
     if not middles.size or not sample.words:

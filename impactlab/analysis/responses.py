@@ -163,6 +163,15 @@ class Sample:
         """The study's name, for messages."""
         return f"the study {str(self.settings.get('study', '?'))!r}"
 
+    @property
+    def draws(self) -> NDArray[np.int64]:
+        """Numbers of the runs that are draws of their own: of a Saltelli sample, A and B."""
+        rows = np.arange(self.size)
+        if self.settings["method"] != "sobol":
+            return rows
+        size = self.size // self.number("base_samples")
+        return np.concatenate([rows[::size], rows[size - 1 :: size]])
+
     def number(self, setting: str) -> int:
         """Return a whole number that the method needs. Raises ValueError where it is absent."""
         if setting not in self.settings:

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from impactlab.analysis.distribution import cumulative, drawn_outputs, draws, limits, significance
+from impactlab.analysis.distribution import cumulative, drawn_outputs, limits, significance
 from impactlab.analysis.responses import Sample
 from impactlab.analysis.verdicts import ROUND_OFF
 from impactlab.figures import access, labels, record, responses_grid, scales, style
@@ -180,7 +180,7 @@ def exceedance(response: str) -> Figure:
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per parameter."""
         sample = Sample.of(runs)
-        outputs, rows = drawn_outputs(runs, response), draws(sample)
+        outputs, rows = drawn_outputs(runs, response), sample.draws
         statistics, least = analysis.sel(response=response), significance(analysis)
 
         def draw(ax: Axes, column: xr.DataArray) -> None:

@@ -13,12 +13,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure as Drawing
 from matplotlib.image import AxesImage
-from matplotlib.ticker import FixedFormatter
 from numpy.typing import NDArray
 
 from impactlab.figures import access, labels, measures, record, responses_grid, scales, style
 from impactlab.figures.labels import Display, display
 from impactlab.figures.measures import MORRIS, Family, Measure, analysed, parameters
+from impactlab.figures.panel import name_places
 from impactlab.figures.record import Figure
 from impactlab.types import Floats
 from impactlab.variables import status_bits
@@ -113,8 +113,7 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
     else:
         verdict = access.verdict(analysis, _VERDICT, response)
         style.remark(ax, f"undefined:\n{verdict.words if verdict else 'no reason is given'}")
-    ax.set_yticks(rows)
-    ax.yaxis.set_major_formatter(FixedFormatter(list(map(labels.parameter, listed))))
+    name_places(ax, "y", list(map(labels.parameter, listed)))
     ax.tick_params(axis="y", length=0)
     ax.grid(visible=False, axis="y")
     ax.set_ylim(len(rows) - 0.5, -0.5)

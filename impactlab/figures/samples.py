@@ -11,7 +11,6 @@ import scipy  # its stats are loaded when first used
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import FixedFormatter
 from numpy.typing import NDArray
 
 from impactlab.analysis.regimes import of_runs
@@ -19,6 +18,7 @@ from impactlab.figures import access, labels, record, responses_grid, scales, st
 from impactlab.figures.access import is_sample, usable, varied
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
+from impactlab.figures.panel import name_places
 from impactlab.figures.record import Figure
 from impactlab.types import Floats
 
@@ -51,9 +51,11 @@ def scatter(response: str) -> Figure:
         opening = (
             f"Points: {points}. Line: mean of the response over all runs with about this value of "
             "the parameter; where it is flat, the parameter alone changes nothing."
-            + " Each regime has a line of its own." * bool(of_runs(runs, response).size)
-            + " Diamonds: mean over all runs with this word." * any(map(labels.words, columns))
         )
+        if of_runs(runs, response).size:
+            opening += " Each regime has a line of its own."
+        if any(map(labels.words, columns)):
+            opening += " Diamonds: mean over all runs with this word."
         return opening, access.missing_note(runs, [response])
 
     title = f"{labels.sentence(labels.response(response))} against each parameter"
@@ -81,7 +83,8 @@ def along_parameters(
 ) -> Drawing:
     """Draw a panel per parameter, given as its column of the runs."""
     names = varied(runs)
-    height += _NAMES * any(labels.words(runs[name]) for name in names)
+    if any(labels.words(runs[name]) for name in names):
+        height += _NAMES
     figure, axes = style.panels(len(names), columns=3, height=height, sharey=True)
     for ax, name in zip(axes, names, strict=True):
         draw(ax, runs[name])
@@ -106,8 +109,9 @@ def places(column: xr.DataArray) -> Floats:
 
 def _beside(column: xr.DataArray, places: Floats) -> Floats:
     """Return places, those of words moved at random, so that points do not hide each other."""
-    wide = 0.6 * bool(labels.words(column))
-    return places + wide * (np.random.default_rng(2).random(places.size) - 0.5)
+    if not labels.words(column):
+        return places
+    return places + 0.6 * (np.random.default_rng(2).random(places.size) - 0.5)
 
 
 def ticks(ax: Axes, which: Literal["x", "y"], column: xr.DataArray) -> None:
@@ -115,8 +119,8 @@ def ticks(ax: Axes, which: Literal["x", "y"], column: xr.DataArray) -> None:
     if not (listed := labels.words(column)):
         scales.linear(ax, which, 4)
         return
-    ax.set(**{f"{which}lim": (-0.5, len(listed) - 0.5), f"{which}ticks": range(len(listed))})
-    getattr(ax, f"{which}axis").set_major_formatter(FixedFormatter(listed))
+    ax.set(**{f"{which}lim": (-0.5, len(listed) - 0.5)})
+    name_places(ax, which, listed)
     ax.tick_params(axis=which, labelrotation=90.0 if which == "x" else 0.0)
     ax.grid(visible=False, axis=which)
 

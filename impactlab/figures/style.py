@@ -18,6 +18,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from impactlab.figures.panel import Panel
+
 SINGLE, DOUBLE = 89.0, 183.0  # widths of one and of two columns of a paper, mm
 MILLIMETRE = 1.0 / 25.4  # in inches, matplotlib's unit of length
 
@@ -93,7 +95,10 @@ def panels(
     rows = math.ceil(count / columns)
     size = ((SINGLE if columns == 1 else DOUBLE) * MILLIMETRE, rows * height * MILLIMETRE)
     figure = _NEW.get()(figsize=size, layout="constrained")
-    grid = figure.subplots(rows, columns, sharex=sharex, sharey=sharey, squeeze=False).ravel()
+    kind: Any = {"axes_class": Panel}
+    grid = figure.subplots(
+        rows, columns, sharex=sharex, sharey=sharey, squeeze=False, subplot_kw=kind
+    ).ravel()
     for spare in grid[count:]:
         spare.remove()
     if sharex:  # the panels above the spare ones end their column

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.distribution import drawn_outputs, draws, filtered
+from impactlab.analysis.distribution import drawn_outputs, filtered
 from impactlab.analysis.regimes import jumps, of_runs
 from impactlab.analysis.responses import Sample
 from impactlab.figures import labels
@@ -53,7 +53,7 @@ def _regimes(runs: xr.Dataset, name: str, middles: Floats) -> str:
 def _decisive(runs: xr.Dataset, name: str, apart: Floats) -> str:
     """Return the parameters that differ most between runs apart (1) and the others (0)."""
     sample = Sample.of(runs.assign_attrs(responses=name))
-    rows = draws(sample)
+    rows = sample.draws
     columns = {key: sample.runs[key].values[rows] for key in sample.parameters}
     columns = {key: column for key, column in columns.items() if np.unique(column).size > 1}
     variables = {

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from impactlab.fem3d.figures.convergence import element_size_convergence
@@ -19,6 +18,7 @@ from impactlab.fem3d.wing import SOLID
 from impactlab.figures import access, labels, record, scales, style
 from impactlab.figures.access import known, usable
 from impactlab.figures.labels import display
+from impactlab.figures.panel import name_places
 from impactlab.types import Floats
 
 AXES = {"nodes": np.argmax, "element_size": np.argmin, "elements_per_radius": np.argmax}
@@ -276,8 +276,7 @@ def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
             label=labels.response(name),
         )
     ax.axvline(0.0, label="_guide", **style.GUIDE)
-    ax.set_yticks(range(len(EFFECTS)))
-    ax.yaxis.set_major_formatter(FixedFormatter(list(EFFECTS.values())))
+    name_places(ax, "y", list(EFFECTS.values()))
     ax.invert_yaxis()
     ax.set_xlabel(labels.axis("change of the beam's answer", "%"))
     scales.linear(ax, "x")
