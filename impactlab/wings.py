@@ -12,10 +12,10 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import resolve_name
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import ArrayLike
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,4 +99,6 @@ def sizes() -> dict[str, Size]:
 
 def among(names: ArrayLike) -> list[Model]:
     """Return the models of wings that are among these values of `beam_model`."""
+    import numpy as np  # late: the command line begins without
+
     return [model for name, model in models().items() if np.isin(name, names)]

@@ -99,7 +99,7 @@ def evidence(wildcards, input):
 PACKAGE = Path("impactlab")  # of the checkout; elsewhere that which is installed
 if not PACKAGE.is_dir() and (spec := importlib.util.find_spec("impactlab")):
     PACKAGE = Path(spec.origin).parent
-MODEL = ("variables.py", "model/*.py")
+MODEL = ("variables.py", "model/*.py", "wings.py", "*/wing.py")
 SOLVER = (*MODEL, "simulate.py", "solver/**/*.py", "jit.py")
 FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "stored"))
 REPORTING = ("report/**/*.py", "report/templates/*")
