@@ -292,7 +292,7 @@ def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> No
     unit = display(effects)
     x, y, margin = unit(strength.values), unit(spread), unit(strength.margins)
     for number, name in enumerate(parameters(analysis)):
-        if np.isfinite(x[number]):
+        if np.isfinite(y[number]):  # a group has no spread of its own
             xerr = margin[number] if np.isfinite(margin[number]) else None
             look = style.distinct(number) | {"linestyle": "", "elinewidth": 0.8}
             ax.errorbar(x[number], y[number], xerr=xerr, label=labels.parameter(name), **look)

@@ -220,11 +220,11 @@ _NUMBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "rmse": ((), "root mean squared error over the runs left out, in the unit of the response", ""),
     "error": (
         (),
-        "half-width of the 95 % interval of a prediction where the leverage is 1, in the unit of "
-        "the response",
+        "half-width of the 95 % interval of a prediction where the leverage is 1 or less, in the "
+        "unit of the response",
         "",
     ),
-    "error_growth": ((), "power of the leverage that the squared error grows with", "1"),
+    "error_growth": ((), "power of a leverage above 1 that the squared error grows with", "1"),
     "reach": ((), "highest leverage of a run left out", "1"),
     "runs": ((), "runs that the surrogate was fitted to", "1"),
     "held_out": (

@@ -12,6 +12,7 @@ import xarray as xr
 from impactlab.analysis.surrogate.chaos import basis
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
 from impactlab.analysis.surrogate.polynomials import orthonormal
+from impactlab.analysis.surrogate.validation import half_width
 from impactlab.analysis.verdicts import names
 from impactlab.files import read_netcdf
 from impactlab.model.distributions import arguments, cumulative, quantile
@@ -173,7 +174,7 @@ class Surrogate:
             leverages.append(shares @ columns**2)
         leverage = np.hstack(leverages)
         scale, growth = (self.dataset[n].values[:, np.newaxis] for n in ("error", "error_growth"))
-        return np.hstack(answers), leverage, scale * leverage ** (growth / 2)
+        return np.hstack(answers), leverage, half_width(leverage, scale, growth)
 
     def distribution(self, parameter: str) -> dict[str, Any]:
         """Return the distribution of a parameter.

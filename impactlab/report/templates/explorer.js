@@ -23,7 +23,7 @@ function predict(response, polynomials) {
     squares += term * term;
   }
   const leverage = squares / response.terms.length;
-  const error = response.error * leverage ** (response.growth / 2), extrapolated = leverage > response.reach;
+  const error = response.error * Math.max(leverage, 1) ** (response.growth / 2), extrapolated = leverage > response.reach;
   return { value, error, extrapolated, doubtful: extrapolated || error > imprecise * Math.abs(value) };
 }
 

@@ -239,7 +239,4 @@ class Grouped(Sample):
                     seen.add(member)
                     continue
                 raise at_key(f"groups.{group}.{at}", reason)
-        if self.groups and self.group_count < 2:
-            reason = "too few: 1 group, but 2 or more are needed"
-            raise at_key("groups", reason)
         return self

@@ -90,6 +90,13 @@ def test_morris_in_the_unit_of_the_response(study: Study) -> None:
     np.testing.assert_allclose([[p.x[0], p.y[0]] for p in points], expected)
 
 
+def test_a_group_alone_has_no_place_among_morris_spreads(study: Study) -> None:
+    runs, analysis = study
+    spread = analysis["morris_sigma"]
+    figure = CATALOGUE["morris_plane"].plot(runs, analysis.assign(morris_sigma=np.nan * spread))
+    assert "no finite values" in {text.get_text() for text in panel(figure, "Peak force").texts}
+
+
 def test_convergence_of_the_indices_is_the_stored_one(study: Study) -> None:
     _, analysis = study
     axes = panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")

@@ -10,7 +10,7 @@ import scipy.stats
 
 from impactlab.analysis.surrogate.chaos import fit
 from impactlab.analysis.surrogate.polynomials import orthonormal
-from impactlab.analysis.surrogate.validation import ErrorModel, leverage, predictivity
+from impactlab.analysis.surrogate.validation import ErrorModel, half_width, leverage, predictivity
 from impactlab.model.distributions import quantile
 
 NORMAL = {
@@ -45,12 +45,22 @@ def test_stated_errors_hold_at_one_bound_and_in_corners() -> None:
         corners = rng.choice([-1.0, 1.0], (8, 3))
         for name, points in (("bound", bounds), ("corner", corners)):
             outward = leverage(chaos, points)
-            stated = model.error * outward ** (model.growth / 2)
+            stated = half_width(outward, model.error, model.growth)
             inside[name] += (np.abs(chaos(points) - response(points)) <= stated).tolist()
         assert (leverage(chaos, corners) > model.reach).all(), "a corner is not extrapolated"
     assert {name: np.mean(hits) > 0.9 for name, hits in inside.items()} == dict.fromkeys(
         inside, True
     )
+
+
+def test_stated_errors_hold_in_the_middle() -> None:
+    """Of a response whose error is the same wherever the terms of the chaos are small."""
+    rng, inside = np.random.default_rng(0), []
+    for _ in range(200):
+        leverages = np.exp(rng.normal(-0.5, 1.0, 400))
+        model = ErrorModel.of(leverages, rng.normal(size=400) * np.maximum(leverages, 1.0))
+        inside.append(np.abs(rng.normal()) <= half_width(0.1, model.error, model.growth))
+    assert np.mean(inside) > 0.9
 
 
 @pytest.mark.parametrize("blocks", [20, 100])

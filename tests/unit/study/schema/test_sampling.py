@@ -97,11 +97,6 @@ def test_other_parameters_than_those_of_an_impact(read):
 
 GROUPS = {"others": ["gravity", "velocity"]}
 WRONG_GROUPS = [
-    (
-        {"all": ["velocity", "beam_depth", "gravity"]},
-        "groups",
-        "too few: 1 group, but 2 or",
-    ),
     ({"beam_depth": ["velocity", "gravity"]}, "groups.beam_depth", "is the name of a parameter"),
     ({"a": ["velocity", "gravty"]}, "groups.a.1", "did you mean 'gravity'?"),
     ({"a": ["velocity", "beam_width"]}, "groups.a.1", "unknown varied parameter"),
@@ -132,6 +127,14 @@ def test_groups_count_instead_of_parameters(read, sampled, method, given, runs):
         "beam_depth": "beam_depth",
         "gravity": "others",
     }
+
+
+@pytest.mark.parametrize(
+    ("method", "given"), [("sobol", {"base_samples": 16}), ("morris", {"trajectories": 10})]
+)
+def test_one_group_may_hold_all_parameters(read, sampled, method, given):
+    together = {"all": ["velocity", "beam_depth", "gravity"]}
+    assert read(sampled(method, groups=together, **given)).sampling.group_count == 1
 
 
 def test_without_groups_each_parameter_is_its_own(read, sampled):
